@@ -1,0 +1,28 @@
+"""Checks shared by the values of this package: one clear line for bad input."""
+
+from __future__ import annotations
+
+import math
+
+
+def require_positive(name: str, value: float, unit: str) -> float:
+    """Return `value` as a float, or raise ValueError unless it is positive and finite."""
+    number = require_finite(name, value, unit)
+    if number <= 0.0:
+        raise ValueError(f"{name} must be positive{_in(unit)}, got {value!r}")
+    return number
+
+
+def require_finite(name: str, value: float, unit: str) -> float:
+    """Return `value` as a float, or raise ValueError unless it is a finite real number."""
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} must be a number{_in(unit)}, got {value!r}") from None
+    if not math.isfinite(number):
+        raise ValueError(f"{name} must be finite{_in(unit)}, got {value!r}")
+    return number
+
+
+def _in(unit: str) -> str:
+    return f" [{unit}]" if unit else ""

@@ -1,0 +1,147 @@
+"""The problem and the method, apart: a case is stated once for every model and engine."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+from ._validation import require_finite, require_positive
+from .cylinder import Cylinder
+from .ground_motion import GroundMotion
+from .initial_state import InitialState
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Case:
+    """One problem: a cylinder, what moves it, and for how long.
+
+    Parameters
+    ----------
+    name : str
+        For tables, figures and file names.
+    cylinder : Cylinder
+    motion : GroundMotion, optional
+        Without it the ground is still.
+    initial : InitialState, optional
+        Default: standing at rest.
+    duration : float, optional
+        Length of the run [s]. Default: that of the motion; required without one.
+    gravity : float, optional
+        g [m/s^2].
+    friction : float, optional
+        Coulomb coefficient of the pair cylinder and ground [-]. Each engine converts it to its own
+        convention; the reduced models assume that it suffices and say where it would not.
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or neither motion nor duration is given.
+    """
+
+    name: str
+    cylinder: Cylinder
+    motion: GroundMotion | None = None
+    initial: InitialState | None = None
+    duration: float | None = None
+    gravity: float = 9.81
+    friction: float = 1.0
+
+    def __post_init__(self) -> None:
+        require_positive("gravity", self.gravity, "m/s^2")
+        if require_finite("friction", self.friction, "") < 0.0:
+            raise ValueError(f"friction must not be negative, got {self.friction!r}")
+        object.__setattr__(self, "duration", run_duration(self.motion, self.duration))
+
+    @property
+    def length(self) -> float:
+        """Length of the run [s]: `duration`, or that of the motion."""
+        return run_duration(self.motion, self.duration)
+
+
+def run_duration(motion: GroundMotion | None, duration: float | None) -> float:
+    """Return the length of a run [s]: `duration` where given, else that of the motion.
+
+    Raises
+    ------
+    ValueError
+        If neither is given, or the duration is not positive and finite.
+    """
+    if duration is not None:
+        return require_positive("duration", duration, "s")
+    if motion is None:
+        raise ValueError("duration [s] must be given where there is no ground motion")
+    return motion.duration
+
+
+@dataclass(frozen=True, slots=True, init=False)
+class Run:
+    """One method: an engine, its support, and its settings.
+
+    Parameters
+    ----------
+    engine : str
+        Name of the engine, such as "mujoco" or "pybullet".
+    support : str
+        What holds the cylinder in place: "guided", "free", ...
+    time_step : float, optional
+        [s]; default: the engine's own choice for the size of the cylinder.
+    **settings
+        Passed to the engine as they are.
+
+    Raises
+    ------
+    ValueError
+        If the time step is not positive.
+    """
+
+    engine: str
+    support: str
+    time_step: float | None
+    settings: Mapping[str, Any]
+
+    def __init__(self, engine: str, support: str, time_step: float | None = None, **settings: Any) -> None:
+        if time_step is not None:
+            time_step = require_positive("time_step", time_step, "s")
+        object.__setattr__(self, "engine", engine)
+        object.__setattr__(self, "support", support)
+        object.__setattr__(self, "time_step", time_step)
+        object.__setattr__(self, "settings", MappingProxyType(dict(settings)))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # a mapping proxy does not pickle, and runs travel to worker processes
+        return _restore_run, (self.engine, self.support, self.time_step, dict(self.settings))
+
+
+def _restore_run(engine: str, support: str, time_step: float | None, settings: dict[str, Any]) -> Run:
+    return Run(engine, support, time_step, **settings)
+
+
+@dataclass(frozen=True, slots=True)
+class Suite:
+    """Cases times runs.
+
+    Parameters
+    ----------
+    cases : iterable of Case
+    runs : iterable of Run
+
+    Raises
+    ------
+    ValueError
+        If there is no case, or two cases share a name.
+    """
+
+    cases: tuple[Case, ...]
+    runs: tuple[Run, ...]
+
+    def __init__(self, cases: Iterable[Case], runs: Iterable[Run]) -> None:
+        object.__setattr__(self, "cases", tuple(cases))
+        object.__setattr__(self, "runs", tuple(runs))
+        names = [case.name for case in self.cases]
+        if not names:
+            raise ValueError("a suite must have at least one case")
+        if len(set(names)) != len(names):
+            twice = next(name for name in names if names.count(name) > 1)
+            raise ValueError(f"the cases of a suite must have different names, got {twice!r} twice")

@@ -1,0 +1,126 @@
+"""The body: a rigid cylinder on its rim, or any body of revolution with a circular base."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+from ._validation import require_positive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Cylinder:
+    """A rigid body of revolution that stands on a circular base.
+
+    Size and slenderness are those that govern rocking: they locate the mass centre S against the
+    rim. For the homogeneous solid cylinder of the paper, the default, they are also those of its
+    outline. A hollow column, a chimney or a pier that carries a deck is the same body with other
+    inertias; per unit mass, because the mass itself cancels everywhere.
+
+    Parameters
+    ----------
+    semidiagonal : float
+        R = sqrt(b^2 + h^2), distance from the rim to the mass centre [m]. Equation (20).
+    tan_alpha : float
+        b/h, base radius over height of the mass centre; alpha is the slenderness [-].
+    height : float, optional
+        Height of the outline [m]. Default: twice the height of the mass centre.
+    transverse_inertia : float, optional
+        I1/m about a horizontal axis through the mass centre [m^2]. Default: (3 b^2 + height^2)/12,
+        equation (16).
+    axial_inertia : float, optional
+        I2/m about the axis of revolution [m^2]. Default: b^2/2, equation (16).
+
+    Raises
+    ------
+    ValueError
+        If a value is not a positive finite number, or the inertias belong to no real body
+        (I2 > 2 I1).
+
+    Examples
+    --------
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> round(pier.base_radius, 4), round(pier.half_height, 4)
+    (1.1767, 5.8835)
+    """
+
+    semidiagonal: float
+    tan_alpha: float
+    height: float | None = None
+    transverse_inertia: float | None = None
+    axial_inertia: float | None = None
+
+    def __post_init__(self) -> None:
+        require_positive("semidiagonal", self.semidiagonal, "m")
+        require_positive("tan_alpha", self.tan_alpha, "")
+        for name, unit in (("height", "m"), ("transverse_inertia", "m^2"), ("axial_inertia", "m^2")):
+            value = getattr(self, name)
+            if value is not None:
+                require_positive(name, value, unit)
+        transverse, axial = self.transverse_inertia, self.axial_inertia
+        # I2 = 2 I1 is the limit of a flat plate; beyond it no distribution of mass exists
+        if transverse is not None and axial is not None and axial > 2.0 * transverse * (1.0 + 1e-12):
+            raise ValueError(
+                f"axial_inertia must not exceed twice transverse_inertia, got {axial!r} and {transverse!r}"
+            )
+
+    @classmethod
+    def from_dimensions(
+        cls,
+        *,
+        base_radius: float,
+        height: float,
+        mass_centre_height: float | None = None,
+        transverse_inertia: float | None = None,
+        axial_inertia: float | None = None,
+    ) -> Cylinder:
+        """Make a cylinder from its outline.
+
+        Parameters
+        ----------
+        base_radius : float
+            b [m].
+        height : float
+            2h, height of the outline [m].
+        mass_centre_height : float, optional
+            Height of the mass centre above the base [m]. Default: half the height.
+        transverse_inertia, axial_inertia : float, optional
+            I1/m and I2/m about the mass centre [m^2]. Default: the homogeneous solid cylinder.
+
+        Raises
+        ------
+        ValueError
+            If a value is not a positive finite number.
+        """
+        b = require_positive("base_radius", base_radius, "m")
+        outline = require_positive("height", height, "m")
+        h = 0.5 * outline
+        if mass_centre_height is not None:
+            h = require_positive("mass_centre_height", mass_centre_height, "m")
+        return cls(
+            semidiagonal=math.hypot(b, h),
+            tan_alpha=b / h,
+            height=None if mass_centre_height is None else outline,
+            transverse_inertia=transverse_inertia,
+            axial_inertia=axial_inertia,
+        )
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness: angle at the mass centre between the axis and the rim [rad]."""
+        return math.atan(self.tan_alpha)
+
+    @property
+    def base_radius(self) -> float:
+        """Base radius b [m]."""
+        return self.semidiagonal * self.tan_alpha / math.sqrt(1.0 + self.tan_alpha**2)
+
+    @property
+    def mass_centre_height(self) -> float:
+        """Height h of the mass centre above the base [m]."""
+        return self.semidiagonal / math.sqrt(1.0 + self.tan_alpha**2)
+
+    @property
+    def half_height(self) -> float:
+        """Half the height of the outline [m]; h of the paper where the body is homogeneous."""
+        return self.mass_centre_height if self.height is None else 0.5 * self.height

@@ -1,0 +1,95 @@
+"""Ground acceleration as a piecewise linear function of time."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._validation import require_finite, require_positive
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class GroundMotion:
+    """Ground acceleration of two or three components, linear between samples and zero outside.
+
+    Parameters
+    ----------
+    acceleration : array_like, shape (n, 2) or (n, 3)
+        Samples [m/s^2]; x is east-west, y north-south, z (optional) up. Kept as a read-only copy.
+    time_step : float
+        Spacing of the samples [s].
+    name : str, optional
+        For tables and figures.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two samples, a column too many or too few, a value that is not
+        finite, or a time step that is not positive.
+
+    Examples
+    --------
+    >>> pulse = GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.5)
+    >>> pulse.duration, pulse.peak
+    (1.0, 5.0)
+    >>> pulse.scaled(2.0).peak
+    10.0
+    """
+
+    acceleration: NDArray[np.float64]
+    time_step: float
+    name: str = ""
+
+    def __init__(self, acceleration: ArrayLike, time_step: float, name: str = "") -> None:
+        try:
+            samples = np.array(acceleration, dtype=np.float64, order="C")
+        except (TypeError, ValueError):
+            raise ValueError("acceleration must be numbers in 2 or 3 columns [m/s^2]") from None
+        if samples.ndim != 2 or samples.shape[1] not in (2, 3) or samples.shape[0] < 2:
+            raise ValueError(
+                f"acceleration must have shape (n, 2) or (n, 3) with n >= 2, got {samples.shape}"
+            )
+        bad = np.argwhere(~np.isfinite(samples))
+        if len(bad):
+            row, column = bad[0]
+            raise ValueError(
+                f"acceleration must be finite, got {samples[row, column]} "
+                f"in sample {row} of component {'xyz'[column]}"
+            )
+        samples.flags.writeable = False
+        object.__setattr__(self, "acceleration", samples)
+        object.__setattr__(self, "time_step", require_positive("time_step", time_step, "s"))
+        object.__setattr__(self, "name", str(name))
+
+    @property
+    def duration(self) -> float:
+        """Time from the first to the last sample, (n - 1) time_step [s]."""
+        return (len(self.acceleration) - 1) * self.time_step
+
+    @property
+    def peak(self) -> float:
+        """Largest horizontal resultant [m/s^2]; exact, because |a| is convex between samples."""
+        return float(np.hypot(self.acceleration[:, 0], self.acceleration[:, 1]).max())
+
+    @property
+    def has_vertical(self) -> bool:
+        """Whether there is a vertical component."""
+        return int(self.acceleration.shape[1]) == 3
+
+    def scaled(self, factor: float) -> GroundMotion:
+        """Return the motion with all components multiplied by `factor` [-]."""
+        return GroundMotion(
+            self.acceleration * require_finite("factor", factor, ""), self.time_step, self.name
+        )
+
+    def rotated(self, angle: float) -> GroundMotion:
+        """Return the motion turned by `angle` [rad] about the vertical, counter-clockwise from above."""
+        angle = require_finite("angle", angle, "rad")
+        turned = np.array(self.acceleration)
+        x, y = self.acceleration[:, 0], self.acceleration[:, 1]
+        turned[:, 0] = x * math.cos(angle) - y * math.sin(angle)
+        turned[:, 1] = x * math.sin(angle) + y * math.cos(angle)
+        return GroundMotion(turned, self.time_step, self.name)
