@@ -1,0 +1,45 @@
+"""Compilation of the numerical kernels, and keeping what was compiled on disk."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar, cast
+
+import numba
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+# a division by zero gives inf or NaN, which the step control rejects, instead of a Python exception;
+# a multiply-add rounds once (contract), the one licence that keeps mirror and power-of-two scaling exact
+_OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+
+
+def jit(function: F) -> F:
+    """Compile a function that the kernels call; it is compiled into its callers."""
+    return cast("F", numba.njit(**_OPTIONS)(function))
+
+
+def kernel(function: F) -> F:
+    """Compile an entry point without the interpreter lock, and keep the machine code on disk."""
+    return cast("F", numba.njit(cache=True, nogil=True, **_OPTIONS)(function))
+
+
+def is_compiled(entry: Callable[..., Any]) -> bool:
+    """Return whether `entry` runs at once, from memory or from disk.
+
+    The cache on disk compares only the file that holds the entry point, so what was compiled from
+    an older state of any file in this folder is removed here first.
+    """
+    dispatcher = cast("Any", entry)
+    if dispatcher.signatures:
+        return True
+    folder = Path(dispatcher.stats.cache_path)
+    newest = max(path.stat().st_mtime for path in Path(__file__).parent.glob("*.py"))
+    fresh = False
+    for index in folder.glob(f"*{entry.__name__}-*.nbi"):
+        if index.stat().st_mtime < newest:
+            index.unlink(missing_ok=True)
+        else:
+            fresh = True
+    return fresh

@@ -1,0 +1,71 @@
+"""The constants of the equations of motion, per unit mass.
+
+====== ======== =============================================================== ========
+symbol unit     meaning                                                         source
+====== ======== =============================================================== ========
+b      m        base radius                                                     Fig. 1
+h      m        height of the mass centre S above the base                      Fig. 1
+I1     m^2      transverse inertia about S                                      (16)
+I2     m^2      axial inertia                                                   (16)
+A      m^2      I1 + h^2 + b^2, transverse inertia about a point of the rim     (23)
+J      m^2      I1 + h^2, transverse inertia about the centre of the base       (18)
+C      m^2      I2 + b^2                                                        (18)
+E      m^2      h b                                                             (18)
+g      m/s^2    gravity                                                         (17)
+p2     1/s^2    p^2 = g R/A, frequency parameter squared                        (23)
+====== ======== =============================================================== ========
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from rockwobble.models import Cylinder
+
+
+class Body(NamedTuple):
+    """Constants of one cylinder in one field of gravity; symbols in the module docstring."""
+
+    b: float
+    h: float
+    I1: float
+    I2: float
+    A: float
+    J: float
+    C: float
+    E: float
+    g: float
+    p2: float
+    sin_alpha: float
+    cos_alpha: float
+    alpha: float
+
+
+def body_of(cylinder: Cylinder, gravity: float) -> Body:
+    """Return the constants of `cylinder` under `gravity` [m/s^2]."""
+    b, h = cylinder.base_radius, cylinder.mass_centre_height
+    height = 2.0 * cylinder.half_height
+    I1 = cylinder.transverse_inertia
+    I2 = cylinder.axial_inertia
+    if I1 is None:
+        I1 = (3.0 * b * b + height * height) / 12.0
+    if I2 is None:
+        I2 = 0.5 * b * b
+    A = I1 + h * h + b * b
+    R = cylinder.semidiagonal
+    return Body(
+        b=b,
+        h=h,
+        I1=I1,
+        I2=I2,
+        A=A,
+        J=I1 + h * h,
+        C=I2 + b * b,
+        E=h * b,
+        g=gravity,
+        p2=gravity * R / A,
+        sin_alpha=b / R,
+        cos_alpha=h / R,
+        alpha=math.atan(cylinder.tan_alpha),
+    )

@@ -1,0 +1,134 @@
+"""Equations of motion of the planar, recess and rolling models, in the form that computes well.
+
+All are written per unit mass, with t = tan(theta/2), s = sin theta, c = cos theta and
+
+====== ======== =============================================================== ========
+symbol unit     meaning                                                         source
+====== ======== =============================================================== ========
+theta  rad      tilt, angle of the axis from the vertical                       Fig. 2
+omega  rad/s    theta'                                                          Fig. 2
+phi    rad      rolling angle, azimuth of the contact point                     Fig. 2
+L      m^2/s    B phi', momentum of the rolling angle (recess)                  (19)
+Lambda m^2/s    B phi' - G tau', the same where the twist is free (rolling)
+tau    rad      twist phi + psi; 0 in the recess                                (14)
+S      m^2/s    M tau', momentum of the twist (rolling)
+H      m^2      J + 2 E t + C t^2
+B      m^2      s^2 H, inertia of the rolling angle                             (19)
+D      m        s (h + b t), horizontal distance of the mass centre from O      (11)
+a      m/s^2    ground acceleration; a_r along the contact azimuth, a_t across  (11)
+====== ======== =============================================================== ========
+
+Equation (18) reads A theta'' = B' phi'^2/2 - A p^2 [(1 + az/g) sin(alpha - theta) +
+cos(alpha - theta) a_r/g], and (19) reads (B phi')' = -D a_t. The sums that (18) and (19) print for
+B and B' cancel near theta = 0 and for squat cylinders; every term of s^2 H is positive.
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+from ._compile import jit
+from .body import Body
+
+
+@jit
+def planar_rhs(body: Body, theta: float, direction: float, a: float, az: float) -> float:
+    """Return theta'' [rad/s^2] in one vertical plane: (21) with phi' = 0.
+
+    `theta` is the unsigned tilt, `direction` +1 or -1 the side it leans to, `a` the ground
+    acceleration along the plane [m/s^2].
+    """
+    s, c = sin(theta), cos(theta)
+    restoring = (1.0 + az / body.g) * (body.sin_alpha * c - body.cos_alpha * s)
+    inertial = (body.cos_alpha * c + body.sin_alpha * s) * direction * a / body.g
+    return -body.p2 * (restoring + inertial)
+
+
+@jit
+def recess_rhs(
+    body: Body, theta: float, omega: float, phi: float, L: float, ax: float, ay: float, az: float
+) -> tuple[float, float, float, float]:
+    """Return (theta', theta'', phi', L') of the paper's model: (18) and (19)."""
+    s, c = sin(theta), cos(theta)
+    t = s / (1.0 + c)
+    H = body.J + (2.0 * body.E + body.C * t) * t
+    half_H_theta = 0.5 * (body.E + body.C * t) * (1.0 + t * t)
+    # L = 0 is planar motion, also at theta = 0 where L/B is 0/0
+    phi_rate = L / (s * s * H) if L != 0.0 else 0.0
+    sin_phi, cos_phi = sin(phi), cos(phi)
+    a_r = ax * cos_phi + ay * sin_phi
+    a_t = ay * cos_phi - ax * sin_phi
+    centrifugal = phi_rate * phi_rate * s * (c * H + s * half_H_theta) / body.A
+    restoring = (1.0 + az / body.g) * (body.sin_alpha * c - body.cos_alpha * s)
+    inertial = (body.cos_alpha * c + body.sin_alpha * s) * a_r / body.g
+    return omega, centrifugal - body.p2 * (restoring + inertial), phi_rate, -s * (body.h + body.b * t) * a_t
+
+
+@jit
+def rolling_rhs(
+    body: Body,
+    theta: float,
+    omega: float,
+    phi: float,
+    Lambda: float,
+    tau: float,
+    S: float,
+    ax: float,
+    ay: float,
+    az: float,
+) -> tuple[float, float, float, float, float, float]:
+    """Return (theta', theta'', phi', Lambda', tau', S') of the cylinder that rolls without slip.
+
+    No slip alone leaves the twist free: it is driven by N1 theta' Lambda and by the excitation
+    across the contact azimuth. S = 0 throughout would be the recess model.
+    """
+    b, h, C, E, J = body.b, body.h, body.C, body.E, body.J
+    s, c = sin(theta), cos(theta)
+    t = s / (1.0 + c)
+    sec2 = 1.0 + t * t
+    roll = E + C * t
+    H = J + (2.0 * E + C * t) * t
+    H_theta = roll * sec2
+    delta = J * C - E * E
+    M = delta / H
+    sin_phi, cos_phi = sin(phi), cos(phi)
+    a_r = ax * cos_phi + ay * sin_phi
+    a_t = ay * cos_phi - ax * sin_phi
+
+    tau_rate = S / M
+    L_over_B = Lambda / (s * s * H) if Lambda != 0.0 else 0.0
+    roll_ratio = roll / (s * H) if S != 0.0 else 0.0  # G/B
+    roll_ratio_theta = 0.0  # (G/B)'
+    if S != 0.0:
+        roll_ratio_theta = (0.5 * C * sec2 * s * H - roll * (c * H + s * H_theta)) / (s * s * H * H)
+
+    centrifugal = L_over_B * L_over_B * s * (c * H + 0.5 * s * H_theta)
+    twisting = -0.5 * delta * H_theta / (H * H) * tau_rate * tau_rate - roll_ratio_theta * Lambda * tau_rate
+    restoring = (body.g + az) * (b * c - h * s)
+    inertial = (b * s + h * c) * a_r
+    theta_acceleration = (centrifugal + twisting - restoring - inertial) / body.A
+    Lambda_rate = -b * (b * s + h * c) * omega * tau_rate - s * (h + b * t) * a_t
+    S_rate = twist_coupling(body, t, H) * omega * Lambda + (b * body.I1 - h * body.I2 * t) / H * a_t
+    return omega, theta_acceleration, L_over_B + roll_ratio * tau_rate, Lambda_rate, tau_rate, S_rate
+
+
+@jit
+def twist_coupling(body: Body, t: float, H: float) -> float:
+    """Return N1 [-], the coefficient of theta' Lambda in S'; it tends to infinity as 1/t at the apex."""
+    b, h, I1, I2, C, E = body.b, body.h, body.I1, body.I2, body.C, body.E
+    polynomial = b * b * I1 + t * (-2.0 * I2 * E + t * (C * (I1 - I2) + I2 * h * h))
+    return (1.0 + t * t) / (2.0 * t * H * H) * polynomial
+
+
+@jit
+def energy(body: Body, theta: float, omega: float, L: float, S: float) -> float:
+    """Return the energy relative to the ground, zero standing upright, per unit mass [m^2/s^2].
+
+    Equations (13), (15) and (17); S is 0 in the recess.
+    """
+    s = sin(theta)
+    t = s / (1.0 + cos(theta))
+    H = body.J + (2.0 * body.E + body.C * t) * t
+    spin = L * L / (2.0 * s * s * H) if L != 0.0 else 0.0
+    twist = S * S * H / (2.0 * (body.J * body.C - body.E * body.E)) if S != 0.0 else 0.0
+    return 0.5 * body.A * omega * omega + spin + twist + body.g * s * (body.b - body.h * t)
