@@ -1,0 +1,115 @@
+"""What the ground and the recess must supply for a solution of the reduced models.
+
+The force follows from the acceleration of the mass centre; S is at the radius D - b + |contact| of
+the contact azimuth, so its velocity across that azimuth is D phi' - b tau' and the terms that grow
+without bound towards the apex cancel exactly when collected, as they are here.
+
+====== ======== =============================================================== ========
+symbol unit     meaning                                                         source
+====== ======== =============================================================== ========
+F_r    m/s^2    contact force on the cylinder along the contact azimuth, over m (11)
+F_t    m/s^2    the same across it, counter-clockwise                           (11)
+N      m/s^2    the same upwards                                                (11)
+kappa  m^2/s^2  couple of the recess along z_world + z_body, over m
+====== ======== =============================================================== ========
+"""
+
+from __future__ import annotations
+
+from math import cos, sin
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ._compile import jit, kernel
+from .body import Body
+from .equations import energy, rolling_rhs
+
+# columns of what `derived_quantities` returns
+ROLLING_RATE, ENERGY, FORCE_X, FORCE_Y, FORCE_Z, COUPLE = range(6)
+
+
+@jit
+def contact_force(
+    body: Body,
+    theta: float,
+    omega: float,
+    phi: float,
+    Lambda: float,
+    S: float,
+    ax: float,
+    ay: float,
+    az: float,
+    free_twist: bool,
+) -> tuple[float, float, float, float]:
+    """Return F_r, F_t, N and kappa of a state, for the rolling model or (S = 0) for the recess."""
+    b, h, C, E = body.b, body.h, body.C, body.E
+    rates = rolling_rhs(body, theta, omega, phi, Lambda, 0.0, S, ax, ay, az)
+    theta_acceleration, phi_rate, tau_rate, S_rate = rates[1], rates[2], rates[4], rates[5]
+    s, c = sin(theta), cos(theta)
+    t = s / (1.0 + c)
+    sec2 = 1.0 + t * t
+    roll, reach = E + C * t, h + b * t
+    H = body.J + (2.0 * E + C * t) * t
+    H_theta = roll * sec2
+    a_r = ax * cos(phi) + ay * sin(phi)
+    a_t = ay * cos(phi) - ax * sin(phi)
+    D, D_1, D_2 = s * reach, b * s + h * c, b * c - h * s
+
+    kappa, tau_acceleration = 0.0, 0.0
+    if free_twist:
+        # S = M tau', M = (J C - E^2)/H
+        tau_acceleration = (S_rate * H + S * H_theta * omega) / (body.J * C - E * E)
+    else:
+        kappa = -S_rate / (1.0 + c)
+    L_over_B = Lambda / (s * s * H) if Lambda != 0.0 else 0.0
+    q = reach * roll / H
+    q_1 = 0.5 * sec2 * (b * roll + C * reach) / H - q * H_theta / H
+    F_r = D_1 * theta_acceleration + D_2 * omega * omega - phi_rate * (D * phi_rate - b * tau_rate) + a_r
+    F_t = (
+        L_over_B * omega * (2.0 * b * t - D * H_theta / H)
+        + omega * tau_rate * (0.5 * D_1 * body.I2 * sec2 / H + q_1)
+        + (q - b) * tau_acceleration
+        + a_t * (1.0 - reach * reach / H)
+    )
+    N = body.g + az + D_2 * theta_acceleration - D_1 * omega * omega
+    return F_r, F_t, N, kappa
+
+
+@kernel
+def derived_quantities(
+    body: Body, states: NDArray[np.float64], ground: NDArray[np.float64], free_twist: bool
+) -> NDArray[np.float64]:
+    """Return what follows from each state.
+
+    Parameters
+    ----------
+    body : Body
+    states : ndarray, shape (n, 6)
+        theta, theta', phi, Lambda, tau, S; theta = 0 with no rates stands at rest.
+    ground : ndarray, shape (n, 3)
+        Ground acceleration [m/s^2].
+    free_twist : bool
+        Whether the model is the rolling one.
+
+    Returns
+    -------
+    ndarray, shape (n, 6)
+        phi' [rad/s], energy per unit mass [m^2/s^2], contact force in world axes over the weight
+        (3 columns) [-], couple kappa over the weight [m].
+    """
+    out = np.zeros((len(states), 6))
+    for i in range(len(states)):
+        theta, omega, phi, Lambda, tau, S = states[i]
+        ax, ay, az = ground[i]
+        if theta == 0.0 and omega == 0.0:
+            out[i, FORCE_X], out[i, FORCE_Y], out[i, FORCE_Z] = ax / body.g, ay / body.g, 1.0 + az / body.g
+            continue
+        out[i, ROLLING_RATE] = rolling_rhs(body, theta, omega, phi, Lambda, tau, S, ax, ay, az)[2]
+        out[i, ENERGY] = energy(body, theta, omega, Lambda, S)
+        F_r, F_t, N, kappa = contact_force(body, theta, omega, phi, Lambda, S, ax, ay, az, free_twist)
+        out[i, FORCE_X] = (F_r * cos(phi) - F_t * sin(phi)) / body.g
+        out[i, FORCE_Y] = (F_r * sin(phi) + F_t * cos(phi)) / body.g
+        out[i, FORCE_Z] = N / body.g
+        out[i, COUPLE] = kappa / body.g
+    return out

@@ -1,0 +1,209 @@
+"""A problem in the form that the compiled march takes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Cylinder, GroundMotion, InitialState, run_duration
+
+from . import kernels
+from .body import Body, body_of
+from .driver import March, Options
+
+MODELS = ("planar", "recess", "rolling")
+SIZES = {"planar": 3, "recess": 4, "rolling": 8}
+
+# Tilt (over alpha) whose potential energy is too little to matter. Under El Centro on R = 6 m,
+# tan alpha = 0.2 it moves the peak tilt by less than the default tolerance does.
+SEATING = 1e-5
+# With energy lost at each impact the impacts accumulate in finite time: some bound is needed.
+_LEAST_SEATING_WITH_LOSS = 1e-9
+# Steps allowed before a run is given up, at least and per record sample or time 1/p: two orders
+# above what a record of strong shaking takes, and seconds of computing at the most.
+_BUDGET, _BUDGET_PER_SAMPLE, _BUDGET_PER_TIME = 500_000, 50, 20_000
+# A motion is in one plane if it leaves it by no more than a few roundings of its peak.
+_PLANE_TOLERANCE = 32.0 * float(np.finfo(float).eps)
+
+
+class Plane(NamedTuple):
+    """A vertical plane of motion, and the motion in it."""
+
+    azimuth: float  # [rad]
+    record: NDArray[np.float64]  # (n, 3): acceleration along the plane, 0, up [m/s^2]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Problem:
+    """One run of a reduced model, solved as often as something new is asked of it."""
+
+    model: str
+    cylinder: Cylinder
+    motion: GroundMotion | None
+    initial: InitialState | None
+    duration: float
+    gravity: float
+    rtol: float
+    seating: float
+    plane: float
+    restitution: float
+
+    @property
+    def body(self) -> Body:
+        """The constants of the equations."""
+        return body_of(self.cylinder, self.gravity)
+
+    def solve(self, times: NDArray[np.float64], *, record_steps: bool = False) -> tuple[March, float]:
+        """Return the march with states at `times` (n,) [s], and the azimuth its angles count from.
+
+        Motion that stays in one vertical plane is solved as planar: rounding would otherwise choose
+        on which side the apex is passed. Its states then have three variables.
+        """
+        record = _three_columns(self.motion)
+        plane = self._plane(record)
+        options = Options(
+            self.rtol,
+            max(self.seating, _LEAST_SEATING_WITH_LOSS if self.restitution < 1.0 else 0.0),
+            self.restitution,
+            self.duration,
+            self._step_budget(len(record)),
+            record_steps,
+        )
+        time_step = 1.0 if self.motion is None else self.motion.time_step
+        march: Any
+        if plane is not None:
+            march, record, azimuth, size = kernels.march_planar, plane.record, plane.azimuth, 3
+        else:
+            march = kernels.march_recess if self.model == "recess" else kernels.march_rolling
+            azimuth, size = 0.0, SIZES[self.model]
+        start = self._start(size, azimuth)
+        return march(self.body, options, record, 1.0, time_step, start, times), azimuth
+
+    def is_planar(self) -> bool:
+        """Return whether the run stays in one vertical plane."""
+        return self._plane(_three_columns(self.motion)) is not None
+
+    def _step_budget(self, samples: int) -> int:
+        times = self.duration * math.sqrt(self.body.p2)
+        return int(min(_BUDGET + _BUDGET_PER_SAMPLE * samples + _BUDGET_PER_TIME * times, 2**62))
+
+    def _start(self, size: int, azimuth: float) -> NDArray[np.float64]:
+        """State at time zero; psi' = -phi', so neither twist nor twist rate."""
+        y = np.zeros(size)
+        initial, body = self.initial, self.body
+        if initial is None or initial.tilt == 0.0:
+            return y
+        y[:3] = initial.tilt, initial.tilt_rate, initial.rolling_angle
+        if size == 3:
+            # the azimuth of the plane or its opposite
+            y[2] = 0.0 if math.cos(initial.rolling_angle - azimuth) >= 0.0 else math.pi
+            return y
+        s = math.sin(initial.tilt)
+        t = math.tan(0.5 * initial.tilt)
+        y[3] = s * s * (body.J + (2.0 * body.E + body.C * t) * t) * initial.rolling_rate
+        return y
+
+    def _plane(self, record: NDArray[np.float64]) -> Plane | None:
+        """The vertical plane that the motion stays in, if there is one."""
+        horizontal = record[:, :2]
+        released = self.initial is not None and self.initial.tilt > 0.0
+        size = np.hypot(horizontal[:, 0], horizontal[:, 1])
+        peak = float(size.max(initial=0.0))
+        if self.model == "planar":
+            azimuth = self.plane
+        else:
+            if released and self.initial is not None:
+                if self.initial.rolling_rate != 0.0:
+                    return None
+                azimuth = self.initial.rolling_angle
+            elif peak > 0.0:
+                largest = horizontal[int(size.argmax())]
+                azimuth = math.atan2(largest[1], largest[0])
+            else:
+                azimuth = 0.0
+            across = horizontal[:, 1] * math.cos(azimuth) - horizontal[:, 0] * math.sin(azimuth)
+            if float(np.abs(across).max(initial=0.0)) > _PLANE_TOLERANCE * peak:
+                return None
+        along = horizontal[:, 0] * math.cos(azimuth) + horizontal[:, 1] * math.sin(azimuth)
+        return Plane(azimuth, np.column_stack([along, np.zeros_like(along), record[:, 2]]))
+
+
+def ground_at(motion: GroundMotion | None, times: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the ground acceleration (n, 3) [m/s^2] at `times` (n,) [s]; zero outside the record."""
+    record = _three_columns(motion)
+    if motion is None:
+        return np.zeros((len(times), 3))
+    at = np.arange(len(record)) * motion.time_step
+    # the last instant of a run may round beyond the last sample
+    inside = times <= motion.duration * (1.0 + 1e-12)
+    return np.column_stack([np.where(inside, np.interp(times, at, column), 0.0) for column in record.T])
+
+
+def restitution_from_momentum(cylinder: Cylinder) -> float:
+    """Return the ratio of tilt rates at an impact that conserves the moment of momentum.
+
+    About the new pivot, r = (J - b^2)/A; (16 - 25 sin^2 alpha)/(16 - sin^2 alpha) for the
+    homogeneous cylinder. Bodies too squat to rock (tan alpha > 4/3) get 0: they stop.
+    """
+    body = body_of(cylinder, 1.0)
+    return max(0.0, (body.J - body.b * body.b) / body.A)
+
+
+def make_problem(
+    model: str,
+    cylinder: Cylinder,
+    motion: GroundMotion | None,
+    initial: InitialState | None,
+    duration: float | None,
+    *,
+    gravity: float,
+    rtol: float,
+    seating: float,
+    plane: float,
+    restitution: float | str,
+) -> Problem:
+    """Check the options of a run and put them together; see `simulate`."""
+    if model not in MODELS:
+        raise ValueError(f"model must be one of {', '.join(MODELS)}, got {model!r}")
+    if not (math.isfinite(gravity) and gravity > 0.0):
+        raise ValueError(f"gravity must be positive and finite [m/s^2], got {gravity!r}")
+    if not 1e-13 <= rtol <= 1e-2:
+        raise ValueError(f"rtol must be from 1e-13 to 1e-2, got {rtol!r}")
+    if not 0.0 <= seating <= 0.1:
+        raise ValueError(f"seating must be from 0 (no rule) to 0.1 (of alpha), got {seating!r}")
+    if not math.isfinite(plane):
+        raise ValueError(f"plane must be a finite azimuth [rad], got {plane!r}")
+    if restitution == "momentum":
+        factor = restitution_from_momentum(cylinder)
+    elif isinstance(restitution, str) or not 0.0 <= restitution <= 1.0:
+        raise ValueError(f"restitution must be from 0 to 1 or 'momentum', got {restitution!r}")
+    else:
+        factor = float(restitution)
+    if model != "planar" and factor != 1.0:
+        raise ValueError(f"restitution belongs to the planar model, got {restitution!r} with {model!r}")
+    if model == "planar" and initial is not None and initial.rolling_rate != 0.0:
+        raise ValueError(f"the planar model takes no rolling_rate, got {initial.rolling_rate!r}")
+    return Problem(
+        model=model,
+        cylinder=cylinder,
+        motion=motion,
+        initial=initial,
+        duration=run_duration(motion, duration),
+        gravity=float(gravity),
+        rtol=float(rtol),
+        seating=float(seating),
+        plane=float(plane),
+        restitution=factor,
+    )
+
+
+def _three_columns(motion: GroundMotion | None) -> NDArray[np.float64]:
+    if motion is None:
+        return np.empty((0, 3))
+    if motion.has_vertical:
+        return np.ascontiguousarray(motion.acceleration)
+    return np.column_stack([motion.acceleration, np.zeros(len(motion.acceleration))])
