@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ._compile import jit
 from .body import Body
 from .equations import energy
-from .stepping import is_flat, make_stepper, work_space
+from .stepping import copy, ground, is_flat, make_stepper, work_space
 from .tsit5 import STAGES, Derivative
 from .uplift import START, excess, nearest_branch, start_length, started, uplift_in
 
@@ -60,13 +60,17 @@ Driver = Callable[..., March]
 
 
 @jit
-def with_row(rows: NDArray[np.float64], count: int, row: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Write `row` as row `count` of a table, and return the table, doubled if it was full."""
+def with_row(
+    rows: NDArray[np.float64], count: int, first: float, rest: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Write (first, *rest) as row `count` of a table, and return the table, doubled if it was full."""
     if count == len(rows):
-        doubled = np.empty((2 * len(rows), rows.shape[1]))
-        doubled[:count] = rows
+        doubled = np.empty((2 * count, rows.shape[1]))
+        for i in range(count):
+            copy(rows[i], doubled[i])
         rows = doubled
-    rows[count] = row
+    rows[count, 0] = first
+    copy(rest, rows[count, 1:])
     return rows
 
 
@@ -81,8 +85,8 @@ def piece_of_record(
 ) -> float:
     """Write acceleration and rate from sample `index` on to `a` and `slope`; return where it ends [s]."""
     if index >= len(samples) - 1:  # the ground is still after the record
-        a[:] = 0.0
-        slope[:] = 0.0
+        for i in range(3):
+            a[i] = slope[i] = 0.0
         return np.inf
     for i in range(3):
         a[i] = scale * samples[index, i]
@@ -102,7 +106,7 @@ def lift_off(
 ) -> None:
     """Write to `out` the state `time` after an uplift; `last` is the state in which it stood."""
     theta, omega, angle, rate = started(body, a, slope, at, time)
-    out[:] = last
+    copy(last, out)
     out[0], out[1], out[2] = theta, omega, nearest_branch(angle, last[2])
     if len(out) > 3:
         s = sin(theta)
@@ -171,7 +175,7 @@ def make_driver(derivative: Derivative, size: int) -> Driver:
             Increasing times at which the state is wanted [s]; they do not influence the steps.
         """
         y, work = initial.copy(), work_space(size)
-        a, slope = np.zeros(3), np.zeros(3)
+        a, slope, a_now, turned = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
         samples, moving = np.zeros((len(times), size)), np.zeros(len(times), dtype=np.bool_)
         sample = 0
         extrema, extremum_count = np.empty((64, 4)), 0
@@ -202,7 +206,7 @@ def make_driver(derivative: Derivative, size: int) -> Driver:
                     stays = lift < 0.0 or length - lift < 1e-3 * first_start
                     now = finish if stays else begin + lift
                     while sample < len(times) and times[sample] <= now:
-                        samples[sample] = y
+                        copy(y, samples[sample])
                         sample += 1
                     if stays:
                         break
@@ -218,20 +222,22 @@ def make_driver(derivative: Derivative, size: int) -> Driver:
                         lift_off(body, a, slope, lift, times[sample] - now, y, samples[sample])
                         moving[sample] = True
                         sample += 1
-                    y[:] = work.y_new
+                    copy(work.y_new, y)
+                    peak = max(peak, y[0])
                     now = finish if elapsed >= length else begin + elapsed
                     h_next = 0.1 * series
                     resting, restart = False, True
                     continue
 
-                a_now = a + slope * elapsed
+                ground(a, slope, elapsed, a_now)
                 if restart:
                     derivative(body, y, a_now[0], a_now[1], a_now[2], work.k[0])
                     restart = False
                     if now == 0.0 and y[1] == 0.0:  # a release at rest is a turning point
-                        kind = MAXIMUM if work.k[0, 1] < 0.0 else MINIMUM
-                        extrema[0] = np.array([0.0, y[0], y[2], kind])
-                        extremum_count = 1
+                        turned[0], turned[1] = y[0], y[2]
+                        turned[2] = MAXIMUM if work.k[0, 1] < 0.0 else MINIMUM
+                        extrema = with_row(extrema, extremum_count, 0.0, turned)
+                        extremum_count += 1
 
                 h, h_next, trials = advance(
                     body, options.rtol, y, work, h_next, length - elapsed, a_now, slope
@@ -245,15 +251,16 @@ def make_driver(derivative: Derivative, size: int) -> Driver:
                 turn = 0.0
                 if turns:
                     turn = turning_point(body, y, work, h, a_now, slope)
-                    turned_tilt, turned_angle = work.aside[0], work.aside[2]
-                    peak = max(peak, turned_tilt)
+                    turned[0], turned[1] = work.aside[0], work.aside[2]
+                    turned[2] = MAXIMUM if y[1] > 0.0 else MINIMUM
+                    peak = max(peak, turned[0])
                 # with spin the tilt stays positive; without it the base meets the ground
-                lands = is_flat(y) and (work.y_new[0] <= 0.0 or (turns and turned_tilt <= 0.0))
+                lands = is_flat(y) and (work.y_new[0] <= 0.0 or (turns and turned[0] <= 0.0))
                 falls = work.y_new[0] >= _HALF_PI
                 if lands or falls:
                     level = _HALF_PI if falls else 0.0
                     h = crossing(body, y, work, turn if lands and turns else h, a_now, slope, level)
-                    work.y_new[:] = work.aside
+                    copy(work.aside, work.y_new)
                     work.y_new[0] = level
                     turns = False
                 whole = elapsed + h >= length
@@ -261,38 +268,34 @@ def make_driver(derivative: Derivative, size: int) -> Driver:
 
                 while sample < len(times) and times[sample] <= after:
                     if times[sample] == after:
-                        samples[sample] = work.y_new
+                        copy(work.y_new, samples[sample])
                     else:
                         partial(body, y, work, times[sample] - now, a_now, slope, samples[sample])
                     moving[sample] = True
                     sample += 1
                 if turns:
-                    kind = MAXIMUM if y[1] > 0.0 else MINIMUM
-                    row = np.array([now + turn, turned_tilt, turned_angle, kind])
-                    extrema = with_row(extrema, extremum_count, row)
+                    extrema = with_row(extrema, extremum_count, now + turn, turned)
                     extremum_count += 1
 
-                y[:] = work.y_new
+                copy(work.y_new, y)
                 elapsed = length if whole else elapsed + h
                 now = after
                 peak = max(peak, y[0])
-                work.k[0] = work.k[STAGES - 1]
+                copy(work.k[STAGES - 1], work.k[0])
                 if falls:
                     status = OVERTURNED
                 elif lands:
-                    extrema = with_row(extrema, extremum_count, np.array([now, 0.0, y[2], MINIMUM]))
+                    turned[0], turned[1], turned[2] = 0.0, y[2], MINIMUM
+                    extrema = with_row(extrema, extremum_count, now, turned)
                     extremum_count += 1
                     y[1] = options.restitution * abs(y[1])
                     y[2] += -pi if y[2] > 0.0 else pi  # the opposite end of the diameter
                     restart = True
                 if options.record_steps:
-                    row = np.empty(1 + size)
-                    row[0] = now
-                    row[1:] = y
-                    steps = with_row(steps, recorded, row)
+                    steps = with_row(steps, recorded, now, y)
                     recorded += 1
                 if options.seating > 0.0 and not falls:
-                    a_now = a + slope * elapsed
+                    ground(a, slope, elapsed, a_now)
                     if sits_down(body, options.seating, y, a_now[0], a_now[1], a_now[2]):
                         resting = True
                         stand(y)

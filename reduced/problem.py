@@ -26,6 +26,8 @@ _LEAST_SEATING_WITH_LOSS = 1e-9
 # Steps allowed before a run is given up, at least and per record sample or time 1/p: two orders
 # above what a record of strong shaking takes, and seconds of computing at the most.
 _BUDGET, _BUDGET_PER_SAMPLE, _BUDGET_PER_TIME = 500_000, 50, 20_000
+# A spin (over p) below which the passes are nearer to the apex than numbers can be to zero.
+_LEAST_SPIN = 1e-100
 # A motion is in one plane if it leaves it by no more than a few roundings of its peak.
 _PLANE_TOLERANCE = 32.0 * float(np.finfo(float).eps)
 
@@ -117,7 +119,7 @@ class Problem:
             azimuth = self.plane
         else:
             if released and self.initial is not None:
-                if self.initial.rolling_rate != 0.0:
+                if abs(self.initial.rolling_rate) > _LEAST_SPIN * math.sqrt(self.body.p2):
                     return None
                 azimuth = self.initial.rolling_angle
             elif peak > 0.0:

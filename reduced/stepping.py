@@ -48,6 +48,22 @@ def work_space(size: int) -> Work:
     )
 
 
+# Loops instead of slice assignment and array expressions: those carry shape checks with formatted
+# messages, which triple the time to compile.
+@jit
+def copy(source: NDArray[np.float64], target: NDArray[np.float64]) -> None:
+    """Copy `source` to `target`, both (n,)."""
+    for i in range(len(source)):
+        target[i] = source[i]
+
+
+@jit
+def ground(a: NDArray[np.float64], slope: NDArray[np.float64], t: float, out: NDArray[np.float64]) -> None:
+    """Write the ground acceleration a + slope t to `out`; all (3,)."""
+    for i in range(3):
+        out[i] = a[i] + slope[i] * t
+
+
 @jit
 def is_flat(y: NDArray[np.float64]) -> bool:
     """Return whether a state has neither spin nor twist rate: exactly planar motion."""
@@ -130,7 +146,7 @@ def make_stepper(derivative: Derivative, size: int) -> Stepper:
         out: NDArray[np.float64],
     ) -> None:
         """Write to `out` the state `h` after `y`: a step of its own, so as accurate as the march."""
-        work.k_aside[0] = work.k[0]
+        copy(work.k[0], work.k_aside[0])
         step(body, y, work.k_aside, h, a, slope, out, work.error)
 
     @jit
