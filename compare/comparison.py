@@ -1,0 +1,184 @@
+"""What a comparison found, and its files."""
+
+from __future__ import annotations
+
+import io
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockwobble.models import Case
+
+from .store import replace_files
+from .traces import EngineTrace, Trace
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Comparison:
+    """Runs of engines held against reduced models.
+
+    Parameters
+    ----------
+    summary : DataFrame
+        One row for each run and reference; the columns are those of `SUMMARY_COLUMNS`.
+    cases : dict
+        Case of each name.
+    responses : dict
+        Response of the reduced model for each (case name, model name).
+    trajectories : dict
+        Trajectory of the engine for each (case name, label of the run), such as
+        ("El Centro 1940", "mujoco guided"). A run whose process died is left out.
+    versions : dict
+        Version of each package and engine that took part.
+    until : float or None
+        End of the window of the RMS columns, in the time of the run [s]; None is the whole run.
+    """
+
+    summary: pd.DataFrame
+    cases: Mapping[str, Case]
+    responses: Mapping[tuple[str, str], Any]
+    trajectories: Mapping[tuple[str, str], Any]
+    versions: Mapping[str, str]
+    until: float | None = None
+
+    def save(self, folder: str | Path) -> None:
+        """Write the results to `folder`: whole files or none, other files there are left alone.
+
+        summary.csv is the summary; responses.parquet and trajectories.parquet hold the samples,
+        passes.parquet the passes by the apex, excitation.parquet the ground motions, and
+        comparison.json the cases and the versions.
+
+        Raises
+        ------
+        ValueError
+            If the folder cannot be written.
+        """
+        replace_files(folder, self.files())
+
+    def files(self) -> dict[str, bytes]:
+        """Return name and content of each file that `save` writes."""
+        return {
+            "summary.csv": self.summary.to_csv(index=False).encode(),
+            "responses.parquet": _parquet(_stacked(self.responses, "model")),
+            "trajectories.parquet": _parquet(_stacked(self.trajectories, "run")),
+            "passes.parquet": _parquet(self._passes()),
+            "excitation.parquet": _parquet(self._excitation()),
+            "comparison.json": (json.dumps(self._about(), indent=2, allow_nan=False) + "\n").encode(),
+        }
+
+    def _passes(self) -> pd.DataFrame:
+        import pandas as pd
+
+        tables = [
+            trace.passes.assign(case=case, run=label)
+            for traces in (self.responses, self.trajectories)
+            for (case, label), trace in traces.items()
+        ]
+        return pd.concat(tables, ignore_index=True).set_index(["case", "run"]).reset_index()
+
+    def _excitation(self) -> pd.DataFrame:
+        import pandas as pd
+
+        tables = []
+        for name, case in self.cases.items():
+            if case.motion is None:
+                continue
+            a = case.motion.acceleration
+            columns = {"case": name, "time": np.arange(len(a)) * case.motion.time_step}
+            columns |= {f"acceleration_{axis}": a[:, i] for i, axis in enumerate("xyz"[: a.shape[1]])}
+            tables.append(pd.DataFrame(columns))
+        return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame({"case": [], "time": []})
+
+    def _about(self) -> dict[str, Any]:
+        return {
+            "until": self.until,
+            "versions": dict(self.versions),
+            "cases": {name: describe_case(case) for name, case in self.cases.items()},
+            "responses": {f"{case} / {label}": _ending(r) for (case, label), r in self.responses.items()},
+            "trajectories": {f"{case} / {label}": _run(t) for (case, label), t in self.trajectories.items()},
+        }
+
+
+def describe_case(case: Case) -> dict[str, Any]:
+    """Return the numbers that state a case, for a file or a page; SI units and radians."""
+    cylinder, motion, initial = case.cylinder, case.motion, case.initial
+    return {
+        "semidiagonal": cylinder.semidiagonal,
+        "tan_alpha": cylinder.tan_alpha,
+        "alpha": cylinder.alpha,
+        "base_radius": cylinder.base_radius,
+        "height": 2.0 * cylinder.half_height,
+        "duration": case.length,
+        "gravity": case.gravity,
+        "friction": case.friction,
+        "motion": None
+        if motion is None
+        else {
+            "name": motion.name,
+            "time_step": motion.time_step,
+            "samples": len(motion.acceleration),
+            "components": int(motion.acceleration.shape[1]),
+            "peak": motion.peak,
+        },
+        "initial": None
+        if initial is None
+        else {
+            "tilt": initial.tilt,
+            "tilt_rate": initial.tilt_rate,
+            "rolling_angle": initial.rolling_angle,
+            "rolling_rate": initial.rolling_rate,
+        },
+    }
+
+
+def _ending(trace: Trace) -> dict[str, Any]:
+    return {
+        "outcome": trace.outcome,
+        "message": trace.message,
+        "peak_tilt": _number(trace.peak_tilt),
+        "uplift_time": _number(trace.uplift_time),
+        "uplift_direction": _number(trace.uplift_direction),
+        "wall_time": trace.wall_time,
+    }
+
+
+def _run(trace: EngineTrace) -> dict[str, Any]:
+    return {
+        "engine": trace.engine,
+        "engine_version": trace.engine_version,
+        "support": trace.support,
+        "time_step": trace.time_step,
+        "contact_resolution": _number(trace.contact_resolution),
+        **_ending(trace),
+    }
+
+
+def _number(value: float) -> float | None:
+    """JSON knows no NaN."""
+    return float(value) if math.isfinite(value) else None
+
+
+def _stacked(traces: Mapping[tuple[str, str], Trace], name: str) -> pd.DataFrame:
+    import pandas as pd
+
+    tables = []
+    for (case, label), trace in traces.items():
+        table = trace.to_frame()
+        table.insert(0, "case", case)
+        table.insert(1, name, label)
+        tables.append(table)
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame({"case": [], name: []})
+
+
+def _parquet(table: pd.DataFrame) -> bytes:
+    buffer = io.BytesIO()
+    table.to_parquet(buffer, index=False)
+    return buffer.getvalue()

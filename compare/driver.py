@@ -1,0 +1,139 @@
+"""Drives both sides with the same case."""
+
+from __future__ import annotations
+
+import importlib.metadata
+import platform
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any
+
+from rockwobble.models import Case, Run, Suite
+
+from .comparison import Comparison
+from .execution import Crash, Job, ProgressCallback, simulate_all
+from .runs import default_runs, references_of, run_labels
+from .store import require_writable
+from .summary import SUMMARY_COLUMNS, crashed_row, summary_row
+
+
+def compare(
+    case_or_suite: Case | Suite,
+    *,
+    runs: Iterable[Run] | None = None,
+    reference: str = "recess",
+    out: str | Path | None = None,
+    until: float | None = None,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> Comparison:
+    """Run engines and reduced models on the same problem, and report how they differ.
+
+    Parameters
+    ----------
+    case_or_suite : Case or Suite
+    runs : iterable of Run, optional
+        Default: those of the suite, else every installed engine with supports "guided" and "free".
+    reference : str, optional
+        Reduced model that each run is held against. A run on open ground ("free") is also held
+        against the model that is free to roll out, "rolling".
+    out : str or Path, optional
+        Folder to save the results in; checked before anything runs.
+    until : float, optional
+        End of the window of the RMS columns, in the time of the run [s]. Default: the whole run.
+    workers : int, optional
+        Number of processes; 1 runs everything in this one. Default: one for each core.
+    progress : callable, optional
+        Called with a `Progress` at the start and at the end of each run.
+
+    Returns
+    -------
+    Comparison
+
+    Raises
+    ------
+    ValueError
+        If an engine, a support, a setting or the folder is not usable; nothing is written then.
+
+    Examples
+    --------
+    >>> from rockwobble.models import Case, Cylinder, InitialState, Run
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = Case("release", pier, initial=release, duration=0.5)
+    >>> found = compare(case, runs=[Run("mujoco", "guided", 1e-3)], workers=1)
+    >>> found.summary[["engine", "support", "reference", "parted"]].values.tolist()
+    [['mujoco', 'guided', 'recess', False]]
+    """
+    if out is not None:
+        require_writable(out)
+    cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
+    chosen = _runs(case_or_suite, runs)
+    labels = run_labels(chosen)
+    models = list(dict.fromkeys(model for run in chosen for model in references_of(run, reference)))
+    jobs = [Job(case=case, method=model, label=model) for case in cases for model in models]
+    jobs += [
+        Job(case=case, method=run, label=label)
+        for case in cases
+        for run, label in zip(chosen, labels, strict=True)
+    ]
+    results = simulate_all(jobs, workers=workers, progress=progress)
+    by_label = {(job.case.name, job.label): result for job, result in zip(jobs, results, strict=True)}
+    rows = [
+        _row(case, model, run, by_label[case.name, model], by_label[case.name, label], until)
+        for case in cases
+        for run, label in zip(chosen, labels, strict=True)
+        for model in references_of(run, reference)
+    ]
+    comparison = Comparison(
+        summary=_table(rows),
+        cases={case.name: case for case in cases},
+        responses={key: result for key, result in by_label.items() if key[1] in models},
+        trajectories={
+            key: result
+            for key, result in by_label.items()
+            if key[1] in labels and not isinstance(result, Crash)
+        },
+        versions=_versions(),
+        until=until,
+    )
+    if out is not None:
+        comparison.save(out)
+    return comparison
+
+
+def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None) -> tuple[Run, ...]:
+    chosen = tuple(runs) if runs is not None else ()
+    if not chosen and isinstance(case_or_suite, Suite):
+        chosen = case_or_suite.runs
+    chosen = chosen or default_runs()
+    if not chosen:
+        raise ValueError("there must be at least one engine to compare with, found none installed")
+    return chosen
+
+
+def _row(case: Case, model: str, run: Run, reference: Any, trial: Any, until: float | None) -> dict[str, Any]:
+    if isinstance(reference, Crash):
+        # the reduced models have no way to end a process: this is no result, but a broken installation
+        raise RuntimeError(  # noqa: TRY004
+            f"the {model} model left no response: {reference.message}"
+        )
+    if isinstance(trial, Crash):
+        return crashed_row(case, model, reference, run.engine, run.support, trial.message)
+    return summary_row(case, model, reference, trial, until=until)
+
+
+def _table(rows: list[dict[str, Any]]) -> Any:
+    import pandas as pd
+
+    return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS)).astype({"parted": bool, "agreed_passes": int})
+
+
+def _versions() -> dict[str, str]:
+    versions = {"python": platform.python_version(), "platform": platform.platform()}
+    for package in ("rockwobble", "numpy", "scipy", "numba", "mujoco", "pybullet"):
+        try:
+            versions[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            versions[package] = "not installed"
+    return versions

@@ -1,0 +1,194 @@
+"""The runs of a comparison, in parallel."""
+
+from __future__ import annotations
+
+import math
+import os
+import queue
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future
+from dataclasses import dataclass
+from typing import Any, Literal
+
+from rockwobble.models import Case, Run
+
+from .process_pool import ProcessPool, WorkerDiedError
+
+SAMPLE_STEP = 0.01
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Job:
+    """One run of one case: of an engine, or of a reduced model where `method` is a name.
+
+    Parameters
+    ----------
+    case : Case
+    method : Run or str
+    label : str
+        For tables and figures, different for each job of a case.
+    """
+
+    case: Case
+    method: Run | str
+    label: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Progress:
+    """What a progress callback is told, at the start and at the end of each run.
+
+    Parameters
+    ----------
+    case, label : str
+        Which run.
+    state : {"started", "finished"}
+    done, total : int
+        Runs finished so far, and in all.
+    """
+
+    case: str
+    label: str
+    state: Literal["started", "finished"]
+    done: int
+    total: int
+
+
+ProgressCallback = Callable[[Progress], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Crash:
+    """A run that took its process with it."""
+
+    message: str
+
+
+def simulate(job: Job) -> Any:
+    """Run one job in this process; return a Response or a Trajectory."""
+    case, method = job.case, job.method
+    if isinstance(method, str):
+        return _reduced(case, method)
+    from rockwobble import multibody
+
+    return multibody.simulate(
+        case.cylinder,
+        case.motion,
+        initial=case.initial,
+        duration=case.duration,
+        engine=method.engine,
+        support=method.support,
+        time_step=method.time_step,
+        friction=case.friction,
+        sample_step=SAMPLE_STEP,
+        gravity=case.gravity,
+        **method.settings,
+    )
+
+
+def _reduced(case: Case, model: str) -> Any:
+    from rockwobble import reduced
+
+    def run() -> Any:
+        return reduced.simulate(
+            case.cylinder,
+            case.motion,
+            initial=case.initial,
+            duration=case.duration,
+            sample_step=SAMPLE_STEP,
+            gravity=case.gravity,
+            friction=case.friction,
+            model=model,
+        )
+
+    run()  # loads or compiles the machine code: no part of the computing time of the second
+    response = run()
+    _ = response.energy  # computed here, so that it travels with the response
+    return response
+
+
+def simulate_all(
+    jobs: Sequence[Job], *, workers: int | None = None, progress: ProgressCallback | None = None
+) -> list[Any]:
+    """Run all jobs; return their results in the same order.
+
+    Parameters
+    ----------
+    jobs : sequence of Job
+    workers : int, optional
+        Number of processes; 1 runs one job after the other in this process. Default: one for each
+        core, but no more than jobs.
+    progress : callable, optional
+        Told of the start and the end of each job, in this thread.
+
+    Returns
+    -------
+    list
+        A Response, a Trajectory or, where the process died in a run, a Crash.
+
+    Raises
+    ------
+    ValueError
+        What a job raises for bad input; the other jobs are given up.
+    """
+    count = min(_cores(), len(jobs)) if workers is None else workers
+    tell = progress or (lambda _: None)
+    if count <= 1:
+        return _one_by_one(jobs, tell)
+    return _in_parallel(jobs, count, tell)
+
+
+def _one_by_one(jobs: Sequence[Job], tell: ProgressCallback) -> list[Any]:
+    results = []
+    for done, job in enumerate(jobs):
+        tell(_progress(job, "started", done, len(jobs)))
+        results.append(simulate(job))
+        tell(_progress(job, "finished", done + 1, len(jobs)))
+    return results
+
+
+def _in_parallel(jobs: Sequence[Job], workers: int, tell: ProgressCallback) -> list[Any]:
+    # the callback is called from the caller's thread, so that it may draw, raise or be interrupted
+    finished: queue.SimpleQueue[int] = queue.SimpleQueue()
+    futures: dict[int, Future[Any]] = {}
+    results: list[Any] = [None] * len(jobs)
+    # the longest first, so that no core is idle at the end
+    waiting = sorted(range(len(jobs)), key=lambda index: _cost(jobs[index]))
+    with ProcessPool(workers) as pool:
+
+        def start(done: int) -> None:
+            index = waiting.pop()
+            tell(_progress(jobs[index], "started", done, len(jobs)))
+            futures[index] = pool.submit(simulate, jobs[index])
+            futures[index].add_done_callback(lambda _: finished.put(index))
+
+        for _ in range(min(workers, len(jobs))):
+            start(0)
+        for done in range(1, len(jobs) + 1):
+            index = finished.get()
+            try:
+                results[index] = futures[index].result()
+            except WorkerDiedError as error:
+                results[index] = Crash(str(error))
+            tell(_progress(jobs[index], "finished", done, len(jobs)))
+            if waiting:
+                start(done)
+    return results
+
+
+def _progress(job: Job, state: Literal["started", "finished"], done: int, total: int) -> Progress:
+    return Progress(case=job.case.name, label=job.label, state=state, done=done, total=total)
+
+
+def _cost(job: Job) -> float:
+    """Rough computing time of a job, in steps of MuJoCo."""
+    if isinstance(job.method, str):
+        return math.inf  # may compile
+    per_step = 1.0 if job.method.engine == "mujoco" else 3.0
+    return job.case.length / (job.method.time_step or 1e-4) * per_step
+
+
+def _cores() -> int:
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1

@@ -1,0 +1,168 @@
+"""One row of the summary: an engine's run held against one reduced model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from rockwobble.models import Case
+
+from .contact import contact_rms
+from .energy import energy_loss
+from .horizon import agreed_passes, agreement_horizon, predicted_horizon
+from .tilt import tilt_rms, tilt_rms_relative
+from .traces import EngineTrace, Trace, make_pair
+from .turning import direction_difference, first_unresolved_pass, turn_difference
+
+# name: (unit, meaning); the order is that of the table
+SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "case": ("", "name of the case"),
+        "reference": ("", "reduced model that the run is held against"),
+        "engine": ("", "multibody engine"),
+        "support": ("", "what holds the cylinder in place"),
+        "time_step": ("s", "time step of the engine"),
+        "outcome": ("", "how the engine's run ended"),
+        "reference_outcome": ("", "how the reduced model's run ended"),
+        "message": ("", "what there is to know of either run, in words"),
+        "peak_tilt": ("alpha", "largest tilt of the engine's run"),
+        "reference_peak_tilt": ("alpha", "largest tilt of the reduced model"),
+        "peak_tilt_difference": ("alpha", "engine minus reduced model"),
+        "tilt_rms": ("alpha", "root mean square of the tilt difference"),
+        "tilt_rms_relative": ("", "the same over the root mean square of the reduced model's tilt"),
+        "contact_rms": ("b", "RMS distance of the contact points where both tilts exceed 5 % of the peak"),
+        "turn_difference": ("deg", "how far apart the contact points have rolled at the end of agreement"),
+        "uplift_time_difference": ("s", "engine minus reduced model"),
+        "uplift_direction_difference": ("rad", "azimuth of the contact point at uplift or release"),
+        "agreement_horizon": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
+        "parted": ("", "whether there was such a difference; if not, the horizon is the run's length"),
+        "agreed_passes": ("", "passes by the apex within the agreement"),
+        "predicted_horizon": ("s", "first pass closer to the apex than the engine's contact resolves"),
+        "residual_displacement": ("b", "distance of the base centre from its old place at the end"),
+        "residual_twist": ("deg", "turn of the cylinder about its axis at the end"),
+        "energy_loss": ("", "energy lost by the engine's run over the largest energy reached"),
+        "wall_time": ("s", "computing time of the engine"),
+        "time_ratio": ("", "the same over that of the reduced model"),
+        "reference_wall_time": ("s", "computing time of the reduced model"),
+        "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine's contact resolves"),
+        "engine_version": ("", "version of the engine"),
+    }
+)
+
+
+def summary_row(
+    case: Case, model: str, reference: Trace, trial: EngineTrace, *, until: float | None = None
+) -> dict[str, Any]:
+    """Return all columns of the summary for one engine run and one reduced model.
+
+    Parameters
+    ----------
+    case : Case
+    model : str
+        Name of the reduced model.
+    reference : Trace
+        Its response.
+    trial : EngineTrace
+        Trajectory of the engine.
+    until : float, optional
+        End of the window of tilt_rms, tilt_rms_relative and contact_rms, in the time of the run
+        [s]. Default: the whole run.
+    """
+    cylinder = case.cylinder
+    alpha, radius = cylinder.alpha, cylinder.base_radius
+    whole = make_pair(cylinder, reference, trial)
+    window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
+    horizon = agreement_horizon(whole, broken="failed" in (trial.outcome, reference.outcome))
+    direction = direction_difference(reference, trial)
+    turned_until = min(horizon.end, first_unresolved_pass(trial))
+    return {
+        "case": case.name,
+        "reference": model,
+        "engine": trial.engine,
+        "support": trial.support,
+        "time_step": trial.time_step,
+        "outcome": trial.outcome,
+        "reference_outcome": reference.outcome,
+        "message": _message(model, reference, trial, whole.end, case.length),
+        "peak_tilt": trial.peak_tilt / alpha,
+        "reference_peak_tilt": reference.peak_tilt / alpha,
+        "peak_tilt_difference": (trial.peak_tilt - reference.peak_tilt) / alpha,
+        "tilt_rms": tilt_rms(window),
+        "tilt_rms_relative": tilt_rms_relative(window),
+        "contact_rms": contact_rms(window),
+        "turn_difference": math.degrees(
+            turn_difference(whole, until=turned_until, direction_difference=direction)
+        ),
+        "uplift_time_difference": trial.uplift_time - reference.uplift_time,
+        "uplift_direction_difference": direction,
+        "agreement_horizon": horizon.length,
+        "parted": horizon.parted,
+        "agreed_passes": agreed_passes(reference, horizon),
+        "predicted_horizon": predicted_horizon(reference, trial.contact_resolution, whole.end),
+        "residual_displacement": trial.residual_displacement / radius,
+        "residual_twist": math.degrees(trial.residual_twist),
+        "energy_loss": energy_loss(trial, case.motion),
+        "wall_time": trial.wall_time,
+        "time_ratio": trial.wall_time / reference.wall_time if reference.wall_time > 0.0 else math.nan,
+        "reference_wall_time": reference.wall_time,
+        "contact_resolution": trial.contact_resolution,
+        "engine_version": trial.engine_version,
+    }
+
+
+def crashed_row(
+    case: Case, model: str, reference: Trace, engine: str, support: str, message: str
+) -> dict[str, Any]:
+    """Return the row of a run that left no trajectory: what is not known is NaN, and the message says why."""
+    row: dict[str, Any] = dict.fromkeys(SUMMARY_COLUMNS, math.nan)
+    row |= {
+        "case": case.name,
+        "reference": model,
+        "engine": engine,
+        "support": support,
+        "outcome": "failed",
+        "reference_outcome": reference.outcome,
+        "message": f"{engine} left no trajectory: {message}",
+        "reference_peak_tilt": reference.peak_tilt / case.cylinder.alpha,
+        "agreement_horizon": 0.0,
+        "parted": True,
+        "agreed_passes": 0,
+        "reference_wall_time": reference.wall_time,
+        "engine_version": "",
+    }
+    return row
+
+
+def _message(model: str, reference: Trace, trial: EngineTrace, end: float, length: float) -> str:
+    """Say in words what the numbers of a row must not hide."""
+    engine = trial.engine
+    notes = []
+    if trial.outcome == "failed":
+        notes.append(f"{engine} failed: {trial.message}")
+    if reference.outcome == "failed":
+        notes.append(f"the {model} model failed: {reference.message}")
+    fell = [
+        name
+        for name, trace in ((engine, trial), (f"the {model} model", reference))
+        if trace.outcome == "overturned"
+    ]
+    if len(fell) == 2:
+        notes.append("both overturned")
+    elif fell:
+        notes.append(f"only {fell[0]} overturned")
+    lifted = [math.isfinite(trace.uplift_time) for trace in (trial, reference)]
+    if not any(lifted):
+        notes.append("neither uplifted: there is no motion to compare")
+    elif not all(lifted):
+        notes.append(f"only {engine if lifted[0] else f'the {model} model'} uplifted")
+    elif not bool(np.any(trial.tilt > 0.0)):
+        notes.append(f"{engine} never tilted")
+    if end < length * (1.0 - 1e-9):
+        notes.append(f"compared up to {end:.4g} s")
+    if trial.message and trial.outcome != "failed":
+        notes.append(trial.message)
+    return "; ".join(notes)

@@ -1,0 +1,262 @@
+from __future__ import annotations
+
+import json
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble.compare import SUMMARY_COLUMNS, compare, execution
+from rockwobble.compare.execution import Job, simulate_all
+from rockwobble.compare.process_pool import WorkerDiedError
+from rockwobble.models import Case, GroundMotion, InitialState, Run, Suite
+
+ROUNDING = 1e-12
+
+CONTRACT = [
+    "case",
+    "reference",
+    "engine",
+    "support",
+    "time_step",
+    "outcome",
+    "reference_outcome",
+    "message",
+    "peak_tilt",
+    "reference_peak_tilt",
+    "peak_tilt_difference",
+    "tilt_rms",
+    "tilt_rms_relative",
+    "contact_rms",
+    "turn_difference",
+    "uplift_time_difference",
+    "uplift_direction_difference",
+    "agreement_horizon",
+    "parted",
+    "agreed_passes",
+    "predicted_horizon",
+    "residual_displacement",
+    "residual_twist",
+    "energy_loss",
+    "wall_time",
+    "time_ratio",
+]
+
+
+@pytest.fixture
+def case(cylinder):
+    ground = GroundMotion(np.zeros((2, 2)), 10.0, "still")
+    return Case("made up", cylinder, ground, InitialState(tilt=0.3 * cylinder.alpha))
+
+
+@pytest.fixture
+def made_up(monkeypatch, cylinder, make_trace):
+    """Traces instead of simulations: the function takes fields of the engine's and of the model's trace."""
+    time = np.arange(1001) * 0.01
+    tilt = 0.3 * cylinder.alpha * np.ones_like(time)
+
+    def use(engine=None, model=None):
+        def simulate(job: Job):
+            if isinstance(job.method, str):
+                offset = 0.002 if job.method == "rolling" else 0.0
+                fields = {"passes": [(3.0, 1e-5)], "wall_time": 0.5} | (model or {})
+            else:
+                offset = 0.005 * cylinder.alpha
+                fields = {
+                    "engine": job.method.engine,
+                    "support": job.method.support,
+                    "time_step": job.method.time_step or 1e-4,
+                    "wall_time": 2.0,
+                    "contact_resolution": 2e-5,
+                    "residual_displacement": 0.5 * cylinder.base_radius,
+                    "residual_twist": math.radians(3.0),
+                } | (engine or {})
+            return make_trace(time, fields.pop("tilt", tilt + offset), **fields)
+
+        monkeypatch.setattr(execution, "simulate", simulate)
+
+    return use
+
+
+def test_columns_are_those_of_the_contract_in_its_order(made_up, case):
+    made_up()
+    summary = compare(case, runs=[Run("mujoco", "guided")], workers=1).summary
+    assert list(summary.columns[: len(CONTRACT)]) == CONTRACT
+    assert list(summary.columns) == list(SUMMARY_COLUMNS)
+
+
+def test_numbers_of_a_row(made_up, case, cylinder):
+    made_up()
+    row = compare(case, runs=[Run("mujoco", "guided", 1e-3)], workers=1).summary.iloc[0]
+    assert (row.case, row.reference, row.engine, row.support) == ("made up", "recess", "mujoco", "guided")
+    assert row.time_step == 1e-3
+    assert row.peak_tilt == pytest.approx(0.305, rel=ROUNDING)
+    assert row.reference_peak_tilt == pytest.approx(0.3, rel=ROUNDING)
+    assert row.peak_tilt_difference == pytest.approx(0.005, rel=1e-9)
+    assert row.tilt_rms == pytest.approx(0.005, rel=1e-9)
+    assert row.tilt_rms_relative == pytest.approx(0.005 / 0.3, rel=1e-9)
+    assert (row.agreement_horizon, row.parted, row.agreed_passes) == (10.0, False, 1)
+    assert row.predicted_horizon == 3.0
+    assert row.residual_displacement == pytest.approx(0.5, rel=ROUNDING)
+    assert row.residual_twist == pytest.approx(3.0, rel=ROUNDING)
+    assert row.time_ratio == 4.0
+    assert row.message == ""
+
+
+def test_open_ground_gets_a_row_for_each_model(made_up, case):
+    made_up()
+    found = compare(case, runs=[Run("mujoco", "guided"), Run("mujoco", "free")], workers=1)
+    assert found.summary[["support", "reference"]].to_numpy().tolist() == [
+        ["guided", "recess"],
+        ["free", "recess"],
+        ["free", "rolling"],
+    ]
+    assert set(found.responses) == {("made up", "recess"), ("made up", "rolling")}
+    assert set(found.trajectories) == {("made up", "mujoco guided"), ("made up", "mujoco free")}
+    assert found.summary.parted.tolist() == [False, False, False]
+
+
+def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
+    time = np.arange(1001) * 0.01
+    tilt = (0.3 + np.where(time > 5.0, 0.1, 0.0)) * cylinder.alpha
+    made_up(engine={"tilt": tilt})
+    row = compare(case, runs=[Run("mujoco", "guided")], workers=1, until=5.0).summary.iloc[0]
+    assert row.tilt_rms == 0.0
+    assert row.contact_rms == 0.0
+    assert row.parted
+    assert row.agreement_horizon == pytest.approx(5.01)
+
+
+@pytest.mark.parametrize(
+    ("engine", "model", "words"),
+    [
+        ({"outcome": "failed", "message": "it gained energy"}, {}, "mujoco failed: it gained energy"),
+        ({}, {"outcome": "failed", "message": "no step"}, "the recess model failed: no step"),
+        ({"outcome": "overturned"}, {}, "only mujoco overturned"),
+        ({}, {"outcome": "overturned"}, "only the recess model overturned"),
+        ({"outcome": "overturned"}, {"outcome": "overturned"}, "both overturned"),
+        ({"uplift_time": math.nan}, {}, "only the recess model uplifted"),
+        ({}, {"uplift_time": math.nan}, "only mujoco uplifted"),
+        ({"message": "slipped"}, {}, "slipped"),
+    ],
+)
+def test_what_the_numbers_would_hide_is_said(made_up, case, engine, model, words):
+    made_up(engine, model)
+    assert words in compare(case, runs=[Run("mujoco", "guided")], workers=1).summary.message[0]
+
+
+def test_two_that_never_move_agree_and_say_so(made_up, case):
+    still = {"tilt": np.zeros(1001), "uplift_time": math.nan, "uplift_direction": math.nan, "outcome": "rest"}
+    made_up(still, still)
+    row = compare(case, runs=[Run("mujoco", "guided")], workers=1).summary.iloc[0]
+    assert row.message == "neither uplifted: there is no motion to compare"
+    assert (row.tilt_rms, row.parted, row.agreement_horizon) == (0.0, False, 10.0)
+
+
+def test_a_run_that_fails_half_way_is_compared_up_to_there(made_up, case, cylinder):
+    tilt = np.where(np.arange(1001) > 400, np.nan, 0.3 * cylinder.alpha)
+    made_up({"tilt": tilt, "outcome": "failed", "message": "not a number", "peak_tilt": math.nan})
+    row = compare(case, runs=[Run("mujoco", "guided")], workers=1).summary.iloc[0]
+    assert row.message == "mujoco failed: not a number; compared up to 4 s"
+    assert math.isnan(row.peak_tilt)
+    assert row.tilt_rms == 0.0
+    assert (row.agreement_horizon, row.parted) == (4.0, True)
+
+
+def test_a_process_that_dies_is_a_failed_row(monkeypatch, made_up, case):
+    made_up()
+    simulate = execution.simulate
+
+    class Pool:
+        """Every engine dies; what else is asked runs here."""
+
+        def __init__(self, workers):
+            pass
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *_):
+            pass
+
+        def submit(self, _, job):
+            future = execution.Future()
+            if isinstance(job.method, str):
+                future.set_result(simulate(job))
+            else:
+                future.set_exception(WorkerDiedError("the process ended with status -11"))
+            return future
+
+    monkeypatch.setattr(execution, "ProcessPool", Pool)
+    found = compare(case, runs=[Run("mujoco", "guided")], workers=2)
+    row = found.summary.iloc[0]
+    assert (row.outcome, row.parted) == ("failed", True)
+    assert row.message == "mujoco left no trajectory: the process ended with status -11"
+    assert row.reference_peak_tilt == pytest.approx(0.3)
+    assert math.isnan(row.tilt_rms)
+    assert not found.trajectories
+
+
+def test_a_suite_is_cases_times_runs(made_up, case, cylinder):
+    made_up()
+    other = Case("second", cylinder, case.motion)
+    suite = Suite([case, other], [Run("mujoco", "guided"), Run("pybullet", "guided")])
+    summary = compare(suite, workers=1).summary
+    assert summary[["case", "engine"]].to_numpy().tolist() == [
+        ["made up", "mujoco"],
+        ["made up", "pybullet"],
+        ["second", "mujoco"],
+        ["second", "pybullet"],
+    ]
+
+
+def test_progress_is_told_of_every_run(made_up, case):
+    made_up()
+    told = []
+    compare(case, runs=[Run("mujoco", "guided")], workers=1, progress=told.append)
+    assert [(p.label, p.state, p.done, p.total) for p in told] == [
+        ("recess", "started", 0, 2),
+        ("recess", "finished", 1, 2),
+        ("mujoco guided", "started", 1, 2),
+        ("mujoco guided", "finished", 2, 2),
+    ]
+
+
+def test_files_hold_the_whole_result(made_up, case, tmp_path):
+    made_up()
+    found = compare(case, runs=[Run("mujoco", "guided"), Run("mujoco", "free")], workers=1, out=tmp_path)
+    names = {path.name for path in tmp_path.iterdir()}
+    assert names == {
+        "summary.csv",
+        "responses.parquet",
+        "trajectories.parquet",
+        "passes.parquet",
+        "excitation.parquet",
+        "comparison.json",
+    }
+    summary = pd.read_csv(tmp_path / "summary.csv", keep_default_na=False, na_values=["nan"])
+    assert list(summary.columns) == list(SUMMARY_COLUMNS)
+    assert summary.tilt_rms.tolist() == found.summary.tilt_rms.tolist()
+    samples = pd.read_parquet(tmp_path / "trajectories.parquet")
+    assert samples.groupby("run").size().to_dict() == {"mujoco guided": 1001, "mujoco free": 1001}
+    assert set(pd.read_parquet(tmp_path / "responses.parquet").model) == {"recess", "rolling"}
+    assert list(pd.read_parquet(tmp_path / "passes.parquet").columns[:2]) == ["case", "run"]
+    about = json.loads((tmp_path / "comparison.json").read_text())
+    assert about["cases"]["made up"]["tan_alpha"] == 0.2
+    assert about["versions"]["mujoco"]
+
+
+def test_a_folder_that_cannot_be_written_is_refused_before_anything_runs(monkeypatch, case, tmp_path):
+    monkeypatch.setattr(execution, "simulate", lambda _: pytest.fail("it ran"))
+    (tmp_path / "taken").write_text("")
+    with pytest.raises(ValueError, match="must be a folder"):
+        compare(case, runs=[Run("mujoco", "guided")], workers=1, out=tmp_path / "taken")
+
+
+def test_the_same_run_in_other_processes_is_the_same(cylinder):
+    release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
+    job = Job(case=Case("release", cylinder, initial=release, duration=1.0), method="recess", label="recess")
+    here, there = (simulate_all([job, job], workers=workers)[1] for workers in (1, 2))
+    assert np.array_equal(here.tilt, there.tilt)
+    assert np.array_equal(here.energy, there.energy)

@@ -1,0 +1,65 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from rockwobble.compare.horizon import agreed_passes, agreement_horizon, predicted_horizon
+from rockwobble.compare.traces import make_pair
+
+SAMPLE = 0.01  # a horizon is known to one sample
+
+
+@pytest.fixture
+def growing(cylinder, make_trace):
+    """Two traces whose difference grows from 1e-6 alpha by the factor e in each second after 2 s."""
+    time = np.arange(4001) * SAMPLE
+    tilt = np.where(time < 2.0, 0.0, 0.3 * cylinder.alpha)
+    difference = np.where(time < 2.0, 0.0, 1e-6 * cylinder.alpha * np.exp(time - 2.0))
+    passes = [(5.0, 1e-3), (9.0, 2e-5), (12.0, 3e-4), (30.0, 1e-6)]
+    reference = make_trace(time, tilt, uplift_time=2.0, passes=passes)
+    return reference, make_trace(time, tilt - difference, uplift_time=2.0)
+
+
+def test_horizon_counts_from_uplift_to_one_per_cent_of_alpha(cylinder, growing):
+    horizon = agreement_horizon(make_pair(cylinder, *growing))
+    assert horizon.parted
+    # 1e-6 exp(t) = 1e-2 at t = ln 1e4
+    assert math.log(1e4) < horizon.length <= math.log(1e4) + SAMPLE
+    assert horizon.end == pytest.approx(horizon.length + 2.0)
+
+
+def test_passes_within_the_horizon_are_agreed(cylinder, growing):
+    reference, _ = growing
+    horizon = agreement_horizon(make_pair(cylinder, *growing))
+    assert horizon.end == pytest.approx(11.22)
+    assert agreed_passes(reference, horizon) == 2
+
+
+def test_traces_that_never_part_agree_for_the_length_of_the_run(cylinder, make_trace):
+    time = np.arange(1001) * SAMPLE
+    tilt = np.full_like(time, 0.3 * cylinder.alpha)
+    pair = make_pair(
+        cylinder, make_trace(time, tilt, uplift_time=2.0), make_trace(time, tilt + 0.00999 * cylinder.alpha)
+    )
+    horizon = agreement_horizon(pair)
+    assert (horizon.length, horizon.end, horizon.parted) == (10.0, 10.0, False)
+
+
+def test_a_parting_before_uplift_leaves_no_agreement(cylinder, make_trace):
+    time = np.arange(1001) * SAMPLE
+    reference = make_trace(time, np.zeros_like(time), uplift_time=5.0)
+    trial = make_trace(time, np.where(time > 1.0, 0.1, 0.0))
+    horizon = agreement_horizon(make_pair(cylinder, reference, trial))
+    assert (horizon.length, horizon.parted) == (0.0, True)
+
+
+@pytest.mark.parametrize(("resolution", "expected"), [(1e-7, 40.0), (1e-5, 28.0), (5e-5, 7.0), (1e-2, 3.0)])
+def test_predicted_horizon_is_the_first_pass_below_the_resolution(growing, resolution, expected):
+    assert predicted_horizon(growing[0], resolution, 40.0) == pytest.approx(expected)
+
+
+def test_a_reference_without_passes_predicts_no_parting(make_trace):
+    time = np.arange(11) * SAMPLE
+    assert predicted_horizon(make_trace(time, np.full_like(time, 0.1)), 1e-3, 0.1) == 0.1

@@ -1,0 +1,67 @@
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rockwobble.compare import replace_files, require_writable
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.rglob("*"))
+
+
+def test_a_second_run_replaces_its_own_files_and_touches_nothing_else(tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    replace_files(tmp_path, {"a.csv": b"1", "b.csv": b"2"})
+    replace_files(tmp_path, {"a.csv": b"3"})
+    assert names(tmp_path) == ["a.csv", "b.csv", "mine.txt"]
+    assert (tmp_path / "a.csv").read_bytes() == b"3"
+    assert (tmp_path / "b.csv").read_bytes() == b"2"
+    assert (tmp_path / "mine.txt").read_text() == "mine"
+
+
+def test_folders_are_made(tmp_path):
+    replace_files(tmp_path / "a" / "b", {"c.csv": b"1"})
+    assert (tmp_path / "a" / "b" / "c.csv").read_bytes() == b"1"
+
+
+def test_all_files_or_none(tmp_path):
+    (tmp_path / "b.csv").mkdir()
+    with pytest.raises(ValueError, match=r"must not be a folder, got .*b\.csv"):
+        replace_files(tmp_path, {"a.csv": b"1", "b.csv": b"2"})
+    assert names(tmp_path) == ["b.csv"]
+
+
+def test_a_failure_while_writing_leaves_the_old_files_whole(tmp_path, monkeypatch):
+    replace_files(tmp_path, {"a.csv": b"old", "b.csv": b"old"})
+    write = Path.write_bytes
+
+    def disk_full(self, data):
+        if ".b.csv" in self.name:
+            write(self, data[:1])
+            raise OSError(28, "No space left on device")
+        return write(self, data)
+
+    monkeypatch.setattr(Path, "write_bytes", disk_full)
+    with pytest.raises(ValueError, match=r"cannot be written: No space left on device"):
+        replace_files(tmp_path, {"a.csv": b"new", "b.csv": b"new"})
+    assert names(tmp_path) == ["a.csv", "b.csv"]
+    assert (tmp_path / "a.csv").read_bytes() == b"old"
+
+
+def test_looking_whether_a_folder_can_be_written_leaves_no_trace(tmp_path):
+    assert require_writable(tmp_path / "x" / "y") == tmp_path / "x" / "y"
+    assert names(tmp_path) == []
+
+
+def test_a_file_in_the_way(tmp_path):
+    (tmp_path / "taken").write_text("")
+    for folder in (tmp_path / "taken", tmp_path / "taken" / "below"):
+        with pytest.raises(ValueError, match=r"output folder"):
+            require_writable(folder)
+
+
+def test_a_folder_that_refuses_files():
+    with pytest.raises(ValueError, match=r"output folder /proc/1/none cannot be written"):
+        require_writable("/proc/1/none")
