@@ -142,6 +142,20 @@ def stand(y: NDArray[np.float64]) -> None:
         y[5] = 0.0
 
 
+@jit
+def surely_falls(body: Body, theta: float, strongest: float, lightest: float, time: float) -> bool:
+    """Return whether a tilt above alpha that does not decrease is bound to reach pi/2 within `time`.
+
+    `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium
+    tilt under these two, theta'' is positive and grows with theta. The spin only adds to it.
+    """
+    if lightest <= 0.0:
+        return False
+    beyond = theta - body.alpha
+    least = body.p2 / body.g * (lightest * sin(beyond) - strongest * cos(beyond))
+    return least > 0.0 and 2.0 * (_HALF_PI - theta) < least * time * time
+
+
 def make_driver(derivative: Derivative, size: int) -> Driver:
     """Return the compiled march of a model with `size` variables; see `tsit5.make_step`."""
     stepper = make_stepper(derivative, size)
@@ -156,6 +170,7 @@ def make_driver(derivative: Derivative, size: int) -> Driver:
         time_step: float,
         initial: NDArray[np.float64],
         times: NDArray[np.float64],
+        later: NDArray[np.float64],
     ) -> March:
         """Solve one problem.
 
@@ -173,6 +188,9 @@ def make_driver(derivative: Derivative, size: int) -> Driver:
             State at time zero; zero tilt stands at rest.
         times : ndarray, shape (n,)
             Increasing times at which the state is wanted [s]; they do not influence the steps.
+        later : ndarray, shape (m, 2)
+            From each sample on, the largest |a| and the least az of `record`, by which a fall that
+            nothing can stop ends the march early; m = 0 marches on until the side is down.
         """
         y, work = initial.copy(), work_space(size)
         a, slope, a_now, turned = np.zeros(3), np.zeros(3), np.zeros(3), np.zeros(3)
@@ -257,6 +275,11 @@ def make_driver(derivative: Derivative, size: int) -> Driver:
                 # with spin the tilt stays positive; without it the base meets the ground
                 lands = is_flat(y) and (work.y_new[0] <= 0.0 or (turns and turned[0] <= 0.0))
                 falls = work.y_new[0] >= _HALF_PI
+                if len(later) > 0 and work.y_new[0] > body.alpha and work.y_new[1] >= 0.0:
+                    strongest, lightest = scale * later[piece, 0], body.g + scale * later[piece, 1]
+                    if surely_falls(body, work.y_new[0], strongest, lightest, options.duration - now - h):
+                        peak, status = _HALF_PI, OVERTURNED
+                        break
                 if lands or falls:
                     level = _HALF_PI if falls else 0.0
                     h = crossing(body, y, work, turn if lands and turns else h, a_now, slope, level)

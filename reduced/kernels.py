@@ -63,9 +63,10 @@ def march_planar(
     time_step: float,
     initial: NDArray[np.float64],
     times: NDArray[np.float64],
+    later: NDArray[np.float64],
 ) -> March:
     """Solve the planar model; see `driver.make_driver`."""
-    return _march_planar(body, options, record, scale, time_step, initial, times)
+    return _march_planar(body, options, record, scale, time_step, initial, times, later)
 
 
 @kernel
@@ -77,9 +78,10 @@ def march_recess(
     time_step: float,
     initial: NDArray[np.float64],
     times: NDArray[np.float64],
+    later: NDArray[np.float64],
 ) -> March:
     """Solve the recess model; see `driver.make_driver`."""
-    return _march_recess(body, options, record, scale, time_step, initial, times)
+    return _march_recess(body, options, record, scale, time_step, initial, times, later)
 
 
 @kernel
@@ -91,9 +93,10 @@ def march_rolling(
     time_step: float,
     initial: NDArray[np.float64],
     times: NDArray[np.float64],
+    later: NDArray[np.float64],
 ) -> March:
     """Solve the rolling model; see `driver.make_driver`."""
-    return _march_rolling(body, options, record, scale, time_step, initial, times)
+    return _march_rolling(body, options, record, scale, time_step, initial, times, later)
 
 
 def compile_march(model: str) -> None:
@@ -102,4 +105,4 @@ def compile_march(model: str) -> None:
     entry, size = march[model]
     body = body_of(Cylinder(semidiagonal=1.0, tan_alpha=0.2), 9.81)
     options = Options(1e-6, 0.0, 1.0, 1.0, 1, False)
-    entry(body, options, np.zeros((0, 3)), 1.0, 1.0, np.zeros(size), np.zeros(1))
+    entry(body, options, np.zeros((0, 3)), 1.0, 1.0, np.zeros(size), np.zeros(1), np.zeros((0, 2)))

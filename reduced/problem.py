@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -39,6 +40,15 @@ class Plane(NamedTuple):
     record: NDArray[np.float64]  # (n, 3): acceleration along the plane, 0, up [m/s^2]
 
 
+class SetUp(NamedTuple):
+    """What a march is called with."""
+
+    march: Callable[..., Any]
+    record: NDArray[np.float64]  # (n, 3) [m/s^2]
+    start: NDArray[np.float64]  # (size,) state at time zero
+    azimuth: float  # from which the angles of the march count [rad]
+
+
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Problem:
     """One run of a reduced model, solved as often as something new is asked of it."""
@@ -59,35 +69,59 @@ class Problem:
         """The constants of the equations."""
         return body_of(self.cylinder, self.gravity)
 
-    def solve(self, times: NDArray[np.float64], *, record_steps: bool = False) -> tuple[March, float]:
-        """Return the march with states at `times` (n,) [s], and the azimuth its angles count from.
-
-        Motion that stays in one vertical plane is solved as planar: rounding would otherwise choose
-        on which side the apex is passed. Its states then have three variables.
-        """
-        record = _three_columns(self.motion)
-        plane = self._plane(record)
-        options = Options(
-            self.rtol,
-            max(self.seating, _LEAST_SEATING_WITH_LOSS if self.restitution < 1.0 else 0.0),
-            self.restitution,
-            self.duration,
-            self._step_budget(len(record)),
-            record_steps,
+    def solve(
+        self,
+        times: NDArray[np.float64],
+        *,
+        record_steps: bool = False,
+    ) -> tuple[March, float]:
+        """Return the march with states at `times` (n,) [s], and the azimuth its angles count from."""
+        set_up = self._set_up()
+        options = self._options(self._step_budget(len(set_up.record)), record_steps)
+        march: March = set_up.march(
+            self.body, options, set_up.record, 1.0, self._time_step, set_up.start, times, np.empty((0, 2))
         )
-        time_step = 1.0 if self.motion is None else self.motion.time_step
-        march: Any
-        if plane is not None:
-            march, record, azimuth, size = kernels.march_planar, plane.record, plane.azimuth, 3
-        else:
-            march = kernels.march_recess if self.model == "recess" else kernels.march_rolling
-            azimuth, size = 0.0, SIZES[self.model]
-        start = self._start(size, azimuth)
-        return march(self.body, options, record, 1.0, time_step, start, times), azimuth
+        return march, set_up.azimuth
+
+    def scaled_solver(self, step_budget: int) -> Callable[[float], March]:
+        """Return a function of a factor on the motion that marches for the peak only."""
+        set_up, body = self._set_up(), self.body
+        options = self._options(step_budget, record_steps=False)
+        later = strongest_and_lightest(set_up.record)
+        times = np.empty(0)
+
+        def solve(factor: float) -> March:
+            march: March = set_up.march(
+                body, options, set_up.record, factor, self._time_step, set_up.start, times, later
+            )
+            return march
+
+        return solve
 
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""
         return self._plane(_three_columns(self.motion)) is not None
+
+    @property
+    def _time_step(self) -> float:
+        return 1.0 if self.motion is None else self.motion.time_step
+
+    def _options(self, step_budget: int, record_steps: bool) -> Options:
+        least_seating = _LEAST_SEATING_WITH_LOSS if self.restitution < 1.0 else 0.0
+        seating = max(self.seating, least_seating)
+        return Options(self.rtol, seating, self.restitution, self.duration, step_budget, record_steps)
+
+    def _set_up(self) -> SetUp:
+        """Choose the march: motion that stays in one vertical plane is solved as planar.
+
+        Rounding would otherwise choose on which side such motion passes the apex.
+        """
+        record = _three_columns(self.motion)
+        plane = self._plane(record)
+        if plane is not None:
+            return SetUp(kernels.march_planar, plane.record, self._start(3, plane.azimuth), plane.azimuth)
+        march = kernels.march_recess if self.model == "recess" else kernels.march_rolling
+        return SetUp(march, record, self._start(SIZES[self.model], 0.0), 0.0)
 
     def _step_budget(self, samples: int) -> int:
         times = self.duration * math.sqrt(self.body.p2)
@@ -143,6 +177,15 @@ def ground_at(motion: GroundMotion | None, times: NDArray[np.float64]) -> NDArra
     # the last instant of a run may round beyond the last sample
     inside = times <= motion.duration * (1.0 + 1e-12)
     return np.column_stack([np.where(inside, np.interp(times, at, column), 0.0) for column in record.T])
+
+
+def strongest_and_lightest(record: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return for each sample the largest |a| and the least az from there on (n, 2) [m/s^2]."""
+    horizontal = np.hypot(record[::-1, 0], record[::-1, 1])
+    strongest = np.maximum.accumulate(horizontal)[::-1]
+    # the ground is still after the record, so az reaches 0
+    lightest = np.minimum(np.minimum.accumulate(record[::-1, 2])[::-1], 0.0)
+    return np.column_stack([strongest, lightest])
 
 
 def restitution_from_momentum(cylinder: Cylinder) -> float:

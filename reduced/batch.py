@@ -1,0 +1,127 @@
+"""Peak tilts over grids of size and intensity: the runs that make a spectrum."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, as_completed
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockwobble.models import Cylinder, GroundMotion
+
+from .driver import OVERTURNED
+from .problem import SEATING, Problem, make_problem
+from .simulate import announce_compilation
+
+# A run of a grid may take this many steps for each sample of the record. Strong shaking takes one
+# to two; only chatter without a seating rule takes more.
+_STEPS_PER_SAMPLE = 25
+_STEPS_AT_LEAST = 25_000
+
+
+def peak_tilts(
+    semidiagonals: ArrayLike,
+    tan_alpha: float,
+    motion: GroundMotion,
+    scales: ArrayLike,
+    *,
+    model: str = "recess",
+    rtol: float = 1e-7,
+    seating: float = SEATING,
+    gravity: float = 9.81,
+    plane: float = 0.0,
+    restitution: float | str = 1.0,
+    workers: int | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> NDArray[np.float64]:
+    """Return the peak tilt from rest for each size and intensity.
+
+    The runs are independent and share the cores as threads: the result has the same bits whatever
+    their number. A fall that nothing later in the record can stop ends its run at once.
+
+    Parameters
+    ----------
+    semidiagonals : array_like, shape (n_R,)
+        Sizes R [m].
+    tan_alpha : float
+        Slenderness b/h [-].
+    motion : GroundMotion
+    scales : array_like, shape (n_scale,)
+        Factors on the motion, not negative [-].
+    model, rtol, seating, gravity, plane, restitution
+        As in `simulate`.
+    workers : int, optional
+        Number of threads; default: that of the cores.
+    progress : callable, optional
+        Called with the fraction done, after each size.
+
+    Returns
+    -------
+    ndarray, shape (n_R, n_scale)
+        Peak tilt [rad]: 0 without uplift, pi/2 if overturned, NaN where the run failed (only with
+        `seating` 0, where the motion can chatter beyond the step budget).
+
+    Raises
+    ------
+    ValueError
+        If an option is out of range or an array is not one-dimensional.
+
+    Examples
+    --------
+    >>> from rockwobble.models import el_centro_1940
+    >>> peaks = peak_tilts([6.0], 0.2, el_centro_1940(), [0.5, 1.0])
+    >>> peaks.shape, float(peaks[0, 0])
+    ((1, 2), 0.0)
+    """
+    sizes, factors = _axis("semidiagonals", semidiagonals), _axis("scales", scales)
+    problems = [
+        make_problem(
+            model,
+            Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha),
+            motion,
+            None,
+            None,
+            gravity=gravity,
+            rtol=rtol,
+            seating=seating,
+            plane=plane,
+            restitution=restitution,
+        )
+        for size in sizes
+    ]
+    peaks = np.zeros((len(sizes), len(factors)))
+    if peaks.size == 0:
+        return peaks
+    announce_compilation("planar" if problems[0].is_planar() else model)
+    budget = _STEPS_AT_LEAST + _STEPS_PER_SAMPLE * len(motion.acceleration)
+    with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
+        rows = {pool.submit(_row, problem, factors, budget): i for i, problem in enumerate(problems)}
+        try:
+            for done, row in enumerate(as_completed(rows), start=1):
+                peaks[rows[row]] = row.result()
+                if progress is not None:
+                    progress(done / len(rows))
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise
+    return peaks
+
+
+def _row(problem: Problem, factors: NDArray[np.float64], budget: int) -> list[float]:
+    solve = problem.scaled_solver(budget)
+    peaks = []
+    for factor in factors:
+        march = solve(float(factor))
+        peak = march.peak if march.status <= OVERTURNED else math.nan
+        peaks.append(0.5 * math.pi if march.status == OVERTURNED else peak)
+    return peaks
+
+
+def _axis(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    axis = np.asarray(values, dtype=np.float64)
+    if axis.ndim != 1 or not np.isfinite(axis).all() or (axis < 0.0).any():
+        raise ValueError(f"{name} must be a sequence of finite numbers, none negative, got {values!r}")
+    return axis
