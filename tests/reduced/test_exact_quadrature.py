@@ -1,0 +1,181 @@
+"""Free response against a quadrature in high precision, from the paper's equations as printed.
+
+Nothing is shared with the code under test: energies (17) and the coefficient of phi'' in (19) stand
+here as in the paper, and the digits that they lose are supplied by the arithmetic.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import mpmath as mp
+import numpy as np
+import pytest
+
+from rockwobble.models import Cylinder, InitialState
+from rockwobble.reduced.exact import free_response, steady_wobble_rate
+
+WORKING_DIGITS = 100  # of the integrand: (19) cancels to theta^2 at tilts of 1e-16, the radicand once more
+QUADRATURE_DIGITS = 40
+AGREEMENT = 1e-12  # relative; measured 1e-15, and 1e-13 where a release is next to the barrier
+
+
+class Reference(NamedTuple):
+    minimum_tilt: mp.mpf
+    maximum_tilt: mp.mpf
+    period: mp.mpf
+    angle_of_turn: mp.mpf
+
+
+def quadrature(cylinder: Cylinder, initial: InitialState, gravity: float) -> Reference:
+    with mp.workdps(WORKING_DIGITS):
+        R, alpha, g = mp.mpf(cylinder.semidiagonal), mp.mpf(cylinder.alpha), mp.mpf(gravity)
+        b, h = R * mp.sin(alpha), R * mp.cos(alpha)
+        I1 = (
+            (3 * b**2 + 4 * h**2) / 12
+            if cylinder.transverse_inertia is None
+            else mp.mpf(cylinder.transverse_inertia)
+        )
+        I2 = b**2 / 2 if cylinder.axial_inertia is None else mp.mpf(cylinder.axial_inertia)
+        A = I1 + h**2 + b**2
+
+        def B(theta: mp.mpf) -> mp.mpf:
+            s, c = mp.sin(theta), mp.cos(theta)
+            return (I1 - I2 + h**2 - b**2) * s**2 + 2 * (I2 + b**2) * (1 - c) + 2 * h * b * s * (1 - c)
+
+        def V(theta: mp.mpf) -> mp.mpf:
+            return g * (b * mp.sin(theta) + h * mp.cos(theta))
+
+        tilt, tilt_rate = mp.mpf(initial.tilt), mp.mpf(initial.tilt_rate)
+        L = B(tilt) * mp.mpf(initial.rolling_rate)
+        energy = A * tilt_rate**2 / 2 + L**2 / (2 * B(tilt)) + V(tilt)
+
+        def tilt_rate_squared(theta: mp.mpf) -> mp.mpf:
+            return 2 * (energy - V(theta) - L**2 / (2 * B(theta))) / A
+
+        def deflated(theta: mp.mpf) -> mp.mpf:
+            return tilt_rate_squared(theta) / (theta - tilt)
+
+        if tilt_rate:
+            lower = root(tilt_rate_squared, tilt * mp.mpf(10) ** -40, tilt)
+            upper = next_root(tilt_rate_squared, tilt, alpha)
+        elif mp.diff(tilt_rate_squared, tilt, h=mp.mpf(10) ** -40) < 0:
+            lower, upper = root(deflated, tilt * mp.mpf(10) ** -40, tilt * (1 - mp.mpf(10) ** -40)), tilt
+        else:
+            lower, upper = tilt, next_root(deflated, tilt * (1 + mp.mpf(10) ** -40), alpha)
+
+        # theta = mid - half cos u, u = eps sinh v; a second scale of nodes towards the maximum
+        eps = 2 * mp.sqrt(lower / (upper - lower))
+        end = mp.asinh(mp.pi / eps)
+
+        def time_and_turn(v: mp.mpf) -> mp.mpc:
+            with mp.workdps(WORKING_DIGITS):
+                u = eps * mp.sinh(v)
+                theta = lower + (upper - lower) * mp.sin(u / 2) ** 2
+                du = eps * mp.cosh(v) * (upper - lower) * mp.sin(u) / 2
+                dt = du / mp.sqrt(tilt_rate_squared(theta))
+                return mp.mpc(dt, L / B(theta) * dt)
+
+    with mp.workdps(QUADRATURE_DIGITS):
+        panels = [0, end / 2] + [end * (1 - mp.mpf(10) ** -k) for k in range(1, 7)] + [end]
+        integral, error = mp.quad(time_and_turn, panels, error=True, method="gauss-legendre", maxdegree=7)
+        assert abs(error) < AGREEMENT / 100 * abs(integral)
+        return Reference(lower, upper, 2 * integral.real, 2 * integral.imag)
+
+
+def root(f: Callable[[mp.mpf], mp.mpf], lower: mp.mpf, upper: mp.mpf) -> mp.mpf:
+    """Return the root between two points of different sign: on a log scale first, they may be far apart."""
+    below = f(lower) > 0
+    assert (f(upper) > 0) != below
+    for _ in range(24):
+        middle = mp.sqrt(lower * upper)
+        lower, upper = (middle, upper) if (f(middle) > 0) == below else (lower, middle)
+    return mp.findroot(
+        f, (lower, upper), solver="anderson", tol=mp.mpf(10) ** -150, maxsteps=100, verify=False
+    )
+
+
+def next_root(f: Callable[[mp.mpf], mp.mpf], start: mp.mpf, end: mp.mpf) -> mp.mpf:
+    """Return the first root beyond `start`, where `f` is positive."""
+    points = [start * (end / start) ** (mp.mpf(k) / 200) for k in range(201)]
+    beyond = next(k for k, point in enumerate(points) if k and f(point) < 0)
+    return root(f, points[beyond - 1], points[beyond])
+
+
+def check(cylinder: Cylinder, initial: InitialState, gravity: float, agreement: float = AGREEMENT) -> None:
+    expected = quadrature(cylinder, initial, gravity)
+    found = free_response(cylinder, initial, gravity=gravity)
+    errors = {
+        name: abs(float(getattr(found, name) / value - 1)) for name, value in expected._asdict().items()
+    }
+    assert max(errors.values()) < agreement, errors
+    assert found.half_period == 0.5 * found.period
+
+
+def any_cylinder(random: np.random.Generator) -> tuple[Cylinder, float]:
+    size = 10.0 ** random.uniform(-3.0, 3.0)
+    tan_alpha = 10.0 ** random.uniform(math.log10(0.05), math.log10(5.0))
+    return Cylinder(semidiagonal=size, tan_alpha=tan_alpha), random.uniform(0.1, 30.0)
+
+
+@pytest.mark.parametrize("seed", range(32))
+def test_release_at_a_maximum_of_tilt(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    cylinder, gravity = any_cylinder(random)
+    tilt = random.uniform(0.01, 0.6 if seed % 4 == 0 else 0.95) * cylinder.alpha
+    rate = steady_wobble_rate(cylinder, tilt, gravity=gravity)
+    # from 1e-15 of steady wobble, evenly in the logarithm; every fourth one next to it
+    fraction = (
+        1.0 - 10.0 ** random.uniform(-6.0, -0.5) if seed % 4 == 0 else 10.0 ** random.uniform(-15.0, -0.3)
+    )
+    check(cylinder, InitialState(tilt=tilt, rolling_rate=fraction * rate), gravity)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_release_at_a_minimum_of_tilt(seed: int) -> None:
+    random = np.random.default_rng(100 + seed)
+    cylinder, gravity = any_cylinder(random)
+    tilt = random.uniform(0.01, 0.4) * cylinder.alpha
+    rate = steady_wobble_rate(cylinder, tilt, gravity=gravity)
+    check(cylinder, InitialState(tilt=tilt, rolling_rate=random.uniform(1.0, 1.15) * rate), gravity)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_release_between_the_turning_tilts(seed: int) -> None:
+    random = np.random.default_rng(200 + seed)
+    cylinder, gravity = any_cylinder(random)
+    tilt = random.uniform(0.01, 0.4) * cylinder.alpha
+    rate = steady_wobble_rate(cylinder, tilt, gravity=gravity)
+    spin = rate * 10.0 ** random.uniform(-15.0, 0.0)
+    tilt_rate = random.uniform(-0.5, 0.5) * rate * tilt
+    check(cylinder, InitialState(tilt=tilt, tilt_rate=tilt_rate, rolling_rate=spin), gravity)
+
+
+@pytest.mark.parametrize("spin", [1e-15, 1e-9, 1e-6])
+def test_release_next_to_alpha(spin: float) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    check(cylinder, InitialState(tilt=cylinder.alpha * (1.0 - 1e-9), rolling_rate=spin), 9.81)
+
+
+@pytest.mark.parametrize("tan_alpha", [1e-3, 1e3])
+@pytest.mark.parametrize("fraction", [1e-12, 0.3])
+def test_extreme_slenderness(tan_alpha: float, fraction: float) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    tilt = 0.5 * cylinder.alpha
+    check(cylinder, InitialState(tilt=tilt, rolling_rate=fraction * steady_wobble_rate(cylinder, tilt)), 9.81)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_body_of_revolution(seed: int) -> None:
+    random = np.random.default_rng(300 + seed)
+    transverse = 10.0 ** random.uniform(-3.0, 0.5)
+    cylinder = Cylinder(
+        semidiagonal=1.0,
+        tan_alpha=10.0 ** random.uniform(-1.0, 1.0),
+        height=2.5,
+        transverse_inertia=transverse,
+        axial_inertia=transverse * random.uniform(0.01, 2.0),
+    )
+    tilt = random.uniform(0.1, 0.7) * cylinder.alpha
+    spin = 10.0 ** random.uniform(-8.0, -0.3) * steady_wobble_rate(cylinder, tilt)
+    check(cylinder, InitialState(tilt=tilt, rolling_rate=spin), 9.81)
