@@ -1,8 +1,33 @@
 """The reduced models of a cylinder that rocks and wobbles, and their exact solutions."""
 
 from .batch import peak_tilts
+from .exact import (
+    FreeResponse,
+    angle_of_turn,
+    free_response,
+    limiting_angle_of_turn,
+    planar_quarter_period,
+    rocking_period,
+    steady_wobble_rate,
+    wobbling_period,
+)
 from .problem import MODELS, SEATING, restitution_from_momentum
 from .response import Response
 from .simulate import simulate
 
-__all__ = ["MODELS", "SEATING", "Response", "peak_tilts", "restitution_from_momentum", "simulate"]
+__all__ = [
+    "MODELS",
+    "SEATING",
+    "FreeResponse",
+    "Response",
+    "angle_of_turn",
+    "free_response",
+    "limiting_angle_of_turn",
+    "peak_tilts",
+    "planar_quarter_period",
+    "restitution_from_momentum",
+    "rocking_period",
+    "simulate",
+    "steady_wobble_rate",
+    "wobbling_period",
+]

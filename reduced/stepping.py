@@ -18,6 +18,7 @@ from .body import Body
 from .tsit5 import STAGES, Derivative, make_step
 
 _SAFETY = 0.9  # aims below the tolerance, so that few steps are repeated
+_ROUNDING = float(np.finfo(np.float64).eps)
 _GROWTH, _SHRINK = 5.0, 0.2  # bounds on the change of the step from one to the next
 
 
@@ -73,28 +74,35 @@ def is_flat(y: NDArray[np.float64]) -> bool:
 
 
 @jit
-def error_ratio(body: Body, y: NDArray[np.float64], error: NDArray[np.float64], flat: bool) -> float:
-    """Return the error of a step from `y` in units that a relative tolerance is meant for.
+def error_ratio(
+    body: Body, rtol: float, y: NDArray[np.float64], error: NDArray[np.float64], flat: bool
+) -> float:
+    """Return the error of a step from `y` over what the relative tolerance allows.
 
     Near the apex the motion is that of a point at the polar distance theta, with one speed in all
     directions: theta and phi are held to theta, and the rates to that speed. Planar motion goes
-    through theta = 0, so there the tilt is held to what the speed makes of it in the time 1/p.
+    through theta = 0, so there the tilt is held to what the speed makes of it in the time 1/p. Near
+    theta = alpha, where every difference grows as exp(p t), the distance from alpha takes the place
+    of theta. An error below the rounding of the tilt cannot be told from none.
     """
     tilt = float(abs(y[0]))
     p = sqrt(body.p2)
-    speed = float(abs(y[1])) + p * sqrt(body.sin_alpha * tilt)
-    if flat:
-        return float(max(abs(error[0]) / (tilt + speed / p), abs(error[1]) / speed))
-    ratio = 0.0
-    if len(y) > 3:
+    from_alpha = abs(body.alpha - tilt)
+    speed = float(abs(y[1]))
+    if not flat:
         speed += abs(y[3]) / (body.J * tilt)
-        ratio = max(abs(error[0]) / tilt, abs(error[1]) / speed)
-        ratio = max(ratio, abs(error[2]), abs(error[3]) / (body.J * tilt * speed))
+    velocity = speed + p * min(sqrt(body.sin_alpha * tilt), from_alpha)
+    distance = min(tilt + velocity / p if flat else tilt, from_alpha + speed / p)
+    least = _ROUNDING * tilt / rtol
+    distance, velocity = max(distance, least), max(velocity, p * least)
+    ratio = max(abs(error[0]) / distance, abs(error[1]) / velocity)
+    if not flat:
+        ratio = max(ratio, abs(error[2]), abs(error[3]) / (body.J * tilt * velocity))
     if len(y) > 4:
         M = body.C - body.E * body.E / body.J
-        ratio = max(ratio, abs(error[4]), abs(error[5]) / (sqrt(body.A * M) * speed))
+        ratio = max(ratio, abs(error[4]), abs(error[5]) / (sqrt(body.A * M) * velocity))
         ratio = max(ratio, abs(error[6]) / body.b, abs(error[7]) / body.b)
-    return ratio
+    return float(ratio / rtol)
 
 
 def make_stepper(derivative: Derivative, size: int) -> Stepper:
@@ -125,7 +133,7 @@ def make_stepper(derivative: Derivative, size: int) -> Stepper:
                 h = 0.5 * length  # two even steps instead of a long and a short one
             lowest = step(body, y, work.k, h, a, slope, work.y_new, work.error)
             flat = is_flat(y) and is_flat(work.y_new)
-            ratio = error_ratio(body, y, work.error, flat) / rtol
+            ratio = error_ratio(body, rtol, y, work.error, flat)
             if ratio <= 1.0 and (lowest > 0.0 or flat):
                 longer = h * min(_GROWTH, _SAFETY * max(ratio, 1e-30) ** -0.2)
                 # a step cut short by the length says nothing against the longer one proposed
