@@ -1,0 +1,102 @@
+"""The planar model: Housner's block, its exact periods, impacts, and the one-sine pulse."""
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+
+TABLES = Path(__file__).parents[1] / "reference"
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+
+
+def table(name):
+    lines = [line for line in (TABLES / name).read_text().splitlines() if not line.startswith("#")]
+    return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
+
+
+@pytest.mark.parametrize("alpha", [0.1, 0.2, 0.3])
+@pytest.mark.parametrize("row", table("planar_quarter_period.csv"), ids=lambda r: str(r["theta0_over_alpha"]))
+def test_quarter_period_of_the_reference_table(alpha, row):
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=math.tan(alpha))
+    initial = InitialState(row["theta0_over_alpha"] * cylinder.alpha)
+    response = reduced.simulate(cylinder, initial=initial, duration=8.0, rtol=1e-12, model="planar")
+    impact = response.extrema[1, 0]
+    assert impact * math.sqrt(response.problem.body.p2) == pytest.approx(row[f"alpha_{alpha}"], abs=2e-11)
+
+
+def test_signed_tilt_is_continuous_and_the_unsigned_is_its_size():
+    response = reduced.simulate(PIER, el_centro_1940(), model="planar", sample_step=0.001, seating=0.0)
+    assert np.array_equal(np.abs(response.signed_tilt), response.tilt)
+    assert (response.signed_tilt < 0.0).any()
+    # no jump: the tilt changes by no more than its rate makes it
+    assert np.abs(np.diff(response.signed_tilt)).max() <= 1.01e-3 * np.abs(response.tilt_rate).max()
+
+
+def test_restitution_from_momentum_is_the_closed_form():
+    for tan_alpha in (0.1, 0.2, 1.0):
+        cylinder = Cylinder(semidiagonal=2.0, tan_alpha=tan_alpha)
+        square = math.sin(cylinder.alpha) ** 2
+        closed = (16.0 - 25.0 * square) / (16.0 - square)
+        assert reduced.restitution_from_momentum(cylinder) == pytest.approx(closed, rel=1e-14)
+    assert reduced.restitution_from_momentum(PIER) == pytest.approx(0.94217, abs=5e-6)
+    assert reduced.restitution_from_momentum(Cylinder(semidiagonal=2.0, tan_alpha=4.0 / 3.0)) == pytest.approx(
+        0.0, abs=1e-15
+    )
+
+
+@pytest.mark.parametrize("restitution", [0.9, "momentum"])
+def test_each_impact_takes_its_share_of_energy(restitution):
+    response = reduced.simulate(
+        PIER,
+        initial=InitialState(0.5 * PIER.alpha),
+        duration=12.0,
+        model="planar",
+        restitution=restitution,
+        rtol=1e-11,
+    )
+    factor = response.problem.restitution
+    maxima = response.extrema[response.extrema[:, 3] > 0.0][:, 1]
+    # at a maximum all energy is potential: p^2 [cos(theta - alpha) - cos(alpha)]
+    potential = np.cos(maxima - PIER.alpha) - math.cos(PIER.alpha)
+    assert len(maxima) > 3
+    assert potential[1:] / potential[:-1] == pytest.approx(factor**2, rel=1e-8)
+
+
+def test_impacts_that_accumulate_end_at_rest():
+    release = InitialState(0.5 * PIER.alpha)
+    for restitution in (0.5, 0.0):
+        response = reduced.simulate(
+            PIER, initial=release, duration=20.0, model="planar", restitution=restitution, seating=0.0
+        )
+        assert response.outcome == "rest"
+        assert np.isnan(response.rolling_angle[-1])
+
+
+def one_sine(amplitude, omega, cylinder, p):
+    """A one-sine pulse of peak `amplitude` alpha g at `omega` p, sampled finely."""
+    count = 4000
+    time = np.linspace(0.0, 2.0 * math.pi / (omega * p), count + 1)
+    pulse = amplitude * cylinder.alpha * 9.81 * np.sin(omega * p * time)
+    return GroundMotion(np.column_stack([pulse, np.zeros_like(pulse)]), time[1])
+
+
+@pytest.mark.parametrize("row", table("one_sine_overturning.csv"), ids=lambda r: str(r["w_over_p"]))
+def test_overturning_by_a_one_sine_pulse_without_impact(row):
+    """The slender limit: at alpha = 1e-3 what is left out is of the order alpha^2, 1e-6."""
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=math.tan(1e-3))
+    p = math.sqrt(reduced.simulate(cylinder, duration=1.0, model="planar").problem.body.p2)
+    verdicts = []
+    for factor in (1.0 - 2e-5, 1.0 + 2e-5):
+        motion = one_sine(factor * row["a"], row["w_over_p"], cylinder, p)
+        # time to fall: differences of 1e-5 grow as exp(p t)
+        response = reduced.simulate(
+            cylinder, motion, duration=motion.duration + 25.0 / p, model="planar", rtol=1e-11
+        )
+        impacts = response.extrema[:, 1] == 0.0
+        verdicts.append(response.outcome == "overturned" and not impacts.any())
+    assert verdicts == [False, True]
