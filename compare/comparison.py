@@ -15,7 +15,7 @@ import numpy as np
 from rockwobble.models import Case
 
 from .store import replace_files
-from .traces import EngineTrace, Trace
+from .traces import Trace
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -82,7 +82,8 @@ class Comparison:
             for traces in (self.responses, self.trajectories)
             for (case, label), trace in traces.items()
         ]
-        return pd.concat(tables, ignore_index=True).set_index(["case", "run"]).reset_index()
+        passes: pd.DataFrame = pd.concat(tables, ignore_index=True)
+        return passes.set_index(["case", "run"]).reset_index()
 
     def _excitation(self) -> pd.DataFrame:
         import pandas as pd
@@ -102,8 +103,8 @@ class Comparison:
             "until": self.until,
             "versions": dict(self.versions),
             "cases": {name: describe_case(case) for name, case in self.cases.items()},
-            "responses": {f"{case} / {label}": _ending(r) for (case, label), r in self.responses.items()},
-            "trajectories": {f"{case} / {label}": _run(t) for (case, label), t in self.trajectories.items()},
+            "responses": _described(self.responses),
+            "trajectories": _described(self.trajectories),
         }
 
 
@@ -139,26 +140,30 @@ def describe_case(case: Case) -> dict[str, Any]:
     }
 
 
-def _ending(trace: Trace) -> dict[str, Any]:
-    return {
-        "outcome": trace.outcome,
-        "message": trace.message,
-        "peak_tilt": _number(trace.peak_tilt),
-        "uplift_time": _number(trace.uplift_time),
-        "uplift_direction": _number(trace.uplift_direction),
-        "wall_time": trace.wall_time,
-    }
+def describe_run(trace: Any) -> dict[str, Any]:
+    """Return what there is to know of a run besides its samples, for a file; SI units and radians."""
+    names = (
+        "model",
+        "engine",
+        "engine_version",
+        "support",
+        "time_step",
+        "outcome",
+        "message",
+        "peak_tilt",
+        "uplift_time",
+        "uplift_direction",
+        "contact_resolution",
+        "residual_displacement",
+        "residual_twist",
+        "wall_time",
+    )
+    found = {name: getattr(trace, name) for name in names if hasattr(trace, name)}
+    return {name: _number(value) if isinstance(value, float) else value for name, value in found.items()}
 
 
-def _run(trace: EngineTrace) -> dict[str, Any]:
-    return {
-        "engine": trace.engine,
-        "engine_version": trace.engine_version,
-        "support": trace.support,
-        "time_step": trace.time_step,
-        "contact_resolution": _number(trace.contact_resolution),
-        **_ending(trace),
-    }
+def _described(traces: Mapping[tuple[str, str], Any]) -> dict[str, Any]:
+    return {f"{case} / {label}": describe_run(trace) for (case, label), trace in traces.items()}
 
 
 def _number(value: float) -> float | None:

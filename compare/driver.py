@@ -80,7 +80,7 @@ def compare(
     results = simulate_all(jobs, workers=workers, progress=progress)
     by_label = {(job.case.name, job.label): result for job, result in zip(jobs, results, strict=True)}
     rows = [
-        _row(case, model, run, by_label[case.name, model], by_label[case.name, label], until)
+        _row(case, model, by_label[case.name, model], label, run, by_label[case.name, label], until)
         for case in cases
         for run, label in zip(chosen, labels, strict=True)
         for model in references_of(run, reference)
@@ -112,15 +112,17 @@ def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None) -> tuple[Run,
     return chosen
 
 
-def _row(case: Case, model: str, run: Run, reference: Any, trial: Any, until: float | None) -> dict[str, Any]:
+def _row(
+    case: Case, model: str, reference: Any, label: str, run: Run, trial: Any, until: float | None
+) -> dict[str, Any]:
     if isinstance(reference, Crash):
         # the reduced models have no way to end a process: this is no result, but a broken installation
         raise RuntimeError(  # noqa: TRY004
             f"the {model} model left no response: {reference.message}"
         )
     if isinstance(trial, Crash):
-        return crashed_row(case, model, reference, run.engine, run.support, trial.message)
-    return summary_row(case, model, reference, trial, until=until)
+        return crashed_row(case, model, reference, label, run, trial.message)
+    return summary_row(case, model, reference, label, trial, until=until)
 
 
 def _table(rows: list[dict[str, Any]]) -> Any:

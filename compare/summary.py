@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case
+from rockwobble.models import Case, Run
 
 from .contact import contact_rms
 from .energy import energy_loss
@@ -50,12 +50,13 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "reference_wall_time": ("s", "computing time of the reduced model"),
         "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine's contact resolves"),
         "engine_version": ("", "version of the engine"),
+        "run": ("", "label of the run, as in the files of samples and in the figures"),
     }
 )
 
 
 def summary_row(
-    case: Case, model: str, reference: Trace, trial: EngineTrace, *, until: float | None = None
+    case: Case, model: str, reference: Trace, label: str, trial: EngineTrace, *, until: float | None = None
 ) -> dict[str, Any]:
     """Return all columns of the summary for one engine run and one reduced model.
 
@@ -66,6 +67,8 @@ def summary_row(
         Name of the reduced model.
     reference : Trace
         Its response.
+    label : str
+        Label of the engine's run.
     trial : EngineTrace
         Trajectory of the engine.
     until : float, optional
@@ -111,28 +114,30 @@ def summary_row(
         "reference_wall_time": reference.wall_time,
         "contact_resolution": trial.contact_resolution,
         "engine_version": trial.engine_version,
+        "run": label,
     }
 
 
 def crashed_row(
-    case: Case, model: str, reference: Trace, engine: str, support: str, message: str
+    case: Case, model: str, reference: Trace, label: str, run: Run, message: str
 ) -> dict[str, Any]:
     """Return the row of a run that left no trajectory: what is not known is NaN, and the message says why."""
     row: dict[str, Any] = dict.fromkeys(SUMMARY_COLUMNS, math.nan)
     row |= {
         "case": case.name,
         "reference": model,
-        "engine": engine,
-        "support": support,
+        "engine": run.engine,
+        "support": run.support,
         "outcome": "failed",
         "reference_outcome": reference.outcome,
-        "message": f"{engine} left no trajectory: {message}",
+        "message": f"{run.engine} left no trajectory: {message}",
         "reference_peak_tilt": reference.peak_tilt / case.cylinder.alpha,
         "agreement_horizon": 0.0,
         "parted": True,
         "agreed_passes": 0,
         "reference_wall_time": reference.wall_time,
         "engine_version": "",
+        "run": label,
     }
     return row
 

@@ -1,0 +1,93 @@
+"""Tilt against time, and how two tilts part."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble.compare import AGREEMENT, make_pair
+
+from ..case_view import CaseView
+from ..palette import model_style
+from .layout import TIME_TITLE, add_line, new_figure, reserve_legend
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+# smaller differences are drawn here: a logarithm has no zero [alpha]
+SMALLEST = 1e-8
+
+
+def tilt_chart(view: CaseView) -> go.Figure:
+    """Return the tilt of all runs over each other."""
+    figure = new_figure(TIME_TITLE, "tilt / α [-]")
+    for label, trace, style in view.lines():
+        add_line(
+            figure,
+            trace.time,
+            trace.tilt / view.case.cylinder.alpha,
+            label,
+            style,
+            width=1.0 if label.endswith("model") else 1.8,
+            hovertemplate="%{y:.4f} α at %{x:.2f} s",
+        )
+    figure.update_yaxes(rangemode="nonnegative")
+    return reserve_legend(figure, len(figure.data))
+
+
+def difference_chart(view: CaseView) -> go.Figure:
+    """Return |tilt difference| of each row of the summary, with its horizon marked."""
+    import plotly.graph_objects as go
+
+    figure = new_figure(TIME_TITLE, "|tilt difference| / α [-]")
+    figure.update_yaxes(type="log", range=[np.log10(SMALLEST), 0.5], exponentformat="power", dtick=1)
+    figure.add_hline(y=AGREEMENT, line={"color": "#222222", "dash": "dash", "width": 1})
+    figure.add_annotation(
+        text="1 % of α",
+        x=1.0,
+        xref="paper",
+        xanchor="right",
+        y=np.log10(AGREEMENT),  # annotations take the exponent on a logarithmic axis
+        yanchor="bottom",
+        showarrow=False,
+        font={"size": 12},
+        bgcolor="rgba(255,255,255,0.8)",
+    )
+    for _, row in view.rows.iterrows():
+        if row.run not in view.trajectories:
+            continue
+        pair = make_pair(view.case.cylinder, view.responses[row.reference], view.trajectories[row.run])
+        style = view.styles[row.run]
+        other = model_style(row.reference)
+        name = f"{row.run} − {row.reference}"
+        add_line(
+            figure,
+            pair.time,
+            np.maximum(np.abs(pair.tilt_difference), SMALLEST),
+            name,
+            type(style)(colour=style.colour, dash=other.dash),
+            width=1.2,
+            legendgroup=name,
+            hovertemplate="%{y:.2e} α at %{x:.2f} s",
+        )
+        if row.parted:
+            filled = other.dash == "solid"
+            figure.add_trace(
+                go.Scatter(
+                    x=[view.start(row.reference) + row.agreement_horizon],
+                    y=[AGREEMENT],
+                    mode="markers",
+                    name=name,
+                    legendgroup=name,
+                    showlegend=False,
+                    marker={
+                        "color": style.colour,
+                        "size": 12,
+                        "symbol": "diamond" if filled else "diamond-open",
+                        "line": {"color": "#000000" if filled else style.colour, "width": 1.5},
+                    },
+                    hovertemplate="%{x:.2f} s",
+                )
+            )
+    return reserve_legend(figure, 2 * len(view.rows))  # long names: one row each on a phone

@@ -1,0 +1,88 @@
+"""Options that the commands have in common.
+
+Units stand in words: square brackets are markup in a help text.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+_BODY, _GROUND, _RELEASE, _METHOD = "Cylinder", "Ground motion", "Release", "Method"
+
+Semidiagonal = Annotated[
+    float, typer.Option("--semidiagonal", help="R = sqrt(b^2 + h^2), in m.", rich_help_panel=_BODY)
+]
+TanAlpha = Annotated[
+    float,
+    typer.Option("--tan-alpha", help="Slenderness b/h, radius over half the height.", rich_help_panel=_BODY),
+]
+RecordX = Annotated[
+    Path | None,
+    typer.Option(
+        "--record-x",
+        help="East-west component: PEER AT2, two-column text or CSV. Default: El Centro 1940.",
+        rich_help_panel=_GROUND,
+    ),
+]
+RecordY = Annotated[
+    Path | None, typer.Option("--record-y", help="North-south component.", rich_help_panel=_GROUND)
+]
+RecordZ = Annotated[
+    Path | None,
+    typer.Option("--record-z", help="Vertical component, may be left out.", rich_help_panel=_GROUND),
+]
+Units = Annotated[
+    str | None,
+    typer.Option(
+        "--units", help="g, m/s2 or cm/s2; required where the files do not say.", rich_help_panel=_GROUND
+    ),
+]
+Scale = Annotated[float, typer.Option("--scale", help="Factor on all components.", rich_help_panel=_GROUND)]
+ReleaseTilt = Annotated[
+    float | None,
+    typer.Option(
+        "--release-tilt-deg",
+        help="Release at this tilt, in deg; without a record the ground is then still.",
+        rich_help_panel=_RELEASE,
+    ),
+]
+RollingRate = Annotated[
+    float,
+    typer.Option("--rolling-rate", help="Rolling rate at release, in rad/s.", rich_help_panel=_RELEASE),
+]
+Duration = Annotated[
+    float | None,
+    typer.Option(
+        "--duration",
+        help="Length of the run, in s. Default: that of the ground motion, 10 s without one.",
+        rich_help_panel=_RELEASE,
+    ),
+]
+Engines = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--engine",
+        help="mujoco or pybullet; may be repeated. Default: all installed.",
+        rich_help_panel=_METHOD,
+    ),
+]
+Supports = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--support",
+        help="guided (ideal recess) or free (open ground); may be repeated. Default: both.",
+        rich_help_panel=_METHOD,
+    ),
+]
+TimeStep = Annotated[
+    float | None,
+    typer.Option(
+        "--time-step",
+        help="Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size.",
+        rich_help_panel=_METHOD,
+    ),
+]
+Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]

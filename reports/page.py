@@ -1,0 +1,100 @@
+"""The page of a comparison: one file that needs nothing else."""
+
+from __future__ import annotations
+
+import html
+import math
+from typing import TYPE_CHECKING, Any
+
+from . import charts
+from .case_view import CaseView, case_views
+from .findings import finding, headline
+from .problem import describe
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+    from rockwobble.compare import Comparison
+
+_CONFIG = {"responsive": True, "displaylogo": False, "modeBarButtonsToRemove": ["select2d", "lasso2d"]}
+
+
+def comparison_page(comparison: Comparison, command: str = "") -> str:
+    """Return the page as HTML, plotly.js inside.
+
+    Parameters
+    ----------
+    comparison : Comparison
+    command : str, optional
+        What made it, for the reader who wants to make it again.
+    """
+    import jinja2
+    from plotly.offline import get_plotlyjs
+
+    from rockwobble.compare import SUMMARY_COLUMNS
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("rockwobble.reports", "templates"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    views = case_views(comparison)
+    return environment.get_template("compare.html.j2").render(
+        command=command,
+        plotly_js=get_plotlyjs(),
+        cases=[_case(view, index) for index, view in enumerate(views)],
+        columns=[
+            {"name": name, "unit": unit, "meaning": meaning}
+            for name, (unit, meaning) in sorted(SUMMARY_COLUMNS.items(), key=_words_last)
+            if name not in ("case", "run")
+        ],
+        versions=comparison.versions,
+    )
+
+
+def _words_last(column: tuple[str, Any]) -> bool:
+    return column[0] == "message"  # the only wide one
+
+
+def _case(view: CaseView, index: int) -> dict[str, Any]:
+    length = view.case.length
+    excitation = charts.excitation_chart(view)
+    return {
+        "name": view.case.name,
+        "lines": describe(view.case),
+        "headline": headline(view.rows, length),
+        "findings": [finding(row, length) for _, row in view.rows.iterrows()],
+        "rows": [{name: _cell(value) for name, value in row.items()} for _, row in view.rows.iterrows()],
+        "tilt": _plot(charts.tilt_chart(view), f"tilt-{index}"),
+        "difference": _plot(charts.difference_chart(view), f"difference-{index}"),
+        "orbits": _plots(charts.orbit_charts(view), f"orbit-{index}"),
+        "azimuth": _plot(charts.azimuth_chart(view), f"azimuth-{index}"),
+        "drift": _plots(charts.drift_charts(view), f"drift-{index}"),
+        "turns": _plot(charts.turn_chart(view), f"turns-{index}"),
+        "residuals": _plots(charts.residual_chart(view), f"residual-{index}"),
+        "excitation": None if excitation is None else _plot(excitation, f"excitation-{index}"),
+    }
+
+
+def _plots(panels: list[tuple[str, go.Figure]], name: str) -> list[dict[str, str]]:
+    return [
+        {"title": title, "plot": _plot(figure, f"{name}-{index}")}
+        for index, (title, figure) in enumerate(panels)
+    ]
+
+
+def _plot(figure: go.Figure, name: str) -> str:
+    """Return the element of a figure and the script that draws it."""
+    return str(
+        figure.to_html(full_html=False, include_plotlyjs=False, div_id=html.escape(name), config=_CONFIG)
+    )
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return f"{value:.4g}" if math.isfinite(value) else "–"
+    return str(value)

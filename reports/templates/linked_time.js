@@ -1,0 +1,24 @@
+// a stretch of time selected in one figure is selected in all figures over time
+(function () {
+  const plots = Array.from(document.querySelectorAll(".plotly-graph-div")).filter(
+    (plot) => plot.layout && plot.layout.xaxis.title.text.startsWith("time")
+  );
+  let busy = false;
+  plots.forEach((plot) =>
+    plot.on("plotly_relayout", (change) => {
+      if (busy) return;
+      const update = {};
+      if ("xaxis.range[0]" in change) {
+        update["xaxis.range"] = [change["xaxis.range[0]"], change["xaxis.range[1]"]];
+      } else if ("xaxis.autorange" in change) {
+        update["xaxis.autorange"] = true;
+      } else {
+        return;
+      }
+      busy = true;
+      Promise.all(plots.filter((other) => other !== plot).map((other) => Plotly.relayout(other, update))).finally(
+        () => { busy = false; }
+      );
+    })
+  );
+})();

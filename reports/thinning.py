@@ -1,0 +1,41 @@
+"""Fewer points for a picture, and the same picture."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+POINTS = 2000
+
+
+def kept_samples(*columns: NDArray[np.float64], points: int = POINTS) -> NDArray[np.intp]:
+    """Return which samples to draw: both ends, and the extremes of each column in each stretch.
+
+    Parameters
+    ----------
+    *columns : ndarray, shape (n,)
+        What is drawn over the sample number; NaN is a gap, whose edges are kept.
+    points : int, optional
+        How many samples to keep at most, edges of gaps not counted.
+
+    Returns
+    -------
+    ndarray, shape (k,)
+        Increasing indices.
+    """
+    count = len(columns[0])
+    if count <= points:
+        return np.arange(count)
+    stretches = max(1, (points - 2) // (2 * len(columns)))
+    edges = np.linspace(0, count, stretches + 1).astype(np.intp)
+    chosen = [np.array([0, count - 1], dtype=np.intp)]
+    for column in columns:
+        gap = np.isnan(column)
+        turns = np.flatnonzero(gap[1:] != gap[:-1])
+        chosen += [turns, turns + 1]
+        for filled, pick in ((np.inf, np.argmin), (-np.inf, np.argmax)):
+            values = np.where(gap, filled, column)
+            chosen.append(np.array([a + pick(values[a:b]) for a, b in pairwise(edges)], dtype=np.intp))
+    return np.unique(np.concatenate(chosen))

@@ -1,0 +1,242 @@
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from rockwobble.compare import execution, runs
+from rockwobble.reports import compare_command
+from rockwobble.reports.main import main
+
+GOOD = "time [s], acceleration [g]\n0.00, 0.0\n0.01, 0.1\n0.02, 0.0\n"
+
+
+def call(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main(list(arguments))
+    assert isinstance(ended.value.code, int)
+    return ended.value.code
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "good.csv").write_text(GOOD)
+    (tmp_path / "slow.csv").write_text(GOOD.replace("0.01,", "0.02,").replace("0.02, 0.0", "0.04, 0.0"))
+    (tmp_path / "silent.csv").write_text(GOOD.split("\n", 1)[1])
+    (tmp_path / "nan.csv").write_text(GOOD.replace("0.1", "nan"))
+    (tmp_path / "text.csv").write_text(GOOD.replace("0.1", "much"))
+    (tmp_path / "empty.csv").write_text("")
+    (tmp_path / "taken").write_text("")
+    return tmp_path
+
+
+def record(x: str, y: str = "good.csv") -> list[str]:
+    return ["--record-x", x, "--record-y", y]
+
+
+BAD = {
+    "negative dimension": (["--semidiagonal", "-6"], "semidiagonal must be positive [m], got -6.0"),
+    "zero dimension": (["--tan-alpha", "0"], "tan_alpha must be positive, got 0.0"),
+    "text for a number": (["--semidiagonal", "six"], "Invalid value for '--semidiagonal'"),
+    "not a number in a record": (record("nan.csv"), "nan.csv: sample 2 must be finite, got nan"),
+    "text cell in a record": (record("text.csv"), "text.csv, line 3: expected two numbers"),
+    "different time steps": (record("slow.csv"), "must have one time step, got 0.02 s in slow.csv"),
+    "no units": (
+        record("silent.csv", "silent.csv"),
+        "does not say its unit: give units, one of g, m/s2, cm/s2",
+    ),
+    "unknown units": (
+        [*record("good.csv"), "--units", "ft/s2"],
+        "units must be one of g, m/s2, cm/s2, got 'ft/s2'",
+    ),
+    "missing file": (record("none.csv"), "cannot read the record none.csv: No such file or directory"),
+    "empty file": (record("empty.csv"), "the record empty.csv is empty"),
+    "only x": (["--record-x", "good.csv"], "both horizontal components are needed, got --record-x without"),
+    "only y": (["--record-y", "good.csv"], "both horizontal components are needed, got --record-y without"),
+    "only z": (["--record-z", "good.csv"], "give --record-x and --record-y as well"),
+    "no scale": (["--scale", "0"], "--scale must be positive and finite, got 0"),
+    "rate without release": (["--rolling-rate", "1"], "--rolling-rate needs a release"),
+    "fallen release": (["--release-tilt-deg", "95"], "tilt must be at least 0 and below pi/2"),
+    "negative duration": (["--duration", "-1"], "duration must be positive [s], got -1.0"),
+    "negative time step": (
+        ["--engine", "mujoco", "--time-step", "-1"],
+        "time_step must be positive [s], got -1.0",
+    ),
+    "folder that is a file": (["--out", "taken"], "the output folder must be a folder, got taken"),
+    "folder that refuses": (["--out", "/proc/1/none"], "the output folder /proc/1/none cannot be written"),
+    "unknown option": (["--semidiagonel", "6"], "No such option: --semidiagonel"),
+}
+
+
+@pytest.mark.parametrize("command", ["compare", "simulate"])
+@pytest.mark.parametrize("kind", BAD)
+def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch, capsys, kind, command):
+    monkeypatch.setattr(execution, "simulate", lambda _: pytest.fail("it ran"))
+    monkeypatch.setattr(execution, "ProcessPool", lambda _: pytest.fail("it ran"))
+    before = sorted(path.name for path in folder.iterdir())
+    arguments, words = BAD[kind]
+    assert call(command, *arguments) == 2
+    captured = capsys.readouterr()
+    assert re.fullmatch(r"rockwobble: [^\n]+\n", captured.err)
+    assert words in captured.err
+    assert sorted(path.name for path in folder.iterdir()) == before
+
+
+def test_time_step_of_a_reduced_model_is_refused(folder, capsys):
+    assert call("simulate", "--time-step", "1e-3") == 2
+    assert "--time-step belongs to an engine" in capsys.readouterr().err
+
+
+def test_compare_prints_and_writes(folder, no_engines, capsys):
+    no_engines()
+    (folder / "results").mkdir()
+    (folder / "results" / "mine.txt").write_text("mine")
+    arguments = ["compare", "--engine", "mujoco", "--out", "results", "--duration", "10", "--scale", "1.5"]
+    assert call(*arguments) == 0
+    out = capsys.readouterr().out
+    assert "Cylinder: b = 1.177 m, 2h = 11.77 m, alpha = 11.31 deg" in out
+    assert "Ground: El Centro 1940, 5346 samples of 0.01 s, 2 components, peak 0.430 g" in out
+    assert "mujoco guided" in out
+    assert "agrees" in out
+    names = {path.name for path in (folder / "results").iterdir()}
+    assert names == {
+        "mine.txt",
+        "summary.csv",
+        "responses.parquet",
+        "trajectories.parquet",
+        "passes.parquet",
+        "excitation.parquet",
+        "comparison.json",
+        "report.html",
+        "figure.svg",
+    }
+    assert len(pd.read_csv(folder / "results" / "summary.csv")) == 3
+    assert (folder / "results" / "mine.txt").read_text() == "mine"
+
+
+def test_an_engine_that_is_not_installed_is_left_out_with_a_note(folder, no_engines, monkeypatch, capsys):
+    no_engines()
+    monkeypatch.setattr(runs, "installed_engines", lambda: ("mujoco",))
+    assert call("compare", "--duration", "5") == 0
+    captured = capsys.readouterr()
+    assert captured.err == "rockwobble: pybullet is not installed here and is left out\n"
+    assert "pybullet" not in captured.out
+
+
+def test_free_response_from_the_command_line(folder, no_engines, capsys):
+    no_engines()
+    arguments = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2"]
+    assert call("compare", "--support", "guided", *arguments) == 0
+    assert "Release: tilt 5 deg (0.442 alpha), rolling rate 0.5 rad/s" in capsys.readouterr().out
+
+
+def test_ctrl_c_is_one_line_and_nothing_written(folder, monkeypatch, capsys):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(compare_command, "run_comparison", interrupted)
+    assert call("compare", "--engine", "mujoco") == 130
+    assert capsys.readouterr().err == "rockwobble: interrupted, nothing was written\n"
+    assert not (folder / "rockwobble-out").exists()
+
+
+def test_simulate_a_reduced_model(folder, capsys):
+    assert call("simulate", "--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2") == 0
+    captured = capsys.readouterr()
+    assert "peak tilt" in captured.out
+    assert "running recess model" in captured.err
+    samples = pd.read_csv("rockwobble-out/run.csv")
+    assert len(samples) == 201
+    assert samples.equals(pd.read_parquet("rockwobble-out/run.parquet").astype(samples.dtypes.to_dict()))
+    about = json.loads(Path("rockwobble-out/run.json").read_text())
+    assert about["result"]["outcome"] == "completed"
+    assert about["case"]["initial"]["rolling_rate"] == 0.5
+
+
+def test_unknown_model(folder, capsys):
+    assert call("simulate", "--model", "block") == 2
+    assert "block" in capsys.readouterr().err.splitlines()[-1]
+    assert not (folder / "rockwobble-out").exists()
+
+
+@pytest.mark.parametrize("command", ["compare", "simulate"])
+def test_help_gives_an_example(command, capsys):
+    assert call(command, "--help") == 0
+    assert f"Example: rockwobble {command} --" in capsys.readouterr().out
+
+
+def test_no_command_prints_the_help(capsys):
+    assert call() == 0
+    assert "compare" in capsys.readouterr().out
+
+
+def test_help_imports_nothing_heavy():
+    script = (
+        "import sys\n"
+        "from rockwobble.reports.main import main\n"
+        "try:\n    main(['--help'])\n"
+        "except SystemExit:\n    pass\n"
+        "heavy = {'numpy', 'numba', 'scipy', 'pandas', 'mujoco', 'plotly', 'matplotlib', 'jinja2'}\n"
+        "print(sorted(heavy & set(sys.modules)), file=sys.stderr)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stderr.strip() == "[]"
+
+
+def test_ctrl_c_stops_a_real_run_at_once_and_leaves_no_process(tmp_path):
+    # a day of free response: it would run for hours
+    arguments = [
+        "--release-tilt-deg",
+        "5",
+        "--rolling-rate",
+        "0.5",
+        "--duration",
+        "86400",
+        "--engine",
+        "mujoco",
+    ]
+    script = "from rockwobble.reports.main import main; main()"
+    process = subprocess.Popen(
+        [sys.executable, "-c", script, "compare", *arguments],
+        cwd=tmp_path,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    assert process.stderr is not None
+    while "running" not in process.stderr.readline():
+        pass
+    time.sleep(1.0)
+    children = _children(process.pid)
+    assert children
+    process.send_signal(signal.SIGINT)
+    _, errors = process.communicate(timeout=30)
+    assert process.returncode == 130
+    assert errors.splitlines()[-1] == "rockwobble: interrupted, nothing was written"
+    assert "Traceback" not in errors
+    assert not any(_alive(child) for child in children)
+    assert list(tmp_path.iterdir()) == []
+
+
+def _children(pid: int) -> list[int]:
+    found = []
+    for path in Path(f"/proc/{pid}/task").iterdir():
+        found += [int(child) for child in (path / "children").read_text().split()]
+    return found
+
+
+def _alive(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    return True

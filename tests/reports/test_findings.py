@@ -1,0 +1,85 @@
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import pandas as pd
+import pytest
+
+from rockwobble.reports.findings import finding, headline
+
+LENGTH = 50.0
+
+
+def row(**values):
+    return SimpleNamespace(
+        **{
+            "engine": "mujoco",
+            "support": "guided",
+            "reference": "recess",
+            "outcome": "completed",
+            "reference_outcome": "completed",
+            "message": "",
+            "peak_tilt": 0.25,
+            "reference_peak_tilt": 0.25,
+            "agreement_horizon": 20.0,
+            "parted": True,
+            "agreed_passes": 7,
+            "predicted_horizon": 18.0,
+            "contact_resolution": 2e-5,
+        }
+        | values
+    )
+
+
+def test_agreement_to_the_end():
+    text = finding(row(parted=False, agreement_horizon=50.0), LENGTH)
+    assert "stays within 1 % of alpha of the recess model for the whole run (50.0 s, 7 passes" in text
+    assert "part" not in text.replace("parts", "")
+
+
+@pytest.mark.parametrize(
+    ("values", "words"),
+    [
+        ({}, "at 18.0 s a pass comes closer to the apex than the contact resolves (2e-05 rad)"),
+        ({"predicted_horizon": 30.0}, "contact resolution alone does not explain it"),
+        ({"predicted_horizon": LENGTH}, "so the contact does not explain it"),
+        ({"support": "free"}, "on open ground the cylinder may roll out"),
+        ({"support": "free", "reference": "rolling"}, "a pass comes closer to the apex"),
+    ],
+)
+def test_a_parting_and_its_reason_follow_from_the_numbers(values, words):
+    text = finding(row(**values), LENGTH)
+    assert "for 20.0 s from uplift or release (7 passes by the apex), then they part" in text
+    assert words in text
+
+
+def test_peaks_are_told_apart_only_where_they_differ():
+    assert "Peak tilt is the same to 0.4 %" in finding(row(peak_tilt=0.251), LENGTH)
+    assert "Peak tilt is 0.3 alpha against 0.25 alpha." in finding(row(peak_tilt=0.3), LENGTH)
+
+
+def test_outcomes_that_are_no_traces():
+    fell = row(outcome="overturned", message="only mujoco overturned; compared up to 9 s")
+    assert "Only mujoco overturned" in finding(fell, LENGTH)
+    both = row(outcome="overturned", reference_outcome="overturned", message="both overturned")
+    assert finding(both, LENGTH).endswith("Both overturn.")
+    failed = row(outcome="failed", message="mujoco failed: it gained energy", peak_tilt=math.nan)
+    assert (
+        finding(failed, LENGTH) == "mujoco guided against the recess model: mujoco failed: it gained energy."
+    )
+    still = row(message="neither uplifted: there is no motion to compare", peak_tilt=0.0)
+    assert "does not uplift the cylinder" in finding(still, LENGTH)
+
+
+def table(*rows):
+    return pd.DataFrame([vars(r) for r in rows])
+
+
+def test_headline_speaks_of_each_run_against_the_model_of_its_support():
+    guided = row(agreement_horizon=20.0)
+    other = row(support="free", agreement_horizon=2.0)
+    own = row(support="free", reference="rolling", agreement_horizon=9.0)
+    assert "for 9.0 s to 20.0 s from uplift" in headline(table(guided, other, own), LENGTH)
+    assert "for the whole run (50.0 s)" in headline(table(row(parted=False)), LENGTH)
+    assert headline(table(row(outcome="failed")), LENGTH) == "No run could be compared."

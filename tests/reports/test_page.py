@@ -1,0 +1,105 @@
+from __future__ import annotations
+
+import re
+from html.parser import HTMLParser
+
+from rockwobble.compare import SUMMARY_COLUMNS, compare
+from rockwobble.models import Case, Cylinder, InitialState, Run
+from rockwobble.reports.figure import comparison_figure
+from rockwobble.reports.page import comparison_page
+
+PAGE_LIMIT = 8_000_000  # [bytes]
+PICTURE_LIMIT = 300_000  # [bytes]
+
+
+class Elements(HTMLParser):
+    """Names and attributes of all elements, and the text outside of scripts and styles."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+        self.text: list[str] = []
+        self._silent = False
+        self.feed(page)
+
+    def handle_starttag(self, tag, attributes):
+        self.found.append((tag, dict(attributes)))
+        self._silent = tag in ("script", "style")
+
+    def handle_endtag(self, tag):
+        self._silent = False
+
+    def handle_data(self, data):
+        if not self._silent:
+            self.text.append(data)
+
+
+def test_page_is_whole_and_needs_nothing_else(comparison):
+    page = comparison_page(comparison, "rockwobble compare")
+    assert len(page.encode()) < PAGE_LIMIT
+    elements = Elements(page)
+    for tag, attributes in elements.found:
+        assert not (tag == "script" and "src" in attributes)
+        assert not (tag == "link" and attributes.get("href") != "data:,")
+        assert tag not in ("img", "iframe", "object")
+    plots = {
+        a["id"] for tag, a in elements.found if tag == "div" and "plotly-graph-div" in (a.get("class") or "")
+    }
+    assert plots == {
+        "tilt-0",
+        "difference-0",
+        *(f"orbit-0-{run}" for run in range(4)),
+        "azimuth-0",
+        "drift-0-0",
+        "drift-0-1",
+        "turns-0",
+        "residual-0-0",
+        "residual-0-1",
+        "excitation-0",
+    }
+
+
+def test_page_says_what_was_compared_and_found(comparison):
+    text = " ".join(" ".join(Elements(comparison_page(comparison, "rockwobble compare")).text).split())
+    assert "b = 1.177 m, 2h = 11.77 m, alpha = 11.31 deg" in text
+    assert "Engines and the reduced models of their supports agree within 1 % of alpha" in text
+    row = comparison.summary[
+        (comparison.summary.run == "mujoco free") & (comparison.summary.reference == "recess")
+    ]
+    assert f"for {row.agreement_horizon.iloc[0]:.1f} s from uplift or release" in text
+    assert "rockwobble compare" in text
+    for name in SUMMARY_COLUMNS:
+        if name not in ("case", "run"):
+            assert name.replace("_", " ") in text
+    assert "nan" not in re.findall(r"\w+", text)
+
+
+def test_still_ground_has_no_excitation_and_markup_in_a_name_stays_text(no_engines):
+    no_engines()
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
+    case = Case("<b>name</b> & co", cylinder, initial=release, duration=2.0)
+    page = comparison_page(compare(case, runs=[Run("mujoco", "guided")]))
+    assert "excitation-0" not in page
+    assert "<b>name</b>" not in page
+    assert "&lt;b&gt;name&lt;/b&gt; &amp; co" in page
+
+
+def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    case = Case("still", cylinder, duration=1.0)
+    no_engines()
+    still = compare(case, runs=[Run("mujoco", "guided")])
+    assert "both stay at rest" in comparison_page(still)
+    assert comparison_figure(still)
+    no_engines(outcome="failed", message="it gained energy", peak_tilt=float("nan"))
+    failed = compare(case, runs=[Run("mujoco", "guided")])
+    assert "it gained energy" in comparison_page(failed)
+    assert comparison_figure(failed)
+
+
+def test_picture_is_small_and_reproducible(comparison):
+    picture = comparison_figure(comparison)
+    assert picture.startswith(b"<?xml")
+    assert len(picture) < PICTURE_LIMIT
+    assert picture == comparison_figure(comparison)

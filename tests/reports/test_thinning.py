@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rockwobble.reports.thinning import POINTS, kept_samples
+
+
+def test_few_samples_are_all_kept():
+    assert kept_samples(np.arange(POINTS, dtype=float)).tolist() == list(range(POINTS))
+
+
+@pytest.mark.parametrize("count", [POINTS + 1, 5346, 1_000_000])
+def test_many_samples_become_no_more_than_the_limit_and_keep_their_extremes(count):
+    rng = np.random.default_rng(1)
+    values = rng.normal(size=count)
+    at = count // 3
+    values[at], values[at + 1] = 50.0, -50.0  # two samples wide
+    keep = kept_samples(values)
+    assert POINTS // 2 < len(keep) <= POINTS
+    assert keep[0] == 0
+    assert keep[-1] == count - 1
+    assert (np.diff(keep) > 0).all()
+    assert {at, at + 1} <= set(keep.tolist())
+
+
+def test_edges_of_gaps_are_kept():
+    values = np.sin(np.linspace(0.0, 20.0, 10_000))
+    values[4000:6000] = np.nan
+    keep = kept_samples(values)
+    assert {3999, 4000, 5999, 6000} <= set(keep.tolist())
+    drawn = values[keep]
+    assert np.isnan(drawn).any()  # a line without the gap would bridge it
+
+
+def test_a_path_keeps_the_extremes_of_both_coordinates():
+    angle = np.linspace(0.0, 40.0, 20_000)
+    x, y = np.cos(angle), np.sin(angle)
+    keep = kept_samples(x, y)
+    assert len(keep) <= POINTS
+    for coordinate in (x, y):
+        assert coordinate[keep].max() == coordinate.max()
+        assert coordinate[keep].min() == coordinate.min()
