@@ -38,11 +38,11 @@ def comparison_figure(comparison: Comparison) -> bytes:
 
     view = case_views(comparison)[0]
     with mpl.rc_context({"svg.hashsalt": "rockwobble", "font.size": 10, "path.simplify_threshold": 0.3}):
-        figure = Figure(figsize=(8.6, 6.2), layout="constrained")
+        figure = Figure(figsize=(8.6, 6.8), layout="constrained")
         above, below = figure.subplots(2, 1, sharex=True)
         _tilts(above, view)
         _differences(below, view)
-        above.set_title(_title(view), fontsize=10, loc="left")
+        figure.suptitle(_title(view), fontsize=11, x=0.01, ha="left")
         buffer = io.BytesIO()
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "rockwobble"})
     return buffer.getvalue()
@@ -59,8 +59,7 @@ def _tilts(axes: Axes, view: CaseView) -> None:
         _line(axes, trace.time, trace.tilt / view.case.cylinder.alpha, label, style, 0.8 if model else 1.5)
     axes.set_ylabel("tilt / α [-]")
     axes.set_ylim(bottom=0.0)
-    axes.legend(loc="upper right", ncols=2, fontsize=8, framealpha=0.9)
-    axes.grid(color="#dddddd", linewidth=0.6)
+    _finish(axes)
 
 
 def _differences(axes: Axes, view: CaseView) -> None:
@@ -88,8 +87,14 @@ def _differences(axes: Axes, view: CaseView) -> None:
     axes.set_ylim(_SMALLEST, 10.0)
     axes.set_ylabel("|tilt difference| / α [-]")
     axes.set_xlabel("time [s]")
-    axes.legend(loc="lower right", ncols=2, fontsize=8, framealpha=0.9)
+    _finish(axes)
+
+
+def _finish(axes: Axes) -> None:
+    # above the axes, where it hides nothing
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=8, frameon=False)
     axes.grid(color="#dddddd", linewidth=0.6)
+    axes.margins(x=0.0)
 
 
 def _line(axes: Axes, x: Any, y: Any, label: str, style: Style, width: float) -> None:

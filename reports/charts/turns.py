@@ -24,6 +24,7 @@ def turn_chart(view: CaseView) -> go.Figure:
     import plotly.graph_objects as go
 
     figure = new_figure(TIME_TITLE, "|angle of turn| [deg]")
+    figure.update_xaxes(range=[0.0, view.case.length])
     figure.update_yaxes(rangemode="tozero")
     limit = math.degrees(limiting_angle_of_turn(view.case.cylinder))
     figure.add_trace(
