@@ -1,6 +1,7 @@
 """Equations of motion of the planar, recess and rolling models, in the form that computes well.
 
-All are written per unit mass, with t = tan(theta/2), s = sin theta, c = cos theta and
+All are written per unit mass, with s = sin theta, c = cos theta, v = 1 - c = 2 sin^2(theta/2),
+t = tan(theta/2) = v/s and
 
 ====== ======== =============================================================== ========
 symbol unit     meaning                                                         source
@@ -13,22 +14,22 @@ Lambda m^2/s    B phi' - G tau', the same where the twist is free (rolling)
 tau    rad      twist phi + psi; 0 in the recess                                (14)
 S      m^2/s    M tau', momentum of the twist (rolling)
 H      m^2      J + 2 E t + C t^2
-B      m^2      s^2 H, inertia of the rolling angle                             (19)
-D      m        s (h + b t), horizontal distance of the mass centre from O      (11)
+B      m^2      s^2 H = J s^2 + 2 E s v + C v^2, inertia of the rolling angle   (19)
+D      m        h s + b v, horizontal distance of the mass centre from O        (11)
 a      m/s^2    ground acceleration; a_r along the contact azimuth, a_t across  (11)
 ====== ======== =============================================================== ========
 
 Equation (18) reads A theta'' = B' phi'^2/2 - A p^2 [(1 + az/g) sin(alpha - theta) +
 cos(alpha - theta) a_r/g], and (19) reads (B phi')' = -D a_t. The sums that (18) and (19) print for
-B and B' cancel near theta = 0 and for squat cylinders; every term of s^2 H is positive.
+B and B' cancel near theta = 0 and for squat cylinders; here every term of B is positive, and none
+is a quotient.
 """
 
 from __future__ import annotations
 
-from math import cos, sin
-
 from ._compile import jit
 from .body import Body
+from .trigonometry import sin_cos
 
 
 @jit
@@ -38,10 +39,10 @@ def planar_rhs(body: Body, theta: float, direction: float, a: float, az: float) 
     `theta` is the unsigned tilt, `direction` +1 or -1 the side it leans to, `a` the ground
     acceleration along the plane [m/s^2].
     """
-    s, c = sin(theta), cos(theta)
-    restoring = (1.0 + az / body.g) * (body.sin_alpha * c - body.cos_alpha * s)
-    inertial = (body.cos_alpha * c + body.sin_alpha * s) * direction * a / body.g
-    return -body.p2 * (restoring + inertial)
+    s, c = sin_cos(theta)
+    restoring = (body.g + az) * (body.sin_alpha * c - body.cos_alpha * s)
+    inertial = (body.cos_alpha * c + body.sin_alpha * s) * direction * a
+    return -(body.p2 / body.g) * (restoring + inertial)
 
 
 @jit
@@ -49,19 +50,22 @@ def recess_rhs(
     body: Body, theta: float, omega: float, phi: float, L: float, ax: float, ay: float, az: float
 ) -> tuple[float, float, float, float]:
     """Return (theta', theta'', phi', L') of the paper's model: (18) and (19)."""
-    s, c = sin(theta), cos(theta)
-    t = s / (1.0 + c)
-    H = body.J + (2.0 * body.E + body.C * t) * t
-    half_H_theta = 0.5 * (body.E + body.C * t) * (1.0 + t * t)
+    s_half, c_half = sin_cos(0.5 * theta)
+    s, v = 2.0 * s_half * c_half, 2.0 * s_half * s_half
+    c = 1.0 - v
+    B = body.J * s * s + (2.0 * body.E * s + body.C * v) * v
+    half_B_theta = (body.J * c + body.C * v) * s + body.E * (c * v + s * s)
     # L = 0 is planar motion, also at theta = 0 where L/B is 0/0
-    phi_rate = L / (s * s * H) if L != 0.0 else 0.0
-    sin_phi, cos_phi = sin(phi), cos(phi)
+    phi_rate = L / B if L != 0.0 else 0.0
+    sin_phi, cos_phi = sin_cos(phi)
     a_r = ax * cos_phi + ay * sin_phi
     a_t = ay * cos_phi - ax * sin_phi
-    centrifugal = phi_rate * phi_rate * s * (c * H + s * half_H_theta) / body.A
-    restoring = (1.0 + az / body.g) * (body.sin_alpha * c - body.cos_alpha * s)
-    inertial = (body.cos_alpha * c + body.sin_alpha * s) * a_r / body.g
-    return omega, centrifugal - body.p2 * (restoring + inertial), phi_rate, -s * (body.h + body.b * t) * a_t
+    restoring = (body.g + az) * (body.sin_alpha * c - body.cos_alpha * s)
+    inertial = (body.cos_alpha * c + body.sin_alpha * s) * a_r
+    # the two constants wait for nothing, so they are ready when the rest is
+    centrifugal = half_B_theta * (1.0 / body.A) * (phi_rate * phi_rate)
+    theta_acceleration = centrifugal - (body.p2 / body.g) * (restoring + inertial)
+    return omega, theta_acceleration, phi_rate, -(body.h * s + body.b * v) * a_t
 
 
 @jit
@@ -83,7 +87,7 @@ def rolling_rhs(
     across the contact azimuth. S = 0 throughout would be the recess model.
     """
     b, h, C, E, J = body.b, body.h, body.C, body.E, body.J
-    s, c = sin(theta), cos(theta)
+    s, c = sin_cos(theta)
     t = s / (1.0 + c)
     sec2 = 1.0 + t * t
     roll = E + C * t
@@ -91,7 +95,7 @@ def rolling_rhs(
     H_theta = roll * sec2
     delta = J * C - E * E
     M = delta / H
-    sin_phi, cos_phi = sin(phi), cos(phi)
+    sin_phi, cos_phi = sin_cos(phi)
     a_r = ax * cos_phi + ay * sin_phi
     a_t = ay * cos_phi - ax * sin_phi
 
@@ -126,8 +130,8 @@ def energy(body: Body, theta: float, omega: float, L: float, S: float) -> float:
 
     Equations (13), (15) and (17); S is 0 in the recess.
     """
-    s = sin(theta)
-    t = s / (1.0 + cos(theta))
+    s, c = sin_cos(theta)
+    t = s / (1.0 + c)
     H = body.J + (2.0 * body.E + body.C * t) * t
     spin = L * L / (2.0 * s * s * H) if L != 0.0 else 0.0
     twist = S * S * H / (2.0 * (body.J * body.C - body.E * body.E)) if S != 0.0 else 0.0

@@ -14,7 +14,7 @@ from rockwobble.models import Cylinder, GroundMotion, InitialState, run_duration
 
 from . import kernels
 from .body import Body, body_of
-from .driver import March, Options
+from .driver import March, Options, spin_momentum
 
 MODELS = ("planar", "recess", "rolling")
 SIZES = {"planar": 3, "recess": 4, "rolling": 8}
@@ -45,7 +45,7 @@ class SetUp(NamedTuple):
 
     march: Callable[..., Any]
     record: NDArray[np.float64]  # (n, 3) [m/s^2]
-    start: NDArray[np.float64]  # (size,) state at time zero
+    start: tuple[float, ...]  # (size,) state at time zero
     azimuth: float  # from which the angles of the march count [rad]
 
 
@@ -127,21 +127,18 @@ class Problem:
         times = self.duration * math.sqrt(self.body.p2)
         return int(min(_BUDGET + _BUDGET_PER_SAMPLE * samples + _BUDGET_PER_TIME * times, 2**62))
 
-    def _start(self, size: int, azimuth: float) -> NDArray[np.float64]:
+    def _start(self, size: int, azimuth: float) -> tuple[float, ...]:
         """State at time zero; psi' = -phi', so neither twist nor twist rate."""
-        y = np.zeros(size)
         initial, body = self.initial, self.body
         if initial is None or initial.tilt == 0.0:
-            return y
-        y[:3] = initial.tilt, initial.tilt_rate, initial.rolling_angle
-        if size == 3:
+            return (0.0,) * size
+        if size == SIZES["planar"]:
             # the azimuth of the plane or its opposite
-            y[2] = 0.0 if math.cos(initial.rolling_angle - azimuth) >= 0.0 else math.pi
-            return y
-        s = math.sin(initial.tilt)
-        t = math.tan(0.5 * initial.tilt)
-        y[3] = s * s * (body.J + (2.0 * body.E + body.C * t) * t) * initial.rolling_rate
-        return y
+            angle = 0.0 if math.cos(initial.rolling_angle - azimuth) >= 0.0 else math.pi
+            return float(initial.tilt), float(initial.tilt_rate), angle
+        L = float(spin_momentum(body, float(initial.tilt), float(initial.rolling_rate)))
+        start = (float(initial.tilt), float(initial.tilt_rate), float(initial.rolling_angle), L)
+        return start + (0.0,) * (size - len(start))
 
     def _plane(self, record: NDArray[np.float64]) -> Plane | None:
         """The vertical plane that the motion stays in, if there is one."""

@@ -144,6 +144,8 @@ def _response(
         moving = np.append(moving, True)
     full = six_columns(states, azimuth)
     overturned = march.status == OVERTURNED
+    if overturned:
+        full[-1, 0] = 0.5 * math.pi  # the last of a Newton iteration
     outcome = _OUTCOMES.get(march.status, "failed")
     extrema = march.extrema.copy()
     extrema[:, 2] += azimuth

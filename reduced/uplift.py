@@ -12,10 +12,10 @@ from __future__ import annotations
 from math import atan2, hypot, pi, sqrt
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ._compile import jit
 from .body import Body
+from .tsit5 import Vector, ground
 
 # The series is left at p t = START. The solution oscillates there about the direction of the
 # inertia force, ever faster towards t = 0, so an earlier start costs steps (about 1/sqrt(START))
@@ -29,22 +29,20 @@ WEAK = 1e-12
 
 
 @jit
-def excess(body: Body, ax: float, ay: float, az: float) -> float:
+def excess(body: Body, a: Vector) -> float:
     """Return f = |a| - (g + az) tan(alpha) [m/s^2]; the cylinder cannot stand where it is positive."""
-    return hypot(ax, ay) - (body.g + az) * body.sin_alpha / body.cos_alpha
+    return hypot(a[0], a[1]) - (body.g + a[2]) * body.sin_alpha / body.cos_alpha
 
 
 @jit
-def uplift_in(
-    body: Body, a: NDArray[np.float64], slope: NDArray[np.float64], begin: float, end: float
-) -> float:
+def uplift_in(body: Body, a: Vector, slope: Vector, begin: float, end: float) -> float:
     """Return the first time in [begin, end) at which f reaches zero and rises, or -1.0.
 
-    Times count from the sample at which the acceleration is `a` (3,), with rate `slope` (3,) per
-    second. A root at `end` itself belongs to the next sample.
+    Times count from the sample at which the acceleration is `a`, with rate `slope` per second. A
+    root at `end` itself belongs to the next sample.
     """
-    f_begin = excess(body, a[0] + slope[0] * begin, a[1] + slope[1] * begin, a[2] + slope[2] * begin)
-    f_end = excess(body, a[0] + slope[0] * end, a[1] + slope[1] * end, a[2] + slope[2] * end)
+    f_begin = excess(body, ground(a, slope, begin))
+    f_end = excess(body, ground(a, slope, end))
     if f_begin > 0.0:
         return begin
     if f_end <= 0.0:
@@ -58,7 +56,7 @@ def uplift_in(
             middle = 0.5 * (low + high)
             if not low < middle < high:
                 break
-        f = excess(body, a[0] + slope[0] * middle, a[1] + slope[1] * middle, a[2] + slope[2] * middle)
+        f = excess(body, ground(a, slope, middle))
         if f > 0.0:
             high, f_high = middle, f
             f_low *= 0.5
@@ -79,8 +77,8 @@ def nearest_branch(angle: float, last: float) -> float:
 @jit
 def started(
     body: Body,
-    a: NDArray[np.float64],
-    slope: NDArray[np.float64],
+    a: Vector,
+    slope: Vector,
     at: float,
     time: float,
 ) -> tuple[float, float, float, float]:
@@ -89,7 +87,7 @@ def started(
     Parameters
     ----------
     body : Body
-    a, slope : ndarray, shape (3,)
+    a, slope : tuple of 3 floats
         Acceleration at the last sample and its rate.
     at : float
         Time of uplift since that sample [s].
@@ -109,14 +107,14 @@ def started(
     f starts above zero the lag is linear in time from the start and the balance is exact:
     phi' = W/(1 + 2 J F0/(h |a|)).
     """
-    ax, ay, az = a[0] + slope[0] * at, a[1] + slope[1] * at, a[2] + slope[2] * at
+    ax, ay, az = ground(a, slope, at)
     size = max(hypot(ax, ay), WEAK * body.g)
     along = (ax * slope[0] + ay * slope[1]) / size  # d|a|/dt
     cross = ax * slope[1] - ay * slope[0]  # |a|^2 times the turning rate, constant in a sample
     turning = cross / (size * size)
     factor = body.p2 * body.cos_alpha / body.g
     tan_alpha = body.sin_alpha / body.cos_alpha
-    F0 = factor * max(excess(body, ax, ay, az), 0.0)
+    F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
     F1 = factor * (along - slope[2] * tan_alpha)
     F2 = factor * size * turning * turning
     F3 = -3.0 * F2 * along / size
@@ -148,11 +146,11 @@ def starts_as_step(body: Body, F0: float, F1: float) -> bool:
 
 
 @jit
-def start_length(body: Body, a: NDArray[np.float64], slope: NDArray[np.float64], at: float) -> float:
+def start_length(body: Body, a: Vector, slope: Vector, at: float) -> float:
     """Return for how long after uplift [s] the series is used."""
-    ax, ay, az = a[0] + slope[0] * at, a[1] + slope[1] * at, a[2] + slope[2] * at
+    ax, ay, az = ground(a, slope, at)
     factor = body.p2 * body.cos_alpha / body.g
-    F0 = factor * max(excess(body, ax, ay, az), 0.0)
+    F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
     along = (ax * slope[0] + ay * slope[1]) / max(hypot(ax, ay), WEAK * body.g)
     F1 = factor * (along - slope[2] * body.sin_alpha / body.cos_alpha)
     p = sqrt(body.p2)
