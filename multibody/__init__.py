@@ -1,1 +1,12 @@
-"""Placeholder docstring."""
+"""Physics engines hold the cylinder: a free rigid body in contact with rigid ground.
+
+`simulate` runs one case in one engine with one support and gives a `Trajectory`, with the fields of the
+reduced models as far as an engine has them. Nothing here knows the reduced models: inertia, kinematics
+and energy are derived from the pose of a rigid body.
+"""
+
+from .registry import EngineNotInstalledError, available_engines, engine_names
+from .simulate import simulate
+from .trajectory import Trajectory
+
+__all__ = ["EngineNotInstalledError", "Trajectory", "available_engines", "engine_names", "simulate"]

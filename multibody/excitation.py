@@ -1,0 +1,56 @@
+"""Ground acceleration as an engine takes it: one constant for each step."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import GroundMotion
+
+from .froude import Scale
+
+Array = NDArray[np.float64]
+
+
+class StepMeans:
+    """Means of a ground acceleration over the steps of an engine, exact for a piecewise linear record.
+
+    Both engines advance as leapfrog does: step n takes the velocity from half a step before the pose n
+    to half a step after it. The force of that step is therefore the mean from (n - 1/2) h to (n + 1/2) h,
+    which keeps the hold of the force second order in h; the mean over the step ahead would shift the
+    whole record by h/2.
+
+    Parameters
+    ----------
+    motion : GroundMotion or None
+        None: still ground.
+    scale : Scale
+        From the units of the motion to those of the scene.
+    time_step : float
+        h, in the scene [s].
+    """
+
+    def __init__(self, motion: GroundMotion | None, scale: Scale, time_step: float) -> None:
+        self._step = time_step
+        if motion is None:
+            self._samples: Array = np.zeros((2, 3))
+            self._spacing = 1.0
+        else:
+            self._samples = np.zeros((len(motion.acceleration), 3))
+            self._samples[:, : motion.acceleration.shape[1]] = motion.acceleration / scale.acceleration
+            self._spacing = motion.time_step / scale.time
+        areas = 0.5 * self._spacing * (self._samples[1:] + self._samples[:-1])
+        self._velocity: Array = np.vstack([np.zeros(3), np.cumsum(areas, axis=0)])
+
+    def __call__(self, first: int, count: int) -> Array:
+        """Return the mean acceleration of steps `first` to `first + count - 1`, shape (count, 3) [m/s^2]."""
+        edges: Array = (np.arange(first, first + count + 1, dtype=float) - 0.5) * self._step
+        return np.diff(self.ground_velocity(edges), axis=0) / self._step
+
+    def ground_velocity(self, time: Array) -> Array:
+        """Return the integral of the acceleration up to `time` (n,), shape (n, 3) [m/s]."""
+        inside = np.clip(time, 0.0, self._spacing * (len(self._samples) - 1))
+        index = np.minimum((inside / self._spacing).astype(np.intp), len(self._samples) - 2)
+        past = (inside - index * self._spacing)[:, None]
+        start, slope = self._samples[index], np.diff(self._samples, axis=0)[index] / self._spacing
+        return np.asarray(self._velocity[index] + past * (start + 0.5 * past * slope))

@@ -1,0 +1,31 @@
+"""One pair coefficient of friction, converted to the convention of each engine."""
+
+from __future__ import annotations
+
+import math
+
+CONVENTIONS = ("pair", "maximum", "product")
+
+
+def body_friction(pair: float, convention: str) -> tuple[float, float]:
+    """Return the coefficients of cylinder and ground whose pair has the coefficient `pair` [-].
+
+    Parameters
+    ----------
+    pair : float
+        Coulomb coefficient between cylinder and ground.
+    convention : {"pair", "maximum", "product"}
+        How the engine combines two bodies: not at all, because it takes that of the pair (MuJoCo's
+        explicit pairs); by the larger (MuJoCo's geoms); by the product (Bullet).
+
+    Raises
+    ------
+    ValueError
+        If the convention is unknown.
+    """
+    if convention in ("pair", "maximum"):
+        return pair, pair
+    if convention == "product":
+        # equal shares: Bullet bounds the product at 10, so neither factor alone may carry it
+        return math.sqrt(pair), math.sqrt(pair)
+    raise ValueError(f"convention must be one of {', '.join(CONVENTIONS)}, got {convention!r}")

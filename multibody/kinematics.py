@@ -1,0 +1,118 @@
+"""Pose and velocity to the quantities of the model, all steps at once.
+
+theta  tilt: angle of the axis from the vertical                                  [rad]
+phi    rolling angle: azimuth of the lean, hence of the lowest point of the rim   [rad]
+tau    twist phi + psi = 2 atan2(q_z, q_w)                                        [rad]
+S, O   mass centre, centre of the original base circle; positions relative to O   [m]
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .body import Body
+from .engine import Steps
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Kinematics:
+    """Quantities of n consecutive poses; arrays of shape (n,) unless another is given.
+
+    Attributes
+    ----------
+    tilt, tilt_rate, azimuth, rolling_rate, twist : ndarray
+        The azimuth is phi between -pi and pi. The rolling rate has no meaning at zero tilt (0 there).
+    contact_point : ndarray, shape (n, 2)
+        Lowest point of the rim, from above [m].
+    centre_of_mass, base_centre : ndarray, shape (n, 3)
+        [m]
+    energy : ndarray
+        Kinetic and potential, per unit mass, zero standing [m^2/s^2].
+    momentum : ndarray
+        Vertical angular momentum per unit mass about the centre of the circle on which the rim rolls
+        (O, as long as the cylinder stays in its place) [m^2/s].
+    depth : ndarray
+        Of the lowest point of the rim below the ground [m].
+    """
+
+    tilt: Array
+    tilt_rate: Array
+    azimuth: Array
+    rolling_rate: Array
+    twist: Array
+    contact_point: Array
+    centre_of_mass: Array
+    base_centre: Array
+    energy: Array
+    momentum: Array
+    depth: Array
+
+
+def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinematics:
+    """Return the quantities at `poses`, whose velocities are those of the step before.
+
+    `after` holds the poses of one step later: the velocity at a pose is the mean of those before and
+    after it.
+    """
+    velocity = 0.5 * (poses.velocity + after.velocity)
+    spin = 0.5 * (poses.angular_velocity + after.angular_velocity)
+    position = poses.position
+    axis = axis_of(poses.quaternion)
+    b, h = body.base_radius, body.mass_centre_height
+    sine = np.hypot(axis[:, 0], axis[:, 1])
+    # atan2 of both, because the cosine alone loses a tilt below 1e-8
+    tilt = np.arctan2(sine, axis[:, 2])
+    safe = np.where(sine > 0.0, sine, 1.0)
+    outward = axis[:, :2] / safe[:, None]
+    outward[sine == 0.0] = (1.0, 0.0)
+    rate = np.cross(spin, axis)
+    tilt_rate = (spin[:, 1] * axis[:, 0] - spin[:, 0] * axis[:, 1]) / safe
+    rolling_rate = (axis[:, 0] * rate[:, 1] - axis[:, 1] * rate[:, 0]) / safe**2
+    base_centre = position - h * axis
+    contact = base_centre[:, :2] + b * axis[:, 2:] * outward
+    along = np.einsum("ij,ij->i", spin, axis)
+    about_centre = body.transverse_inertia * spin[:, 2] + (body.axial_inertia - body.transverse_inertia) * (
+        along * axis[:, 2]
+    )
+    arm = position[:, :2] - (contact - b * outward)
+    energy = 0.5 * np.einsum("ij,ij->i", velocity, velocity) + gravity * (position[:, 2] - h)
+    energy += 0.5 * body.transverse_inertia * np.einsum("ij,ij->i", spin, spin)
+    energy += 0.5 * (body.axial_inertia - body.transverse_inertia) * along**2
+    return Kinematics(
+        tilt=tilt,
+        tilt_rate=tilt_rate,
+        azimuth=np.arctan2(axis[:, 1], axis[:, 0]),
+        rolling_rate=rolling_rate,
+        twist=2.0 * np.arctan2(poses.quaternion[:, 3], poses.quaternion[:, 0]),
+        contact_point=contact,
+        centre_of_mass=position,
+        base_centre=base_centre,
+        energy=energy,
+        momentum=about_centre + arm[:, 0] * velocity[:, 1] - arm[:, 1] * velocity[:, 0],
+        depth=b * sine - base_centre[:, 2],
+    )
+
+
+def axis_of(quaternion: Array) -> Array:
+    """Return the axes of revolution, shape (n, 3), of quaternions (n, 4), scalar first."""
+    w, x, y, z = quaternion.T
+    return np.column_stack([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])
+
+
+def unwrap(azimuth: Array, momentum: Array, before: float) -> Array:
+    """Return the rolling angle without jumps, going on from `before` [rad].
+
+    A change above a quarter turn in one step happens next to the apex, where the shorter way round may
+    be the wrong one: the sign of the vertical angular momentum says which way the cylinder turned.
+    """
+    change = np.diff(azimuth, prepend=before)
+    change -= 2.0 * np.pi * np.round(change / (2.0 * np.pi))
+    way = np.sign(momentum)
+    wrong = (np.abs(change) > 0.5 * np.pi) & (np.sign(change) == -way)
+    change[wrong] += 2.0 * np.pi * way[wrong]
+    return np.asarray(before + np.cumsum(change))

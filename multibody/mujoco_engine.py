@@ -1,0 +1,146 @@
+"""MuJoCo: stepped in C by rollouts, with the ground acceleration as an array of controls."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .engine import Array, Scene, Settings, Stepper, Steps
+from .mujoco_scene import compile_scene
+from .settings import MujocoSettings
+from .start import Start
+
+if TYPE_CHECKING:
+    import mujoco  # type: ignore[import-untyped]
+
+_SECANT_STEPS = 30
+_STILL = 1e-9  # [m/s^2] acceleration left of the rim at the start
+
+
+class MujocoEngine:
+    """MuJoCo 4: free joint, ground plane, analytic plane-cylinder contact."""
+
+    @property
+    def supports(self) -> tuple[str, ...]:
+        """Supports that have a scene file."""
+        return ("guided", "free")
+
+    def version(self) -> str:
+        """Version of the package."""
+        import mujoco
+
+        return str(mujoco.__version__)
+
+    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
+        """Return every setting; see `MujocoSettings`."""
+        resolved = MujocoSettings.resolve(given, scene.time_step * scene.unit_time)
+        return {name: getattr(resolved, name) for name in MujocoSettings.__dataclass_fields__}
+
+    @contextlib.contextmanager
+    def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
+        """Open the scene at its start."""
+        from mujoco import rollout
+
+        model = compile_scene(scene, MujocoSettings(**settings))
+        with rollout.Rollout(nthread=0) as runner:
+            yield _MujocoStepper(model, scene, runner)
+
+
+class _MujocoStepper:
+    def __init__(self, model: mujoco.MjModel, scene: Scene, runner: Any) -> None:
+        import mujoco
+
+        self._model, self._runner = model, runner
+        self._columns = ["xyz".index(component) for component in scene.components]
+        self._data = mujoco.MjData(model)
+        _set_start(model, self._data, scene)
+        kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
+        self._state = np.empty(mujoco.mj_stateSize(model, kind))
+        mujoco.mj_getState(model, self._data, self._state, kind)
+
+    def advance(self, acceleration: Array) -> Steps:
+        """Take one step for each row of `acceleration`."""
+        control = np.zeros((1, len(acceleration), self._model.nu))
+        control[0, :, : len(self._columns)] = -acceleration[:, self._columns]
+        states, _ = self._runner.rollout(
+            self._model,
+            self._data,
+            self._state[None],
+            control if self._model.nu else None,
+            nstep=len(acceleration),
+            initial_warmstart=self._data.qacc_warmstart.copy(),
+        )
+        self._state = states[0, -1].copy()
+        # time, then position, quaternion, velocity in world axes, angular velocity in body axes
+        rows = states[0]
+        quaternion = rows[:, 4:8]
+        return Steps(rows[:, 1:4], quaternion, rows[:, 8:11], to_world(quaternion, rows[:, 11:14]))
+
+    def warnings(self) -> str:
+        """Return the warnings of the engine."""
+        import mujoco
+
+        raised = [
+            f"{mujoco.mjtWarning(index).name.removeprefix('mjWARN_').lower()} ({warning.number} times)"
+            for index, warning in enumerate(self._data.warning)
+            if warning.number
+        ]
+        return ", ".join(raised)
+
+
+def to_world(quaternion: Array, vector: Array) -> Array:
+    """Turn vectors (n, 3) from body to world axes by quaternions (n, 4), scalar first."""
+    scalar, imaginary = quaternion[:, :1], quaternion[:, 1:]
+    twice = 2.0 * np.cross(imaginary, vector)
+    turned: NDArray[np.float64] = vector + scalar * twice + np.cross(imaginary, twice)
+    return turned
+
+
+def _set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene) -> None:
+    """Put the cylinder at its loaded penetration, and its velocity half a step back."""
+    import mujoco
+
+    start = scene.start
+    inverse = start.quaternion * np.array([1.0, -1.0, -1.0, -1.0])
+    data.qpos[:3], data.qpos[3:] = start.position, start.quaternion
+    data.qvel[:3] = start.velocity
+    data.qvel[3:] = to_world(inverse[None], start.angular_velocity[None])[0]
+
+    def rim_acceleration(depth: float) -> float:
+        data.qpos[2] = start.position[2] - depth
+        data.qacc_warmstart[:] = 0.0
+        mujoco.mj_forward(model, data)
+        return _rim_acceleration(data, scene)
+
+    # contact is a spring under a given load, so the secant is nearly exact
+    before, depth = 1e-7, 2e-7
+    value_before, value = rim_acceleration(before), rim_acceleration(depth)
+    for _ in range(_SECANT_STEPS):
+        if abs(value) < _STILL or value == value_before:
+            break
+        before, depth = depth, depth - value * (depth - before) / (value - value_before)
+        value_before, value = value, rim_acceleration(depth)
+    if not start.standing:
+        data.qvel[:] -= 0.5 * model.opt.timestep * data.qacc
+
+
+def _rim_acceleration(data: mujoco.MjData, scene: Scene) -> float:
+    """Second derivative of the height of the lowest point of the base [m/s^2]."""
+    start: Start = scene.start
+    rise = float(data.qacc[2])
+    if start.standing:
+        return rise
+    b, h = scene.body.base_radius, scene.body.mass_centre_height
+    axis = to_world(start.quaternion[None], np.array([[0.0, 0.0, 1.0]]))[0]
+    angular = to_world(start.quaternion[None], np.asarray(data.qacc[3:])[None])[0]
+    rate = np.cross(start.angular_velocity, axis)
+    curve = np.cross(angular, axis) + np.cross(start.angular_velocity, rate)
+    # height = z - h cos(theta) - b sin(theta), with cos(theta) the third component of the axis
+    sine, cosine = float(np.hypot(axis[0], axis[1])), float(axis[2])
+    tilt_rate = -rate[2] / sine
+    tilt_curve = -(curve[2] + cosine * tilt_rate**2) / sine
+    return float(rise - h * curve[2] - b * (cosine * tilt_curve - sine * tilt_rate**2))

@@ -1,0 +1,89 @@
+"""Turning points of the tilt, from the engine's own steps."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class TurningPoint:
+    """An extremum of the tilt: time [s], tilt [rad], rolling angle [rad]."""
+
+    time: float
+    tilt: float
+    rolling_angle: float
+    is_maximum: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Pass:
+    """A tilt minimum between two maxima.
+
+    Attributes
+    ----------
+    time : float
+        Of the minimum [s].
+    minimum_tilt : float
+        [rad]
+    angle_of_turn : float
+        Change of the rolling angle from maximum to maximum [rad].
+    """
+
+    time: float
+    minimum_tilt: float
+    angle_of_turn: float
+
+
+def turning_points(time: Array, tilt: Array, rolling_angle: Array) -> list[TurningPoint]:
+    """Return the extrema among the inner steps, each refined by a parabola through three steps.
+
+    The parabola is that of the squared tilt: near the apex the axis goes past in a straight line, on
+    which the squared tilt is exactly a parabola however few steps the pass takes.
+    """
+    rising = np.diff(tilt) > 0.0
+    found = []
+    for index in np.flatnonzero(rising[1:] != rising[:-1]) + 1:
+        around = slice(index - 1, index + 2)
+        offset, square = _vertex(tilt[around] ** 2)
+        step = time[index] - time[index - 1]
+        at = time[index] + offset * step
+        angle = np.interp(at, time[around], rolling_angle[around])
+        found.append(
+            TurningPoint(float(at), float(np.sqrt(max(square, 0.0))), float(angle), not rising[index])
+        )
+    return found
+
+
+def passes_between(points: list[TurningPoint], threshold: float) -> list[Pass]:
+    """Return the passes, leaving out swings smaller than `threshold` [rad]: those are contact noise."""
+    kept: list[TurningPoint] = []
+    for point in points:
+        if kept and point.is_maximum != kept[-1].is_maximum and abs(point.tilt - kept[-1].tilt) < threshold:
+            kept.pop()
+        if kept and point.is_maximum == kept[-1].is_maximum:
+            # two of a kind meet where a small swing between them was dropped: the outer one is real
+            if (point.tilt > kept[-1].tilt) == point.is_maximum:
+                kept[-1] = point
+        else:
+            kept.append(point)
+    return [
+        Pass(low.time, low.tilt, after.rolling_angle - before.rolling_angle)
+        for before, low, after in zip(kept, kept[1:], kept[2:], strict=False)
+        if before.is_maximum and not low.is_maximum
+    ]
+
+
+def _vertex(values: Array) -> tuple[float, float]:
+    """Vertex of the parabola through three values one step apart: offset in steps, value."""
+    left, middle, right = (float(value) for value in values)
+    curve = left - 2.0 * middle + right
+    if curve == 0.0:
+        return 0.0, middle
+    slope = 0.5 * (right - left)
+    offset = min(max(-slope / curve, -1.0), 1.0)
+    return offset, middle + 0.5 * slope * offset

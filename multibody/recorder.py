@@ -1,0 +1,179 @@
+"""Follows a run chunk by chunk: samples, turning points, peak, uplift and guard, never all steps at once."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .engine import Scene, Steps
+from .guard import first_breach
+from .kinematics import Kinematics, kinematics, unwrap
+from .passes import TurningPoint, turning_points
+from .start import Start
+from .uplift import UpliftWatch
+
+Array = NDArray[np.float64]
+
+OVERTURNED = 0.5 * math.pi - 1e-3  # [rad] contact of the side may stop the fall a little before pi/2
+COLUMNS = (
+    "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
+    "x", "y", "z", "energy", "energy_error",
+)  # fmt: skip
+
+
+class Recorder:
+    """Turns the steps of an engine into samples at given times.
+
+    Parameters
+    ----------
+    scene : Scene
+    samples : ndarray, shape (n,)
+        Times of the samples, in the scene [s].
+    rolling_angle : float
+        At the start of a release [rad].
+    """
+
+    def __init__(self, scene: Scene, samples: Array, rolling_angle: float) -> None:
+        body, start = scene.body, scene.start
+        self._scene, self._samples = scene, samples
+        self._watch = UpliftWatch(body, scene.gravity, scene.time_step) if start.standing else None
+        self._start: Start | None = start
+        self._last: Steps | None = None  # the pose whose next velocity is still to come
+        self._count = 0  # poses analysed
+        self._angle = rolling_angle
+        self._work = 0.0
+        self._energy: float | None = None
+        self._tail: Array = np.empty((0, len(COLUMNS) + 1))
+        self._rows: list[Array] = []
+        self._taken = 0
+        self._depths: list[float] = []
+        self.points: list[TurningPoint] = []
+        self.peak = 0.0
+        self.fastest = 0.0
+        self.uplift: tuple[float, float] | None = None if start.standing else (0.0, rolling_angle)
+        self.ended: str = ""
+        self.reason = ""
+        self.end_time = math.inf
+        self.base_centre: Array = np.zeros(3)
+
+    @property
+    def table(self) -> Array:
+        """Samples taken so far, shape (m, 1 + columns): time and the fields of `COLUMNS`."""
+        return np.vstack(self._rows) if self._rows else np.empty((0, len(COLUMNS) + 1))
+
+    @property
+    def last_row(self) -> Array:
+        """The last step analysed: time and the fields of `COLUMNS`."""
+        row: Array = self._tail[-1]
+        return row
+
+    @property
+    def penetration(self) -> float:
+        """Median depth of the lowest point of the rim under the ground [m]."""
+        return max(float(np.median(self._depths)), 0.0) if self._depths else 0.0
+
+    def take(self, steps: Steps, acceleration: Array) -> None:
+        """Analyse the poses whose following velocity `steps` brings.
+
+        `acceleration` (n, 3) is the ground's during `steps`: its first row belongs to the step that
+        follows the last pose known so far.
+        """
+        poses, after = self._pair(steps)
+        time: Array = self._scene.time_step * np.arange(
+            self._count, self._count + len(poses.position), dtype=float
+        )
+        state = kinematics(poses, after, self._scene.body, self._scene.gravity)
+        gained = self._energy_error(state, poses, after, acceleration)
+        stop = self._stop(time, state, gained)
+        angle = unwrap(state.azimuth, state.momentum, self._angle)
+        rows = np.column_stack(
+            [time, state.tilt, state.tilt_rate, angle, state.rolling_rate, state.twist, state.contact_point,
+             state.centre_of_mass, state.energy, gained]
+        )[:stop]  # fmt: skip
+        if self._watch is not None and self.uplift is None:
+            self.uplift = self._watch.watch(time, state.tilt, poses, after, acceleration)
+        self._follow(rows)
+        self._depths.append(float(np.median(state.depth[: max(stop, 1)])))
+        if stop:
+            self.base_centre = state.base_centre[stop - 1]
+        self._angle, self._count = float(angle[-1]), self._count + len(time)
+
+    def fail(self, reason: str) -> None:
+        """End the run at the last step analysed."""
+        self.ended, self.reason, self.end_time = "failed", reason, float(self._tail[-1, 0])
+
+    def _pair(self, steps: Steps) -> tuple[Steps, Steps]:
+        """Poses with the velocities before them, and the same one step later."""
+        if self._last is None:
+            start = self._start
+            assert start is not None
+            # the mean of this and the next velocity is the velocity of the start
+            self._last = Steps(
+                start.position[None],
+                start.quaternion[None],
+                2.0 * start.velocity[None] - steps.velocity[:1],
+                2.0 * start.angular_velocity[None] - steps.angular_velocity[:1],
+            )
+        joined = Steps(
+            np.vstack([self._last.position, steps.position]),
+            np.vstack([self._last.quaternion, steps.quaternion]),
+            np.vstack([self._last.velocity, steps.velocity]),
+            np.vstack([self._last.angular_velocity, steps.angular_velocity]),
+        )
+        self._last = _rows(joined, slice(-1, None))
+        return _rows(joined, slice(0, -1)), _rows(joined, slice(1, None))
+
+    def _energy_error(self, state: Kinematics, poses: Steps, after: Steps, acceleration: Array) -> Array:
+        """Energy less that of the start and the work of the excitation at each pose."""
+        # the impulse of a step acts at its pose: half of it belongs to the energy there
+        velocity = 0.5 * (poses.velocity + after.velocity)
+        work = -np.einsum("ij,ij->i", acceleration, velocity) * self._scene.time_step
+        until = self._work + np.cumsum(work) - 0.5 * work
+        self._work += float(work.sum())
+        if self._energy is None:
+            self._energy = float(state.energy[0] - until[0])
+        return np.asarray(state.energy - self._energy - until)
+
+    def _stop(self, time: Array, state: Kinematics, gained: Array) -> int:
+        """Number of steps of this chunk that belong to the result."""
+        stop = len(time)
+        over = np.flatnonzero(state.tilt >= OVERTURNED)
+        if len(over):
+            stop = int(over[0])
+            self.ended = "overturned"
+            rate = max(float(state.tilt_rate[stop]), 1e-3)
+            self.end_time = float(time[stop] + max(0.5 * math.pi - state.tilt[stop], 0.0) / rate)
+        breach = first_breach(
+            state, gained, self._scene.body, self._scene.gravity, self._scene.support == "guided"
+        )
+        if breach is not None and breach.index < stop:
+            stop = breach.index
+            self.ended, self.reason, self.end_time = "failed", breach.reason, float(time[stop])
+        return stop
+
+    def _follow(self, rows: Array) -> None:
+        """Samples, turning points and peak of consecutive steps."""
+        joined = np.vstack([self._tail, rows])
+        self._tail = joined[-3:]
+        if not len(rows):
+            return
+        time, tilt, angle = joined[:, 0], joined[:, 1], joined[:, 3]
+        if len(joined) > 2:
+            # the two carried steps were inner ones already, except for the last of them
+            fresh = slice(max(len(joined) - len(rows) - 2, 0), None)
+            self.points.extend(turning_points(time[fresh], tilt[fresh], angle[fresh]))
+        self.peak = max(self.peak, float(tilt.max()))
+        self.fastest = max(self.fastest, float(np.abs(joined[:, 2]).max()))
+        due = self._samples[self._taken : np.searchsorted(self._samples, time[-1], side="right")]
+        if len(due):
+            fields = [np.interp(due, time, column) for column in joined[:, 1:].T]
+            self._rows.append(np.column_stack([due, *fields]))
+            self._taken += len(due)
+
+
+def _rows(steps: Steps, part: slice) -> Steps:
+    return Steps(
+        steps.position[part], steps.quaternion[part], steps.velocity[part], steps.angular_velocity[part]
+    )

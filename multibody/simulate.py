@@ -1,0 +1,262 @@
+"""One run of an engine, from a stated problem to a trajectory."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+
+from .body import scaled_body
+from .engine import Engine, Scene
+from .excitation import StepMeans
+from .froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, Scale, froude_scale
+from .guard import check_time_step
+from .passes import passes_between
+from .recorder import COLUMNS, Recorder
+from .registry import find_engine
+from .start import starting_state
+from .trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+_CHUNK = 10_000  # steps between two looks at the run: a second of the reference scene, 3 MB of states
+_STILL = 1e-5  # of alpha; a cylinder that leans less at the end, and has not moved since, is at rest
+_SWING = 1e-9  # [rad] smallest difference of two turning points that is not rounding
+
+
+def simulate(
+    cylinder: Cylinder,
+    motion: GroundMotion | None = None,
+    *,
+    initial: InitialState | None = None,
+    duration: float | None = None,
+    engine: str = "mujoco",
+    support: str = "guided",
+    time_step: float | None = None,
+    friction: float = 1.0,
+    sample_step: float = 0.01,
+    gravity: float = 9.81,
+    progress: Progress | None = None,
+    **settings: Any,
+) -> Trajectory:
+    """Run a rigid cylinder on rigid ground in a physics engine.
+
+    Parameters
+    ----------
+    cylinder : Cylinder
+    motion : GroundMotion, optional
+        Without it the ground is still.
+    initial : InitialState, optional
+        Default: standing at rest.
+    duration : float, optional
+        [s]; default that of the motion.
+    engine : {"mujoco", "pybullet"}
+    support : {"guided", "free"}
+        The ideal recess, which holds the twist at zero, or open ground.
+    time_step : float, optional
+        [s]; default 1e-4 s at a semidiagonal of 6 m and a gravity of 9.81 m/s^2, and so in proportion to
+        sqrt(semidiagonal/gravity): accuracy does not depend on size.
+    friction : float
+        Coulomb coefficient of the pair cylinder and ground [-].
+    sample_step : float
+        Of the result [s].
+    gravity : float
+        [m/s^2]
+    progress : callable, optional
+        Called now and then with the fraction done.
+    **settings
+        Of the engine: see `MujocoSettings` and `PybulletSettings`.
+
+    Returns
+    -------
+    Trajectory
+        A numerical failure is an outcome with a message, not an exception.
+
+    Raises
+    ------
+    ValueError
+        If an argument or a setting is out of range, the engine or the support is unknown, the engine is
+        not installed, or the time step is too large for contact.
+
+    Examples
+    --------
+    >>> from rockwobble.models import Cylinder, InitialState
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = InitialState(tilt=pier.alpha / 2, rolling_rate=0.5)
+    >>> run = simulate(pier, initial=release, duration=1.0)
+    >>> run.outcome, len(run.time)
+    ('completed', 101)
+    """
+    started = clock.perf_counter()
+    case = Case("run", cylinder, motion, initial, duration, gravity, friction)
+    backend = find_engine(engine)
+    if support not in backend.supports:
+        raise ValueError(f"support must be one of {', '.join(backend.supports)}, got {support!r}")
+    scale = froude_scale(cylinder.semidiagonal, gravity)
+    step = REFERENCE_TIME_STEP * scale.time if time_step is None else _positive("time_step", time_step)
+    check_time_step(step, scale.time)
+    scene = _scene(case, support, step, scale)
+    resolved = backend.settings(settings, scene)
+    samples = _sample_times(case.length, _positive("sample_step", sample_step)) / scale.time
+    recorder = Recorder(scene, samples, 0.0 if initial is None else initial.rolling_angle)
+    means = StepMeans(motion, scale, scene.time_step)
+    _run(backend, scene, resolved, recorder, means, samples[-1], progress)
+    return _trajectory(
+        recorder,
+        scene,
+        scale,
+        engine=engine,
+        support=support,
+        engine_version=backend.version(),
+        time_step=step,
+        settings=MappingProxyType(resolved),
+        wall_time=clock.perf_counter() - started,
+    )
+
+
+def _scene(case: Case, support: str, step: float, scale: Scale) -> Scene:
+    body = scaled_body(case.cylinder, scale.length)
+    motion = case.motion
+    return Scene(
+        body=body,
+        start=starting_state(body, case.initial, scale.time),
+        support=support,
+        friction=case.friction,
+        time_step=step / scale.time,
+        gravity=REFERENCE_GRAVITY,
+        components="" if motion is None else "xyz" if motion.has_vertical else "xy",
+        unit_time=scale.time,
+    )
+
+
+def _run(
+    backend: Engine,
+    scene: Scene,
+    settings: Mapping[str, Any],
+    recorder: Recorder,
+    means: StepMeans,
+    end: float,
+    progress: Progress | None,
+) -> None:
+    # one step past the end: the velocity at a pose is the mean of those before and after it
+    total = math.ceil(end / scene.time_step - 1e-6) + 1
+    with backend.open(scene, settings) as stepper:
+        done = 0
+        while done < total and not recorder.ended:
+            count = min(_CHUNK, total - done)
+            acceleration = means(done, count)
+            recorder.take(stepper.advance(acceleration), acceleration)
+            done += count
+            warning = stepper.warnings()
+            if warning and not recorder.ended:
+                recorder.fail(f"the engine warned: {warning}")
+            if progress is not None:
+                progress(done / total)
+
+
+def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> Trajectory:
+    rows = _rows_to_end(recorder)
+    outcome = recorder.ended or _quiet_outcome(recorder, scene, rows)
+    table = dict(zip(("time", *COLUMNS), rows.T, strict=True))
+    uplift_time, uplift_direction = recorder.uplift or (math.nan, math.nan)
+    if recorder.uplift is not None and scene.start.standing:
+        # standing, the azimuth of the lean is noise: count whole turns from the uplift
+        lean = table["rolling_angle"][np.searchsorted(table["time"], uplift_time, side="right") :][:1]
+        turns = np.round((lean - uplift_direction) / (2.0 * math.pi)) if len(lean) else 0.0
+        table["rolling_angle"] = table["rolling_angle"] - 2.0 * math.pi * turns
+    contact = np.column_stack([table["contact_x"], table["contact_y"]])
+    resting = ~(table["time"] >= uplift_time)
+    for field in (table["rolling_angle"], contact):
+        field[resting] = np.nan
+    # numpy arrays of the trajectory are the user's own: scaled copies
+    resolution = max(
+        recorder.penetration / (1.5 * scene.body.base_radius), recorder.fastest * scene.time_step
+    )
+    centre = np.column_stack([table["x"], table["y"], table["z"]])
+    return Trajectory(
+        time=table["time"] * scale.time,
+        tilt=table["tilt"],
+        tilt_rate=table["tilt_rate"] / scale.time,
+        rolling_angle=table["rolling_angle"],
+        rolling_rate=np.where(resting, 0.0, table["rolling_rate"] / scale.time),
+        twist=table["twist"],
+        contact_point=contact * scale.length,
+        centre_of_mass=centre * scale.length,
+        energy=table["energy"] * scale.energy,
+        energy_error=table["energy_error"] * scale.energy,
+        peak_tilt=_peak(recorder, outcome),
+        outcome=outcome,
+        message=recorder.reason,
+        uplift_time=uplift_time * scale.time,
+        uplift_direction=uplift_direction,
+        passes=_passes(recorder, resolution, scale),
+        contact_resolution=resolution,
+        residual_displacement=float(np.hypot(*recorder.base_centre[:2])) * scale.length,
+        residual_twist=float(table["twist"][-1]),
+        **run,
+    )
+
+
+def _rows_to_end(recorder: Recorder) -> Array:
+    """Samples of the run; one that ended early gets its end as the last sample."""
+    rows = recorder.table
+    if not recorder.ended:
+        return rows
+    last = recorder.last_row.copy()
+    if recorder.ended == "overturned":
+        last[0], last[1] = recorder.end_time, 0.5 * math.pi
+    rows = rows[rows[:, 0] < last[0]]
+    return np.vstack([rows, last])
+
+
+def _quiet_outcome(recorder: Recorder, scene: Scene, rows: Array) -> str:
+    still = _STILL * math.atan(scene.body.tan_alpha)
+    settled = rows[-min(len(rows), 100) :, 1]
+    return "rest" if recorder.uplift is None or bool((settled < still).all()) else "completed"
+
+
+def _peak(recorder: Recorder, outcome: str) -> float:
+    if outcome == "failed":
+        return math.nan
+    if outcome == "overturned":
+        return 0.5 * math.pi
+    return max([recorder.peak, *(point.tilt for point in recorder.points if point.is_maximum)])
+
+
+def _passes(recorder: Recorder, resolution: float, scale: Scale) -> pd.DataFrame:
+    import pandas as pd
+
+    start = recorder.uplift[0] if recorder.uplift is not None else math.inf
+    passes = passes_between([point for point in recorder.points if point.time >= start], _SWING)
+    return pd.DataFrame(
+        {
+            "time": np.array([item.time for item in passes], dtype=float) * scale.time,
+            "minimum_tilt": np.array([item.minimum_tilt for item in passes], dtype=float),
+            "angle_of_turn": np.array([item.angle_of_turn for item in passes], dtype=float),
+            "resolved": np.array([item.minimum_tilt > resolution for item in passes], dtype=bool),
+        }
+    )
+
+
+def _sample_times(end: float, sample_step: float) -> Array:
+    """Multiples of the sample step, and the exact end."""
+    times: Array = sample_step * np.arange(math.floor(end / sample_step + 1e-9) + 1, dtype=float)
+    return times if math.isclose(times[-1], end, rel_tol=1e-9) else np.append(times, end)
+
+
+def _positive(name: str, value: float) -> float:
+    number = float(value)
+    if not (math.isfinite(number) and number > 0.0):
+        raise ValueError(f"{name} must be positive [s], got {value!r}")
+    return number

@@ -1,0 +1,110 @@
+"""What an engine run gives: the fields of the reduced models, as far as an engine has them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class Trajectory:
+    """One run of an engine, at n sample times; positions are relative to O and move with the ground.
+
+    Attributes
+    ----------
+    engine, support, engine_version : str
+    time_step : float
+        Of the engine [s].
+    settings : Mapping
+        Every setting of the engine, given or default.
+    wall_time : float
+        Time that the run took [s].
+    time : ndarray, shape (n,)
+        Multiples of the sample step and the exact end [s].
+    tilt, tilt_rate, rolling_angle, rolling_rate, twist : ndarray, shape (n,)
+        [rad], [rad/s]. The rolling angle is unwrapped at every step of the engine; it is NaN at rest,
+        before the uplift.
+    contact_point : ndarray, shape (n, 2)
+        Lowest point of the rim [m]; NaN at rest.
+    centre_of_mass : ndarray, shape (n, 3)
+        [m]
+    energy : ndarray, shape (n,)
+        Per unit mass, relative to the ground, zero standing [m^2/s^2].
+    energy_error : ndarray, shape (n,)
+        Energy that neither the start nor the excitation supplied [m^2/s^2]: what contact and numerics
+        took (negative) or made (positive).
+    peak_tilt : float
+        Vertex of the parabola through the largest step [rad]; pi/2 where overturned, NaN where failed.
+    outcome : {"rest", "completed", "overturned", "failed"}
+    message : str
+        Why the run failed, or what limits it; empty if nothing does.
+    uplift_time, uplift_direction : float
+        [s], [rad]. NaN if the base never uplifts; 0 and the rolling angle of the start for a release.
+    passes : DataFrame
+        Tilt minima between two maxima: time [s], minimum_tilt [rad], angle_of_turn [rad], and
+        resolved [bool], whether the minimum exceeds `contact_resolution`.
+    contact_resolution : float
+        Smallest minimum tilt of a pass that the run resolves [rad]: penetration/(1.5 b), or the tilt
+        that the fastest fall crosses in one step where that is larger.
+    residual_displacement : float
+        Horizontal distance of the base centre from O at the end [m].
+    residual_twist : float
+        [rad]
+    """
+
+    engine: str
+    support: str
+    engine_version: str
+    time_step: float
+    settings: Mapping[str, Any]
+    wall_time: float
+    time: Array
+    tilt: Array
+    tilt_rate: Array
+    rolling_angle: Array
+    rolling_rate: Array
+    twist: Array
+    contact_point: Array
+    centre_of_mass: Array
+    energy: Array
+    energy_error: Array
+    peak_tilt: float
+    outcome: str
+    message: str
+    uplift_time: float
+    uplift_direction: float
+    passes: pd.DataFrame
+    contact_resolution: float
+    residual_displacement: float
+    residual_twist: float
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return the sampled fields as a table with one row for each sample and units in SI."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            {
+                "time": self.time,
+                "tilt": self.tilt,
+                "tilt_rate": self.tilt_rate,
+                "rolling_angle": self.rolling_angle,
+                "rolling_rate": self.rolling_rate,
+                "twist": self.twist,
+                "contact_x": self.contact_point[:, 0],
+                "contact_y": self.contact_point[:, 1],
+                "centre_x": self.centre_of_mass[:, 0],
+                "centre_y": self.centre_of_mass[:, 1],
+                "centre_z": self.centre_of_mass[:, 2],
+                "energy": self.energy,
+                "energy_error": self.energy_error,
+            }
+        )
