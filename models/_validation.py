@@ -16,11 +16,12 @@ def require_positive(name: str, value: float, unit: str) -> float:
 def require_finite(name: str, value: float, unit: str) -> float:
     """Return `value` as a float, or raise ValueError unless it is a finite real number."""
     try:
-        number = float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} must be a number{_in(unit)}, got {value!r}") from None
+        # text is refused even where it spells a number, because it would be kept as text
+        number = math.nan if isinstance(value, str | bytes) else float(value)
+    except (TypeError, ValueError, OverflowError):
+        raise ValueError(f"{name} must be a finite number{_in(unit)}, got {value!r}") from None
     if not math.isfinite(number):
-        raise ValueError(f"{name} must be finite{_in(unit)}, got {value!r}")
+        raise ValueError(f"{name} must be a finite number{_in(unit)}, got {value!r}")
     return number
 
 

@@ -49,10 +49,12 @@ class Case:
     friction: float = 1.0
 
     def __post_init__(self) -> None:
-        require_positive("gravity", self.gravity, "m/s^2")
-        if require_finite("friction", self.friction, "") < 0.0:
+        object.__setattr__(self, "gravity", require_positive("gravity", self.gravity, "m/s^2"))
+        object.__setattr__(self, "friction", require_finite("friction", self.friction, ""))
+        if self.friction < 0.0:
             raise ValueError(f"friction must not be negative, got {self.friction!r}")
-        object.__setattr__(self, "duration", run_duration(self.motion, self.duration))
+        # kept as it was given, so that a copy with another motion follows that motion
+        run_duration(self.motion, self.duration)
 
     @property
     def length(self) -> float:

@@ -7,6 +7,14 @@ from dataclasses import dataclass
 
 from ._validation import require_positive
 
+_UNITS = {
+    "semidiagonal": "m",
+    "tan_alpha": "",
+    "height": "m",
+    "transverse_inertia": "m^2",
+    "axial_inertia": "m^2",
+}
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Cylinder:
@@ -51,17 +59,29 @@ class Cylinder:
     axial_inertia: float | None = None
 
     def __post_init__(self) -> None:
-        require_positive("semidiagonal", self.semidiagonal, "m")
-        require_positive("tan_alpha", self.tan_alpha, "")
-        for name, unit in (("height", "m"), ("transverse_inertia", "m^2"), ("axial_inertia", "m^2")):
+        for name, unit in _UNITS.items():
             value = getattr(self, name)
-            if value is not None:
-                require_positive(name, value, unit)
-        transverse, axial = self.transverse_inertia, self.axial_inertia
-        # I2 = 2 I1 is the limit of a flat plate; beyond it no distribution of mass exists
-        if transverse is not None and axial is not None and axial > 2.0 * transverse * (1.0 + 1e-12):
+            if value is not None or name in ("semidiagonal", "tan_alpha"):
+                object.__setattr__(self, name, require_positive(name, value, unit))
+        if not (self.base_radius > 0.0 and self.mass_centre_height > 0.0):
             raise ValueError(
-                f"axial_inertia must not exceed twice transverse_inertia, got {axial!r} and {transverse!r}"
+                f"tan_alpha must leave a base and a height above rounding, got {self.tan_alpha!r} "
+                f"with a semidiagonal of {self.semidiagonal!r} [m]"
+            )
+        self._require_real_inertias()
+
+    def _require_real_inertias(self) -> None:
+        b = self.base_radius
+        transverse, axial = self.transverse_inertia, self.axial_inertia
+        if transverse is None:
+            transverse = (3.0 * b**2 + (2.0 * self.half_height) ** 2) / 12.0
+        if axial is None:
+            axial = 0.5 * b**2
+        # I2 = 2 I1 is the limit of a flat plate; beyond it no distribution of mass exists
+        if axial > 2.0 * transverse * (1.0 + 1e-12):
+            raise ValueError(
+                f"axial_inertia must not exceed twice transverse_inertia, "
+                f"got {axial:g} and {transverse:g} [m^2]"
             )
 
     @classmethod
@@ -113,12 +133,12 @@ class Cylinder:
     @property
     def base_radius(self) -> float:
         """Base radius b [m]."""
-        return self.semidiagonal * self.tan_alpha / math.sqrt(1.0 + self.tan_alpha**2)
+        return self.semidiagonal * (self.tan_alpha / math.hypot(1.0, self.tan_alpha))
 
     @property
     def mass_centre_height(self) -> float:
         """Height h of the mass centre above the base [m]."""
-        return self.semidiagonal / math.sqrt(1.0 + self.tan_alpha**2)
+        return self.semidiagonal / math.hypot(1.0, self.tan_alpha)
 
     @property
     def half_height(self) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -64,6 +65,10 @@ class GroundMotion:
         object.__setattr__(self, "time_step", require_positive("time_step", time_step, "s"))
         object.__setattr__(self, "name", str(name))
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        # a copy or a worker process must not get a writable array
+        return GroundMotion, (self.acceleration, self.time_step, self.name)
+
     @property
     def duration(self) -> float:
         """Time from the first to the last sample, (n - 1) time_step [s]."""
@@ -81,9 +86,10 @@ class GroundMotion:
 
     def scaled(self, factor: float) -> GroundMotion:
         """Return the motion with all components multiplied by `factor` [-]."""
-        return GroundMotion(
-            self.acceleration * require_finite("factor", factor, ""), self.time_step, self.name
-        )
+        factor = require_finite("factor", factor, "")
+        with np.errstate(over="ignore"):  # the constructor refuses what is not finite
+            scaled = self.acceleration * factor
+        return GroundMotion(scaled, self.time_step, self.name)
 
     def rotated(self, angle: float) -> GroundMotion:
         """Return the motion turned by `angle` [rad] about the vertical, counter-clockwise from above."""

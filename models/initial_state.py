@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 from ._validation import require_finite
 
+_UNITS = {"tilt": "rad", "tilt_rate": "rad/s", "rolling_angle": "rad", "rolling_rate": "rad/s"}
+
 
 @dataclass(frozen=True, slots=True)
 class InitialState:
@@ -36,10 +38,8 @@ class InitialState:
     rolling_rate: float = 0.0
 
     def __post_init__(self) -> None:
-        require_finite("tilt", self.tilt, "rad")
-        require_finite("tilt_rate", self.tilt_rate, "rad/s")
-        require_finite("rolling_angle", self.rolling_angle, "rad")
-        require_finite("rolling_rate", self.rolling_rate, "rad/s")
+        for name, unit in _UNITS.items():
+            object.__setattr__(self, name, require_finite(name, getattr(self, name), unit))
         if not 0.0 <= self.tilt < 0.5 * math.pi:
             raise ValueError(f"tilt must be at least 0 and below pi/2 [rad], got {self.tilt!r}")
         if self.tilt == 0.0 and (self.tilt_rate or self.rolling_rate):
