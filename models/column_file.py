@@ -72,4 +72,4 @@ def _even_step(path: Path, time: NDArray[np.float64], numbers: list[int]) -> flo
             f"{path.name}, line {numbers[at + 1]}: times must rise in even steps, got {time[at + 1]:g} s "
             f"after {time[at]:g} s where the mean step is {step:.6g} s"
         )
-    return float(f"{step:.9g}")
+    return float(f"{step:.12g}")  # 0.01 and not 0.010000000000000002

@@ -10,8 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+# one way to match each text, so that no line takes more than linear time;
 # columns may touch: in "1.2E-031.4E-03" the exponent ends where the next number needs its digit
-NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][-+]?(?:\d\d(?=\d?\.)|\d+))?"
+NUMBER = r"[-+]?(?:\d+(?:\.\d*)?|\.\d+)(?:[EeDd][-+]?(?:\d\d(?=\d?\.)|\d+))?"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,0 +1,98 @@
+from __future__ import annotations
+
+import dataclasses
+import math
+import pickle
+from typing import Any
+
+import pytest
+
+from rockwobble.models import Cylinder
+
+ROUNDING = 1e-15  # a handful of operations, each half an ulp
+
+
+def test_size_and_slenderness_locate_the_mass_centre() -> None:
+    cylinder = Cylinder(semidiagonal=5.0, tan_alpha=0.75)
+    assert cylinder.base_radius == pytest.approx(3.0, rel=ROUNDING)
+    assert cylinder.half_height == pytest.approx(4.0, rel=ROUNDING)
+    assert cylinder.mass_centre_height == pytest.approx(4.0, rel=ROUNDING)
+    assert cylinder.alpha == pytest.approx(math.asin(0.6), rel=ROUNDING)
+
+
+def test_from_dimensions_takes_the_whole_height() -> None:
+    cylinder = Cylinder.from_dimensions(base_radius=3.0, height=8.0)
+    assert (cylinder.semidiagonal, cylinder.tan_alpha) == (5.0, 0.75)
+    assert cylinder == Cylinder(semidiagonal=5.0, tan_alpha=0.75)
+
+
+@pytest.mark.parametrize("tan_alpha", [1e-200, 1e-3, 0.2, 1.0, 4.0 / 3.0, 3.0, 1e200])
+def test_dimensions_survive_the_round_trip_at_any_slenderness(tan_alpha: float) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    again = Cylinder.from_dimensions(base_radius=cylinder.base_radius, height=2.0 * cylinder.half_height)
+    assert again.semidiagonal == pytest.approx(6.0, rel=ROUNDING)
+    assert again.tan_alpha == pytest.approx(tan_alpha, rel=ROUNDING)
+
+
+def test_a_general_body_keeps_its_outline_apart_from_its_mass_centre() -> None:
+    deck_on_pier = Cylinder.from_dimensions(
+        base_radius=1.0, height=10.0, mass_centre_height=8.0, transverse_inertia=12.0, axial_inertia=2.0
+    )
+    assert deck_on_pier.half_height == 5.0
+    assert deck_on_pier.height == 10.0
+    assert deck_on_pier.mass_centre_height == pytest.approx(8.0, rel=ROUNDING)
+    assert deck_on_pier.base_radius == pytest.approx(1.0, rel=ROUNDING)
+    assert deck_on_pier.tan_alpha == 0.125
+    assert (deck_on_pier.transverse_inertia, deck_on_pier.axial_inertia) == (12.0, 2.0)
+
+
+def test_a_value_is_frozen_hashable_and_travels() -> None:
+    cylinder = Cylinder(semidiagonal=6, tan_alpha=0.2)
+    assert isinstance(cylinder.semidiagonal, float)
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        cylinder.tan_alpha = 0.3  # type: ignore[misc]
+    assert pickle.loads(pickle.dumps(cylinder)) == cylinder
+    assert len({cylinder, Cylinder(semidiagonal=6.0, tan_alpha=0.2)}) == 1
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf, -math.inf, "6", "six", None, 10**400])
+@pytest.mark.parametrize("name", ["semidiagonal", "tan_alpha"])
+def test_refuses_a_size_that_is_no_positive_number(name: str, bad: Any) -> None:
+    given = {"semidiagonal": 6.0, "tan_alpha": 0.2, name: bad}
+    with pytest.raises(ValueError, match=rf"^{name} must be .*, got "):
+        Cylinder(**given)
+
+
+@pytest.mark.parametrize("bad", [0.0, -1.0, math.nan, math.inf, "1"])
+@pytest.mark.parametrize("name", ["height", "transverse_inertia", "axial_inertia"])
+def test_refuses_a_property_that_is_no_positive_number(name: str, bad: Any) -> None:
+    with pytest.raises(ValueError, match=rf"^{name} must be .* \[m(\^2)?\], got "):
+        Cylinder(semidiagonal=6.0, tan_alpha=0.2, **{name: bad})
+
+
+@pytest.mark.parametrize("name", ["base_radius", "height", "mass_centre_height"])
+def test_from_dimensions_names_its_own_argument(name: str) -> None:
+    given = {"base_radius": 1.0, "height": 10.0, name: -1.0}
+    with pytest.raises(ValueError, match=rf"^{name} must be positive \[m\], got -1.0"):
+        Cylinder.from_dimensions(**given)
+
+
+def test_refuses_inertias_that_no_distribution_of_mass_has() -> None:
+    Cylinder(semidiagonal=6.0, tan_alpha=0.2, transverse_inertia=1.0, axial_inertia=2.0)
+    with pytest.raises(ValueError, match=r"^axial_inertia must not exceed twice .* got 2.01 and 1 \[m\^2\]"):
+        Cylinder(semidiagonal=6.0, tan_alpha=0.2, transverse_inertia=1.0, axial_inertia=2.01)
+
+
+def test_one_inertia_is_held_against_the_default_of_the_other() -> None:
+    # b = 3, 2h = 8: I1 = (27 + 64)/12 = 7.58, I2 = 4.5
+    with pytest.raises(ValueError, match=r"got 15.2 and 7.58333"):
+        Cylinder(semidiagonal=5.0, tan_alpha=0.75, axial_inertia=15.2)
+    Cylinder(semidiagonal=5.0, tan_alpha=0.75, axial_inertia=15.1)
+    with pytest.raises(ValueError, match=r"got 4.5 and 2.2 "):
+        Cylinder(semidiagonal=5.0, tan_alpha=0.75, transverse_inertia=2.2)
+    Cylinder(semidiagonal=5.0, tan_alpha=0.75, transverse_inertia=2.3)
+
+
+def test_refuses_a_slenderness_that_leaves_no_base() -> None:
+    with pytest.raises(ValueError, match=r"^tan_alpha must leave a base"):
+        Cylinder(semidiagonal=1e-200, tan_alpha=1e-200)

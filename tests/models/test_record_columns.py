@@ -1,0 +1,131 @@
+"""Two columns, time and acceleration: text and CSV."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockwobble.models import read_record
+
+Write = Callable[..., Path]
+
+TEXT = "0.00 0.0\n0.02 1.5\n0.04 -2.5\n"
+VALUES = [0.0, 1.5, -2.5]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        TEXT,
+        TEXT.replace("\n", "  \r\n"),
+        TEXT.replace(" ", "\t"),
+        "   " + TEXT.replace(" ", "     ").replace("\n", "\n\n  "),
+        TEXT.replace(" ", ","),
+        TEXT.replace(" ", " , ").replace("\n", ",\n"),
+        TEXT.replace(" ", ";"),
+        TEXT.replace(" ", '","').replace("\n", '"\n"').join('"\n')[:-1],
+        "\ufeff" + TEXT,
+        TEXT.rstrip("\n"),
+        "0 0\n2D-2 1.5E0\n.4e-1 -25.d-1\n",
+        "-0.02 0.0\n0.0 +1.5\n0.02 -2.5\n",
+    ],
+)
+def test_each_way_to_write_two_columns(write: Write, text: str) -> None:
+    path = write(text)
+    motion = read_record(path, path, units="m/s2")
+    assert motion.acceleration[:, 0] == pytest.approx(VALUES, rel=1e-15)
+    assert motion.time_step == pytest.approx(0.02, rel=1e-9)
+
+
+@pytest.mark.parametrize("mark", ["#", "%", "!"])
+def test_comment_lines_stand_anywhere(write: Write, mark: str) -> None:
+    lines = TEXT.splitlines()
+    path = write(
+        f"{mark} station 12, 1940\n{mark}\n{lines[0]}\n{mark} 9 9\n{lines[1]}\n{lines[2]}\n{mark} end"
+    )
+    assert read_record(path, path, units="m/s2").acceleration[:, 1] == pytest.approx(VALUES, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    ("header", "factor"),
+    [
+        ("time [s],acceleration [g]", 9.81),
+        ("Time (s);Acc. (cm/s^2)", 0.01),
+        ("t,a [m/s²]", 1.0),
+        ("# units: m/s2", 1.0),
+        ("# Units = g\n# from a table", 9.81),
+        ("time acc in gal", 0.01),
+        ("# acceleration [g], peak velocity 20 cm/s", 9.81),
+        ('"time [s]","acceleration [cm/sec/sec]"', 0.01),
+    ],
+)
+def test_the_unit_that_the_header_states(write: Write, header: str, factor: float) -> None:
+    path = write(f"{header}\n{TEXT}")
+    assert read_record(path, path).acceleration[2, 0] == pytest.approx(-2.5 * factor, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "",
+        "time,acceleration",
+        "# peak 0.3 g at station G",
+        "# g = 9.81 m/s^2",
+        "t [s], a",
+        "# acceleration of the ground",
+    ],
+)
+def test_a_silent_header_needs_units(write: Write, header: str) -> None:
+    path = write(f"{header}\n{TEXT}")
+    with pytest.raises(ValueError, match=r"^x.txt does not say its unit: give units, one of g, m/s2, cm/s2$"):
+        read_record(path, path)
+    assert read_record(path, path, units="cm/s2").acceleration[2, 0] == pytest.approx(-0.025, rel=1e-15)
+
+
+def test_printed_times_may_be_rounded(write: Write) -> None:
+    path = write("\n".join(f"{i / 60.0:.3f} {i}" for i in range(601)))
+    assert read_record(path, path, units="g").time_step == pytest.approx(1.0 / 60.0, rel=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        (TEXT.replace("1.5", "much"), r"x.txt, line 2: expected two numbers, .*, got '0.02 much'"),
+        (TEXT.replace("1.5", ""), r"x.txt, line 2: expected two numbers, .*, got '0.02'"),
+        (TEXT.replace("1.5", "1.5 7"), r"x.txt, line 2: expected two numbers, .*, got '0.02 1.5 7'"),
+        ("0.00,0.0\n0.02,,1.5\n", r"x.txt, line 2: expected two numbers, .*, got '0.02,,1.5'"),
+        ("0,00;0,0\n0,02;1,5\n", r"x.txt, line 1: expected two numbers, .*, got '0,00;0,0'"),
+        ("t,a\n0.00,x\n0.02,1\n", r"x.txt, line 2: expected two numbers, .*, got '0.00,x'"),
+        (TEXT.replace("1.5", "nan"), r"x.txt, line 2: a sample must be a finite number, got 'nan'"),
+        (TEXT.replace("1.5", "-Inf"), r"x.txt, line 2: a sample must be a finite number, got '-Inf'"),
+        (TEXT.replace("0.02", "NaN"), r"x.txt, line 2: a sample must be a finite number, got 'NaN'"),
+        (TEXT.replace("1.5", "1e999"), r"x.txt, line 2: a sample must be a finite number, got '1e999'"),
+        ("# only words\n", r"x.txt must hold at least two samples, got 0"),
+        ("0.0 1.0\n", r"x.txt must hold at least two samples, got 1"),
+        ("0 0\n0 1\n0 2\n", r"x.txt: times must rise \[s\], got 0 s first and 0 s last"),
+        ("0.2 0\n0.1 1\n0.0 2\n", r"x.txt: times must rise \[s\], got 0.2 s first and 0 s last"),
+        (
+            "# t a\n0 0\n.1 1\n.2 2\n.4 3\n",
+            r"x.txt, line 5: .* even steps, got 0.4 s after 0.2 s .* 0.133333 s",
+        ),
+        ("0 0\n1 0\n1e308 0\n", r"x.txt, line \d: times must rise in even steps"),
+        ("t,velocity [cm/s]\n" + TEXT, r"x.txt is not an acceleration record, it says 't,velocity \[cm/s\]'"),
+        ("t [s],acc [ft/s2]\n" + TEXT, r"x.txt is in ft/s2, allowed are g, m/s2, cm/s2"),
+        ("t,acc [g]\n# units: cm/s2\n" + TEXT, r"x.txt states two units: g and cm/s2"),
+    ],
+)
+def test_says_what_is_wrong_where_and_what_is_allowed(write: Write, text: str, message: str) -> None:
+    path = write(text)
+    with pytest.raises(ValueError, match=f"^{message}") as caught:
+        read_record(path, path, units="g")
+    assert "\n" not in str(caught.value)
+
+
+def test_steps_that_creep_are_uneven_too(write: Write) -> None:
+    time = np.cumsum(np.where(np.arange(400) < 200, 0.01, 0.0103))
+    path = write("\n".join(f"{t:.5f} 0" for t in time))
+    with pytest.raises(ValueError, match=r"^x.txt, line \d+: times must rise in even steps"):
+        read_record(path, path, units="g")

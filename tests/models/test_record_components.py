@@ -1,0 +1,95 @@
+"""Two or three files that belong together."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockwobble.models import read_record
+
+Write = Callable[..., Path]
+
+
+def columns(step: float, count: int, *, start: float = 0.0, unit: str = "g", value: float = 1.0) -> str:
+    return f"t [s],a [{unit}]\n" + "\n".join(f"{start + i * step:.4f},{value * i}" for i in range(count))
+
+
+def at2(step: float, count: int) -> str:
+    return f"ACCELERATION IN UNITS OF G\nNPTS= {count}, DT= {step} SEC\n" + "1.0\n" * count
+
+
+def test_cut_to_the_shortest_component(write: Write) -> None:
+    x, y, z = (write(columns(0.01, count), name) for name, count in (("x", 9), ("y", 7), ("z", 8)))
+    assert read_record(x, y, z).acceleration.shape == (7, 3)
+    assert read_record(x, z).acceleration.shape == (8, 2)
+
+
+def test_each_file_has_its_own_place_format_and_unit(write: Write) -> None:
+    x = write(at2(0.01, 4), "east.AT2")
+    y = write(columns(0.01, 4, unit="m/s2", value=2.0), "north.csv")
+    z = write(columns(0.01, 4, unit="cm/s2", value=3.0), "up.csv")
+    motion = read_record(x, y, z)
+    assert motion.acceleration[3] == pytest.approx([9.81, 6.0, 0.09], rel=1e-15)
+    assert motion.time_step == 0.01
+
+
+def test_named_for_the_first_file_unless_told_otherwise(write: Write) -> None:
+    x = write(columns(0.01, 4), "east.csv")
+    assert read_record(x, x).name == "east"
+    assert read_record(str(x), str(x), name="Somewhere 1999").name == "Somewhere 1999"
+
+
+def test_refuses_different_time_steps(write: Write) -> None:
+    x, y = write(columns(0.01, 9), "x"), write(columns(0.02, 9), "y")
+    message = r"^the components of a record must have one time step, got 0.01 s in x and 0.02 s in y$"
+    with pytest.raises(ValueError, match=message):
+        read_record(x, y)
+    with pytest.raises(ValueError, match="one time step"):
+        read_record(x, x, write(at2(0.0101, 9), "z"))
+
+
+def test_steps_that_differ_by_the_rounding_of_printed_times_are_one_step(write: Write) -> None:
+    x, y = (write(columns(1.0 / 60.0, count), name) for name, count in (("x", 500), ("y", 498)))
+    assert read_record(x, y).acceleration.shape == (498, 2)
+
+
+def test_refuses_different_starts(write: Write) -> None:
+    x, y = write(columns(0.01, 9), "x"), write(columns(0.01, 9, start=0.05), "y")
+    with pytest.raises(
+        ValueError, match=r"^the components .* must start at one time, got 0 s in x and 0.05 s in y$"
+    ):
+        read_record(x, y)
+    # an AT2 file gives no times that could contradict
+    assert np.isfinite(read_record(write(at2(0.01, 9), "z"), y).acceleration).all()
+
+
+@pytest.mark.parametrize("units", ["G", "ft/s2", "", "cm/s"])
+def test_refuses_units_that_are_unknown(write: Write, units: str) -> None:
+    x = write(columns(0.01, 4))
+    with pytest.raises(ValueError, match=f"^units must be one of g, m/s2, cm/s2, got '{units}'$"):
+        read_record(x, x, units=units)
+
+
+def test_names_the_one_file_that_is_silent(write: Write) -> None:
+    x, y = write(columns(0.01, 4), "x"), write("0 0\n.01 1\n.02 2\n", "y")
+    with pytest.raises(ValueError, match=r"^y does not say its unit"):
+        read_record(x, y)
+
+
+@pytest.mark.parametrize("empty", ["", "\n", "  \r\n\t\n", "\ufeff"])
+def test_refuses_an_empty_file(write: Write, empty: str) -> None:
+    x, y = write(columns(0.01, 4), "x"), write(empty, "y")
+    with pytest.raises(ValueError, match=r"^the record .*y is empty$"):
+        read_record(x, y)
+
+
+def test_refuses_a_file_that_is_not_there_or_is_a_folder(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match=r"^cannot read the record .*absent.AT2: No such file or directory$"):
+        read_record(tmp_path / "absent.AT2", tmp_path / "absent.AT2")
+    with pytest.raises(ValueError, match=r"^cannot read the record .*: Is a directory$"):
+        read_record(tmp_path, tmp_path)
+    with pytest.raises(ValueError, match=r"^cannot read the record .*: embedded null byte$"):
+        read_record("a\0b", "a\0b")
