@@ -1,0 +1,47 @@
+"""The integrated recess model against its exact solution, on random cylinders and releases."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.models import Cylinder, InitialState
+
+COUNT = 200
+
+
+def random_release(rng):
+    """A cylinder, a release at rest in tilt, and a spin from 1e-8 to that of steady wobble."""
+    tan_alpha = math.exp(rng.uniform(math.log(0.05), math.log(5.0)))
+    cylinder = Cylinder(semidiagonal=math.exp(rng.uniform(math.log(0.1), math.log(50.0))), tan_alpha=tan_alpha)
+    tilt = rng.uniform(0.1, 0.9) * cylinder.alpha
+    steady = reduced.steady_wobble_rate(cylinder, tilt)
+    spin = math.exp(rng.uniform(math.log(1e-8), math.log(0.9 * steady)))
+    return cylinder, InitialState(tilt, rolling_rate=spin)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_period_and_turn_to_1e_8(seed):
+    rng = np.random.default_rng(seed)
+    for _ in range(COUNT // 4):
+        cylinder, initial = random_release(rng)
+        exact = reduced.free_response(cylinder, initial)
+        response = reduced.simulate(
+            cylinder, initial=initial, duration=1.01 * exact.period, rtol=1e-10, seating=0.0
+        )
+        maxima = response.extrema[response.extrema[:, 3] > 0.0]
+        assert maxima[1, 0] == pytest.approx(exact.period, rel=1e-8), (cylinder, initial)
+        assert maxima[1, 2] == pytest.approx(exact.angle_of_turn, rel=1e-8), (cylinder, initial)
+
+
+def test_steady_wobble_turns_at_the_exact_rate():
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.7)
+    for share in (0.01, 0.5, 0.99):
+        tilt = share * cylinder.alpha
+        rate = reduced.steady_wobble_rate(cylinder, tilt)
+        response = reduced.simulate(
+            cylinder, initial=InitialState(tilt, rolling_rate=rate), duration=10.0, rtol=1e-11
+        )
+        assert response.rolling_angle[-1] == pytest.approx(10.0 * rate, rel=1e-9)
+        assert reduced.wobbling_period(cylinder, tilt) == pytest.approx(2.0 * math.pi / rate, rel=1e-14)
