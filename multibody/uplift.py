@@ -16,10 +16,14 @@ from .engine import Steps
 
 Array = NDArray[np.float64]
 
-SURE_TILT = 5e-6  # of alpha; a standing cylinder leans by 1e-9 rad in MuJoCo, 1e-7 rad in Bullet
+SURE_TILT = 5e-6  # of alpha; a standing cylinder leans by 1e-9 rad in MuJoCo, 1e-8 rad in Bullet
 _MEMORY = 4000  # steps kept before that tilt: it takes a few hundred from the uplift
-_NEAR, _BELOW = 0.90, 0.99  # range of the eccentricity, over b, that is extrapolated to the rim
-_FIT = 60  # steps at most in that range: half a sample of a usual record
+# Eccentricities, over b, from which the last steps are extrapolated to the rim. Contact yields next to the
+# rim, and Bullet's four contacts share the load by turns there: the highest with a straight approach counts.
+_LEVELS = (0.97, 0.94, 0.9, 0.8)
+_FIT = 20  # steps; a fifth of a sample of a usual record, whose kinks bend the approach
+_STRAIGHT = 2e-3  # of b, largest residual of a straight approach
+_SPIKE = 9  # steps; single steps that carry no or twice the load are none of the approach
 _MINIMUM_LOAD = 0.1  # weights; the eccentricity of a smaller reaction is noise
 
 
@@ -60,28 +64,30 @@ class UpliftWatch:
         )
 
     def _crossing(self, sure_time: float) -> tuple[float, float]:
-        share = np.hypot(self._eccentricity[:, 0], self._eccentricity[:, 1]) / self._body.base_radius
-        inside = np.flatnonzero(share < _BELOW)
-        if not len(inside):
-            first = self._time[0] if len(self._time) else sure_time
-            return float(first), self._direction(0)
-        last = int(inside[-1])
-        first = last
-        while first > 0 and last - first < _FIT and share[first - 1] >= _NEAR:
-            first -= 1
-        fit = slice(first, last + 1)
-        if last - first < 2 or share[last] < _NEAR:
-            # a load that jumps over the rim within a step
-            return float(self._time[last] + 0.5 * self._step), self._direction(last + 1)
-        slope, offset = np.polyfit(self._time[fit] - self._time[last], share[fit], 1)
-        if slope <= 0.0:
-            return float(self._time[last] + 0.5 * self._step), self._direction(last + 1)
-        past = float((1.0 - offset) / slope)
-        at = [
-            float(np.polyval(np.polyfit(self._time[fit] - self._time[last], values, 1), past))
-            for values in self._eccentricity[fit].T
-        ]
-        return float(self._time[last]) + past, float(np.arctan2(at[1], at[0]))
+        from scipy.signal import medfilt
+
+        if len(self._time) < _SPIKE:
+            return (float(self._time[0]) if len(self._time) else sure_time), self._direction(0)
+        smooth = np.column_stack([medfilt(values, _SPIKE) for values in self._eccentricity.T])
+        share = np.hypot(smooth[:, 0], smooth[:, 1]) / self._body.base_radius
+        for level in _LEVELS:
+            inside = np.flatnonzero(share < level)
+            if not len(inside):
+                continue
+            end = int(inside[-1]) + 1
+            fit = slice(max(end - _FIT, 0), end)
+            offset = self._time[fit] - self._time[end - 1]
+            if len(offset) < _FIT:
+                continue
+            line = np.polyfit(offset, share[fit], 1)
+            if line[0] > 0.0 and np.abs(np.polyval(line, offset) - share[fit]).max() < _STRAIGHT:
+                past = float((1.0 - line[1]) / line[0])
+                x, y = (np.polyval(np.polyfit(offset, values[fit], 1), past) for values in smooth.T)
+                return float(self._time[end - 1]) + past, float(np.arctan2(y, x))
+        # the load jumped over the rim: no approach, and no doubt about the step
+        inside = np.flatnonzero(np.hypot(*self._eccentricity.T) < _LEVELS[0] * self._body.base_radius)
+        step = int(inside[-1]) + 1 if len(inside) else 0
+        return float(self._time[min(step, len(self._time) - 1)]), self._direction(step)
 
     def _direction(self, index: int) -> float:
         if not len(self._eccentricity):
