@@ -5,7 +5,7 @@ from .contact import TILTED
 from .driver import compare
 from .execution import Job, Progress, simulate_all
 from .horizon import AGREEMENT
-from .runs import default_runs, installed_engines, missing_engines
+from .runs import default_runs, installed_engines, missing_engines, require_runnable
 from .store import replace_files, require_writable
 from .summary import SUMMARY_COLUMNS
 from .tilt import relative_rms
@@ -28,6 +28,7 @@ __all__ = [
     "missing_engines",
     "relative_rms",
     "replace_files",
+    "require_runnable",
     "require_writable",
     "simulate_all",
 ]

@@ -12,7 +12,7 @@ from rockwobble.models import Case, Run, Suite
 
 from .comparison import Comparison
 from .execution import Crash, Job, ProgressCallback, simulate_all
-from .runs import default_runs, references_of, run_labels
+from .runs import default_runs, references_of, require_runnable, run_labels
 from .store import require_writable
 from .summary import SUMMARY_COLUMNS, crashed_row, summary_row
 
@@ -69,6 +69,9 @@ def compare(
         require_writable(out)
     cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
     chosen = _runs(case_or_suite, runs)
+    for case in cases:
+        for run in chosen:
+            require_runnable(case, run)
     labels = run_labels(chosen)
     models = list(dict.fromkeys(model for run in chosen for model in references_of(run, reference)))
     jobs = [Job(case=case, method=model, label=model) for case in cases for model in models]

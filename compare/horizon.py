@@ -81,3 +81,11 @@ def agreed_passes(reference: Trace, horizon: Horizon) -> int:
     """Return how many passes of the reference lie within the agreement."""
     times = np.asarray(reference.passes["time"], dtype=np.float64)
     return int(np.count_nonzero(times <= horizon.end))
+
+
+def closest_pass(reference: Trace, horizon: Horizon) -> float:
+    """Return the smallest minimum tilt of the passes within the agreement [rad]; NaN without a pass."""
+    minima = np.asarray(reference.passes["minimum_tilt"], dtype=np.float64)[
+        : agreed_passes(reference, horizon)
+    ]
+    return float(minima.min()) if len(minima) else math.nan

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Sequence
 
-from rockwobble.models import Run
+from rockwobble.models import Case, Run
+from rockwobble.multibody import available_engines, engine_names
+from rockwobble.multibody.froude import froude_scale
+from rockwobble.multibody.guard import check_time_step
+from rockwobble.multibody.registry import find_engine
 
-# the two engines of a default run and the module that each needs
-_ENGINES = {"mujoco": "mujoco", "pybullet": "pybullet"}
 SUPPORTS = ("guided", "free")
 
 # a cylinder on open ground is free to roll out: the rolling model is its own reduced model
@@ -16,13 +17,29 @@ SUPPORT_REFERENCES = {"free": ("rolling",)}
 
 
 def installed_engines() -> tuple[str, ...]:
-    """Return the engines of a default run that are installed here."""
-    return tuple(name for name, module in _ENGINES.items() if importlib.util.find_spec(module) is not None)
+    """Return the engines that are installed here, those of a default run."""
+    return available_engines()
 
 
 def missing_engines() -> tuple[str, ...]:
-    """Return the engines of a default run that are not installed here."""
-    return tuple(name for name in _ENGINES if name not in installed_engines())
+    """Return the known engines that are not installed here."""
+    return tuple(name for name in engine_names() if name not in installed_engines())
+
+
+def require_runnable(case: Case, run: Run) -> None:
+    """Check engine, support and time step of a run, so that no other run starts in vain.
+
+    Raises
+    ------
+    ValueError
+        If the engine is unknown or not installed, does not have the support, or the time step is too
+        large for contact.
+    """
+    supports = find_engine(run.engine).supports
+    if run.support not in supports:
+        raise ValueError(f"support must be one of {', '.join(supports)}, got {run.support!r}")
+    if run.time_step is not None:
+        check_time_step(run.time_step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
 
 
 def default_runs(

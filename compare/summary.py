@@ -13,7 +13,7 @@ from rockwobble.models import Case, Run
 
 from .contact import contact_rms
 from .energy import energy_loss
-from .horizon import agreed_passes, agreement_horizon, predicted_horizon
+from .horizon import agreed_passes, agreement_horizon, closest_pass, predicted_horizon
 from .tilt import tilt_rms, tilt_rms_relative
 from .traces import EngineTrace, Trace, make_pair
 from .turning import direction_difference, first_unresolved_pass, turn_difference
@@ -49,6 +49,7 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "time_ratio": ("", "the same over that of the reduced model"),
         "reference_wall_time": ("s", "computing time of the reduced model"),
         "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine's contact resolves"),
+        "closest_pass": ("alpha", "smallest minimum tilt of the reduced model's passes within the agreement"),
         "engine_version": ("", "version of the engine"),
         "run": ("", "label of the run, as in the files of samples and in the figures"),
     }
@@ -113,6 +114,7 @@ def summary_row(
         "time_ratio": trial.wall_time / reference.wall_time if reference.wall_time > 0.0 else math.nan,
         "reference_wall_time": reference.wall_time,
         "contact_resolution": trial.contact_resolution,
+        "closest_pass": closest_pass(reference, horizon) / alpha,
         "engine_version": trial.engine_version,
         "run": label,
     }

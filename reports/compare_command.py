@@ -45,7 +45,7 @@ def compare(
 
     with interruptible():
         with user_input():
-            from rockwobble.compare import replace_files, require_writable
+            from rockwobble.compare import replace_files, require_runnable, require_writable
 
             case = case_from_options(
                 semidiagonal=semidiagonal,
@@ -61,6 +61,8 @@ def compare(
             )
             require_writable(out)
             runs = _runs(engine, support, time_step)
+            for run in runs:
+                require_runnable(case, run)
         for line in describe(case):
             print(line)
         if not engine:

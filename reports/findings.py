@@ -52,12 +52,12 @@ def _reason(row: Any, length: float) -> str:
             f"at {seconds(foretold)} a pass comes closer to the apex than the contact resolves "
             f"({row.contact_resolution:.1g} rad); what is left to chance there grows from then on"
         )
-    if foretold < length:
+    if math.isfinite(row.closest_pass):
         return (
-            f"before the first pass too close for the contact, which comes at {seconds(foretold)}; "
-            "contact resolution alone does not explain it"
+            f"the contact resolves every pass until then, the closest of which comes within "
+            f"{row.closest_pass:.1g} alpha of the apex; near passes amplify what small difference there is"
         )
-    return "no pass comes closer to the apex than the contact resolves, so the contact does not explain it"
+    return "without a pass by the apex, so that it is an error of the method and not of chance"
 
 
 def _peaks(row: Any) -> str:

@@ -61,7 +61,7 @@ def simulate(
 
     with interruptible():
         with user_input():
-            from rockwobble.compare import Job, replace_files, require_writable
+            from rockwobble.compare import Job, replace_files, require_runnable, require_writable
             from rockwobble.models import Run
 
             case = case_from_options(
@@ -79,8 +79,11 @@ def simulate(
             require_writable(out)
             if engine is None and time_step is not None:
                 raise ValueError("--time-step belongs to an engine, give --engine as well")
-            method = model if engine is None else Run(engine, support, time_step)
-            job = Job(case=case, method=method, label=model if engine is None else f"{engine} {support}")
+            job = Job(case=case, method=model, label=model)
+            if engine is not None:
+                run = Run(engine, support, time_step)
+                require_runnable(case, run)
+                job = Job(case=case, method=run, label=f"{engine} {support}")
         for line in describe(case):
             print(line)
         trace = _run(job)

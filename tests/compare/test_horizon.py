@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.horizon import agreed_passes, agreement_horizon, predicted_horizon
+from rockwobble.compare.horizon import agreed_passes, agreement_horizon, closest_pass, predicted_horizon
 from rockwobble.compare.traces import make_pair
 
 SAMPLE = 0.01  # a horizon is known to one sample
@@ -35,6 +35,7 @@ def test_passes_within_the_horizon_are_agreed(cylinder, growing):
     horizon = agreement_horizon(make_pair(cylinder, *growing))
     assert horizon.end == pytest.approx(11.22)
     assert agreed_passes(reference, horizon) == 2
+    assert closest_pass(reference, horizon) == 2e-5
 
 
 def test_traces_that_never_part_agree_for_the_length_of_the_run(cylinder, make_trace):

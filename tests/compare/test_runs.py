@@ -5,8 +5,13 @@ import importlib.util
 import pytest
 
 from rockwobble.compare import default_runs, installed_engines, missing_engines
-from rockwobble.compare.runs import references_of, run_labels
-from rockwobble.models import Run
+from rockwobble.compare.runs import references_of, require_runnable, run_labels
+from rockwobble.models import Case, Cylinder, Run
+
+
+@pytest.fixture
+def case(cylinder):
+    return Case("still", cylinder, duration=1.0)
 
 
 def test_default_runs_are_every_installed_engine_guided_and_free():
@@ -19,12 +24,28 @@ def test_default_runs_are_every_installed_engine_guided_and_free():
     ]
 
 
-def test_an_engine_without_a_wheel_is_left_out(monkeypatch):
+def test_an_engine_without_a_wheel_is_left_out_and_refused_by_name(monkeypatch, case):
     find = importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "pybullet" else find(name))
-    assert installed_engines() == ("mujoco",)
-    assert missing_engines() == ("pybullet",)
-    assert {run.engine for run in default_runs()} == {"mujoco"}
+    assert "pybullet" not in installed_engines()
+    assert "pybullet" in missing_engines()
+    assert "pybullet" not in {run.engine for run in default_runs()}
+    with pytest.raises(ValueError, match=r"'pybullet' is not installed here: pip install pybullet"):
+        require_runnable(case, Run("pybullet", "guided"))
+
+
+def test_unknown_engines_and_supports_are_refused(case):
+    with pytest.raises(ValueError, match=r"engine must be one of mujoco, pybullet.*, got 'bullet'"):
+        require_runnable(case, Run("bullet", "guided"))
+    with pytest.raises(ValueError, match=r"support must be one of .*, got 'glued'"):
+        require_runnable(case, Run("mujoco", "glued"))
+
+
+def test_a_time_step_too_large_for_the_size_is_refused(case):
+    require_runnable(case, Run("mujoco", "guided", 1e-3))
+    small = Case("small", Cylinder(semidiagonal=0.06, tan_alpha=0.2), duration=1.0)
+    with pytest.raises(ValueError, match=r"time_step must be at most 0.0001 s"):
+        require_runnable(small, Run("mujoco", "guided", 1e-3))
 
 
 def test_open_ground_is_held_against_both_models():

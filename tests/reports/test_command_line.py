@@ -47,7 +47,7 @@ BAD = {
     "negative dimension": (["--semidiagonal", "-6"], "semidiagonal must be positive [m], got -6.0"),
     "zero dimension": (["--tan-alpha", "0"], "tan_alpha must be positive, got 0.0"),
     "text for a number": (["--semidiagonal", "six"], "Invalid value for '--semidiagonal'"),
-    "not a number in a record": (record("nan.csv"), "nan.csv: sample 2 must be finite, got nan"),
+    "not a number in a record": (record("nan.csv"), "nan.csv, line 3: a sample must be a finite number, got 'nan'"),
     "text cell in a record": (record("text.csv"), "text.csv, line 3: expected two numbers"),
     "different time steps": (record("slow.csv"), "must have one time step, got 0.02 s in slow.csv"),
     "no units": (
@@ -71,6 +71,12 @@ BAD = {
         ["--engine", "mujoco", "--time-step", "-1"],
         "time_step must be positive [s], got -1.0",
     ),
+    "unknown engine": (["--engine", "bullet"], "engine must be one of mujoco, pybullet, got 'bullet'"),
+    "unknown support": (
+        ["--engine", "mujoco", "--support", "glued"],
+        "support must be one of guided, free, got 'glued'",
+    ),
+    "large time step": (["--engine", "mujoco", "--time-step", "0.01"], "time_step must be at most 0.001 s"),
     "folder that is a file": (["--out", "taken"], "the output folder must be a folder, got taken"),
     "folder that refuses": (["--out", "/proc/1/none"], "the output folder /proc/1/none cannot be written"),
     "unknown option": (["--semidiagonel", "6"], "No such option: --semidiagonel"),

@@ -1,0 +1,135 @@
+"""What a spectrum says, in a table and in sentences made from its numbers."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockwobble.compare.lowest_overturning import Island, safe_islands
+from rockwobble.compare.planar_contrast import planar_contrast, unconservative_from
+from rockwobble.compare.spectrum import SERIES, SPATIAL, OverturningSpectrum
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+HEADINGS = (
+    "R [m]",
+    "lowest 3D",
+    "lowest planar EW",
+    "lowest planar NS",
+    "3D falls [%]",
+    "missed [%]",
+    "overcalled [%]",
+    "3D tilts more [%]",
+)
+LEGEND = (
+    "lowest: median over the sizes of the lowest overturning intensity, in g tan alpha (-: most do not fall). "
+    "missed: the 3D model overturns and neither planar run does. overcalled: a planar run overturns and "
+    "the 3D model does not. 3D tilts more: than both planar runs."
+)
+
+
+def table_cells(contrast: pd.DataFrame) -> list[tuple[str, ...]]:
+    """Return the rows of the table under `HEADINGS`; the last is for all sizes."""
+    return [_cells(row, last=i == len(contrast) - 1) for i, (_, row) in enumerate(contrast.iterrows())]
+
+
+def _cells(row: Any, *, last: bool) -> tuple[str, ...]:
+    band = f"{row.smallest:.3g} to {row.largest:.3g}"
+    lowest = (row.lowest, row.planar_x_lowest, row.planar_y_lowest)
+    shares = (row.falls, row.missed, row.overcalled, row.larger_tilt)
+    return (
+        f"all, {band}" if last else band,
+        *(f"{value:.2f}" if math.isfinite(value) else "-" for value in lowest),
+        *(f"{100.0 * value:.1f}" if math.isfinite(value) else "-" for value in shares),
+    )
+
+
+def islands_of(spectrum: OverturningSpectrum) -> dict[str, list[Island]]:
+    """Return the safe islands of each series."""
+    return {
+        series: safe_islands(
+            spectrum.semidiagonals,
+            spectrum.intensities,
+            spectrum.overturned(series),
+            np.isnan(spectrum.peak_tilt[series]),
+        )
+        for series in SERIES
+    }
+
+
+def statements(spectrum: OverturningSpectrum) -> list[str]:
+    """Return what the spectrum says, one sentence or two each."""
+    contrast = planar_contrast(spectrum)
+    every = contrast.iloc[-1]
+    if not every.cells:
+        return ["No cell could be solved."]
+    said = [_headline(every)]
+    if every.falls > 0.0 or every.planar_falls > 0.0:
+        said += [_by_size(contrast), _edges(spectrum, every), _islands(spectrum)]
+    failed = int(spectrum.failed().sum())
+    if failed:
+        said.append(f"{_count(failed, 'cell')} could not be solved and {_is(failed)} left out.")
+    return said
+
+
+def _headline(every: Any) -> str:
+    return (
+        f"In 3D the cylinder overturns in {_percent(every.falls)} of {every.cells} cells, in at least one "
+        f"plane in {_percent(every.planar_falls)}. Planar analysis is unconservative in "
+        f"{_percent(every.missed)} of the cells (3D overturns, neither planar run does) and conservative "
+        f"in {_percent(every.overcalled)} (a planar run overturns, 3D does not)."
+    )
+
+
+def _by_size(contrast: pd.DataFrame) -> str:
+    bands = contrast.iloc[:-1]
+    worst = bands.loc[bands["missed"].idxmax()]
+    wrong = bands[bands["missed"] > bands["overcalled"]]
+    more = ", ".join(f"{row.smallest:.3g} to {row.largest:.3g} m" for _, row in wrong.iterrows())
+    return (
+        f"It misses most at R = {worst.smallest:.3g} to {worst.largest:.3g} m, {_percent(worst.missed)} "
+        f"of the cells there. It misses more cells than it overcalls at {more}."
+        if more
+        else "In no band of sizes does it miss more cells than it overcalls."
+    )
+
+
+def _edges(spectrum: OverturningSpectrum, every: Any) -> str:
+    start = unconservative_from(spectrum)
+    sentence = (
+        f"The lowest overturning intensity is lower in 3D than in both planes at "
+        f"{_percent(every.lower_edge)} of the sizes, and higher than in one of them at "
+        f"{_percent(every.higher_edge)}"
+    )
+    if math.isnan(start):
+        return f"{sentence}."
+    return f"{sentence}; from R = {start:.3g} m on it is lower in 3D at every size."
+
+
+def _islands(spectrum: OverturningSpectrum) -> str:
+    closed = [island for island in islands_of(spectrum)[SPATIAL] if island.closed]
+    if not closed:
+        return "No cylinder that a weaker shaking overturns in 3D stands a stronger one and falls again."
+    sizes = len({island.semidiagonal for island in closed})
+    widest = max(closed, key=lambda island: island.upper - island.lower)
+    return (
+        f"Above its lowest overturning intensity in 3D a cylinder stands again in "
+        f"{_count(len(closed), 'safe island')} at {sizes} of {len(spectrum.semidiagonals)} sizes; the "
+        f"widest reaches from {widest.lower:.2f} to {widest.upper:.2f} g tan alpha at "
+        f"R = {widest.semidiagonal:.3g} m. A run that stands proves nothing for weaker shaking."
+    )
+
+
+def _percent(share: float) -> str:
+    return f"{100.0 * share:.1f} %"
+
+
+def _count(number: int, what: str) -> str:
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
+def _is(number: int) -> str:
+    return "is" if number == 1 else "are"
