@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 import pytest
+from scipy.optimize import minimize_scalar
 
 from rockwobble.models import Cylinder, InitialState
-from rockwobble.reduced.body import body_of
+from rockwobble.reduced.body import Body, body_of
 from rockwobble.reduced.exact import (
     FreeResponse,
     angle_of_turn,
@@ -23,6 +24,12 @@ from rockwobble.reduced.exact import (
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 ROUNDING = 1e-14  # relative; some tens of operations in double precision
 SLENDERNESS = [1e-3, 0.05, 0.2, 1.0, 5.0, 1e3]
+
+
+def inertia(body: Body, tilt: float) -> float:
+    """Return B [m^2], the inertia of the rolling angle."""
+    t = math.tan(0.5 * tilt)
+    return math.sin(tilt) ** 2 * (body.J + 2.0 * body.E * t + body.C * t * t)
 
 
 def release(cylinder: Cylinder, fraction: float, spin: float, tilt_rate: float = 0.0) -> InitialState:
@@ -121,18 +128,16 @@ def test_every_point_of_the_cycle_has_the_same_response(
         cylinder, InitialState(tilt=start, rolling_rate=spin * steady_wobble_rate(cylinder, start))
     )
 
-    def inertia(tilt: float) -> float:
-        t = math.tan(0.5 * tilt)
-        return math.sin(tilt) ** 2 * (body.J + 2.0 * body.E * t + body.C * t * t)
-
     low, high, L = expected.minimum_tilt, expected.maximum_tilt, expected.angular_momentum
     tilt = low + way * (high - low)
     # energy below the maximum, in differences
     fall = 2.0 * 9.81 * 3.0 * math.sin(body.alpha - 0.5 * (high + tilt)) * math.sin(0.5 * (high - tilt))
-    climb = 0.5 * L**2 * (inertia(high) - inertia(tilt)) / (inertia(tilt) * inertia(high))
+    climb = 0.5 * L**2 * (1.0 / inertia(body, tilt) - 1.0 / inertia(body, high))
     tilt_rate = sense * math.sqrt(2.0 * (fall - climb) / body.A) if way else 0.0
     found = free_response(
-        cylinder, InitialState(tilt=tilt, tilt_rate=tilt_rate, rolling_rate=L / inertia(tilt)), gravity=9.81
+        cylinder,
+        InitialState(tilt=tilt, tilt_rate=tilt_rate, rolling_rate=L / inertia(body, tilt)),
+        gravity=9.81,
     )
     # the intermediate state is rounded; steady wobble at 0.6 alpha magnifies that by 1e2 at most
     budget = 1e-12
@@ -153,9 +158,9 @@ def test_steady_wobble_is_where_the_turning_tilts_meet(tan_alpha: float) -> None
         near = free_response(cylinder, InitialState(tilt=tilt, rolling_rate=rate * (1.0 + change)))
         assert near.period == pytest.approx(steady.period, rel=1e-6)
         assert near.angle_of_turn == pytest.approx(steady.angle_of_turn, rel=1e-6)
-        assert math.copysign(1.0, change) == (
-            1.0 if near.minimum_tilt == pytest.approx(tilt, rel=ROUNDING) else -1.0
-        )
+        # more spin than steady wobble lifts the maximum, less lowers the minimum
+        moved = near.maximum_tilt if change > 0.0 else near.minimum_tilt
+        assert 0.1 * abs(change) < (moved / tilt - 1.0) / math.copysign(1.0, change) < 10.0 * abs(change)
 
 
 def test_momentum_of_steady_wobble_has_one_maximum_between_upright_and_alpha() -> None:
@@ -278,6 +283,65 @@ def test_a_release_that_overturns_has_no_next_maximum(fraction: float, tilt_rate
     for solution in (free_response, angle_of_turn):
         with pytest.raises(ValueError, match=r"tilt=.* overturns .* it has no tilt maximum"):
             solution(PIER, release(PIER, fraction, spin, tilt_rate))
+
+
+@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
+@pytest.mark.parametrize("spin", [1e-9, 0.1, 0.5])
+@pytest.mark.parametrize("sense", [-1.0, 1.0])
+def test_overturning_begins_where_the_energy_passes_the_barrier(
+    tan_alpha: float, spin: float, sense: float
+) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    tilt = 0.4 * cylinder.alpha
+    rate = spin * steady_wobble_rate(cylinder, tilt)
+    at_rest = free_response(cylinder, InitialState(tilt=tilt, rolling_rate=rate))
+    body = body_of(cylinder, 9.81)
+
+    def height(gap: float) -> float:  # V + L^2/(2 B)
+        theta = cylinder.alpha - gap
+        return at_rest.angular_momentum**2 / (2.0 * inertia(body, theta)) - 9.81 * 6.0 * (
+            math.cos(cylinder.alpha) - math.cos(gap)
+        )
+
+    top = -minimize_scalar(
+        lambda gap: -height(gap),
+        bounds=(0.0, 0.5 * cylinder.alpha),
+        method="bounded",
+        options={"xatol": 1e-10},
+    ).fun
+    # cos(gap) is rounded to 1e-16 where the whole barrier is alpha^2/2
+    margin = 1e-9 + 1e-15 / cylinder.alpha**2
+    reach = math.sqrt(2.0 * (top - at_rest.energy) / body.A)
+    slow, fast = (
+        InitialState(tilt=tilt, tilt_rate=sense * reach * (1.0 + change), rolling_rate=rate)
+        for change in (-margin, margin)
+    )
+    assert free_response(cylinder, slow).maximum_tilt < cylinder.alpha
+    with pytest.raises(ValueError, match="overturns"):
+        free_response(cylinder, fast)
+
+
+@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
+def test_steady_wobble_is_held_up_to_the_largest_momentum(tan_alpha: float) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    alpha, body = cylinder.alpha, body_of(cylinder, 9.81)
+    crest = minimize_scalar(
+        lambda fraction: -inertia(body, fraction * alpha) * steady_wobble_rate(cylinder, fraction * alpha),
+        bounds=(0.3, 0.95),
+        method="bounded",
+        options={"xatol": 1e-9},  # a maximum is found to the square root of rounding
+    ).x
+    tilt = crest * (1.0 - 1e-4) * alpha
+    wobble = free_response(
+        cylinder, InitialState(tilt=tilt, rolling_rate=(1.0 + 1e-10) * steady_wobble_rate(cylinder, tilt))
+    )
+    assert wobble.maximum_tilt == pytest.approx(tilt, rel=1e-5)
+    beyond = crest * (1.0 + 1e-4) * alpha
+    with pytest.raises(ValueError, match="overturns"):
+        free_response(
+            cylinder,
+            InitialState(tilt=beyond, rolling_rate=(1.0 + 1e-10) * steady_wobble_rate(cylinder, beyond)),
+        )
 
 
 def test_the_barrier_is_where_the_period_grows_without_bound() -> None:

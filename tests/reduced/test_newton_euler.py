@@ -1,0 +1,318 @@
+"""The equations of motion and the contact force against Newton and Euler, in vectors.
+
+Nothing is shared with the code under test: a rigid body in space, touching the ground at the lowest
+point of its rim, which does not slip. Force, couple of the recess and the accelerations of the Euler
+angles follow together from one linear system, in arithmetic of 40 digits: what is compared is the
+rounding of the code alone, also next to the apex where the system is badly conditioned.
+"""
+
+from typing import Any, NamedTuple
+
+import mpmath as mp
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from rockwobble.models import Cylinder
+from rockwobble.reduced.body import Body, body_of
+from rockwobble.reduced.equations import energy, planar_rhs, recess_rhs, rolling_rhs
+from rockwobble.reduced.forces import contact_force
+
+AGREEMENT = 1e-12  # relative to the terms of each sum; measured 4e-16
+DIGITS = 40
+Vector = NDArray[Any]  # (3,) of mpf
+
+
+class State(NamedTuple):
+    """Euler angles 3-2-3 and rates; psi does not matter to a body of revolution."""
+
+    theta: Any
+    theta_rate: Any
+    phi: Any
+    phi_rate: Any
+    psi_rate: Any
+
+
+class Motion(NamedTuple):
+    """What the vector equations give, per unit mass."""
+
+    theta: Any  # second derivatives
+    phi: Any
+    psi: Any
+    force: Vector  # (3,) of the ground on the body, world axes
+    couple: Any  # of the recess along z_world + z_body
+
+
+def vector(*components: Any) -> Vector:
+    return np.array([mp.mpf(component) for component in components], dtype=object)
+
+
+def newton_euler(body: Body, state: State, ground: Vector, recess: bool) -> Motion:
+    """Solve for the accelerations, the contact force and the couple of the recess."""
+    e_z, e_tilt, axis, radius = frame(state)
+    frame_rate = (
+        state.phi_rate * e_z + state.theta_rate * e_tilt
+    )  # of the axes that do not spin with the body
+    spin = frame_rate + state.psi_rate * axis
+    arm = body.h * axis - body.b * radius  # from the contact point to the mass centre
+    arm_rate = np.cross(frame_rate, arm)
+    inertia = inertia_of(body, axis)
+
+    # angular acceleration: what the rates give, and one column for theta'', phi'' and psi'' each
+    spin_rate = np.cross(frame_rate, state.theta_rate * e_tilt + state.psi_rate * axis)
+    columns = (e_tilt, e_z, axis)
+
+    # unknowns theta'', phi'', psi'', three components of the force, couple
+    matrix, right = mp.zeros(7, 7), mp.zeros(7, 1)
+    # Newton: force = ground + gravity + d(spin x arm)/dt, the mass centre turning about the contact point
+    known_force = ground + body.g * e_z + np.cross(spin_rate, arm) + np.cross(spin, arm_rate)
+    # Euler about the mass centre: -arm x force + couple (e_z + axis) = d(inertia spin)/dt
+    known_moment = inertia @ spin_rate + np.cross(spin, inertia @ spin)
+    for i in range(3):
+        for k, column in enumerate(columns):
+            matrix[i, k] = -np.cross(column, arm)[i]
+            matrix[3 + i, k] = -(inertia @ column)[i]
+        for k in range(3):
+            unit = np.array([mp.mpf(k == j) for j in range(3)], dtype=object)
+            matrix[i, 3 + k] = unit[i]
+            matrix[3 + i, 3 + k] = -np.cross(arm, unit)[i]
+        matrix[3 + i, 6] = (e_z + axis)[i]
+        right[i], right[3 + i] = known_force[i], known_moment[i]
+    if recess:  # psi'' = -phi''
+        matrix[6, 1] = matrix[6, 2] = 1
+    else:  # open ground: no couple
+        matrix[6, 6] = 1
+    solution = mp.lu_solve(matrix, right)
+    return Motion(solution[0], solution[1], solution[2], vector(*solution[3:6]), solution[6])
+
+
+def frame(state: State) -> tuple[Vector, Vector, Vector, Vector]:
+    """Return the vertical, the axis of tilting, the axis of the body, and the direction from the base
+    centre to the contact point: down as far as the base allows."""
+    s, c = mp.sin(state.theta), mp.cos(state.theta)
+    sp, cp = mp.sin(state.phi), mp.cos(state.phi)
+    e_z, axis = vector(0, 0, 1), vector(s * cp, s * sp, c)
+    return e_z, vector(-sp, cp, 0), axis, (c * axis - e_z) / s
+
+
+def inertia_of(body: Body, axis: Vector) -> NDArray[Any]:
+    return body.I1 * np.eye(3, dtype=int).astype(object) + (mp.mpf(body.I2) - body.I1) * np.outer(axis, axis)
+
+
+class Momenta(NamedTuple):
+    """Kinetic energy A theta'^2/2 + B phi'^2/2 - G phi' tau' + C tau'^2/2, tau = phi + psi, in vectors."""
+
+    B: Any
+    G: Any
+    C: Any
+
+
+def quadratic_form(body: Body, theta: Any) -> Momenta:
+    def kinetic(phi_rate: int, tau_rate: int) -> Any:
+        state = State(theta, mp.mpf(0), mp.mpf(0), mp.mpf(phi_rate), mp.mpf(tau_rate - phi_rate))
+        return kinetic_energy(body, state)
+
+    B, C = 2 * kinetic(1, 0), 2 * kinetic(0, 1)
+    return Momenta(B, (B + C) / 2 - kinetic(1, 1), C)
+
+
+def kinetic_energy(body: Body, state: State) -> Any:
+    e_z, e_tilt, axis, radius = frame(state)
+    spin = state.phi_rate * e_z + state.theta_rate * e_tilt + state.psi_rate * axis
+    velocity = np.cross(spin, body.h * axis - body.b * radius)
+    return (velocity @ velocity + spin @ inertia_of(body, axis) @ spin) / 2
+
+
+def momenta(body: Body, theta: Any, phi_rate: Any, tau_rate: Any) -> tuple[Any, Any]:
+    """Return Lambda = B phi' - G tau' and S = (C - G^2/B) tau'."""
+    B, G, C = quadratic_form(body, theta)
+    return B * phi_rate - G * tau_rate, (C - G * G / B) * tau_rate
+
+
+class Sample(NamedTuple):
+    """A random state, as the code under test takes it."""
+
+    body: Body
+    theta: float
+    omega: float
+    phi: float
+    Lambda: float
+    S: float
+    ground: tuple[float, float, float]
+
+
+def sample(seed: int, *, twisting: bool) -> Sample:
+    random = np.random.default_rng(seed)
+    size, gravity = 10.0 ** random.uniform(-2.0, 2.0), random.uniform(1.0, 30.0)
+    inertias = {}
+    if seed % 3 == 0:  # a body of revolution that is not a solid cylinder
+        transverse = size**2 * 10.0 ** random.uniform(-2.0, 0.0)
+        inertias = {
+            "transverse_inertia": transverse,
+            "axial_inertia": transverse * random.uniform(0.05, 1.95),
+        }
+    cylinder = Cylinder(semidiagonal=size, tan_alpha=10.0 ** random.uniform(-1.3, 0.7), **inertias)
+    body = body_of(cylinder, gravity)
+    rate = np.sqrt(gravity / size)
+    theta = random.uniform(0.01, 1.4) if seed % 2 else 10.0 ** random.uniform(-6.0, -1.0)
+    # in a near pass phi' goes with 1/theta
+    phi_rate = random.uniform(-2.0, 2.0) * rate * min(1.0, 0.1 / theta) / min(1.0, 10.0 * theta)
+    tau_rate = random.uniform(-1.0, 1.0) * rate if twisting else 0.0
+    with mp.workdps(DIGITS):
+        Lambda, S = momenta(body, mp.mpf(theta), mp.mpf(phi_rate), mp.mpf(tau_rate))
+    ax, ay, az = random.uniform(-1.0, 1.0, 3) * gravity
+    return Sample(
+        body,
+        theta,
+        random.uniform(-1.0, 1.0) * rate,
+        random.uniform(-7.0, 7.0),
+        float(Lambda),
+        float(S),
+        (float(ax), float(ay), float(az)),
+    )
+
+
+def state_of(given: Sample) -> State:
+    """Return the state that the rounded momenta stand for."""
+    theta = mp.mpf(given.theta)
+    B, G, C = quadratic_form(given.body, theta)
+    tau_rate = mp.mpf(given.S) / (C - G * G / B)
+    phi_rate = (mp.mpf(given.Lambda) + G * tau_rate) / B
+    return State(theta, mp.mpf(given.omega), mp.mpf(given.phi), phi_rate, tau_rate - phi_rate)
+
+
+def momenta_rates(body: Body, state: State, motion: Motion) -> tuple[Any, Any]:
+    """Return Lambda' and S' from the accelerations of the angles."""
+
+    def after(time: Any, index: int) -> Any:
+        theta = state.theta + time * state.theta_rate
+        phi_rate = state.phi_rate + time * motion.phi
+        tau_rate = state.phi_rate + state.psi_rate + time * (motion.phi + motion.psi)
+        return momenta(body, theta, phi_rate, tau_rate)[index]
+
+    # central difference: 1e-12 of the tilt leaves 1e-24, in arithmetic of 80 digits
+    with mp.workdps(2 * DIGITS):
+        step = state.theta * mp.mpf(10) ** -12 / (1 + abs(state.theta_rate) + abs(state.phi_rate))
+        rates = [(after(step, i) - after(-step, i)) / (2 * step) for i in range(2)]
+    return rates[0], rates[1]
+
+
+def polar(force: Vector, phi: float) -> Vector:
+    """Return the components along the contact azimuth, across it and upwards."""
+    c, s = mp.cos(mp.mpf(phi)), mp.sin(mp.mpf(phi))
+    return vector(force[0] * c + force[1] * s, force[1] * c - force[0] * s, force[2])
+
+
+def assert_close(found: tuple[float, ...], expected: tuple[Any, ...], scale: tuple[Any, ...]) -> None:
+    errors = [float(abs(f - e) / s) for f, e, s in zip(found, expected, scale, strict=True)]
+    assert max(errors) < AGREEMENT, errors
+
+
+class Scales(NamedTuple):
+    """The size of the terms in each sum; near the apex phi' grows as 1/theta."""
+
+    theta: Any  # theta''
+    force: Any
+    couple: Any  # and S'
+    Lambda: Any  # Lambda'
+
+
+def scales_of(given: Sample, state: State) -> Scales:
+    size, theta = given.body.b + given.body.h, min(state.theta, 1)
+    push = given.body.g + sum(abs(component) for component in given.ground)
+    swing, roll, twist = abs(state.theta_rate), abs(state.phi_rate), abs(state.phi_rate + state.psi_rate)
+    force = push + size * ((swing + twist) ** 2 + theta * roll * (roll + swing) + roll * twist)
+    return Scales(
+        theta=force * size / given.body.A,
+        force=force,
+        couple=size * (push + size * theta * swing * roll),
+        Lambda=size * (push * theta + size * swing * twist),
+    )
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_recess(seed: int) -> None:
+    given = sample(seed, twisting=False)
+    body = given.body
+    with mp.workdps(DIGITS):
+        state = state_of(given)
+        motion = newton_euler(body, state, vector(*given.ground), recess=True)
+        Lambda_rate, _ = momenta_rates(body, state, motion)
+        scale = scales_of(given, state)
+        found = recess_rhs(body, given.theta, given.omega, given.phi, given.Lambda, *given.ground)
+        assert_close(
+            found,
+            (state.theta_rate, motion.theta, state.phi_rate, Lambda_rate),
+            (abs(state.theta_rate), scale.theta, abs(state.phi_rate), scale.Lambda),
+        )
+        found = contact_force(
+            body, given.theta, given.omega, given.phi, given.Lambda, 0.0, *given.ground, False
+        )
+        expected = (*polar(motion.force, given.phi), motion.couple)
+        assert_close(found, expected, (scale.force, scale.force, scale.force, scale.couple))
+
+
+@pytest.mark.parametrize("seed", range(100, 140))
+def test_rolling(seed: int) -> None:
+    given = sample(seed, twisting=True)
+    body = given.body
+    with mp.workdps(DIGITS):
+        state = state_of(given)
+        motion = newton_euler(body, state, vector(*given.ground), recess=False)
+        assert motion.couple == 0
+        Lambda_rate, S_rate = momenta_rates(body, state, motion)
+        tau_rate = state.phi_rate + state.psi_rate
+        scale = scales_of(given, state)
+        found = rolling_rhs(
+            body, given.theta, given.omega, given.phi, given.Lambda, 0.3, given.S, *given.ground
+        )
+        assert_close(
+            found,
+            (state.theta_rate, motion.theta, state.phi_rate, Lambda_rate, tau_rate, S_rate),
+            (
+                abs(state.theta_rate),
+                scale.theta,
+                abs(state.phi_rate),
+                scale.Lambda,
+                abs(tau_rate),
+                scale.couple,
+            ),
+        )
+        found = contact_force(
+            body, given.theta, given.omega, given.phi, given.Lambda, given.S, *given.ground, True
+        )
+        assert_close(
+            found,
+            (*polar(motion.force, given.phi), mp.mpf(0)),
+            (scale.force, scale.force, scale.force, scale.couple),
+        )
+
+
+@pytest.mark.parametrize("seed", range(200, 210))
+def test_planar(seed: int) -> None:
+    given = sample(seed, twisting=False)._replace(Lambda=0.0)
+    along, vertical = given.ground[0], given.ground[2]
+    for direction in (1.0, -1.0):
+        with mp.workdps(DIGITS):
+            state = State(
+                mp.mpf(given.theta),
+                mp.mpf(given.omega),
+                mp.mpf(0 if direction > 0 else mp.pi),
+                mp.mpf(0),
+                mp.mpf(0),
+            )
+            motion = newton_euler(given.body, state, vector(along, 0, vertical), recess=True)
+            found = planar_rhs(given.body, given.theta, direction, along, vertical)
+            assert_close((found,), (motion.theta,), (scales_of(given, state).theta,))
+
+
+@pytest.mark.parametrize("seed", range(220, 240))
+def test_energy(seed: int) -> None:
+    given = sample(seed, twisting=bool(seed % 4))
+    body = given.body
+    with mp.workdps(DIGITS):
+        state = state_of(given)
+        kinetic = kinetic_energy(body, state)
+        potential = body.g * (body.b * mp.sin(state.theta) - body.h * (1 - mp.cos(state.theta)))
+        found = energy(body, given.theta, given.omega, given.Lambda, given.S)
+        assert_close((found,), (kinetic + potential,), (kinetic + body.g * (body.b + body.h) * state.theta,))
