@@ -25,16 +25,18 @@ def kernel(function: F) -> F:
     return cast("F", numba.njit(cache=True, nogil=True, **_OPTIONS)(function))
 
 
-def is_compiled(entry: Callable[..., Any]) -> bool:
-    """Return whether `entry` runs at once, from memory or from disk.
+def in_memory(entry: Callable[..., Any]) -> bool:
+    """Return whether `entry` is loaded, so that a call runs at once."""
+    return bool(cast("Any", entry).signatures)
 
-    The cache on disk compares only the file that holds the entry point, so what was compiled from
-    an older state of any file in this folder is removed here first.
+
+def on_disk(entry: Callable[..., Any]) -> bool:
+    """Return whether compiled code of `entry` is kept on disk.
+
+    That cache compares only the file that holds the entry point, so what was compiled from an older
+    state of any file in this folder is removed here first.
     """
-    dispatcher = cast("Any", entry)
-    if dispatcher.signatures:
-        return True
-    folder = Path(dispatcher.stats.cache_path)
+    folder = Path(cast("Any", entry).stats.cache_path)
     newest = max(path.stat().st_mtime for path in Path(__file__).parent.glob("*.py"))
     fresh = False
     for index in folder.glob(f"*{entry.__name__}-*.nbi"):

@@ -14,7 +14,7 @@ from rockwobble.models import Cylinder, GroundMotion
 
 from .driver import OVERTURNED
 from .problem import SEATING, Problem, make_problem
-from .simulate import announce_compilation
+from .simulate import make_ready
 
 # A run of a grid may take this many steps for each sample of the record. Strong shaking takes one
 # to two; only chatter without a seating rule takes more.
@@ -95,7 +95,7 @@ def peak_tilts(
     peaks = np.zeros((len(sizes), len(factors)))
     if peaks.size == 0:
         return peaks
-    announce_compilation("planar" if problems[0].is_planar() else model)
+    make_ready("planar" if problems[0].is_planar() else model)
     budget = _STEPS_AT_LEAST + _STEPS_PER_SAMPLE * len(motion.acceleration)
     with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
         rows = {pool.submit(_row, problem, factors, budget): i for i, problem in enumerate(problems)}

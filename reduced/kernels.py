@@ -63,10 +63,13 @@ def march_rolling(
     return _march_rolling(body, options, record, scale, time_step, initial, times, later)
 
 
-def compile_march(model: str) -> None:
-    """Compile the march of `model`, by running it on a cylinder at rest for a moment."""
-    march = {"planar": (march_planar, 3), "recess": (march_recess, 4), "rolling": (march_rolling, 8)}
-    entry, size = march[model]
+MARCHES = {"planar": march_planar, "recess": march_recess, "rolling": march_rolling}
+SIZES = {"planar": 3, "recess": 4, "rolling": 8}  # variables of a state
+
+
+def load(model: str) -> None:
+    """Load or compile the march of `model`, by running it on a cylinder at rest for a moment."""
     body = body_of(Cylinder(semidiagonal=1.0, tan_alpha=0.2), 9.81)
     options = Options(1e-6, 0.0, 1.0, 1.0, 1, False)
-    entry(body, options, np.zeros((0, 3)), 1.0, 1.0, (0.0,) * size, np.zeros(1), np.zeros((0, 2)))
+    start = (0.0,) * SIZES[model]
+    MARCHES[model](body, options, np.zeros((0, 3)), 1.0, 1.0, start, np.zeros(1), np.zeros((0, 2)))

@@ -16,8 +16,7 @@ from . import kernels
 from .body import Body, body_of
 from .driver import March, Options, spin_momentum
 
-MODELS = ("planar", "recess", "rolling")
-SIZES = {"planar": 3, "recess": 4, "rolling": 8}
+MODELS = tuple(kernels.MARCHES)
 
 # Tilt (over alpha) whose potential energy is too little to matter. Under El Centro on R = 6 m,
 # tan alpha = 0.2 it moves the peak tilt by less than the default tolerance does.
@@ -119,9 +118,10 @@ class Problem:
         record = _three_columns(self.motion)
         plane = self._plane(record)
         if plane is not None:
-            return SetUp(kernels.march_planar, plane.record, self._start(3, plane.azimuth), plane.azimuth)
-        march = kernels.march_recess if self.model == "recess" else kernels.march_rolling
-        return SetUp(march, record, self._start(SIZES[self.model], 0.0), 0.0)
+            start = self._start(kernels.SIZES["planar"], plane.azimuth)
+            return SetUp(kernels.march_planar, plane.record, start, plane.azimuth)
+        start = self._start(kernels.SIZES[self.model], 0.0)
+        return SetUp(kernels.MARCHES[self.model], record, start, 0.0)
 
     def _step_budget(self, samples: int) -> int:
         times = self.duration * math.sqrt(self.body.p2)
@@ -132,7 +132,7 @@ class Problem:
         initial, body = self.initial, self.body
         if initial is None or initial.tilt == 0.0:
             return (0.0,) * size
-        if size == SIZES["planar"]:
+        if size == kernels.SIZES["planar"]:
             # the azimuth of the plane or its opposite
             angle = 0.0 if math.cos(initial.rolling_angle - azimuth) >= 0.0 else math.pi
             return float(initial.tilt), float(initial.tilt_rate), angle

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rockwobble.models import Cylinder, GroundMotion, InitialState
 
 from . import kernels
-from ._compile import is_compiled
+from ._compile import in_memory, on_disk
 from .driver import COMPLETED, OVER_BUDGET, OVERTURNED, REST, March
 from .problem import SEATING, Problem, make_problem
 from .response import Response, six_columns
@@ -101,7 +101,7 @@ def simulate(
         raise ValueError(f"sample_step must be positive and finite [s], got {sample_step!r}")
     if not friction >= 0.0:
         raise ValueError(f"friction must not be negative, got {friction!r}")
-    announce_compilation("planar" if problem.is_planar() else model)
+    make_ready("planar" if problem.is_planar() else model)
     times = sample_times(problem.duration, sample_step)
     started = time.perf_counter()
     march, azimuth = problem.solve(times)
@@ -109,16 +109,13 @@ def simulate(
     return _response(problem, march, azimuth, times, friction, wall_time)
 
 
-def announce_compilation(model: str) -> None:
-    """Compile the march of `model` if need be, and say so on standard error: it takes seconds."""
-    entry = {
-        "planar": kernels.march_planar,
-        "recess": kernels.march_recess,
-        "rolling": kernels.march_rolling,
-    }[model]
-    if not is_compiled(entry):
-        print(f"rockwobble: compiling the {model} model, once for this installation ...", file=sys.stderr)
-        kernels.compile_march(model)
+def make_ready(model: str) -> None:
+    """Load the march of `model`, or compile it and say so on standard error: that takes seconds."""
+    entry = kernels.MARCHES[model]
+    if not in_memory(entry):
+        if not on_disk(entry):
+            print(f"rockwobble: compiling the {model} model, once for this installation ...", file=sys.stderr)
+        kernels.load(model)
 
 
 def sample_times(duration: float, sample_step: float) -> NDArray[np.float64]:
