@@ -10,8 +10,10 @@ import numpy as np
 from rockwobble.compare import AGREEMENT, make_pair
 
 from .case_view import CaseView, case_views
-from .palette import Style, model_style
-from .thinning import kept_samples
+from .charts.tilt import SMALLEST, WINDOW
+from .findings import own_model
+from .palette import Style
+from .thinning import envelope, kept_samples
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -28,7 +30,6 @@ _DASHES: dict[str, Any] = {
 }
 # a picture of some 800 pixels shows no more
 _POINTS = 1200
-_SMALLEST = 1e-7
 
 
 def comparison_figure(comparison: Comparison) -> bytes:
@@ -37,11 +38,13 @@ def comparison_figure(comparison: Comparison) -> bytes:
     from matplotlib.figure import Figure
 
     view = case_views(comparison)[0]
+    supports = list(dict.fromkeys(trace.support for trace in view.trajectories.values()))
     with mpl.rc_context({"svg.hashsalt": "rockwobble", "font.size": 10, "path.simplify_threshold": 0.3}):
-        figure = Figure(figsize=(8.6, 6.8), layout="constrained")
-        above, below = figure.subplots(2, 1, sharex=True)
-        _tilts(above, view)
-        _differences(below, view)
+        figure = Figure(figsize=(8.6, 2.6 + 2.3 * len(supports)), layout="constrained")
+        panels = figure.subplots(len(supports) + 1, 1, sharex=True, squeeze=False)[:, 0]
+        for axes, support in zip(panels, supports, strict=False):
+            _tilts(axes, view, support)
+        _differences(panels[-1], view)
         figure.suptitle(_title(view), fontsize=11, x=0.01, ha="left")
         buffer = io.BytesIO()
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "rockwobble"})
@@ -53,38 +56,36 @@ def _title(view: CaseView) -> str:
     return f"{view.case.name}, R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}"
 
 
-def _tilts(axes: Axes, view: CaseView) -> None:
+def _tilts(axes: Axes, view: CaseView, support: str) -> None:
+    """Draw the runs of one support over each other, with the model of that support."""
     for label, trace, style in view.lines():
-        model = label.endswith("model")
-        _line(axes, trace.time, trace.tilt / view.case.cylinder.alpha, label, style, 0.8 if model else 1.5)
+        model = label.removesuffix(" model") if label not in view.trajectories else ""
+        if model == own_model(support) or (not model and trace.support == support):
+            width = 0.8 if model else 1.6
+            _line(axes, trace.time, trace.tilt / view.case.cylinder.alpha, label, style, width)
     axes.set_ylabel("tilt / α [-]")
     axes.set_ylim(bottom=0.0)
     _finish(axes)
 
 
 def _differences(axes: Axes, view: CaseView) -> None:
+    """Draw how each run parts from the model of its support."""
     axes.axhline(AGREEMENT, color="#222222", linewidth=0.8, linestyle=(0, (5, 2)))
-    axes.annotate("1 % of α", (0.995, AGREEMENT), xycoords=("axes fraction", "data"), ha="right", va="bottom")
+    axes.annotate("1 % of α", (0.005, AGREEMENT), xycoords=("axes fraction", "data"), ha="left", va="bottom")
     for _, row in view.rows.iterrows():
-        if row.run not in view.trajectories:
+        if row.run not in view.trajectories or row.reference != own_model(row.support):
             continue
         pair = make_pair(view.case.cylinder, view.responses[row.reference], view.trajectories[row.run])
-        style = Style(colour=view.styles[row.run].colour, dash=model_style(row.reference).dash)
-        difference = np.maximum(np.abs(pair.tilt_difference), _SMALLEST)
-        _line(axes, pair.time, difference, f"{row.run} − {row.reference}", style, 0.9)
+        style = view.styles[row.run]
+        difference = np.maximum(envelope(pair.time, np.abs(pair.tilt_difference), WINDOW), SMALLEST)
+        _line(axes, pair.time, difference, f"{row.run} − {row.reference}", style, 1.3)
         if row.parted:
-            filled = row.reference == "recess"
+            end = view.start(row.reference) + row.agreement_horizon
             axes.plot(
-                view.start(row.reference) + row.agreement_horizon,
-                AGREEMENT,
-                marker="D",
-                markersize=7,
-                color=style.colour if filled else "white",
-                markeredgecolor="black" if filled else style.colour,
-                zorder=5,
+                end, AGREEMENT, "D", markersize=7, color=style.colour, markeredgecolor="black", zorder=5
             )
     axes.set_yscale("log")
-    axes.set_ylim(_SMALLEST, 10.0)
+    axes.set_ylim(SMALLEST, 3.0)
     axes.set_ylabel("|tilt difference| / α [-]")
     axes.set_xlabel("time [s]")
     _finish(axes)
@@ -92,7 +93,7 @@ def _differences(axes: Axes, view: CaseView) -> None:
 
 def _finish(axes: Axes) -> None:
     # above the axes, where it hides nothing
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, fontsize=8, frameon=False)
+    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.98), ncols=4, fontsize=8, frameon=False)
     axes.grid(color="#dddddd", linewidth=0.6)
     axes.margins(x=0.0)
 

@@ -6,6 +6,8 @@ import math
 from typing import Any
 
 PEAK_WORTH_A_WORD = 0.01  # difference of peak tilts, relative
+PLACES = {"guided": "In an ideal recess (guided)", "free": "On open ground (free)"}
+_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def finding(row: Any, length: float) -> str:
@@ -44,18 +46,18 @@ def _reason(row: Any, length: float) -> str:
     foretold = row.predicted_horizon
     if row.support == "free" and row.reference == "recess":
         return (
-            "on open ground the cylinder may roll out of its place, which the recess of that model "
-            "forbids; the difference is one of support, not of accuracy"
+            "on open ground the cylinder may roll out of its place, which a recess forbids; this is a "
+            "difference of support, not of accuracy"
         )
     if foretold < length and row.agreement_horizon >= foretold:
         return (
             f"at {seconds(foretold)} a pass comes closer to the apex than the contact resolves "
-            f"({row.contact_resolution:.1g} rad); what is left to chance there grows from then on"
+            f"({small(row.contact_resolution)} rad); what is left to chance there grows from then on"
         )
     if math.isfinite(row.closest_pass):
         return (
             f"the contact resolves every pass until then, the closest of which comes within "
-            f"{row.closest_pass:.1g} alpha of the apex; near passes amplify what small difference there is"
+            f"{small(row.closest_pass)} alpha of the apex; near passes amplify what small difference there is"
         )
     return "without a pass by the apex, so that it is an error of the method and not of chance"
 
@@ -77,23 +79,46 @@ def seconds(value: float) -> str:
     return f"{value:.2f} s" if value < 1.0 else f"{value:.1f} s"
 
 
+def small(value: float) -> str:
+    """Return a positive number with one digit, as a power of ten where it is small."""
+    if value >= 1e-3 or value <= 0.0:
+        return f"{value:.1g}"
+    digit, exponent = f"{value:.0e}".split("e")
+    # spaces that do not break
+    return f"{digit}\u00a0×\u00a010{str(int(exponent)).translate(_SUPERSCRIPTS)}"
+
+
 def headline(summary: Any, length: float) -> str:
-    """Return the one sentence that stands above everything."""
-    like = summary[summary["reference"] == summary["support"].map(own_model)]
-    rows = like if len(like) else summary
-    good = rows[rows["outcome"] != "failed"]
-    if not len(good):
-        return "No run could be compared."
-    shortest, longest = good["agreement_horizon"].min(), good["agreement_horizon"].max()
-    if not bool(good["parted"].any()):
-        return (
-            f"Every engine agrees with the reduced model of its support for the whole run ({length:.1f} s)."
+    """Return what stands above everything: how long the runs of each support follow their own model."""
+    parts = []
+    parted = False
+    for support in summary["support"].unique():
+        rows = summary[(summary["support"] == support) & (summary["outcome"] != "failed")]
+        own = rows[rows["reference"] == own_model(support)]
+        rows = own if len(own) else rows
+        if not len(rows):
+            continue
+        parted = parted or bool(rows["parted"].any())
+        models = " and ".join(rows["reference"].unique())
+        follow = "follow" if len(rows) > 1 else "follows"
+        engines = " and ".join(rows["engine"].unique())
+        parts.append(
+            f"{PLACES.get(support, f'With support {support}')}, {engines} {follow} the {models} model within "
+            f"1 % of alpha {_span(rows, length)}."
         )
+    if not parts:
+        return "No run could be compared."
+    if parted:
+        parts.append("From then on compare distributions, not traces.")
+    return " ".join(parts)
+
+
+def _span(rows: Any, length: float) -> str:
+    if not bool(rows["parted"].any()):
+        return f"for the whole run ({length:.1f} s)"
+    shortest, longest = rows["agreement_horizon"].min(), rows["agreement_horizon"].max()
     span = seconds(longest) if shortest == longest else f"{seconds(shortest)} to {seconds(longest)}"
-    return (
-        f"Engines and the reduced models of their supports agree within 1 % of alpha for {span} from uplift "
-        "or release; beyond that, compare distributions and not traces."
-    )
+    return f"for {span} from uplift or release"
 
 
 def own_model(support: str) -> str:

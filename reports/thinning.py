@@ -39,3 +39,25 @@ def kept_samples(*columns: NDArray[np.float64], points: int = POINTS) -> NDArray
             values = np.where(gap, filled, column)
             chosen.append(np.array([a + pick(values[a:b]) for a, b in pairwise(edges)], dtype=np.intp))
     return np.unique(np.concatenate(chosen))
+
+
+def envelope(time: NDArray[np.float64], values: NDArray[np.float64], window: float) -> NDArray[np.float64]:
+    """Return the largest value within the last `window` seconds, shape (n,).
+
+    A difference of two oscillations passes zero all the time; its envelope shows its size. It first
+    exceeds a bound exactly where the values do.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        Even steps but for the last [s].
+    values : ndarray, shape (n,)
+    window : float
+        [s].
+    """
+    if len(time) < 2:
+        return values
+    count = max(1, round(window / float(time[1] - time[0])))
+    padded = np.concatenate([np.full(count - 1, -np.inf), values])
+    upper: NDArray[np.float64] = np.lib.stride_tricks.sliding_window_view(padded, count).max(axis=1)
+    return upper

@@ -9,14 +9,18 @@ import numpy as np
 from rockwobble.compare import AGREEMENT, make_pair
 
 from ..case_view import CaseView
+from ..findings import own_model
 from ..palette import model_style
+from ..thinning import envelope
 from .layout import TIME_TITLE, add_line, new_figure, reserve_legend
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
 # smaller differences are drawn here: a logarithm has no zero [alpha]
-SMALLEST = 1e-8
+SMALLEST = 1e-7
+# the difference is drawn as its largest value within this time, about one swing [s]
+WINDOW = 1.0
 
 
 def tilt_chart(view: CaseView) -> go.Figure:
@@ -33,11 +37,43 @@ def tilt_chart(view: CaseView) -> go.Figure:
             hovertemplate="%{y:.4f} α at %{x:.2f} s",
         )
     figure.update_yaxes(rangemode="nonnegative")
+    _add_choice(figure, view)
     return reserve_legend(figure, len(figure.data))
 
 
+def _add_choice(figure: go.Figure, view: CaseView) -> None:
+    """Add buttons that show the runs of one support alone, with the model of that support."""
+    supports = list(dict.fromkeys(trace.support for trace in view.trajectories.values()))
+    if len(supports) < 2:
+        return
+    of = [
+        trace.support if label in view.trajectories else label.removesuffix(" model")
+        for label, trace, _ in view.lines()
+    ]
+    buttons = [{"label": "all", "method": "restyle", "args": [{"visible": True}]}]
+    for support in supports:
+        shown = [True if name in (support, own_model(support)) else "legendonly" for name in of]
+        buttons.append({"label": f"only {support}", "method": "restyle", "args": [{"visible": shown}]})
+    figure.update_layout(
+        margin_t=48,
+        updatemenus=[
+            {
+                "type": "buttons",
+                "direction": "right",
+                "buttons": buttons,
+                "x": 0.0,
+                "xanchor": "left",
+                "y": 1.02,
+                "yanchor": "bottom",
+                "pad": {"b": 2},
+                "showactive": True,
+            }
+        ],
+    )
+
+
 def difference_chart(view: CaseView) -> go.Figure:
-    """Return |tilt difference| of each row of the summary, with its horizon marked."""
+    """Return the envelope of |tilt difference| of each row of the summary, with its horizon marked."""
     import plotly.graph_objects as go
 
     figure = new_figure(TIME_TITLE, "|tilt difference| / α [-]")
@@ -64,10 +100,10 @@ def difference_chart(view: CaseView) -> go.Figure:
         add_line(
             figure,
             pair.time,
-            np.maximum(np.abs(pair.tilt_difference), SMALLEST),
+            np.maximum(envelope(pair.time, np.abs(pair.tilt_difference), WINDOW), SMALLEST),
             name,
             type(style)(colour=style.colour, dash=other.dash),
-            width=1.2,
+            width=1.6,
             legendgroup=name,
             hovertemplate="%{y:.2e} α at %{x:.2f} s",
         )

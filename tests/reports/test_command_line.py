@@ -47,7 +47,10 @@ BAD = {
     "negative dimension": (["--semidiagonal", "-6"], "semidiagonal must be positive [m], got -6.0"),
     "zero dimension": (["--tan-alpha", "0"], "tan_alpha must be positive, got 0.0"),
     "text for a number": (["--semidiagonal", "six"], "Invalid value for '--semidiagonal'"),
-    "not a number in a record": (record("nan.csv"), "nan.csv, line 3: a sample must be a finite number, got 'nan'"),
+    "not a number in a record": (
+        record("nan.csv"),
+        "line 3: a sample must be a finite number, got 'nan'",
+    ),
     "text cell in a record": (record("text.csv"), "text.csv, line 3: expected two numbers"),
     "different time steps": (record("slow.csv"), "must have one time step, got 0.02 s in slow.csv"),
     "no units": (

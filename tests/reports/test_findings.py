@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from rockwobble.reports.findings import finding, headline
+from rockwobble.reports.findings import finding, headline, small
 
 LENGTH = 50.0
 
@@ -42,7 +42,7 @@ def test_agreement_to_the_end():
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({}, "at 18.0 s a pass comes closer to the apex than the contact resolves (2e-05 rad)"),
+        ({}, "at 18.0 s a pass comes closer to the apex than the contact resolves (2 × 10⁻⁵ rad)"),
         ({"predicted_horizon": 30.0}, "the closest of which comes within 0.003 alpha of the apex"),
         ({"predicted_horizon": 30.0, "closest_pass": math.nan}, "an error of the method and not of chance"),
         ({"support": "free"}, "on open ground the cylinder may roll out"),
@@ -78,9 +78,25 @@ def table(*rows):
 
 
 def test_headline_speaks_of_each_run_against_the_model_of_its_support():
-    guided = row(agreement_horizon=20.0)
+    first = row(agreement_horizon=20.0)
+    second = row(engine="pybullet", agreement_horizon=12.0)
     other = row(support="free", agreement_horizon=2.0)
-    own = row(support="free", reference="rolling", agreement_horizon=9.0)
-    assert "for 9.0 s to 20.0 s from uplift" in headline(table(guided, other, own), LENGTH)
-    assert "for the whole run (50.0 s)" in headline(table(row(parted=False)), LENGTH)
+    own = row(support="free", reference="rolling", parted=False, agreement_horizon=50.0)
+    assert headline(table(first, second, other, own), LENGTH) == (
+        "In an ideal recess (guided), mujoco and pybullet follow the recess model within 1 % of alpha "
+        "for 12.0 s to 20.0 s from uplift or release. "
+        "On open ground (free), mujoco follows the rolling model within 1 % of alpha "
+        "for the whole run (50.0 s). "
+        "From then on compare distributions, not traces."
+    )
+    assert headline(table(row(parted=False)), LENGTH).endswith(
+        "within 1 % of alpha for the whole run (50.0 s)."
+    )
     assert headline(table(row(outcome="failed")), LENGTH) == "No run could be compared."
+
+
+@pytest.mark.parametrize(
+    ("value", "text"), [(0.0213, "0.02"), (0.001, "0.001"), (2.4e-5, "2 × 10⁻⁵"), (9.7e-11, "1 × 10⁻¹⁰")]
+)
+def test_small_numbers_can_be_read(value, text):
+    assert small(value) == text

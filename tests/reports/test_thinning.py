@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rockwobble.reports.thinning import POINTS, kept_samples
+from rockwobble.reports.thinning import POINTS, envelope, kept_samples
 
 
 def test_few_samples_are_all_kept():
@@ -41,3 +41,14 @@ def test_a_path_keeps_the_extremes_of_both_coordinates():
     for coordinate in (x, y):
         assert coordinate[keep].max() == coordinate.max()
         assert coordinate[keep].min() == coordinate.min()
+
+
+def test_envelope_is_the_largest_of_the_last_second_and_crosses_where_the_values_do():
+    time = np.arange(1001) * 0.01
+    values = np.abs(np.sin(np.pi * time)) * np.exp(0.5 * time)
+    upper = envelope(time, values, 1.0)
+    assert np.argmax(upper > 5.0) == np.argmax(values > 5.0)
+    assert upper[500] == values[401:501].max()
+    assert upper[0] == values[0]
+    assert (upper >= values).all()
+    assert envelope(time[:1], values[:1], 1.0).tolist() == values[:1].tolist()
