@@ -3,7 +3,7 @@
 from .comparison import Comparison, describe_case, describe_run
 from .contact import TILTED
 from .driver import compare
-from .execution import Job, Progress, simulate_all
+from .execution import Crash, Job, Progress, simulate_all
 from .horizon import AGREEMENT
 from .runs import default_runs, installed_engines, missing_engines, require_runnable
 from .store import replace_files, require_writable
@@ -16,6 +16,7 @@ __all__ = [
     "SUMMARY_COLUMNS",
     "TILTED",
     "Comparison",
+    "Crash",
     "Job",
     "Pair",
     "Progress",

@@ -89,20 +89,16 @@ def simulate(job: Job) -> Any:
 def _reduced(case: Case, model: str) -> Any:
     from rockwobble import reduced
 
-    def run() -> Any:
-        return reduced.simulate(
-            case.cylinder,
-            case.motion,
-            initial=case.initial,
-            duration=case.duration,
-            sample_step=SAMPLE_STEP,
-            gravity=case.gravity,
-            friction=case.friction,
-            model=model,
-        )
-
-    run()  # loads or compiles the machine code: no part of the computing time of the second
-    response = run()
+    response = reduced.simulate(
+        case.cylinder,
+        case.motion,
+        initial=case.initial,
+        duration=case.duration,
+        sample_step=SAMPLE_STEP,
+        gravity=case.gravity,
+        friction=case.friction,
+        model=model,
+    )
     _ = response.energy  # computed here, so that it travels with the response
     return response
 

@@ -47,15 +47,11 @@ def comparison_page(comparison: Comparison, command: str = "") -> str:
         cases=[_case(view, index) for index, view in enumerate(views)],
         columns=[
             {"name": name, "unit": unit, "meaning": meaning}
-            for name, (unit, meaning) in sorted(SUMMARY_COLUMNS.items(), key=_words_last)
+            for name, (unit, meaning) in SUMMARY_COLUMNS.items()
             if name not in ("case", "run")
         ],
         versions=comparison.versions,
     )
-
-
-def _words_last(column: tuple[str, Any]) -> bool:
-    return column[0] == "message"  # the only wide one
 
 
 def _case(view: CaseView, index: int) -> dict[str, Any]:

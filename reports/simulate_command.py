@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import options
-from .terminal import interruptible, user_input
+from .terminal import FAILED, complain, interruptible, user_input
 
 if TYPE_CHECKING:
     from rockwobble.compare import Job
@@ -95,13 +95,17 @@ def simulate(
 
 
 def _run(job: Job) -> Any:
-    from rockwobble.compare import simulate_all
+    from rockwobble.compare import Crash, simulate_all
 
     from .progress import shown_progress
 
     with user_input(), shown_progress() as tell:
         # in a process of its own, so that Ctrl-C also stops an engine in the middle of a long call
-        return simulate_all([job], workers=2, progress=tell)[0]
+        result = simulate_all([job], workers=2, progress=tell)[0]
+    if isinstance(result, Crash):
+        complain(f"{job.label} left no result: {result.message}")
+        raise typer.Exit(FAILED)
+    return result
 
 
 def _print_result(case: Case, trace: Any, label: str) -> None:

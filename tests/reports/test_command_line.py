@@ -249,3 +249,14 @@ def _alive(pid: int) -> bool:
     except ProcessLookupError:
         return False
     return True
+
+
+def test_a_run_that_takes_its_process_with_it_is_one_line_and_exit_code_1(folder, monkeypatch, capsys):
+    crash = execution.Crash("the process ended with status -11")
+    monkeypatch.setattr("rockwobble.compare.simulate_all", lambda *_, **__: [crash])
+    assert call("simulate", "--engine", "mujoco") == 1
+    assert (
+        capsys.readouterr().err
+        == "rockwobble: mujoco guided left no result: the process ended with status -11\n"
+    )
+    assert not (folder / "rockwobble-out").exists()
