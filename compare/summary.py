@@ -82,8 +82,8 @@ def summary_row(
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
     horizon = agreement_horizon(whole, broken="failed" in (trial.outcome, reference.outcome))
     direction = direction_difference(reference, trial)
-    turned_until = min(horizon.end, first_unresolved_pass(trial))
-    return {
+    turned_until = min(horizon.end, first_unresolved_pass(trial, start=whole.start))
+    row = {
         "case": case.name,
         "reference": model,
         "engine": trial.engine,
@@ -91,7 +91,7 @@ def summary_row(
         "time_step": trial.time_step,
         "outcome": trial.outcome,
         "reference_outcome": reference.outcome,
-        "message": _message(model, reference, trial, whole.end, case.length),
+        "message": "",
         "peak_tilt": trial.peak_tilt / alpha,
         "reference_peak_tilt": reference.peak_tilt / alpha,
         "peak_tilt_difference": (trial.peak_tilt - reference.peak_tilt) / alpha,
@@ -118,6 +118,8 @@ def summary_row(
         "engine_version": trial.engine_version,
         "run": label,
     }
+    row["message"] = _message(model, reference, trial, whole.end, case.length, _undefined(row))
+    return row
 
 
 def crashed_row(
@@ -144,7 +146,14 @@ def crashed_row(
     return row
 
 
-def _message(model: str, reference: Trace, trial: EngineTrace, end: float, length: float) -> str:
+def _undefined(row: dict[str, Any]) -> list[str]:
+    """Names of the numbers of a row that are none."""
+    return [name for name, value in row.items() if isinstance(value, float) and not math.isfinite(value)]
+
+
+def _message(
+    model: str, reference: Trace, trial: EngineTrace, end: float, length: float, undefined: list[str]
+) -> str:
     """Say in words what the numbers of a row must not hide."""
     engine = trial.engine
     notes = []
@@ -172,4 +181,6 @@ def _message(model: str, reference: Trace, trial: EngineTrace, end: float, lengt
         notes.append(f"compared up to {end:.4g} s")
     if trial.message and trial.outcome != "failed":
         notes.append(trial.message)
+    if undefined:
+        notes.append(f"not defined here: {', '.join(undefined)}")
     return "; ".join(notes)

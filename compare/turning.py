@@ -44,10 +44,14 @@ def turn_difference(pair: Pair, *, until: float, direction_difference: float = 0
     return float(difference[both[-1]]) - 2.0 * math.pi * round(offset / (2.0 * math.pi))
 
 
-def first_unresolved_pass(trial: Trace) -> float:
-    """Return the time of the engine's first pass below its contact resolution [s]; inf if none."""
+def first_unresolved_pass(trial: Trace, *, start: float = 0.0) -> float:
+    """Return the time of the engine's first pass below its contact resolution [s]; inf if none.
+
+    Passes before `start`, the uplift of the reference, are those of a base that settles in its contact.
+    """
     passes = trial.passes
     if "resolved" not in passes:
         return math.inf
-    times = np.asarray(passes["time"], dtype=np.float64)[~np.asarray(passes["resolved"], dtype=bool)]
-    return float(times[0]) if len(times) else math.inf
+    times = np.asarray(passes["time"], dtype=np.float64)
+    counts = ~np.asarray(passes["resolved"], dtype=bool) & (times > start)
+    return float(times[counts][0]) if counts.any() else math.inf

@@ -109,7 +109,7 @@ def headline(summary: Any, length: float) -> str:
     if not parts:
         return "No run could be compared."
     if parted:
-        parts.append("From then on compare distributions, not traces.")
+        parts.append("Once traces have parted, compare distributions.")
     return " ".join(parts)
 
 

@@ -78,8 +78,8 @@ _COLUMNS = (
 
 
 LEGEND = (
-    "peak, model: largest tilt of the run and of the reduced model. RMS: tilt difference over tilt.\n"
-    "agrees: until the tilts differ by 1 % of alpha (+ they never do). foretold: first pass by the apex\n"
-    "that is too close for the contact. moved, twist: how the cylinder stands at the end.\n"
+    "peak, model: largest tilt of the run and of the reduced model. RMS: tilt difference over tilt. "
+    "agrees: until the tilts differ by 1 % of alpha (+ they never do). foretold: first pass by the apex "
+    "that is too close for the contact. moved, twist: how the cylinder stands at the end. "
     "time: computing time of the engine. ratio: the same over that of the reduced model."
 )

@@ -150,7 +150,7 @@ def test_two_that_never_move_agree_and_say_so(made_up, case):
     still = {"tilt": np.zeros(1001), "uplift_time": math.nan, "uplift_direction": math.nan, "outcome": "rest"}
     made_up(still, still)
     row = compare(case, runs=[Run("mujoco", "guided")], workers=1).summary.iloc[0]
-    assert row.message == "neither uplifted: there is no motion to compare"
+    assert row.message.startswith("neither uplifted: there is no motion to compare; not defined here: ")
     assert (row.tilt_rms, row.parted, row.agreement_horizon) == (0.0, False, 10.0)
 
 
@@ -158,10 +158,18 @@ def test_a_run_that_fails_half_way_is_compared_up_to_there(made_up, case, cylind
     tilt = np.where(np.arange(1001) > 400, np.nan, 0.3 * cylinder.alpha)
     made_up({"tilt": tilt, "outcome": "failed", "message": "not a number", "peak_tilt": math.nan})
     row = compare(case, runs=[Run("mujoco", "guided")], workers=1).summary.iloc[0]
-    assert row.message == "mujoco failed: not a number; compared up to 4 s"
+    assert row.message == (
+        "mujoco failed: not a number; compared up to 4 s; not defined here: peak_tilt, peak_tilt_difference"
+    )
     assert math.isnan(row.peak_tilt)
     assert row.tilt_rms == 0.0
     assert (row.agreement_horizon, row.parted) == (4.0, True)
+
+
+def test_no_number_is_missing_without_a_word(made_up, case):
+    made_up({"energy": np.full(1001, np.nan), "residual_twist": math.nan})
+    row = compare(case, runs=[Run("mujoco", "guided")], workers=1).summary.iloc[0]
+    assert row.message == "not defined here: residual_twist, energy_loss"
 
 
 def test_a_process_that_dies_is_a_failed_row(monkeypatch, made_up, case):

@@ -64,6 +64,8 @@ def test_first_unresolved_pass(make_trace, time):
     tilt = np.full_like(time, 0.1)
     assert first_unresolved_pass(make_trace(time, tilt, passes=passes, unresolved=[3.0, 5.0])) == 3.0
     assert first_unresolved_pass(make_trace(time, tilt, passes=passes, unresolved=[])) == math.inf
+    early = make_trace(time, tilt, passes=passes, unresolved=[1.0, 5.0])
+    assert first_unresolved_pass(early, start=2.0) == 5.0
 
 
 def test_contact_points_apart_by_a_fixed_angle(cylinder, make_trace, time):

@@ -87,7 +87,7 @@ def test_headline_speaks_of_each_run_against_the_model_of_its_support():
         "for 12.0 s to 20.0 s from uplift or release. "
         "On open ground (free), mujoco follows the rolling model within 1 % of alpha "
         "for the whole run (50.0 s). "
-        "From then on compare distributions, not traces."
+        "Once traces have parted, compare distributions."
     )
     assert headline(table(row(parted=False)), LENGTH).endswith(
         "within 1 % of alpha for the whole run (50.0 s)."
