@@ -1,0 +1,80 @@
+"""What is installed: the folders under their names, their data, the command, and nothing heavy at import."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+import time
+from importlib.metadata import entry_points, version
+from importlib.resources import files
+from pathlib import Path
+
+import pytest
+
+import rockwobble
+
+CHECKOUT = Path(__file__).parents[1]
+FOLDERS = ["models", "reduced", "multibody", "compare", "reports"]
+# more than twice what a loaded machine needs; an engine or pandas at import takes longer than this
+HELP_SECONDS = 1.0
+HEAVY = ["mujoco", "pybullet", "pandas", "pyarrow", "plotly", "matplotlib", "jinja2", "scipy", "sympy"]
+
+
+def run(*command: str) -> str:
+    return subprocess.run(command, check=True, capture_output=True, text=True, timeout=60).stdout
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_each_folder_is_a_typed_package_of_the_namespace(folder: str) -> None:
+    package = files(f"rockwobble.{folder}")
+    assert (package / "__init__.py").is_file()
+    assert (package / "py.typed").is_file()
+
+
+def test_the_namespace_holds_nothing_else() -> None:
+    inside = {path.name for place in rockwobble.__path__ for path in Path(place).iterdir()}
+    assert inside - {"__pycache__"} == set(FOLDERS)
+
+
+@pytest.mark.parametrize("folder", FOLDERS)
+def test_every_data_file_of_the_checkout_is_installed(folder: str) -> None:
+    installed = files(f"rockwobble.{folder}")
+    data = [
+        path.relative_to(CHECKOUT / folder)
+        for path in (CHECKOUT / folder).rglob("*")
+        if path.is_file()
+        and path.suffix not in (".py", ".pyc", ".nbi", ".nbc")
+        and "published" not in path.parts
+    ]
+    assert Path("py.typed") in data
+    missing = [str(path) for path in data if not installed.joinpath(*path.parts).is_file()]
+    assert missing == []
+
+
+def test_the_records_are_data_of_the_package() -> None:
+    names = {entry.name for entry in (files("rockwobble.models") / "records").iterdir()}
+    assert {name[-8:] for name in names if name.endswith(".AT2")} == {"hor1.AT2", "hor2.AT2", "C-UP.AT2"}
+    assert "README.md" in names
+
+
+def test_the_command_is_installed_and_knows_its_version() -> None:
+    (command,) = entry_points(group="console_scripts", name="rockwobble")
+    assert command.value == "rockwobble.reports.main:main"
+    script = Path(sys.executable).with_name("rockwobble")
+    assert run(str(script), "--version").strip() == f"rockwobble {version('rockwobble')}"
+
+
+def test_help_comes_at_once() -> None:
+    script = str(Path(sys.executable).with_name("rockwobble"))
+    shortest = 60.0
+    for _ in range(3):  # the shortest of three: the machine may be busy with something else
+        begin = time.perf_counter()
+        assert "compare" in run(script, "--help")
+        shortest = min(shortest, time.perf_counter() - begin)
+    assert shortest < HELP_SECONDS
+
+
+@pytest.mark.parametrize("module", ["models", "multibody", "compare", "reports.main"])
+def test_importing_loads_no_engine_and_no_tables(module: str) -> None:
+    print_heavy = f"import sys, rockwobble.{module}; print(*sorted(set({HEAVY!r}) & set(sys.modules)))"
+    assert run(sys.executable, "-c", print_heavy).split() == []
