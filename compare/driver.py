@@ -135,7 +135,7 @@ def _table(rows: list[dict[str, Any]]) -> Any:
 
 
 def _versions() -> dict[str, str]:
-    versions = {"python": platform.python_version(), "platform": platform.platform()}
+    versions = {"python": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
     for package in ("rockwobble", "numpy", "scipy", "numba", "mujoco", "pybullet"):
         try:
             versions[package] = importlib.metadata.version(package)

@@ -45,7 +45,7 @@ def case_from_options(
         initial = InitialState(tilt=math.radians(release_tilt_deg), rolling_rate=rolling_rate)
     if motion is None and duration is None:
         duration = FREE_DURATION
-    name = "free response" if motion is None else motion.name
+    name = "free response" if motion is None else motion.name + (f" × {scale:g}" if scale != 1.0 else "")
     return Case(name, cylinder, motion, initial, duration)
 
 

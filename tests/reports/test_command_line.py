@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import importlib.util
 import json
 import os
 import re
@@ -128,7 +129,8 @@ def test_compare_prints_and_writes(folder, no_engines, capsys):
         "report.html",
         "figure.svg",
     }
-    assert len(pd.read_csv(folder / "results" / "summary.csv")) == 3
+    summary = pd.read_csv(folder / "results" / "summary.csv")
+    assert summary["case"].tolist() == ["El Centro 1940 × 1.5"] * 3
     assert (folder / "results" / "mine.txt").read_text() == "mine"
 
 
@@ -139,6 +141,16 @@ def test_an_engine_that_is_not_installed_is_left_out_with_a_note(folder, no_engi
     captured = capsys.readouterr()
     assert captured.err == "rockwobble: pybullet is not installed here and is left out\n"
     assert "pybullet" not in captured.out
+
+
+@pytest.mark.parametrize("command", ["compare", "simulate"])
+def test_naming_an_engine_that_is_not_installed_is_bad_input(folder, monkeypatch, capsys, command):
+    find = importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "pybullet" else find(name))
+    assert call(command, "--engine", "pybullet") == 2
+    captured = capsys.readouterr()
+    assert re.fullmatch(r"rockwobble: engine 'pybullet' is not installed here: [^\n]+\n", captured.err)
+    assert list(folder.glob("rockwobble-out")) == []
 
 
 def test_free_response_from_the_command_line(folder, no_engines, capsys):
