@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -48,7 +49,7 @@ class SetUp(NamedTuple):
     azimuth: float  # from which the angles of the march count [rad]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Problem:
     """One run of a reduced model, solved as often as something new is asked of it."""
 
@@ -63,7 +64,7 @@ class Problem:
     plane: float
     restitution: float
 
-    @property
+    @cached_property
     def body(self) -> Body:
         """The constants of the equations."""
         return body_of(self.cylinder, self.gravity)
@@ -75,7 +76,7 @@ class Problem:
         record_steps: bool = False,
     ) -> tuple[March, float]:
         """Return the march with states at `times` (n,) [s], and the azimuth its angles count from."""
-        set_up = self._set_up()
+        set_up = self._set_up
         options = self._options(self._step_budget(len(set_up.record)), record_steps)
         march: March = set_up.march(
             self.body, options, set_up.record, 1.0, self._time_step, set_up.start, times, np.empty((0, 2))
@@ -84,7 +85,7 @@ class Problem:
 
     def scaled_solver(self, step_budget: int) -> Callable[[float], March]:
         """Return a function of a factor on the motion that marches for the peak only."""
-        set_up, body = self._set_up(), self.body
+        set_up, body = self._set_up, self.body
         options = self._options(step_budget, record_steps=False)
         later = strongest_and_lightest(set_up.record)
         times = np.empty(0)
@@ -99,7 +100,7 @@ class Problem:
 
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""
-        return self._plane(_three_columns(self.motion)) is not None
+        return len(self._set_up.start) == kernels.SIZES["planar"]
 
     @property
     def _time_step(self) -> float:
@@ -110,6 +111,7 @@ class Problem:
         seating = max(self.seating, least_seating)
         return Options(self.rtol, seating, self.restitution, self.duration, step_budget, record_steps)
 
+    @cached_property
     def _set_up(self) -> SetUp:
         """Choose the march: motion that stays in one vertical plane is solved as planar.
 

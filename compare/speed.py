@@ -1,0 +1,296 @@
+"""How much faster the reduced kernel is than other solvers on the same equations.
+
+One run: El Centro on R = 6 m, tan(alpha) = 0.2 until ten seconds after uplift. Each solver gets the
+loosest tolerance with which its own error at the end is below 1e-7 alpha; then all are timed in turn,
+round after round, so that a change of the machine's speed meets them alike, and the ratio is taken
+inside each round. ``python -m rockwobble.compare.speed`` prints the table.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble import reduced
+from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+TARGET = 1e-7  # error at the end, in alpha
+_AFTER_UPLIFT = 10.0  # [s]
+_START = 2e-3  # the other solvers start this long after uplift [s]: it is singular for them
+_TOLERANCES = 10.0 ** -np.arange(5.0, 13.1, 0.25)
+
+Method = Literal["RK45", "DOP853", "LSODA"]
+State = NDArray[np.float64]
+Rates = Any  # (t, y) -> y'; Python or compiled
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Problem:
+    """The run, its start for solvers that cannot uplift, and its exact end."""
+
+    cylinder: Cylinder
+    motion: GroundMotion
+    end: float
+    start: float
+    state: State  # theta, theta', phi, L at the start
+    exact: State  # theta, theta' at the end
+
+    def error(self, state: State) -> float:
+        """Error of theta and theta'/p at the end, in alpha."""
+        p = math.sqrt(12.0 / (15.0 + math.cos(self.cylinder.alpha) ** 2) * 9.81 / self.cylinder.semidiagonal)
+        tilt, rate = abs(state[0] - self.exact[0]), abs(state[1] - self.exact[1])
+        return float(max(tilt, rate / p)) / self.cylinder.alpha
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Solver:
+    """One way to solve the problem: a function of the tolerance that returns end state and calls."""
+
+    name: str
+    solve: Callable[[float], tuple[State, int]]
+
+
+def el_centro_problem() -> Problem:
+    """Return the problem of the benchmark."""
+    cylinder, motion = Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940()
+    uplift = reduced.simulate(cylinder, motion, rtol=1e-13).uplift_time
+    end = uplift + _AFTER_UPLIFT
+    start = reduced.simulate(cylinder, motion, rtol=1e-13, duration=uplift + _START)
+    exact = reduced.simulate(cylinder, motion, rtol=1e-13, duration=end)
+    state = np.array([start.tilt[-1], start.tilt_rate[-1], start.rolling_angle[-1], start.momentum[-1]])
+    return Problem(
+        cylinder=cylinder,
+        motion=motion,
+        end=end,
+        start=uplift + _START,
+        state=state,
+        exact=np.array([exact.tilt[-1], exact.tilt_rate[-1]]),
+    )
+
+
+def kernel(problem: Problem) -> Solver:
+    """The reduced kernel, from rest, uplift included."""
+
+    def solve(rtol: float) -> tuple[State, int]:
+        response = reduced.simulate(
+            problem.cylinder, problem.motion, duration=problem.end, rtol=rtol, sample_step=problem.end
+        )
+        return np.array([response.tilt[-1], response.tilt_rate[-1]]), 6 * response.step_count
+
+    return Solver(name="rockwobble", solve=solve)
+
+
+def scipy_solver(problem: Problem, method: Method, rates: Rates, language: str) -> Solver:
+    """One of scipy's solvers, over the whole record."""
+    from scipy.integrate import solve_ivp
+
+    scale = np.array([1e-3, 1e-3, 1.0, 1e-3])  # of tilts, rates, angles and momenta
+
+    def solve(rtol: float) -> tuple[State, int]:
+        run = solve_ivp(
+            rates, (problem.start, problem.end), problem.state, method, rtol=rtol, atol=rtol * scale
+        )
+        return run.y[:2, -1], int(run.nfev)
+
+    return Solver(name=f"scipy {method}, {language}", solve=solve)
+
+
+def python_rates(problem: Problem) -> Rates:
+    """Return the equations as one writes them for scipy: plain Python and the math module."""
+    from math import cos, sin
+
+    b, h = problem.cylinder.base_radius, problem.cylinder.half_height
+    I1, I2, g = (3.0 * b * b + 4.0 * h * h) / 12.0, 0.5 * b * b, 9.81
+    A, J, C, E = I1 + h * h + b * b, I1 + h * h, I2 + b * b, h * b
+    samples = [tuple(row) for row in problem.motion.acceleration.tolist()]
+    per_second = 1.0 / problem.motion.time_step
+
+    def rates(t: float, y: Any) -> list[float]:
+        theta, omega, phi, L = y
+        position = t * per_second
+        i = int(position)
+        part = position - i
+        (ax, ay), (bx, by) = samples[i], samples[i + 1]
+        ax += (bx - ax) * part
+        ay += (by - ay) * part
+        s, c = sin(theta), cos(theta)
+        v = s * s / (1.0 + c)
+        B = J * s * s + (2.0 * E * s + C * v) * v
+        phi_rate = L / B
+        sp, cp = sin(phi), cos(phi)
+        lever = h * s + b * v
+        acceleration = ((J * c + C * v) * s + E * (c * v + s * s)) * phi_rate * phi_rate
+        acceleration -= g * (b * c - h * s) + (b * s + h * c) * (ax * cp + ay * sp)
+        return [omega, acceleration / A, phi_rate, lever * (ax * sp - ay * cp)]
+
+    return rates
+
+
+def compiled_rates(problem: Problem) -> Rates:
+    """Return the same function compiled by numba, which scipy still calls through Python."""
+    import numba
+
+    plain: Any = python_rates(problem)
+    samples = np.array(problem.motion.acceleration)
+    # the same code on an array instead of a list of tuples
+    names = dict(zip(plain.__code__.co_freevars, (c.cell_contents for c in plain.__closure__), strict=True))
+    names["samples"] = samples
+    cells = tuple(_cell(names[name]) for name in plain.__code__.co_freevars)
+    function = type(plain)(plain.__code__, plain.__globals__, "rates", None, cells)
+    return numba.njit(function)
+
+
+def _cell(value: object) -> Any:
+    return (lambda: value).__closure__[0]  # type: ignore[index]
+
+
+def heyoka_solver(problem: Problem) -> Solver | None:
+    """Taylor series compiled by heyoka, sample by sample; None where it is not installed."""
+    try:
+        import heyoka as hy
+    except ImportError:
+        return None
+    b, h = problem.cylinder.base_radius, problem.cylinder.half_height
+    I1, I2, g = (3.0 * b * b + 4.0 * h * h) / 12.0, 0.5 * b * b, 9.81
+    A, J, C, E = I1 + h * h + b * b, I1 + h * h, I2 + b * b, h * b
+    theta, omega, phi, L = hy.make_vars("theta", "omega", "phi", "L")
+    # acceleration at the last sample and its rate, time counted from that sample
+    ax, ay = hy.par[0] + hy.par[2] * hy.time, hy.par[1] + hy.par[3] * hy.time
+    s, c = hy.sin(theta), hy.cos(theta)
+    v = s * s / (1.0 + c)
+    phi_rate = L / (J * s * s + (2.0 * E * s + C * v) * v)
+    acceleration = ((J * c + C * v) * s + E * (c * v + s * s)) * phi_rate * phi_rate
+    acceleration -= g * (b * c - h * s) + (b * s + h * c) * (ax * hy.cos(phi) + ay * hy.sin(phi))
+    lever = h * s + b * v
+    system = [
+        (theta, omega),
+        (omega, acceleration / A),
+        (phi, phi_rate),
+        (L, lever * (ax * hy.sin(phi) - ay * hy.cos(phi))),
+    ]
+    step, samples = problem.motion.time_step, problem.motion.acceleration
+    slopes = np.diff(samples, axis=0) / step
+    integrators: dict[float, Any] = {}
+
+    def solve(rtol: float) -> tuple[State, int]:
+        if rtol not in integrators:
+            integrators[rtol] = hy.taylor_adaptive(system, state=problem.state.copy(), tol=rtol)
+        run = integrators[rtol]
+        run.state[:] = problem.state
+        first, last, steps = int(problem.start / step), int(problem.end / step), 0
+        for i in range(first, last + 1):
+            run.pars[:2], run.pars[2:] = samples[i], slopes[i]
+            run.time = problem.start - i * step if i == first else 0.0
+            steps += run.propagate_until(problem.end - i * step if i == last else step)[3]
+        return np.array(run.state[:2]), steps
+
+    return Solver(name="heyoka (compiled)", solve=solve)
+
+
+def loosest_tolerance(problem: Problem, solver: Solver) -> float:
+    """Return the largest tolerance from which on the error stays below the target.
+
+    An error that happens to be small at one tolerance does not count: the next two must hold too.
+    """
+    errors: list[float] = []
+    for rtol in _TOLERANCES:
+        errors.append(problem.error(solver.solve(float(rtol))[0]))
+        if len(errors) >= 3 and max(errors[-3:]) <= TARGET:
+            return float(_TOLERANCES[len(errors) - 3])
+    raise ValueError(f"{solver.name} does not reach an error of {TARGET:g} alpha")
+
+
+def measure(
+    *, rounds: int = 7, compiled: bool = True, say: Callable[[str], None] | None = None
+) -> pd.DataFrame:
+    """Time the solvers in turn and return one row each.
+
+    Parameters
+    ----------
+    rounds : int, optional
+        How often each is timed.
+    compiled : bool, optional
+        Whether to give scipy the equations compiled, too.
+    say : callable, optional
+        Called with a line of progress.
+
+    Returns
+    -------
+    DataFrame
+        solver, ratio (median over the rounds of its time over that of rockwobble), milliseconds
+        (median), tolerance, error (in alpha), calls (right-hand sides; steps for heyoka).
+    """
+    import pandas as pd
+
+    problem = el_centro_problem()
+    solvers = [kernel(problem)]
+    solvers += [scipy_solver(problem, m, python_rates(problem), "Python") for m in _METHODS]
+    if compiled:
+        solvers += [scipy_solver(problem, m, compiled_rates(problem), "numba") for m in _METHODS]
+    peer = heyoka_solver(problem)
+    if peer is not None:
+        solvers.append(peer)
+    tolerances = []
+    for solver in solvers:
+        if say is not None:
+            say(f"finding the tolerance of {solver.name}")
+        tolerances.append(loosest_tolerance(problem, solver))
+    times = np.empty((rounds, len(solvers)))
+    for i in range(rounds):
+        if say is not None:
+            say(f"round {i + 1} of {rounds}")
+        for j, solver in enumerate(solvers):
+            # the quick ones are repeated, so that a tick of the clock does not show
+            repeats = 20 if j == 0 or times[0, j] < 0.02 else 1
+            times[i, j] = np.median([_seconds(solver, tolerances[j]) for _ in range(repeats)])
+    ends = [solver.solve(rtol) for solver, rtol in zip(solvers, tolerances, strict=True)]
+    return pd.DataFrame(
+        {
+            "solver": [solver.name for solver in solvers],
+            "ratio": np.median(times / times[:, :1], axis=0),
+            "milliseconds": 1e3 * np.median(times, axis=0),
+            "tolerance": tolerances,
+            "error": [problem.error(end[0]) for end in ends],
+            "calls": [end[1] for end in ends],
+        }
+    )
+
+
+def _seconds(solver: Solver, rtol: float) -> float:
+    begin = time.perf_counter()
+    solver.solve(rtol)
+    return time.perf_counter() - begin
+
+
+_METHODS: tuple[Method, ...] = ("RK45", "DOP853", "LSODA")
+
+
+def main() -> None:
+    """Print the table."""
+    import sys
+
+    table = measure(say=lambda line: print(line, file=sys.stderr))
+    seconds = _AFTER_UPLIFT
+    print(f"El Centro, R = 6 m, tan alpha = 0.2, {seconds:g} s from uplift, error below {TARGET:g} alpha\n")
+    print(
+        f"{'solver':24} {'ratio':>8} {'ms':>9} {'us per s':>9} {'calls':>8} {'rtol':>8} {'error/alpha':>11}"
+    )
+    for row in table.to_dict("records"):
+        per_second = 1e3 * row["milliseconds"] / seconds
+        print(
+            f"{row['solver']:24} {row['ratio']:8.1f} {row['milliseconds']:9.3f} {per_second:9.1f} "
+            f"{row['calls']:8d} {row['tolerance']:8.1e} {row['error']:11.1e}"
+        )
+
+
+if __name__ == "__main__":
+    main()
