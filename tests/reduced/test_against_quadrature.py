@@ -14,7 +14,9 @@ COUNT = 200
 def random_release(rng):
     """A cylinder, a release at rest in tilt, and a spin from 1e-8 to that of steady wobble."""
     tan_alpha = math.exp(rng.uniform(math.log(0.05), math.log(5.0)))
-    cylinder = Cylinder(semidiagonal=math.exp(rng.uniform(math.log(0.1), math.log(50.0))), tan_alpha=tan_alpha)
+    cylinder = Cylinder(
+        semidiagonal=math.exp(rng.uniform(math.log(0.1), math.log(50.0))), tan_alpha=tan_alpha
+    )
     tilt = rng.uniform(0.1, 0.9) * cylinder.alpha
     steady = reduced.steady_wobble_rate(cylinder, tilt)
     spin = math.exp(rng.uniform(math.log(1e-8), math.log(0.9 * steady)))

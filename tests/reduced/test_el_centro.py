@@ -20,7 +20,9 @@ def response():
 def test_uplift_and_motion_follow_the_printed_equations(response):
     motion = el_centro_1940()
     paper = PaperModel(PIER.base_radius, PIER.half_height)
-    uplift, direction, states = paper.excited(motion.acceleration, motion.time_step, 3.0, rtol=1e-10, start=1e-4)
+    uplift, direction, states = paper.excited(
+        motion.acceleration, motion.time_step, 3.0, rtol=1e-10, start=1e-4
+    )
     assert response.uplift_time == pytest.approx(uplift, abs=1e-12)
     assert response.uplift_direction == pytest.approx(direction, abs=1e-10)
     first = math.ceil(uplift / motion.time_step)

@@ -20,7 +20,9 @@ def simulate(*arguments, **options):
     assert response.message
     for name in FIELDS:
         assert np.isfinite(getattr(response, name)).all(), name
-    assert np.array_equal(np.isnan(response.rolling_angle), response.tilt == 0.0) or response.model == "planar"
+    assert (
+        np.array_equal(np.isnan(response.rolling_angle), response.tilt == 0.0) or response.model == "planar"
+    )
     assert (response.tilt >= 0.0).all()
     return response
 
@@ -168,9 +170,7 @@ def test_samples_of_half_a_second_are_the_same_motion_as_a_hundred_times_as_many
     coarse = GroundMotion(el_centro_1940().acceleration[::50] * 1.2, 0.5)
     fine_time = np.arange(round(coarse.duration / 0.005) + 1) * 0.005
     at = np.arange(len(coarse.acceleration)) * 0.5
-    fine = GroundMotion(
-        np.column_stack([np.interp(fine_time, at, c) for c in coarse.acceleration.T]), 0.005
-    )
+    fine = GroundMotion(np.column_stack([np.interp(fine_time, at, c) for c in coarse.acceleration.T]), 0.005)
     few = simulate(PIER, coarse, rtol=1e-10, duration=20.0)
     many = simulate(PIER, fine, rtol=1e-10, duration=20.0)
     assert few.peak_tilt > 0.1 * PIER.alpha

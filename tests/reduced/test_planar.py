@@ -44,9 +44,9 @@ def test_restitution_from_momentum_is_the_closed_form():
         closed = (16.0 - 25.0 * square) / (16.0 - square)
         assert reduced.restitution_from_momentum(cylinder) == pytest.approx(closed, rel=1e-14)
     assert reduced.restitution_from_momentum(PIER) == pytest.approx(0.94217, abs=5e-6)
-    assert reduced.restitution_from_momentum(Cylinder(semidiagonal=2.0, tan_alpha=4.0 / 3.0)) == pytest.approx(
-        0.0, abs=1e-15
-    )
+    assert reduced.restitution_from_momentum(
+        Cylinder(semidiagonal=2.0, tan_alpha=4.0 / 3.0)
+    ) == pytest.approx(0.0, abs=1e-15)
 
 
 @pytest.mark.parametrize("restitution", [0.9, "momentum"])
