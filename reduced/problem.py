@@ -144,26 +144,25 @@ class Problem:
 
     def _plane(self, record: NDArray[np.float64]) -> Plane | None:
         """The vertical plane that the motion stays in, if there is one."""
-        horizontal = record[:, :2]
-        released = self.initial is not None and self.initial.tilt > 0.0
-        size = np.hypot(horizontal[:, 0], horizontal[:, 1])
-        peak = float(size.max(initial=0.0))
+        x, y = record[:, 0], record[:, 1]
         if self.model == "planar":
             azimuth = self.plane
         else:
-            if released and self.initial is not None:
+            squares = x * x + y * y
+            largest = int(squares.argmax()) if len(squares) else 0
+            peak = math.sqrt(squares[largest]) if len(squares) else 0.0
+            if self.initial is not None and self.initial.tilt > 0.0:
                 if abs(self.initial.rolling_rate) > _LEAST_SPIN * math.sqrt(self.body.p2):
                     return None
                 azimuth = self.initial.rolling_angle
             elif peak > 0.0:
-                largest = horizontal[int(size.argmax())]
-                azimuth = math.atan2(largest[1], largest[0])
+                azimuth = math.atan2(y[largest], x[largest])
             else:
                 azimuth = 0.0
-            across = horizontal[:, 1] * math.cos(azimuth) - horizontal[:, 0] * math.sin(azimuth)
+            across = y * math.cos(azimuth) - x * math.sin(azimuth)
             if float(np.abs(across).max(initial=0.0)) > _PLANE_TOLERANCE * peak:
                 return None
-        along = horizontal[:, 0] * math.cos(azimuth) + horizontal[:, 1] * math.sin(azimuth)
+        along = x * math.cos(azimuth) + y * math.sin(azimuth)
         return Plane(azimuth, np.column_stack([along, np.zeros_like(along), record[:, 2]]))
 
 
@@ -248,6 +247,6 @@ def make_problem(
 def _three_columns(motion: GroundMotion | None) -> NDArray[np.float64]:
     if motion is None:
         return np.empty((0, 3))
-    if motion.has_vertical:
-        return np.ascontiguousarray(motion.acceleration)
-    return np.column_stack([motion.acceleration, np.zeros(len(motion.acceleration))])
+    record = np.zeros((len(motion.acceleration), 3))
+    record[:, : motion.acceleration.shape[1]] = motion.acceleration
+    return record

@@ -109,11 +109,13 @@ class Response:
 
     @property
     def signed_tilt(self) -> Array:
-        """Tilt (n,) [rad], negative where it leans away from the direction of first uplift or release.
+        """Tilt (n,) [rad], negative where it leans away from the reference direction.
 
-        The continuous tilt of planar motion.
+        That is the azimuth of the plane in the planar model, and the direction of first uplift or
+        release in the others. In planar motion the signed tilt is continuous.
         """
-        away = np.cos(np.nan_to_num(self.rolling_angle) - np.nan_to_num(self.uplift_direction)) < 0.0
+        reference = self.problem.plane if self.model == "planar" else self.uplift_direction
+        away = np.cos(np.nan_to_num(self.rolling_angle) - np.nan_to_num(reference)) < 0.0
         return np.where(away, -self.tilt, self.tilt)
 
     @property

@@ -32,7 +32,12 @@ def test_quarter_period_of_the_reference_table(alpha, row):
 def test_signed_tilt_is_continuous_and_the_unsigned_is_its_size():
     response = reduced.simulate(PIER, el_centro_1940(), model="planar", sample_step=0.001, seating=0.0)
     assert np.array_equal(np.abs(response.signed_tilt), response.tilt)
+    # the first uplift is towards the inertia force
+    first = int(np.argmax(response.tilt > 0.0))
+    push = np.interp(response.time[first], np.arange(5346) * 0.01, el_centro_1940().acceleration[:, 0])
+    assert np.sign(response.signed_tilt[first]) == -np.sign(push)
     assert (response.signed_tilt < 0.0).any()
+    assert (response.signed_tilt > 0.0).any()
     # no jump: the tilt changes by no more than its rate makes it
     assert np.abs(np.diff(response.signed_tilt)).max() <= 1.01e-3 * np.abs(response.tilt_rate).max()
 
