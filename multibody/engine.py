@@ -83,6 +83,11 @@ class Steps:
 class Stepper(Protocol):
     """An open scene."""
 
+    @property
+    def hold_centre(self) -> float:
+        """Centre of the time over which the force of step n is held, from pose n, in steps: 0 in leapfrog."""
+        ...
+
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`, shape (n, 3), of the ground [m/s^2]."""
         ...

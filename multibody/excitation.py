@@ -18,7 +18,7 @@ class StepMeans:
     Both engines advance as leapfrog does: step n takes the velocity from half a step before the pose n
     to half a step after it. The force of that step is therefore the mean from (n - 1/2) h to (n + 1/2) h,
     which keeps the hold of the force second order in h; the mean over the step ahead would shift the
-    whole record by h/2.
+    whole record by h/2. Other integrators hold it elsewhere.
 
     Parameters
     ----------
@@ -42,9 +42,12 @@ class StepMeans:
         areas = 0.5 * self._spacing * (self._samples[1:] + self._samples[:-1])
         self._velocity: Array = np.vstack([np.zeros(3), np.cumsum(areas, axis=0)])
 
-    def __call__(self, first: int, count: int) -> Array:
-        """Return the mean acceleration of steps `first` to `first + count - 1`, shape (count, 3) [m/s^2]."""
-        edges: Array = (np.arange(first, first + count + 1, dtype=float) - 0.5) * self._step
+    def __call__(self, first: int, count: int, centre: float = 0.0) -> Array:
+        """Return the mean acceleration of steps `first` to `first + count - 1`, shape (count, 3) [m/s^2].
+
+        `centre` is that of the time over which the force of a step is held, from its pose, in steps.
+        """
+        edges: Array = (np.arange(first, first + count + 1, dtype=float) + centre - 0.5) * self._step
         return np.diff(self.ground_velocity(edges), axis=0) / self._step
 
     def ground_velocity(self, time: Array) -> Array:

@@ -21,7 +21,6 @@ Array = NDArray[np.float64]
 
 ENERGY_GAIN = 0.02  # of the energy at which the cylinder stands on its rim in balance
 PENETRATION = 0.01  # of b
-LOST_CONTACT = 0.05  # of b, height of the lowest point of the rim: real flight stays below
 GUIDE_TWIST = 0.02  # [rad] about one degree
 LARGEST_STEP = 1e-3  # [s] at the reference size; contact needs it ten times shorter than the fastest pass
 
@@ -67,7 +66,6 @@ def first_breach(
             (~finite, "the state is not finite"),
             (energy_error > ENERGY_GAIN * scale, "the engine gained energy that nothing supplied"),
             (state.depth > PENETRATION * body.base_radius, "the cylinder sank into the ground"),
-            (-state.depth > LOST_CONTACT * body.base_radius, "the cylinder left the ground"),
         ]
         if guided:
             rules.append((np.abs(state.twist) > GUIDE_TWIST, "the guide did not hold the twist"))

@@ -38,6 +38,8 @@ class Kinematics:
         (O, as long as the cylinder stays in its place) [m^2/s].
     depth : ndarray
         Of the lowest point of the rim below the ground [m].
+    slip_rate : ndarray
+        Horizontal speed of the material point there [m/s].
     """
 
     tilt: Array
@@ -51,6 +53,7 @@ class Kinematics:
     energy: Array
     momentum: Array
     depth: Array
+    slip_rate: Array
 
 
 def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinematics:
@@ -75,6 +78,8 @@ def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinema
     rolling_rate = (axis[:, 0] * rate[:, 1] - axis[:, 1] * rate[:, 0]) / safe**2
     base_centre = position - h * axis
     contact = base_centre[:, :2] + b * axis[:, 2:] * outward
+    lowest = np.column_stack([contact, base_centre[:, 2] - b * sine])
+    slip = velocity + np.cross(spin, lowest - position)
     along = np.einsum("ij,ij->i", spin, axis)
     about_centre = body.transverse_inertia * spin[:, 2] + (body.axial_inertia - body.transverse_inertia) * (
         along * axis[:, 2]
@@ -95,6 +100,7 @@ def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinema
         energy=energy,
         momentum=about_centre + arm[:, 0] * velocity[:, 1] - arm[:, 1] * velocity[:, 0],
         depth=b * sine - base_centre[:, 2],
+        slip_rate=np.hypot(slip[:, 0], slip[:, 1]),
     )
 
 

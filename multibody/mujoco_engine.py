@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .engine import Array, Scene, Settings, Stepper, Steps
+from .kinematics import axis_of
 from .mujoco_scene import compile_scene
 from .settings import MujocoSettings
 from .start import Start
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 _SECANT_STEPS = 30
 _STILL = 1e-9  # [m/s^2] acceleration left of the rim at the start
+_STANDING_BLOCK = 200  # steps between two looks at whether a standing cylinder has uplifted
+_RISEN = 0.5e-10  # 1 - cos(1e-5 rad): far above a standing lean, and 20 ms after the uplift
 
 
 class MujocoEngine:
@@ -43,27 +46,66 @@ class MujocoEngine:
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
         """Open the scene at its start."""
+        import mujoco
         from mujoco import rollout
 
-        model = compile_scene(scene, MujocoSettings(**settings))
-        with rollout.Rollout(nthread=0) as runner:
-            yield _MujocoStepper(model, scene, runner)
+        reporter = mujoco.get_mju_user_warning()
+        # warnings are counted in the data; the engine would also write them to a file where the user works
+        mujoco.set_mju_user_warning(lambda message: None)
+        try:
+            with rollout.Rollout(nthread=0) as runner:
+                yield _MujocoStepper(scene, MujocoSettings(**settings), runner)
+        finally:
+            mujoco.set_mju_user_warning(reporter)
 
 
 class _MujocoStepper:
-    def __init__(self, model: mujoco.MjModel, scene: Scene, runner: Any) -> None:
+    def __init__(self, scene: Scene, settings: MujocoSettings, runner: Any) -> None:
         import mujoco
 
-        self._model, self._runner = model, runner
+        self._scene, self._settings, self._runner = scene, settings, runner
         self._columns = ["xyz".index(component) for component in scene.components]
-        self._data = mujoco.MjData(model)
-        _set_start(model, self._data, scene)
+        self._staggered = settings.integrator != "RK4"
+        self._standing = scene.start.standing and settings.standing_corners > 0
+        self._model = compile_scene(scene, settings, standing=self._standing)
+        self._data = mujoco.MjData(self._model)
+        self._warned: list[str] = []
+        _set_start(self._model, self._data, scene, self._staggered)
         kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
-        self._state = np.empty(mujoco.mj_stateSize(model, kind))
-        mujoco.mj_getState(model, self._data, self._state, kind)
+        self._state = np.empty(mujoco.mj_stateSize(self._model, kind))
+        mujoco.mj_getState(self._model, self._data, self._state, kind)
+
+    @property
+    def hold_centre(self) -> float:
+        """Leapfrog holds the force about the pose; RK4 over the step ahead."""
+        return 0.0 if self._staggered else 0.5
 
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
+        start = self._state[None]
+        blocks = []
+        done = 0
+        while done < len(acceleration):
+            if self._standing and 1.0 - axis_of(self._state[None, 4:8])[0, 2] > _RISEN:
+                self._leave_prisms()
+            end = done + _STANDING_BLOCK if self._standing else len(acceleration)
+            blocks.append(self._roll(acceleration[done:end]))
+            done = end
+        # time, then position, quaternion, velocity in world axes, angular velocity in body axes
+        rows = np.vstack([start, *blocks])
+        quaternion = rows[:, 4:8]
+        velocity, spin = rows[:, 8:11], to_world(quaternion, rows[:, 11:14])
+        if self._staggered:
+            return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:])
+        mean = 0.5 * (velocity[:-1] + velocity[1:]), 0.5 * (spin[:-1] + spin[1:])
+        return Steps(rows[1:, 1:4], quaternion[1:], *mean)
+
+    def warnings(self) -> str:
+        """Return the warnings of the engine."""
+        return ", ".join(dict.fromkeys(self._warned + _warnings(self._data)))
+
+    def _roll(self, acceleration: Array) -> Array:
+        """Step in C; return the states (n, 14) after each step."""
         control = np.zeros((1, len(acceleration), self._model.nu))
         control[0, :, : len(self._columns)] = -acceleration[:, self._columns]
         states, _ = self._runner.rollout(
@@ -74,22 +116,32 @@ class _MujocoStepper:
             nstep=len(acceleration),
             initial_warmstart=self._data.qacc_warmstart.copy(),
         )
-        self._state = states[0, -1].copy()
-        # time, then position, quaternion, velocity in world axes, angular velocity in body axes
-        rows = states[0]
-        quaternion = rows[:, 4:8]
-        return Steps(rows[:, 1:4], quaternion, rows[:, 8:11], to_world(quaternion, rows[:, 11:14]))
+        rows: Array = states[0]
+        if _warnings(self._data):
+            # from there on the engine repeats the last state that it could compute
+            frozen = (np.diff(rows[:, 1:8], axis=0, prepend=self._state[None, 1:8]) == 0.0).all(axis=1)
+            rows[frozen & (np.cumsum(~frozen[::-1])[::-1] == 0), 1:] = np.nan
+        self._state = rows[-1].copy()
+        return rows
 
-    def warnings(self) -> str:
-        """Return the warnings of the engine."""
+    def _leave_prisms(self) -> None:
+        """Go on without what only a standing cylinder needs: its corners cost time and brush the ground."""
         import mujoco
 
-        raised = [
-            f"{mujoco.mjtWarning(index).name.removeprefix('mjWARN_').lower()} ({warning.number} times)"
-            for index, warning in enumerate(self._data.warning)
-            if warning.number
-        ]
-        return ", ".join(raised)
+        self._warned += _warnings(self._data)
+        self._standing = False
+        self._model = compile_scene(self._scene, self._settings, standing=False)
+        self._data = mujoco.MjData(self._model)
+
+
+def _warnings(data: mujoco.MjData) -> list[str]:
+    import mujoco
+
+    return [
+        mujoco.mjtWarning(index).name.removeprefix("mjWARN_").lower()
+        for index, warning in enumerate(data.warning)
+        if warning.number
+    ]
 
 
 def to_world(quaternion: Array, vector: Array) -> Array:
@@ -100,8 +152,8 @@ def to_world(quaternion: Array, vector: Array) -> Array:
     return turned
 
 
-def _set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene) -> None:
-    """Put the cylinder at its loaded penetration, and its velocity half a step back."""
+def _set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, staggered: bool) -> None:
+    """Put the cylinder at its loaded penetration, and its velocity half a step back if it is `staggered`."""
     import mujoco
 
     start = scene.start
@@ -124,7 +176,7 @@ def _set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene) -> None
             break
         before, depth = depth, depth - value * (depth - before) / (value - value_before)
         value_before, value = value, rim_acceleration(depth)
-    if not start.standing:
+    if staggered and not start.standing:
         data.qvel[:] -= 0.5 * model.opt.timestep * data.qacc
 
 

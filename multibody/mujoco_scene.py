@@ -15,15 +15,18 @@ if TYPE_CHECKING:
 _PRISMS = 12  # in the scene file; four corners each
 
 
-def compile_scene(scene: Scene, settings: MujocoSettings) -> mujoco.MjModel:
-    """Return the compiled model of `scene`: its file, with what the case does not need taken out."""
+def compile_scene(scene: Scene, settings: MujocoSettings, *, standing: bool) -> mujoco.MjModel:
+    """Return the compiled model of `scene`: its file, with what the case does not need taken out.
+
+    The prisms that carry the cylinder are there only while it is `standing`.
+    """
     import mujoco
 
     with as_file(files("rockwobble.models") / "scenes") as folder:
         spec = mujoco.MjSpec.from_file(str(folder / f"{scene.support}.xml"))
     _set_options(spec, scene, settings)
     _set_body(spec, scene)
-    _set_contact(spec, scene, settings)
+    _set_contact(spec, scene, settings, standing)
     for component in set("xyz") - set(scene.components):
         spec.delete(spec.actuator(f"push_{component}"))
     for name in ("guide_vertical", "guide_axial"):
@@ -71,8 +74,8 @@ def _set_body(spec: Any, scene: Scene) -> None:
         geom.size = [radius, half, 0.0] if geom.name == "cylinder" else [radius / 2**0.5] * 2 + [half]
 
 
-def _set_contact(spec: Any, scene: Scene, settings: MujocoSettings) -> None:
-    count = settings.standing_corners // 4 if scene.start.standing else 0
+def _set_contact(spec: Any, scene: Scene, settings: MujocoSettings, standing: bool) -> None:
+    count = settings.standing_corners // 4 if standing else 0
     for index in range(_PRISMS):
         name = f"prism{index}"
         if index >= count:

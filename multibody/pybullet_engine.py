@@ -74,6 +74,11 @@ class _PybulletStepper:
             pybullet.resetBasePositionAndOrientation(self._body, *pose, client)
         pybullet.resetBaseVelocity(self._body, velocity, spin, physicsClientId=client)
 
+    @property
+    def hold_centre(self) -> float:
+        """Bullet steps as leapfrog does."""
+        return 0.0
+
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         before = self._position, self._quaternion

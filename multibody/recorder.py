@@ -17,9 +17,12 @@ from .uplift import UpliftWatch
 Array = NDArray[np.float64]
 
 OVERTURNED = 0.5 * math.pi - 1e-3  # [rad] contact of the side may stop the fall a little before pi/2
+
+FLIGHT = 1e-3  # of b, height that is flight: a rim that slides may hover below it in MuJoCo
+SLIP = 0.01  # of b, slip that is more than the creep of a rim that rolls
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
-    "x", "y", "z", "energy", "energy_error",
+    "x", "y", "z", "energy", "energy_error", "slip",
 )  # fmt: skip
 
 
@@ -49,6 +52,9 @@ class Recorder:
         self._rows: list[Array] = []
         self._taken = 0
         self._depths: list[float] = []
+        self._slipped = 0.0
+        self.slip_time = math.nan  # when the slip became worth a remark [s]
+        self.flight_time = math.nan  # when the rim left the ground [s]
         self.points: list[TurningPoint] = []
         self.peak = 0.0
         self.fastest = 0.0
@@ -90,7 +96,7 @@ class Recorder:
         angle = unwrap(state.azimuth, state.momentum, self._angle)
         rows = np.column_stack(
             [time, state.tilt, state.tilt_rate, angle, state.rolling_rate, state.twist, state.contact_point,
-             state.centre_of_mass, state.energy, gained]
+             state.centre_of_mass, state.energy, gained, self._slip(time, state)]
         )[:stop]  # fmt: skip
         if self._watch is not None and self.uplift is None:
             self.uplift = self._watch.watch(time, state.tilt, poses, after, acceleration)
@@ -136,6 +142,17 @@ class Recorder:
             self._energy = float(state.energy[0] - until[0])
         return np.asarray(state.energy - self._energy - until)
 
+    def _slip(self, time: Array, state: Kinematics) -> Array:
+        """Distance that the contact has slipped until each pose [m]; note slip and flight."""
+        b = self._scene.body.base_radius
+        touching = state.depth > -FLIGHT * b
+        slipped: Array = self._slipped + self._scene.time_step * np.cumsum(state.slip_rate * touching)
+        self._slipped = float(slipped[-1])
+        for name, happens in (("slip_time", slipped > SLIP * b), ("flight_time", state.depth < -FLIGHT * b)):
+            if math.isnan(getattr(self, name)) and happens.any():
+                setattr(self, name, float(time[np.argmax(happens)]))
+        return slipped
+
     def _stop(self, time: Array, state: Kinematics, gained: Array) -> int:
         """Number of steps of this chunk that belong to the result."""
         stop = len(time)
@@ -145,13 +162,15 @@ class Recorder:
             self.ended = "overturned"
             rate = max(float(state.tilt_rate[stop]), 1e-3)
             self.end_time = float(time[stop] + max(0.5 * math.pi - state.tilt[stop], 0.0) / rate)
+            self.end_time = min(self.end_time, float(self._samples[-1]))
         breach = first_breach(
             state, gained, self._scene.body, self._scene.gravity, self._scene.support == "guided"
         )
         if breach is not None and breach.index < stop:
             stop = breach.index
             self.ended, self.reason, self.end_time = "failed", breach.reason, float(time[stop])
-        return stop
+        # the start belongs to every run
+        return max(stop, 1) if self._count == 0 else stop
 
     def _follow(self, rows: Array) -> None:
         """Samples, turning points and peak of consecutive steps."""

@@ -21,6 +21,7 @@ from .guard import check_time_step
 from .passes import passes_between
 from .recorder import COLUMNS, Recorder
 from .registry import find_engine
+from .remarks import remarks
 from .start import starting_state
 from .trajectory import Trajectory
 
@@ -155,7 +156,7 @@ def _run(
         done = 0
         while done < total and not recorder.ended:
             count = min(_CHUNK, total - done)
-            acceleration = means(done, count)
+            acceleration = means(done, count, stepper.hold_centre)
             recorder.take(stepper.advance(acceleration), acceleration)
             done += count
             warning = stepper.warnings()
@@ -183,6 +184,7 @@ def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> T
     resolution = max(
         recorder.penetration / (1.5 * scene.body.base_radius), recorder.fastest * scene.time_step
     )
+    passes = _passes(recorder, resolution, scale)
     centre = np.column_stack([table["x"], table["y"], table["z"]])
     return Trajectory(
         time=table["time"] * scale.time,
@@ -195,12 +197,13 @@ def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> T
         centre_of_mass=centre * scale.length,
         energy=table["energy"] * scale.energy,
         energy_error=table["energy_error"] * scale.energy,
+        slip=table["slip"] * scale.length,
         peak_tilt=_peak(recorder, outcome),
         outcome=outcome,
-        message=recorder.reason,
+        message=remarks(recorder, passes, resolution, scale),
         uplift_time=uplift_time * scale.time,
         uplift_direction=uplift_direction,
-        passes=_passes(recorder, resolution, scale),
+        passes=passes,
         contact_resolution=resolution,
         residual_displacement=float(np.hypot(*recorder.base_centre[:2])) * scale.length,
         residual_twist=float(table["twist"][-1]),

@@ -42,11 +42,13 @@ class Trajectory:
     energy_error : ndarray, shape (n,)
         Energy that neither the start nor the excitation supplied [m^2/s^2]: what contact and numerics
         took (negative) or made (positive).
+    slip : ndarray, shape (n,)
+        Distance over which the contact has slipped so far [m].
     peak_tilt : float
         Vertex of the parabola through the largest step [rad]; pi/2 where overturned, NaN where failed.
     outcome : {"rest", "completed", "overturned", "failed"}
     message : str
-        Why the run failed, or what limits it; empty if nothing does.
+        Why the run failed, or what limits it: slip, flight, passes too close to the apex. May be empty.
     uplift_time, uplift_direction : float
         [s], [rad]. NaN if the base never uplifts; 0 and the rolling angle of the start for a release.
     passes : DataFrame
@@ -77,6 +79,7 @@ class Trajectory:
     centre_of_mass: Array
     energy: Array
     energy_error: Array
+    slip: Array
     peak_tilt: float
     outcome: str
     message: str
@@ -106,5 +109,6 @@ class Trajectory:
                 "centre_z": self.centre_of_mass[:, 2],
                 "energy": self.energy,
                 "energy_error": self.energy_error,
+                "slip": self.slip,
             }
         )

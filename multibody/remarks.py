@@ -1,0 +1,31 @@
+"""What limits a run that did not fail, in words for the message of its trajectory."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from .froude import Scale
+from .recorder import Recorder
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def remarks(recorder: Recorder, passes: pd.DataFrame, resolution: float, scale: Scale) -> str:
+    """Return the remarks, separated by semicolons; empty if there are none.
+
+    `passes` and `resolution` [rad] are those of the trajectory, in the time of the user.
+    """
+    found = [recorder.reason] if recorder.reason else []
+    if not math.isnan(recorder.slip_time):
+        found.append(f"contact slipped from {recorder.slip_time * scale.time:.4g} s on")
+    if not math.isnan(recorder.flight_time):
+        found.append(f"the cylinder left the ground at {recorder.flight_time * scale.time:.4g} s")
+    close = passes[~passes["resolved"]]
+    if len(close):
+        found.append(
+            f"{len(close)} of {len(passes)} passes are closer to the apex than the {resolution:.1e} rad that "
+            f"the run resolves, first at {close['time'].iloc[0]:.4g} s"
+        )
+    return "; ".join(found)
