@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from rockwobble.models import Cylinder
 from rockwobble.reduced.body import Body, body_of
 from rockwobble.reduced.equations import energy, planar_rhs, recess_rhs, rolling_rhs
-from rockwobble.reduced.forces import contact_force
+from rockwobble.reduced.forces import contact_force, derived_quantities
 
 AGREEMENT = 1e-12  # relative to the terms of each sum; measured 4e-16
 DIGITS = 40
@@ -316,3 +316,24 @@ def test_energy(seed: int) -> None:
         potential = body.g * (body.b * mp.sin(state.theta) - body.h * (1 - mp.cos(state.theta)))
         found = energy(body, given.theta, given.omega, given.Lambda, given.S)
         assert_close((found,), (kinetic + potential,), (kinetic + body.g * (body.b + body.h) * state.theta,))
+
+
+@pytest.mark.parametrize("free_twist", [False, True])
+@pytest.mark.parametrize("seed", range(300, 305))
+def test_force_in_world_axes_over_the_weight(seed: int, free_twist: bool) -> None:
+    given = sample(seed, twisting=free_twist)
+    states = np.array([[given.theta, given.omega, given.phi, given.Lambda, 0.3, given.S], np.zeros(6)])
+    found = derived_quantities(given.body, states, np.array([given.ground, given.ground]), free_twist)
+    with mp.workdps(DIGITS):
+        state = state_of(given)
+        motion = newton_euler(given.body, state, vector(*given.ground), recess=not free_twist)
+        weight, scale = mp.mpf(given.body.g), scales_of(given, state)
+        assert_close(
+            tuple(found[0, 2:]),
+            tuple(component / weight for component in (*motion.force, motion.couple)),
+            tuple(size / weight for size in (scale.force, scale.force, scale.force, scale.couple)),
+        )
+        assert_close((found[0, 0],), (state.phi_rate,), (abs(state.phi_rate),))
+        # a body that stands goes with the ground
+        standing = vector(*given.ground) / weight + vector(0, 0, 1)
+        assert_close(tuple(found[1]), (0, 0, *standing, 0), (1,) * 6)
