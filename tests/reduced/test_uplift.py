@@ -1,0 +1,134 @@
+"""Uplift: found inside the sample, started from the regular solution, whatever the acceleration does."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.reduced import tsit5, uplift
+from rockwobble.reduced.body import body_of
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+BODY = body_of(PIER, 9.81)
+THRESHOLD = 9.81 * 0.2
+
+
+def test_a_ramp_lifts_where_it_crosses_the_threshold():
+    ramp = np.linspace(0.0, 4.0, 41)
+    for azimuth in (0.0, 1.0, -2.5):
+        motion = GroundMotion(np.outer(ramp, [math.cos(azimuth), math.sin(azimuth)]), 0.1)
+        response = reduced.simulate(PIER, motion)
+        assert response.uplift_time == pytest.approx(THRESHOLD, abs=1e-13)
+        # towards the inertia force, opposite to the acceleration: (26)
+        assert math.cos(response.uplift_direction - azimuth) == pytest.approx(-1.0, abs=1e-14)
+
+
+def test_a_step_lifts_at_once_with_the_acceleration_of_a_jump():
+    motion = GroundMotion(np.tile([3.0, 1.0], (101, 1)), 0.01)
+    response = reduced.simulate(PIER, motion, sample_step=1e-3)
+    assert response.uplift_time == 0.0
+    size = math.hypot(3.0, 1.0)
+    jump = BODY.p2 * (math.cos(PIER.alpha) * size / 9.81 - math.sin(PIER.alpha))
+    # theta = K0 t^2/2 but for the softening, p^2 t^2/12 of it
+    assert response.tilt[5] == pytest.approx(0.5 * jump * 0.005**2, rel=1e-5)
+
+
+@pytest.mark.parametrize("turning", [0.0, 3.0, -30.0])
+@pytest.mark.parametrize("jump", [0.0, 1.0])
+def test_the_solution_does_not_depend_on_where_the_series_is_left(turning, jump):
+    """Integrate from the series at a tenth of its length to its end: the same state."""
+    from scipy.integrate import solve_ivp
+
+    from rockwobble.reduced.equations import recess_rhs
+
+    a = (THRESHOLD + jump, 0.0, 0.0)
+    slope = (20.0, turning, 1.0)
+    end = uplift.start_length(BODY, a, slope, 0.0)
+    begin = 0.1 * end
+    theta, omega, phi, rate = uplift.started(BODY, a, slope, 0.0, begin)
+    L = spin_momentum(theta, rate)
+    run = solve_ivp(
+        lambda t, y: recess_rhs(BODY, *y, *tsit5.ground(a, slope, t)),
+        (begin, end),
+        [theta, omega, phi, L],
+        "DOP853",
+        rtol=1e-12,
+        atol=1e-40,
+    )
+    theta, omega, phi, rate = uplift.started(BODY, a, slope, 0.0, end)
+    # the terms left out are (p t)^3 and less: 1e-9 of those kept at the end, 1e-3 s of 1/p
+    assert run.y[0, -1] == pytest.approx(theta, rel=3e-9)
+    assert run.y[1, -1] == pytest.approx(omega, rel=3e-9)
+    # the lag is 2e-6 rad per rad/s of turning; its own rest is again a thousandth of it
+    assert run.y[2, -1] == pytest.approx(phi, abs=2e-8 * (1.0 + abs(turning)))
+
+
+def spin_momentum(theta, rate):
+    t = math.tan(0.5 * theta)
+    return math.sin(theta) ** 2 * (BODY.J + 2.0 * BODY.E * t + BODY.C * t * t) * rate
+
+
+def test_an_uplift_within_a_hair_of_a_sample_is_the_same_as_one_at_it():
+    for miss in (1e-15, 1e-12, 1e-9, 1e-7):
+        crossing = np.array([0.0, THRESHOLD * (1.0 + miss), 3.0, 3.5])
+        late = reduced.simulate(PIER, GroundMotion(np.column_stack([crossing, 0.1 * crossing**2]), 0.2))
+        exact = np.array([0.0, THRESHOLD, 3.0, 3.5])
+        at = reduced.simulate(PIER, GroundMotion(np.column_stack([exact, 0.1 * exact**2]), 0.2))
+        assert late.peak_tilt == pytest.approx(at.peak_tilt, rel=1e-5)
+
+
+def test_a_later_uplift_takes_the_nearest_branch():
+    motion = el_centro_1940().scaled(0.8)
+    response = reduced.simulate(PIER, motion, seating=1e-2)
+    moving = ~np.isnan(response.rolling_angle)
+    lifts = np.flatnonzero(~moving[:-1] & moving[1:])
+    stands = np.flatnonzero(moving[:-1] & ~moving[1:])
+    assert len(lifts) > 1
+    for stand, lift in zip(stands, lifts[1:], strict=False):
+        change = response.rolling_angle[lift + 1] - response.rolling_angle[stand]
+        # the contact may roll on by a little within the two samples
+        assert abs(change) < math.pi + 0.5
+
+
+def test_the_runge_kutta_pair_satisfies_its_order_conditions():
+    rows = [(), tsit5.A2, tsit5.A3, tsit5.A4, tsit5.A5, tsit5.A6, tsit5.B5]
+    A = np.array([row + (0.0,) * (7 - len(row)) for row in rows])
+    c = np.array([0.0, tsit5.C2, tsit5.C3, tsit5.C4, tsit5.C5, 1.0, 1.0])
+    b, low = A[6], A[6] - np.array(tsit5.ERROR)
+    assert A.sum(axis=1) == pytest.approx(c, abs=1e-14)
+    trees = {  # elementary weights of all rooted trees to order 5
+        1: [(np.ones(7), 1)],
+        2: [(c, 2)],
+        3: [(c**2, 3), (A @ c, 6)],
+        4: [(c**3, 4), (c * (A @ c), 8), (A @ c**2, 12), (A @ A @ c, 24)],
+        5: [
+            (c**4, 5),
+            (c**2 * (A @ c), 10),
+            ((A @ c) ** 2, 20),
+            (c * (A @ c**2), 15),
+            (c * (A @ A @ c), 30),
+            (A @ c**3, 20),
+            (A @ (c * (A @ c)), 40),
+            (A @ A @ c**2, 60),
+            (A @ A @ A @ c, 120),
+        ],
+    }
+    for order, weights in trees.items():
+        for phi, gamma in weights:
+            assert b @ phi == pytest.approx(1.0 / gamma, abs=1e-13)
+            if order <= 4:
+                assert low @ phi == pytest.approx(1.0 / gamma, abs=1e-13)
+
+
+def test_sine_and_cosine_are_those_of_the_library():
+    from rockwobble.reduced.trigonometry import sin_cos
+
+    x = np.concatenate([np.linspace(-50.0, 50.0, 4001), 10.0 ** np.linspace(-300.0, 8.0, 2000)])
+    found = np.array([sin_cos(value) for value in x])
+    # one unit in the last place of the larger of the two
+    assert np.abs(found[:, 0] - np.sin(x)).max() <= 2.3e-16
+    assert np.abs(found[:, 1] - np.cos(x)).max() <= 2.3e-16
+    small = x[np.abs(x) < 0.7]
+    assert np.array([sin_cos(v)[0] for v in small]) == pytest.approx(np.sin(small), rel=4e-16)
