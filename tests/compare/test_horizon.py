@@ -17,7 +17,7 @@ def growing(cylinder, make_trace):
     time = np.arange(4001) * SAMPLE
     tilt = np.where(time < 2.0, 0.0, 0.3 * cylinder.alpha)
     difference = np.where(time < 2.0, 0.0, 1e-6 * cylinder.alpha * np.exp(time - 2.0))
-    passes = [(5.0, 1e-3), (9.0, 2e-5), (12.0, 3e-4), (30.0, 1e-6)]
+    passes = [(5.0, 1e-3), (10.5, 2e-5), (12.0, 3e-4), (30.0, 1e-6)]
     reference = make_trace(time, tilt, uplift_time=2.0, passes=passes)
     return reference, make_trace(time, tilt - difference, uplift_time=2.0)
 
@@ -48,6 +48,14 @@ def test_traces_that_never_part_agree_for_the_length_of_the_run(cylinder, make_t
     assert (horizon.length, horizon.end, horizon.parted) == (10.0, 10.0, False)
 
 
+def test_agreement_ends_with_a_trace_that_breaks_off(cylinder, make_trace):
+    time = np.arange(1001) * SAMPLE
+    tilt = np.full_like(time, 0.3 * cylinder.alpha)
+    pair = make_pair(cylinder, make_trace(time, tilt, uplift_time=2.0), make_trace(time[:601], tilt[:601]))
+    horizon = agreement_horizon(pair, broken=True)
+    assert (horizon.length, horizon.end, horizon.parted) == (4.0, 6.0, True)
+
+
 def test_a_parting_before_uplift_leaves_no_agreement(cylinder, make_trace):
     time = np.arange(1001) * SAMPLE
     reference = make_trace(time, np.zeros_like(time), uplift_time=5.0)
@@ -56,7 +64,7 @@ def test_a_parting_before_uplift_leaves_no_agreement(cylinder, make_trace):
     assert (horizon.length, horizon.parted) == (0.0, True)
 
 
-@pytest.mark.parametrize(("resolution", "expected"), [(1e-7, 40.0), (1e-5, 28.0), (5e-5, 7.0), (1e-2, 3.0)])
+@pytest.mark.parametrize(("resolution", "expected"), [(1e-7, 40.0), (1e-5, 28.0), (5e-5, 8.5), (1e-2, 3.0)])
 def test_predicted_horizon_is_the_first_pass_below_the_resolution(growing, resolution, expected):
     assert predicted_horizon(growing[0], resolution, 40.0) == pytest.approx(expected)
 

@@ -40,6 +40,15 @@ def test_an_azimuth_named_whole_turns_apart_is_the_same(cylinder, make_trace, ti
     assert found == pytest.approx(0.2, abs=1e-11)
 
 
+def test_the_whole_turn_taken_off_is_the_nearest(cylinder, make_trace, time):
+    one = rolling(cylinder, make_trace, time, 2.0)
+    other = rolling(cylinder, make_trace, time, 2.0, offset=0.2 + 2.0 * math.pi)
+    pair = make_pair(cylinder, one, other)
+    # the direction of uplift is known less well than the azimuth of the first tilted sample
+    found = turn_difference(pair, until=10.0, direction_difference=0.5)
+    assert found == pytest.approx(0.2, abs=1e-11)
+
+
 def test_direction_difference_is_trial_minus_reference_across_the_cut(cylinder, make_trace, time):
     one = rolling(cylinder, make_trace, time, 1.0, offset=math.pi - 0.1)
     other = rolling(cylinder, make_trace, time, 1.0, offset=-math.pi + 0.1)
@@ -86,6 +95,17 @@ def test_contact_points_count_only_where_both_are_tilted(cylinder, make_trace, t
     trial = make_trace(time, low, rolling_angle=phi + off)
     expected = 2.0 * math.sin(0.15) * math.sqrt(200 / 301)  # 200 of the 301 samples that count
     assert contact_rms(make_pair(cylinder, reference, trial)) == pytest.approx(expected, rel=ROUNDING)
+
+
+def test_contact_points_that_are_not_known_are_masked(cylinder, make_trace, time):
+    tilt = np.full_like(time, 0.3 * cylinder.alpha)
+    known = np.where(time < 1.0, np.nan, 2.0 * time)
+    pair = make_pair(
+        cylinder,
+        make_trace(time, tilt, rolling_angle=2.0 * time),
+        make_trace(time, tilt, rolling_angle=known + 0.3),
+    )
+    assert contact_rms(pair) == pytest.approx(2.0 * math.sin(0.15), rel=ROUNDING)
 
 
 def test_contact_points_at_rest_are_masked(cylinder, make_trace, time):
