@@ -1,0 +1,187 @@
+"""Lowest overturning intensities, islands and shares, from grids made by hand."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockwobble.compare.lowest_overturning import (
+    Island,
+    islands_frame,
+    lowest_overturning,
+    refined,
+    safe_islands,
+)
+from rockwobble.compare.planar_contrast import (
+    contrast_by_size,
+    edge_difference,
+    planar_contrast,
+    size_bands,
+    unconservative_from,
+)
+from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SPATIAL, OverturningSpectrum
+from rockwobble.models import GroundMotion
+
+FALL = 0.5 * math.pi
+LEVELS = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
+
+
+def made_up(space: list[str], x: list[str], y: list[str]) -> OverturningSpectrum:
+    """Make a spectrum of rows of letters, a row for each size: X falls, o tilts, O tilts more, ? failed."""
+    tilts = {"X": FALL, "o": 0.01, "O": 0.02, ".": 0.0, "?": math.nan}
+    peaks = {
+        name: np.array([[tilts[letter] for letter in row] for row in rows])
+        for name, rows in ((SPATIAL, space), (PLANAR_X, x), (PLANAR_Y, y))
+    }
+    levels = LEVELS[: len(space[0])]
+    lowest = {}
+    for name, tilt in peaks.items():
+        index = lowest_overturning(tilt >= FALL)
+        lowest[name] = np.where(index >= 0, levels[index], math.nan)
+    return OverturningSpectrum(
+        tan_alpha=0.1,
+        motion=GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.1),
+        gravity=9.81,
+        model="recess",
+        seating=0.0,
+        semidiagonals=np.arange(1.0, len(space) + 1.0),
+        intensities=levels,
+        peak_tilt=peaks,
+        lowest=lowest,
+        lowest_width=0.1,
+    )
+
+
+def test_the_lowest_overturning_intensity_is_the_first():
+    falls = np.array([[False, True, False, True], [False, False, False, False], [True, True, False, False]])
+    assert lowest_overturning(falls).tolist() == [1, -1, 0]
+
+
+def test_bisection_comes_down_to_the_edge_and_stays_on_the_side_that_falls():
+    edges = np.array([2.3, 9.0, 0.4])  # within the grid, above it, below it
+
+    def peaks(sizes, levels):
+        return np.where(levels[None, :] >= edges[sizes.astype(int)][:, None], FALL, 0.0)
+
+    sizes = np.arange(3.0)
+    on_grid = lowest_overturning(peaks(sizes, LEVELS) >= FALL)
+    found = refined(sizes, LEVELS, on_grid, peaks, refinements=10)
+    assert 2.3 <= found[0] < 2.3 + 2.0**-10
+    assert math.isnan(found[1])
+    assert found[2] == 1.0
+    assert refined(sizes, LEVELS, on_grid, peaks, refinements=0)[0] == 3.0
+
+
+def test_an_interruption_passes_through_a_bisection():
+    def peaks(sizes, levels):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        refined(np.array([1.0]), LEVELS, np.array([2]), peaks, refinements=3)
+
+
+def test_islands_are_what_stands_above_the_lowest_overturning_intensity():
+    spectrum = made_up(["ooXoOX", "XooXX?", "oooooo", "oXo?oX"], ["......"] * 4, ["......"] * 4)
+    tilt = spectrum.peak_tilt[SPATIAL]
+    islands = safe_islands(
+        spectrum.semidiagonals, spectrum.intensities, spectrum.overturned(SPATIAL), np.isnan(tilt)
+    )
+    assert islands == [
+        Island(semidiagonal=1.0, lower=4.0, upper=5.0, closed=True),
+        Island(semidiagonal=2.0, lower=2.0, upper=3.0, closed=True),
+        Island(semidiagonal=4.0, lower=3.0, upper=3.0, closed=True),
+        Island(semidiagonal=4.0, lower=5.0, upper=5.0, closed=True),
+    ]
+    table = islands_frame({SPATIAL: islands, PLANAR_X: []})
+    assert table.columns.tolist() == ["series", "semidiagonal", "lower", "upper", "closed"]
+    assert len(table) == 4
+
+
+def test_an_island_open_above_is_not_closed():
+    falls = np.array([[False, True, False]])
+    (island,) = safe_islands(np.array([1.0]), LEVELS[:3], falls, np.zeros_like(falls))
+    assert not island.closed
+    assert island.upper == 3.0
+
+
+def test_shares_count_cells_and_leave_out_failed_ones():
+    spectrum = made_up(
+        space=["oXXX", "oOoX", "oooX"],
+        x=["ooXX", "ooXX", "ooo?"],
+        y=["oooo", "oooX", "oooo"],
+    )
+    contrast = planar_contrast(spectrum, edges=[0.0, 2.0, 4.0])
+    assert contrast["cells"].tolist() == [4, 7, 11]
+    first, second, every = (row for _, row in contrast.iterrows())
+    assert (first["smallest"], first["largest"]) == (1.0, 1.0)
+    assert (second["smallest"], second["largest"]) == (2.0, 3.0)
+    assert first["falls"] == 3 / 4
+    assert first["planar_falls"] == 2 / 4
+    assert first["missed"] == 1 / 4
+    assert first["overcalled"] == 0.0
+    # the failed cell would have been missed as well
+    assert second["missed"] == 0.0
+    assert second["overcalled"] == pytest.approx(1 / 7)
+    assert every["missed"] == pytest.approx(1 / 11)
+    assert every["larger_tilt"] == pytest.approx(2 / 11)
+    assert (every["smallest"], every["largest"]) == (1.0, 3.0)
+
+
+def test_shares_by_size_have_a_row_for_each():
+    spectrum = made_up(["oX", "oo"], ["oo", "oX"], ["oo", "oo"])
+    table = contrast_by_size(spectrum)
+    assert table["smallest"].tolist() == [1.0, 2.0]
+    assert table["missed"].tolist() == [0.5, 0.0]
+    assert table["overcalled"].tolist() == [0.0, 0.5]
+
+
+def test_the_worse_plane_decides_the_edge():
+    spectrum = made_up(
+        space=["oXXX", "oooX", "ooXX", "oooo", "oooX"],
+        x=["ooXX", "ooXX", "ooXX", "oooo", "oooo"],
+        y=["oooX", "oooX", "oooo", "oooo", "oooo"],
+    )
+    assert edge_difference(spectrum).tolist() == [-1.0, 1.0, 0.0, 0.0, -math.inf]
+    assert unconservative_from(spectrum) == 5.0
+    every = planar_contrast(spectrum).iloc[-1]
+    assert (every["lower_edge"], every["higher_edge"]) == (2 / 5, 1 / 5)
+    # 2, 3, 4, 4 and none: the middle one
+    assert every["lowest"] == 4.0
+    assert every["planar_y_lowest"] == math.inf
+
+
+def test_an_edge_within_the_resolution_is_no_difference():
+    spectrum = made_up(["oX"], ["oX"], ["oo"])
+    spectrum.lowest[SPATIAL][0] -= 0.09
+    assert edge_difference(spectrum).tolist() == [0.0]
+    spectrum.lowest[SPATIAL][0] -= 0.09
+    assert edge_difference(spectrum)[0] == pytest.approx(-0.18)
+
+
+def test_without_a_lower_edge_at_the_top_there_is_no_size_to_name():
+    assert math.isnan(unconservative_from(made_up(["oX", "oX"], ["oo", "oX"], ["oo", "oo"])))
+    assert unconservative_from(made_up(["oX", "oX"], ["oo", "oo"], ["oo", "oo"])) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("smallest", "largest", "width"),
+    [(0.5, 30.0, 5.0), (1.0, 2.0, 0.2), (0.05, 0.9, 0.2), (2.0, 400.0, 50.0)],
+)
+def test_bands_have_a_round_width_and_hold_all_sizes(smallest, largest, width):
+    edges = size_bands(np.array([smallest, largest]))
+    assert np.diff(edges) == pytest.approx(width)
+    assert edges[0] <= smallest
+    assert edges[-1] >= largest
+    assert 4 <= len(edges) <= 10
+
+
+def test_a_single_size_has_a_band():
+    edges = size_bands(np.array([6.0]))
+    assert edges[0] <= 6.0 <= edges[-1]
+    assert len(planar_contrast(made_up(["oX"], ["oo"], ["oo"]))) == 2
+
+
+@pytest.mark.parametrize("edges", [[1.0], [2.0, 1.0], [1.0, 1.0]])
+def test_edges_must_increase(edges):
+    with pytest.raises(ValueError, match="edges must be at least two and increasing"):
+        planar_contrast(made_up(["oX"], ["oo"], ["oo"]), edges)
