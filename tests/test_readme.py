@@ -1,0 +1,53 @@
+"""What the README shows works: its Python, its commands with their options, its links."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+CHECKOUT = Path(__file__).parents[1]
+README = (CHECKOUT / "README.md").read_text(encoding="utf-8")
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"^```{language}\n(.*?)^```$", README, re.DOTALL | re.MULTILINE)
+
+
+def commands() -> list[str]:
+    lines = [line.split("#")[0].strip() for block in blocks("sh") for line in block.splitlines()]
+    calls = [
+        call for line in lines for call in re.findall(r"(?:^|&& )(?:\.venv/bin/)?rockwobble ([^&]+)", line)
+    ]
+    return [call.strip() for call in calls]
+
+
+@pytest.mark.parametrize("block", blocks("python"))
+def test_python_runs(block: str) -> None:
+    exec(compile(block, "README.md", "exec"), {"__name__": "readme"})
+
+
+@pytest.mark.parametrize("command", commands())
+def test_commands_exist_with_the_options_shown(command: str) -> None:
+    from rockwobble.reports.main import app
+
+    result = CliRunner().invoke(app, [command.split()[0], "--help"])
+    assert result.exit_code == 0, result.output
+    missing = [option for option in re.findall(r"--[a-z-]+", command) if option not in result.output]
+    assert missing == []
+
+
+def test_the_two_lines_that_set_everything_up_are_there() -> None:
+    lines = [line for block in blocks("sh") for line in block.splitlines() if "venv" in line]
+    assert lines == [
+        "python3 -m venv .venv && .venv/bin/pip install . && .venv/bin/rockwobble compare",
+        "python3 -m venv .venv && .venv/bin/pip install '.[test]' && .venv/bin/pytest",
+    ]
+
+
+def test_links_lead_to_files() -> None:
+    targets = [target for target in re.findall(r"\]\(([^)#]+)", README) if "://" not in target]
+    assert targets
+    assert [target for target in targets if not (CHECKOUT / target).exists()] == []
