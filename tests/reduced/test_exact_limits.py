@@ -1,12 +1,8 @@
-"""Limits, invariances and bad input of the exact solutions."""
+"""Limits and invariances of free response."""
 
-import doctest
-import importlib
 import math
 
-import numpy as np
 import pytest
-from scipy.optimize import minimize_scalar
 
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.reduced.body import Body, body_of
@@ -34,13 +30,6 @@ def inertia(body: Body, tilt: float) -> float:
 
 def release(cylinder: Cylinder, fraction: float, spin: float, tilt_rate: float = 0.0) -> InitialState:
     return InitialState(tilt=fraction * cylinder.alpha, tilt_rate=tilt_rate, rolling_rate=spin)
-
-
-@pytest.mark.parametrize("module", ["free_response", "planar", "wobble"])
-def test_examples(module: str) -> None:
-    result = doctest.testmod(importlib.import_module(f"rockwobble.reduced.exact.{module}"))
-    assert result.attempted > 0
-    assert result.failed == 0
 
 
 @pytest.mark.parametrize("tan_alpha", SLENDERNESS)
@@ -145,105 +134,12 @@ def test_every_point_of_the_cycle_has_the_same_response(
         assert getattr(found, name) == pytest.approx(getattr(expected, name), rel=budget), name
 
 
-@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
-def test_steady_wobble_is_where_the_turning_tilts_meet(tan_alpha: float) -> None:
-    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
-    tilt = 0.4 * cylinder.alpha
-    rate = steady_wobble_rate(cylinder, tilt)
-    steady = free_response(cylinder, InitialState(tilt=tilt, rolling_rate=rate))
-    assert steady.minimum_tilt == pytest.approx(tilt, rel=ROUNDING)
-    assert steady.maximum_tilt == pytest.approx(tilt, rel=ROUNDING)
-    assert steady.angle_of_turn == pytest.approx(rate * steady.period, rel=ROUNDING)
-    for change in (-1e-7, 1e-7):  # first order: period and turn go with the mean tilt
-        near = free_response(cylinder, InitialState(tilt=tilt, rolling_rate=rate * (1.0 + change)))
-        assert near.period == pytest.approx(steady.period, rel=1e-6)
-        assert near.angle_of_turn == pytest.approx(steady.angle_of_turn, rel=1e-6)
-        # more spin than steady wobble lifts the maximum, less lowers the minimum
-        moved = near.maximum_tilt if change > 0.0 else near.minimum_tilt
-        assert 0.1 * abs(change) < (moved / tilt - 1.0) / math.copysign(1.0, change) < 10.0 * abs(change)
-
-
-def test_momentum_of_steady_wobble_has_one_maximum_between_upright_and_alpha() -> None:
-    # the search for the overturning barrier rests on it
-    random = np.random.default_rng(7)
-    fractions = np.concatenate([np.geomspace(1e-6, 0.5, 300), 1.0 - np.geomspace(0.5, 1e-6, 300)[1:]])
-    for _ in range(300):
-        transverse = 10.0 ** random.uniform(-5.0, 1.0)
-        axial = 2.0 * transverse * 10.0 ** random.uniform(-5.0, 0.0)
-        cylinder = Cylinder(
-            semidiagonal=1.0,
-            tan_alpha=10.0 ** random.uniform(-3.0, 3.0),
-            transverse_inertia=transverse,
-            axial_inertia=axial,
-        )
-        body = body_of(cylinder, 9.81)
-        tilt = fractions * body.alpha
-        t = np.tan(0.5 * tilt)
-        momentum = (
-            np.sin(tilt) ** 2
-            * (body.J + 2.0 * body.E * t + body.C * t * t)
-            * steady_wobble_rate(cylinder, tilt)
-        )
-        rising = np.diff(momentum) > 0.0
-        assert rising[0]
-        assert not rising[-1]
-        assert np.count_nonzero(np.diff(rising)) == 1
-
-
-@pytest.mark.parametrize("tan_alpha", [0.05, 0.2, 1.0, 5.0])
-def test_wobbling_period_is_equation_24_corrected(tan_alpha: float) -> None:
-    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
-    alpha = cylinder.alpha
-    tilt = np.linspace(0.1, 0.95, 18) * alpha
-    s, c, sa, ca = np.sin(tilt), np.cos(tilt), math.sin(alpha), math.cos(alpha)
-    bracket = (
-        (5 / 4 * sa**2 - 4 / 3 * ca**2) * c * s - 3 / 2 * sa**2 * s - sa * ca * (1 + c) + 2 * sa * ca * c**2
-    )
-    inertia = 5 / 4 + ca**2 / 12
-    p = math.sqrt(9.81 / 6.0 / inertia)
-    expected = 2.0 * math.pi / p * np.sqrt(-bracket / (np.sin(alpha - tilt) * inertia))
-    # the bracket of the paper cancels to the order of the tilt
-    np.testing.assert_allclose(wobbling_period(cylinder, tilt), expected, rtol=1e-12)
-
-
-def test_steady_wobble_of_a_thin_disc() -> None:
-    radius, flatness = 0.1, 1e-9  # the height of the mass centre enters to first order
-    disc = Cylinder(
-        semidiagonal=radius,
-        tan_alpha=1.0 / flatness,
-        transverse_inertia=radius**2 / 4,
-        axial_inertia=radius**2 / 2,
-    )
-    for tilt in (1e-3, 0.3, 1.2):
-        expected = math.sqrt(
-            4.0 * 9.81 * math.cos(tilt) / (radius * math.sin(tilt) * (6.0 - 5.0 * math.cos(tilt)))
-        )
-        assert steady_wobble_rate(disc, tilt) == pytest.approx(expected, rel=20.0 * flatness)
-
-
 def test_small_rocking() -> None:
     # constant restoring moment: theta = tilt - (p^2 sin alpha) t^2/2
     p2 = body_of(PIER, 9.81).p2
     tilt = 1e-12 * PIER.alpha
     expected = math.sqrt(2.0 * tilt / (p2 * math.sin(PIER.alpha)))
     assert planar_quarter_period(PIER, tilt) == pytest.approx(expected, rel=1e-11)
-
-
-@pytest.mark.parametrize(
-    "function", [planar_quarter_period, rocking_period, steady_wobble_rate, wobbling_period]
-)
-def test_over_an_array_of_tilts(function) -> None:  # type: ignore[no-untyped-def]
-    tilts = np.array([[0.1, 0.5], [0.9, 1.0 - 1e-9]]) * PIER.alpha
-    values = function(PIER, tilts)
-    assert values.shape == (2, 2)
-    for value, tilt in zip(values.ravel(), tilts.ravel(), strict=True):
-        single = function(PIER, float(tilt))
-        assert type(single) is float
-        assert single == value
-    np.testing.assert_array_equal(function(PIER, list(tilts[0])), values[0])
-    np.testing.assert_allclose(
-        function(PIER, tilts, gravity=4 * 9.81) / values, 2.0 if function is steady_wobble_rate else 0.5
-    )
 
 
 @pytest.mark.parametrize("tilt_rate", [-0.05, 0.05])
@@ -261,121 +157,3 @@ def test_planar_release_in_motion_keeps_small_tilts() -> None:
     expected = tilt + tilt_rate**2 / (2.0 * p2 * math.sin(PIER.alpha))
     response = free_response(PIER, InitialState(tilt=tilt, tilt_rate=tilt_rate))
     assert response.maximum_tilt == pytest.approx(expected, rel=1e-12)  # next order: the tilt itself
-
-
-@pytest.mark.parametrize(
-    ("fraction", "tilt_rate", "spin"),
-    [
-        (1.0, 0.0, 0.0),
-        (1.0, 0.0, 1e-15),
-        (1.2, -0.1, 0.1),
-        (0.5, 0.5, 0.0),
-        (0.5, 0.5, 0.1),
-        (0.5, -0.5, 0.1),
-        (0.5, 0.0, 2.0),
-        (0.99, 0.0, 1.0),
-        (0.99, 1e-3, 0.3),
-        (1e-9, 1.0, 0.0),
-        (1e-9, 1.0, 1.0),
-    ],
-)
-def test_a_release_that_overturns_has_no_next_maximum(fraction: float, tilt_rate: float, spin: float) -> None:
-    for solution in (free_response, angle_of_turn):
-        with pytest.raises(ValueError, match=r"tilt=.* overturns .* it has no tilt maximum"):
-            solution(PIER, release(PIER, fraction, spin, tilt_rate))
-
-
-@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
-@pytest.mark.parametrize("spin", [1e-9, 0.1, 0.5])
-@pytest.mark.parametrize("sense", [-1.0, 1.0])
-def test_overturning_begins_where_the_energy_passes_the_barrier(
-    tan_alpha: float, spin: float, sense: float
-) -> None:
-    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
-    tilt = 0.4 * cylinder.alpha
-    rate = spin * steady_wobble_rate(cylinder, tilt)
-    at_rest = free_response(cylinder, InitialState(tilt=tilt, rolling_rate=rate))
-    body = body_of(cylinder, 9.81)
-
-    def height(gap: float) -> float:  # V + L^2/(2 B)
-        theta = cylinder.alpha - gap
-        return at_rest.angular_momentum**2 / (2.0 * inertia(body, theta)) - 9.81 * 6.0 * (
-            math.cos(cylinder.alpha) - math.cos(gap)
-        )
-
-    top = -minimize_scalar(
-        lambda gap: -height(gap),
-        bounds=(0.0, 0.5 * cylinder.alpha),
-        method="bounded",
-        options={"xatol": 1e-10},
-    ).fun
-    # cos(gap) is rounded to 1e-16 where the whole barrier is alpha^2/2
-    margin = 1e-9 + 1e-15 / cylinder.alpha**2
-    reach = math.sqrt(2.0 * (top - at_rest.energy) / body.A)
-    slow, fast = (
-        InitialState(tilt=tilt, tilt_rate=sense * reach * (1.0 + change), rolling_rate=rate)
-        for change in (-margin, margin)
-    )
-    assert free_response(cylinder, slow).maximum_tilt < cylinder.alpha
-    with pytest.raises(ValueError, match="overturns"):
-        free_response(cylinder, fast)
-
-
-@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
-def test_steady_wobble_is_held_up_to_the_largest_momentum(tan_alpha: float) -> None:
-    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
-    alpha, body = cylinder.alpha, body_of(cylinder, 9.81)
-    crest = minimize_scalar(
-        lambda fraction: -inertia(body, fraction * alpha) * steady_wobble_rate(cylinder, fraction * alpha),
-        bounds=(0.3, 0.95),
-        method="bounded",
-        options={"xatol": 1e-9},  # a maximum is found to the square root of rounding
-    ).x
-    tilt = crest * (1.0 - 1e-4) * alpha
-    wobble = free_response(
-        cylinder, InitialState(tilt=tilt, rolling_rate=(1.0 + 1e-10) * steady_wobble_rate(cylinder, tilt))
-    )
-    assert wobble.maximum_tilt == pytest.approx(tilt, rel=1e-5)
-    beyond = crest * (1.0 + 1e-4) * alpha
-    with pytest.raises(ValueError, match="overturns"):
-        free_response(
-            cylinder,
-            InitialState(tilt=beyond, rolling_rate=(1.0 + 1e-10) * steady_wobble_rate(cylinder, beyond)),
-        )
-
-
-def test_the_barrier_is_where_the_period_grows_without_bound() -> None:
-    tilt = 0.95 * PIER.alpha  # steady wobble is unstable here
-    rate = steady_wobble_rate(PIER, tilt)
-    periods = [
-        free_response(PIER, InitialState(tilt=tilt, rolling_rate=rate * (1 - d))).period
-        for d in (1e-4, 1e-6, 1e-8)
-    ]
-    steps = np.diff(periods)
-    assert steps[1] == pytest.approx(steps[0], rel=0.02)  # logarithmic
-    with pytest.raises(ValueError, match="overturn"):
-        free_response(PIER, InitialState(tilt=tilt, rolling_rate=rate * (1 + 1e-8)))
-    with pytest.raises(ValueError, match="overturn"):
-        free_response(PIER, InitialState(tilt=tilt, rolling_rate=rate))
-
-
-def test_standing_has_no_free_response() -> None:
-    with pytest.raises(ValueError, match="tilt above 0"):
-        free_response(PIER, InitialState(tilt=0.0))
-
-
-@pytest.mark.parametrize("gravity", [0.0, -9.81, math.nan, math.inf])
-def test_gravity_is_checked(gravity: float) -> None:
-    with pytest.raises(ValueError, match="gravity must be positive"):
-        free_response(PIER, release(PIER, 0.5, 0.1), gravity=gravity)
-    with pytest.raises(ValueError, match="gravity must be positive"):
-        rocking_period(PIER, 0.1, gravity=gravity)
-
-
-@pytest.mark.parametrize(
-    "function", [planar_quarter_period, rocking_period, steady_wobble_rate, wobbling_period]
-)
-@pytest.mark.parametrize("tilt", [0.0, -0.1, 0.2, math.nan, [0.1, 0.3]])
-def test_tilt_is_checked(function, tilt) -> None:  # type: ignore[no-untyped-def]
-    with pytest.raises(ValueError, match="tilt must be above 0 and below alpha"):
-        function(PIER, tilt)
