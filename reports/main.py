@@ -8,7 +8,9 @@ from typing import Annotated, Any
 import typer
 
 from .compare_command import compare
+from .paper_command import figures
 from .simulate_command import simulate
+from .spectrum_command import spectrum
 from .terminal import BAD_INPUT, INTERRUPTED, complain
 
 app = typer.Typer(
@@ -22,6 +24,8 @@ app.command(epilog="Example: rockwobble compare --semidiagonal 10 --tan-alpha 0.
 app.command(epilog="Example: rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8")(
     simulate
 )
+app.command(epilog="Example: rockwobble spectrum --tan-alpha 0.2 --sizes 50 --intensities 50")(spectrum)
+app.command(epilog="Example: rockwobble figures --out paper")(figures)
 
 # typer brings its own click in some versions and imports click in others: one base class, two homes
 _USAGE_ERROR: Any = next(base for base in typer.BadParameter.__mro__ if base.__name__ == "ClickException")

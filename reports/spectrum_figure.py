@@ -39,7 +39,7 @@ def spectrum_figure(spectrum: OverturningSpectrum) -> bytes:
 
     def draw(figure: Figure) -> None:
         panels = figure.subplots(2, 2)
-        colours = None
+        colours: Any = None
         for letter, axes, series in zip("abc", panels.flat, SERIES, strict=False):
             colours = _map(axes, spectrum, series)
             axes.set_title(f"({letter}) {TITLES[series]}")
@@ -81,9 +81,13 @@ def _map(axes: Axes, spectrum: OverturningSpectrum, series: str) -> Any:
     axes.set_ylabel("peak resultant / (g tan α) [-]")
     share = spectrum.component_share(series)
     if share not in (0.0, 1.0):
-        own = axes.secondary_yaxis("right", functions=(lambda y: y * share, lambda y: y / share))
+        own = axes.secondary_yaxis("right", functions=_proportional(share))
         own.set_ylabel("peak of the component / (g tan α) [-]")
     return mesh
+
+
+def _proportional(share: float) -> Any:
+    return (lambda y: y * share), (lambda y: y / share)
 
 
 def _curves(axes: Axes, spectrum: OverturningSpectrum) -> None:
@@ -127,6 +131,6 @@ def _islands(axes: Axes, islands: list[Island], aside: float, levels: Array, col
 def _edges(centres: Array) -> Array:
     """Edges (n + 1,) of the cells around `centres` (n,)."""
     if len(centres) == 1:
-        return centres[0] * np.array([0.9, 1.1])
+        return np.array([0.9, 1.1]) * float(centres[0])
     between = 0.5 * (centres[1:] + centres[:-1])
     return np.concatenate([[2.0 * centres[0] - between[0]], between, [2.0 * centres[-1] - between[-1]]])

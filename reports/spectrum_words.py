@@ -10,6 +10,7 @@ import numpy as np
 from rockwobble.compare.lowest_overturning import Island, safe_islands
 from rockwobble.compare.planar_contrast import planar_contrast, unconservative_from
 from rockwobble.compare.spectrum import SERIES, SPATIAL, OverturningSpectrum
+from rockwobble.compare.spectrum_check import AGREEMENT, CHECK_RTOL, NUDGE
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -25,7 +26,7 @@ HEADINGS = (
     "3D tilts more [%]",
 )
 LEGEND = (
-    "lowest: median over the sizes of the lowest overturning intensity, in g tan alpha (-: most do not fall). "
+    "lowest: median over the sizes of the lowest overturning intensity, in g tan alpha (-: most stand). "
     "missed: the 3D model overturns and neither planar run does. overcalled: a planar run overturns and "
     "the 3D model does not. 3D tilts more: than both planar runs."
 )
@@ -75,10 +76,26 @@ def statements(spectrum: OverturningSpectrum) -> list[str]:
     return said
 
 
+def check_statement(checked: pd.DataFrame) -> str:
+    """Return what running some cells again has shown; `checked` is from `check_cells`."""
+    agree = int(checked["agrees"].sum())
+    chance = int((~checked["agrees"] & checked["sensitive"]).sum())
+    wrong = len(checked) - agree - chance
+    said = (
+        f"Of {_count(len(checked), 'cell')} drawn at random and run again singly at a tolerance of "
+        f"{CHECK_RTOL:.0e}, {agree} agree to {100.0 * AGREEMENT:g} % of the peak tilt"
+    )
+    if chance:
+        said += (
+            f", {chance} {_is(chance)} a matter of chance (a record nudged by {NUDGE:.0e} changes as much)"
+        )
+    return f"{said}, {wrong} {'does' if wrong == 1 else 'do'} not." if wrong else f"{said}."
+
+
 def _headline(every: Any) -> str:
     return (
-        f"In 3D the cylinder overturns in {_percent(every.falls)} of {every.cells} cells, in at least one "
-        f"plane in {_percent(every.planar_falls)}. Planar analysis is unconservative in "
+        f"In 3D the cylinder overturns in {_percent(every.falls)} of {int(every.cells)} cells, in at least "
+        f"one plane in {_percent(every.planar_falls)}. Planar analysis is unconservative in "
         f"{_percent(every.missed)} of the cells (3D overturns, neither planar run does) and conservative "
         f"in {_percent(every.overcalled)} (a planar run overturns, 3D does not)."
     )
@@ -86,7 +103,7 @@ def _headline(every: Any) -> str:
 
 def _by_size(contrast: pd.DataFrame) -> str:
     bands = contrast.iloc[:-1]
-    worst = bands.loc[bands["missed"].idxmax()]
+    worst = bands.iloc[int(bands["missed"].argmax())]
     wrong = bands[bands["missed"] > bands["overcalled"]]
     more = ", ".join(f"{row.smallest:.3g} to {row.largest:.3g} m" for _, row in wrong.iterrows())
     return (

@@ -1,4 +1,4 @@
-"""What the pictures for a document have in common: one style, one width, the same bytes for the same numbers."""
+"""What pictures for a document have in common: style, width, and the same bytes for the same numbers."""
 
 from __future__ import annotations
 
@@ -18,9 +18,11 @@ if TYPE_CHECKING:
 # a column of text on a screen is some 830 pixels wide, 96 to the inch [inch]
 WIDTH = 8.6
 GRID = "#dddddd"
+# what the figures show of a response, by the names of its table
+DRAWN = ("time", "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "centre_x", "centre_y")
 # more points than such a column has pixels
 _POINTS = 1600
-_STYLE: dict[str, Any] = {
+_STYLE: Any = {
     "svg.hashsalt": "rockwobble",
     "font.size": 9.5,
     "axes.titlesize": 10,

@@ -1,0 +1,166 @@
+"""`rockwobble spectrum`: which shaking overturns which size, in 3D and by planar analysis."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from . import options
+from .terminal import interruptible, user_input
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from rockwobble.models import GroundMotion
+
+    Array = NDArray[np.float64]
+
+_GRID = "Grid"
+# a map of more cells than a screen has pixels is a slip of the hand
+_MOST_POINTS = 2000
+
+Smallest = Annotated[
+    float, typer.Option("--smallest", help="Smallest semidiagonal R, in m.", rich_help_panel=_GRID)
+]
+Largest = Annotated[
+    float, typer.Option("--largest", help="Largest semidiagonal R, in m.", rich_help_panel=_GRID)
+]
+Sizes = Annotated[int, typer.Option("--sizes", help="Number of sizes.", rich_help_panel=_GRID)]
+Weakest = Annotated[
+    float,
+    typer.Option(
+        "--weakest", help="Lowest peak of the horizontal resultant, in g tan alpha.", rich_help_panel=_GRID
+    ),
+]
+Strongest = Annotated[
+    float,
+    typer.Option("--strongest", help="Highest peak of the resultant, in g tan alpha.", rich_help_panel=_GRID),
+]
+Intensities = Annotated[
+    int, typer.Option("--intensities", help="Number of intensities.", rich_help_panel=_GRID)
+]
+SpatialModel = Annotated[
+    str,
+    typer.Option("--model", help="Model in three dimensions: recess or rolling.", rich_help_panel="Method"),
+]
+
+
+def spectrum(
+    tan_alpha: options.TanAlpha = 0.1,
+    record_x: options.RecordX = None,
+    record_y: options.RecordY = None,
+    record_z: options.RecordZ = None,
+    units: options.Units = None,
+    smallest: Smallest = 0.5,
+    largest: Largest = 30.0,
+    sizes: Sizes = 100,
+    weakest: Weakest = 1.0,
+    strongest: Strongest = 12.0,
+    intensities: Intensities = 100,
+    model: SpatialModel = "recess",
+    out: options.Out = Path("rockwobble-out"),
+) -> None:
+    """Map the peak tilt over size and intensity, in 3D and by planar analysis of each component.
+
+    The record is scaled until its peak horizontal resultant reaches each
+    intensity. A planar run takes one component of the same shaking alone.
+
+    Without options: figure 6 of the paper, the 1940 El Centro record on
+    cylinders of tan alpha = 0.1.
+
+    Writes spectrum.svg and spectrum.md, and as Parquet the cells (spectrum),
+    the minimum overturning accelerations (lowest), the safe islands above them
+    (islands), the shares by size (contrast), and some cells run again to a
+    tighter tolerance (checked).
+    """
+    with interruptible():
+        with user_input():
+            from rockwobble.compare import replace_files, require_writable
+
+            grid = {
+                "semidiagonals": _axis("smallest", smallest, "largest", largest, "sizes", sizes),
+                "intensities": _axis("weakest", weakest, "strongest", strongest, "intensities", intensities),
+            }
+            motion = _motion(tan_alpha, largest, record_x, record_y, record_z, units)
+            _require_spatial(model)
+            require_writable(out)
+        for line in describe_grid(tan_alpha, motion, **grid):
+            print(line)
+        from rockwobble.compare.spectrum_check import check_cells
+
+        from .spectrum_output import CHECKED_CELLS, print_spectrum, run_spectrum, spectrum_files
+
+        result = run_spectrum(tan_alpha, motion, model=model, **grid)
+        checked = check_cells(result, CHECKED_CELLS)
+        print_spectrum(result, checked)
+        contents = spectrum_files(result, checked)
+        with user_input():
+            replace_files(out, contents)
+    print(f"\nWritten to {out}: {', '.join(contents)}")
+
+
+def describe_grid(
+    tan_alpha: float, motion: GroundMotion, *, semidiagonals: Array, intensities: Array
+) -> list[str]:
+    """Return the lines that echo a grid: what was understood, in numbers."""
+    from rockwobble.models import Cylinder
+
+    first, last = (Cylinder(semidiagonal=float(semidiagonals[i]), tan_alpha=tan_alpha) for i in (0, -1))
+    return [
+        f"Cylinders: {len(semidiagonals)} sizes, R = {first.semidiagonal:g} to {last.semidiagonal:g} m, "
+        f"b = {first.base_radius:.4g} to {last.base_radius:.4g} m, "
+        f"2h = {2.0 * first.half_height:.4g} to {2.0 * last.half_height:.4g} m, "
+        f"alpha = {math.degrees(first.alpha):.4g} deg (tan alpha = {tan_alpha:g})",
+        f"Ground: {motion.name or 'record'}, {motion.acceleration.shape[1]} components, "
+        f"{motion.duration:.4g} s, peak resultant {motion.peak:.4g} m/s^2",
+        f"Intensities: {len(intensities)}, the record scaled to a peak resultant of {intensities[0]:g} to "
+        f"{intensities[-1]:g} g tan alpha, {intensities[0] * tan_alpha:.3g} to "
+        f"{intensities[-1] * tan_alpha:.3g} g",
+    ]
+
+
+def _motion(
+    tan_alpha: float,
+    semidiagonal: float,
+    record_x: Path | None,
+    record_y: Path | None,
+    record_z: Path | None,
+    units: str | None,
+) -> GroundMotion:
+    from rockwobble.compare.spectrum import intensity_unit
+
+    from .problem import case_from_options
+
+    case = case_from_options(
+        semidiagonal=semidiagonal,
+        tan_alpha=tan_alpha,
+        record_x=record_x,
+        record_y=record_y,
+        record_z=record_z,
+        units=units,
+    )
+    if case.motion is None:  # without a release there always is one
+        raise ValueError("a spectrum needs a ground motion")
+    intensity_unit(tan_alpha, case.motion, case.gravity)
+    return case.motion
+
+
+def _require_spatial(model: str) -> None:
+    from rockwobble.compare.spectrum import SPATIAL_MODELS
+
+    if model not in SPATIAL_MODELS:
+        raise ValueError(f"--model must be one of {', '.join(SPATIAL_MODELS)}, got {model!r}")
+
+
+def _axis(first: str, low: float, last: str, high: float, number: str, count: int) -> Array:
+    import numpy as np
+
+    if not (0.0 < low < math.inf and low < high < math.inf):
+        raise ValueError(f"--{first} and --{last} must be positive and increasing, got {low:g} and {high:g}")
+    if not 2 <= count <= _MOST_POINTS:
+        raise ValueError(f"--{number} must be from 2 to {_MOST_POINTS}, got {count}")
+    return np.linspace(low, high, count)

@@ -1,0 +1,80 @@
+"""A spectrum with its progress shown, and what becomes of it: a table, sentences, files."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from rockwobble.compare.lowest_overturning import islands_frame
+from rockwobble.compare.planar_contrast import planar_contrast
+from rockwobble.compare.spectrum import SERIES, OverturningSpectrum, overturning_spectrum
+from rockwobble.models import GroundMotion
+
+from .paper.provenance import parquet
+from .spectrum_figure import TITLES, spectrum_figure
+from .spectrum_page import spectrum_page
+from .spectrum_progress import shown_fraction
+from .spectrum_words import HEADINGS, LEGEND, check_statement, islands_of, statements, table_cells
+from .summary_table import MINIMUM_WIDTH
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+# cells run again singly: enough to find one wrong cell in twenty almost surely, in half a second
+CHECKED_CELLS = 60
+
+
+def run_spectrum(
+    tan_alpha: float, motion: GroundMotion, *, semidiagonals: Array, intensities: Array, model: str = "recess"
+) -> OverturningSpectrum:
+    """Run a spectrum with progress shown."""
+    with shown_fraction([TITLES[series] for series in SERIES]) as tell:
+        return overturning_spectrum(
+            tan_alpha,
+            motion,
+            semidiagonals=semidiagonals,
+            intensities=intensities,
+            model=model,
+            progress=lambda series, fraction: tell(TITLES[series], fraction),
+        )
+
+
+def print_spectrum(result: OverturningSpectrum, checked: pd.DataFrame) -> None:
+    """Print the table by size, and what the spectrum says in words."""
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    for i, heading in enumerate(HEADINGS):
+        # a narrow terminal has room for one word of a heading
+        name = heading.replace(" ", "\n") if i else heading
+        table.add_column(name, justify="right" if i else "left", no_wrap=True)
+    for cells in table_cells(planar_contrast(result)):
+        table.add_row(*cells)
+    console = Console()
+    if not console.is_terminal:
+        console.width = max(console.width, MINIMUM_WIDTH)
+    console.print()
+    console.print(table)
+    console.print(LEGEND, style="dim", highlight=False)
+    console.print()
+    for i, sentence in enumerate(statements(result)):
+        console.print(sentence, style="bold" if i == 0 else "", highlight=False, markup=False)
+    console.print(check_statement(checked), highlight=False, markup=False)
+
+
+def spectrum_files(result: OverturningSpectrum, checked: pd.DataFrame) -> dict[str, bytes]:
+    """Return the files of a spectrum by name."""
+    return {
+        "spectrum.md": spectrum_page(result, checked).encode(),
+        "spectrum.svg": spectrum_figure(result),
+        "spectrum.parquet": parquet(result.to_frame()),
+        "lowest.parquet": parquet(result.lowest_frame()),
+        "islands.parquet": parquet(islands_frame(islands_of(result))),
+        "contrast.parquet": parquet(planar_contrast(result)),
+        "checked.parquet": parquet(checked),
+    }
