@@ -34,8 +34,8 @@ class Kinematics:
     energy : ndarray
         Kinetic and potential, per unit mass, zero standing [m^2/s^2].
     momentum : ndarray
-        Vertical angular momentum per unit mass about the centre of the circle on which the rim rolls
-        (O, as long as the cylinder stays in its place) [m^2/s].
+        Momentum of the rolling angle per unit mass [m^2/s]: angular momentum about the contact point along
+        the vertical less the axis. It is L = B phi' in a recess, and keeps its sign through a pass.
     depth : ndarray
         Of the lowest point of the rim below the ground [m].
     slip_rate : ndarray
@@ -81,10 +81,10 @@ def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinema
     lowest = np.column_stack([contact, base_centre[:, 2] - b * sine])
     slip = velocity + np.cross(spin, lowest - position)
     along = np.einsum("ij,ij->i", spin, axis)
-    about_centre = body.transverse_inertia * spin[:, 2] + (body.axial_inertia - body.transverse_inertia) * (
-        along * axis[:, 2]
-    )
-    arm = position[:, :2] - (contact - b * outward)
+    turning = -axis
+    turning[:, 2] += 1.0
+    about_contact = np.cross(position - lowest, velocity) + body.transverse_inertia * spin
+    about_contact += (body.axial_inertia - body.transverse_inertia) * along[:, None] * axis
     energy = 0.5 * np.einsum("ij,ij->i", velocity, velocity) + gravity * (position[:, 2] - h)
     energy += 0.5 * body.transverse_inertia * np.einsum("ij,ij->i", spin, spin)
     energy += 0.5 * (body.axial_inertia - body.transverse_inertia) * along**2
@@ -98,7 +98,7 @@ def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinema
         centre_of_mass=position,
         base_centre=base_centre,
         energy=energy,
-        momentum=about_centre + arm[:, 0] * velocity[:, 1] - arm[:, 1] * velocity[:, 0],
+        momentum=np.einsum("ij,ij->i", turning, about_contact),
         depth=b * sine - base_centre[:, 2],
         slip_rate=np.hypot(slip[:, 0], slip[:, 1]),
     )
@@ -110,15 +110,20 @@ def axis_of(quaternion: Array) -> Array:
     return np.column_stack([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])
 
 
-def unwrap(azimuth: Array, momentum: Array, before: float) -> Array:
+def unwrap(azimuth: Array, momentum: Array, meaningful: NDArray[np.bool_], before: float) -> Array:
     """Return the rolling angle without jumps, going on from `before` [rad].
 
     A change above a quarter turn in one step happens next to the apex, where the shorter way round may
-    be the wrong one: the sign of the vertical angular momentum says which way the cylinder turned.
+    be the wrong one: the sign of the momentum says which way the cylinder turned. Where the azimuth is
+    not `meaningful`, because the cylinder stands, the angle waits.
     """
-    change = np.diff(azimuth, prepend=before)
+    last = np.maximum.accumulate(np.where(meaningful, np.arange(len(azimuth)), -1))
+    waiting = np.where(last < 0, before, azimuth[last])
+    change = np.diff(waiting, prepend=before)
     change -= 2.0 * np.pi * np.round(change / (2.0 * np.pi))
     way = np.sign(momentum)
     wrong = (np.abs(change) > 0.5 * np.pi) & (np.sign(change) == -way)
+    # the first lean after standing comes from no turn at all
+    wrong &= meaningful & np.concatenate([[True], meaningful[:-1]])
     change[wrong] += 2.0 * np.pi * way[wrong]
     return np.asarray(before + np.cumsum(change))

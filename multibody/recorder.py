@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from .engine import Scene, Steps
 from .guard import first_breach
-from .kinematics import Kinematics, kinematics, unwrap
+from .kinematics import Kinematics, axis_of, kinematics, unwrap
 from .passes import TurningPoint, turning_points
 from .start import Start
-from .uplift import UpliftWatch
+from .uplift import UpliftWatch, sure_tilt
 
 Array = NDArray[np.float64]
 
@@ -36,9 +36,11 @@ class Recorder:
         Times of the samples, in the scene [s].
     rolling_angle : float
         At the start of a release [rad].
+    starts_at_turn : bool
+        Whether the release is at rest in tilt.
     """
 
-    def __init__(self, scene: Scene, samples: Array, rolling_angle: float) -> None:
+    def __init__(self, scene: Scene, samples: Array, rolling_angle: float, starts_at_turn: bool) -> None:
         body, start = scene.body, scene.start
         self._scene, self._samples = scene, samples
         self._watch = UpliftWatch(body, scene.gravity, scene.time_step) if start.standing else None
@@ -55,6 +57,14 @@ class Recorder:
         self._slipped = 0.0
         self.slip_time = math.nan  # when the slip became worth a remark [s]
         self.flight_time = math.nan  # when the rim left the ground [s]
+        # a standing cylinder leans by less, in no direction
+        sure = sure_tilt(body)
+        self.floor = (
+            sure
+            if start.standing
+            else min(sure, 0.5 * float(np.hypot(*axis_of(start.quaternion[None])[0, :2])))
+        )
+        self._at_turn = not start.standing and starts_at_turn
         self.points: list[TurningPoint] = []
         self.peak = 0.0
         self.fastest = 0.0
@@ -93,7 +103,7 @@ class Recorder:
         state = kinematics(poses, after, self._scene.body, self._scene.gravity)
         gained = self._energy_error(state, poses, after, acceleration)
         stop = self._stop(time, state, gained)
-        angle = unwrap(state.azimuth, state.momentum, self._angle)
+        angle = unwrap(state.azimuth, state.momentum, state.tilt > self.floor, self._angle)
         rows = np.column_stack(
             [time, state.tilt, state.tilt_rate, angle, state.rolling_rate, state.twist, state.contact_point,
              state.centre_of_mass, state.energy, gained, self._slip(time, state)]
@@ -179,7 +189,11 @@ class Recorder:
         if not len(rows):
             return
         time, tilt, angle = joined[:, 0], joined[:, 1], joined[:, 3]
-        if len(joined) > 2:
+        if self._at_turn and len(tilt) > 1:
+            # released at rest in tilt, the start is a turning point as well
+            self.points.append(TurningPoint(0.0, float(tilt[0]), float(angle[0]), bool(tilt[1] < tilt[0])))
+            self._at_turn = False
+        if len(joined) > 2 and self.uplift is not None:
             # the two carried steps were inner ones already, except for the last of them
             fresh = slice(max(len(joined) - len(rows) - 2, 0), None)
             self.points.extend(turning_points(time[fresh], tilt[fresh], angle[fresh]))

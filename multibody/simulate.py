@@ -110,7 +110,8 @@ def simulate(
     scene = _scene(case, support, step, scale)
     resolved = backend.settings(settings, scene)
     samples = _sample_times(case.length, _positive("sample_step", sample_step)) / scale.time
-    recorder = Recorder(scene, samples, 0.0 if initial is None else initial.rolling_angle)
+    release = InitialState(0.0) if initial is None else initial
+    recorder = Recorder(scene, samples, release.rolling_angle, release.tilt_rate == 0.0)
     means = StepMeans(motion, scale, scene.time_step)
     _run(backend, scene, resolved, recorder, means, samples[-1], progress)
     return _trajectory(
@@ -171,16 +172,10 @@ def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> T
     outcome = recorder.ended or _quiet_outcome(recorder, scene, rows)
     table = dict(zip(("time", *COLUMNS), rows.T, strict=True))
     uplift_time, uplift_direction = recorder.uplift or (math.nan, math.nan)
-    if recorder.uplift is not None and scene.start.standing:
-        # standing, the azimuth of the lean is noise: count whole turns from the uplift
-        lean = table["rolling_angle"][np.searchsorted(table["time"], uplift_time, side="right") :][:1]
-        turns = np.round((lean - uplift_direction) / (2.0 * math.pi)) if len(lean) else 0.0
-        table["rolling_angle"] = table["rolling_angle"] - 2.0 * math.pi * turns
     contact = np.column_stack([table["contact_x"], table["contact_y"]])
-    resting = ~(table["time"] >= uplift_time)
+    resting = ~(table["time"] >= uplift_time) | ~(table["tilt"] > recorder.floor)
     for field in (table["rolling_angle"], contact):
         field[resting] = np.nan
-    # numpy arrays of the trajectory are the user's own: scaled copies
     resolution = max(
         recorder.penetration / (1.5 * scene.body.base_radius), recorder.fastest * scene.time_step
     )

@@ -31,8 +31,8 @@ class Trajectory:
     time : ndarray, shape (n,)
         Multiples of the sample step and the exact end [s].
     tilt, tilt_rate, rolling_angle, rolling_rate, twist : ndarray, shape (n,)
-        [rad], [rad/s]. The rolling angle is unwrapped at every step of the engine; it is NaN at rest,
-        before the uplift.
+        [rad], [rad/s]. The rolling angle is unwrapped at every step of the engine; it is NaN at rest:
+        before the uplift, and where the tilt is below 5e-6 alpha.
     contact_point : ndarray, shape (n, 2)
         Lowest point of the rim [m]; NaN at rest.
     centre_of_mass : ndarray, shape (n, 3)

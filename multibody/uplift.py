@@ -25,9 +25,15 @@ _MEMORY = 4000  # steps kept before that tilt: it takes a few hundred from the u
 _LEVELS = (0.97, 0.94, 0.9, 0.8)
 _FIT = 20  # steps that must follow
 _STEADY = 2e-3  # largest deviation of their ratio
+_AT_RIM = 0.99  # of b; a polygon of 48 corners carries the reaction at 0.998 b or more
 _SPIKE = 9  # steps; a single step that loses contact, or carries twice the load, says nothing
 _DEPARTURE = 0.015  # of b; a reaction that lags so far behind has left the excitation: the base tips early
 _MINIMUM_LOAD = 0.1  # weights; a smaller reaction, in the step that loses contact, has no eccentricity
+
+
+def sure_tilt(body: Body) -> float:
+    """Return the tilt [rad] that is motion beyond doubt."""
+    return SURE_TILT * float(np.arctan(body.tan_alpha))
 
 
 class UpliftWatch:
@@ -35,7 +41,7 @@ class UpliftWatch:
 
     def __init__(self, body: Body, gravity: float, time_step: float) -> None:
         self._body, self._gravity, self._step = body, gravity, time_step
-        self._sure = SURE_TILT * float(np.arctan(body.tan_alpha))
+        self._sure = sure_tilt(body)
         # time, eccentricity of the reaction, eccentricity of a reaction that follows the excitation at once
         self._history: Array = np.empty((0, 5))
 
@@ -46,10 +52,16 @@ class UpliftWatch:
 
         `acceleration` (n, 3) is the ground's in the step after each pose.
         """
-        sure = np.flatnonzero(tilt > self._sure)
-        end = int(sure[0]) + 1 if len(sure) else len(tilt)
         still = -self._body.mass_centre_height * acceleration[:, :2] / (self._gravity + acceleration[:, 2:])
-        rows = np.column_stack([time, self._reaction_eccentricity(poses, after, acceleration), still])
+        reaction = self._reaction_eccentricity(poses, after, acceleration)
+        rows = np.column_stack([time, reaction, still])
+        b = self._body.base_radius
+        # a load that passes the rim for a millisecond uplifts the base by less than that tilt
+        passes = (np.hypot(still[:, 0], still[:, 1]) >= b) & (
+            np.hypot(reaction[:, 0], reaction[:, 1]) > _AT_RIM * b
+        )
+        sure = np.flatnonzero((tilt > self._sure) | passes)
+        end = int(sure[0]) + 1 if len(sure) else len(tilt)
         self._history = np.vstack([self._history, rows[:end]])[-_MEMORY:]
         return self._crossing() if len(sure) else None
 
@@ -66,10 +78,8 @@ class UpliftWatch:
         )
 
     def _crossing(self) -> tuple[float, float]:
-        from scipy.ndimage import median_filter
-
         time, still = self._history[:, 0], self._history[:, 3:]
-        reaction = median_filter(self._history[:, 1:3], size=(_SPIKE, 1), mode="nearest")
+        reaction = _without_spikes(self._history[:, 1:3])
         share, expected = (np.hypot(at[:, 0], at[:, 1]) / self._body.base_radius for at in (reaction, still))
         for level in _LEVELS:
             inside = np.flatnonzero(share < level)
@@ -101,6 +111,13 @@ class UpliftWatch:
             part = min(max((1.0 - before) / (expected[step] - before), 0.0), 1.0)
         at = still[step - 1] + part * (still[step] - still[step - 1])
         return float(time[step - 1] + part * (time[step] - time[step - 1])), _azimuth(at)
+
+
+def _without_spikes(values: Array) -> Array:
+    """Median of each value (n, 2) and its neighbours in time."""
+    padded = np.pad(values, ((_SPIKE // 2, _SPIKE // 2), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, _SPIKE, axis=0)
+    return np.asarray(np.median(windows, axis=-1))
 
 
 def _azimuth(vector: Array) -> float:

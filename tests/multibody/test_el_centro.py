@@ -1,0 +1,123 @@
+"""Engines from rest under the 1940 El Centro record, against the models solved independently."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import multibody
+from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+
+# RMS(difference)/RMS(tilt) from uplift to 15 s at h = 1e-4 s: 1.7e-4 and 3.1e-4 in MuJoCo, 2.6e-4 and 8.3e-4
+# in Bullet. The budget is twice that: any other step, setting or version lands elsewhere in that range.
+TRACE = {"mujoco": 6e-4, "pybullet": 1.5e-3}
+# of the step: 0.07 over sixteen bodies and records; the issue allows 2
+UPLIFT_STEPS, UPLIFT_ANGLE = 0.2, np.radians(0.01)
+
+
+def relative_difference(run: Any, exact: Any, until: float) -> float:
+    inside = exact.time < until + 1e-9
+    tilt = np.interp(exact.time[inside], run.time, run.tilt)
+    return float(np.sqrt(np.mean((tilt - exact.tilt[inside]) ** 2) / np.mean(exact.tilt[inside] ** 2)))
+
+
+@pytest.mark.parametrize(("semidiagonal", "tan_alpha", "scale"), [(10.0, 0.1, 1.0), (6.0, 0.2, 2.0)])
+def test_traces_agree_and_a_wrong_size_shows(
+    engine: str, semidiagonal: float, tan_alpha: float, scale: float, solve_forced: Callable[..., Any]
+) -> None:
+    motion = el_centro_1940().scaled(scale)
+    cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
+    run = multibody.simulate(cylinder, motion, duration=15.0, engine=engine, time_step=1e-4)
+    assert relative_difference(run, solve_forced(cylinder, motion, 15.0), 15.0) < TRACE[engine]
+    # the comparison has teeth: half a percent of R is several times the budget
+    wrong = Cylinder(semidiagonal=1.005 * semidiagonal, tan_alpha=tan_alpha)
+    assert relative_difference(run, solve_forced(wrong, motion, 15.0), 15.0) > 2.5 * TRACE[engine]
+
+
+def test_small_tilts_agree_beyond_twenty_seconds(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
+    # passes at 1e-5 rad amplify everything: within 1 % of alpha until 22.9 s; 20 s are asked for
+    motion = el_centro_1940()
+    run = multibody.simulate(pier, motion, duration=20.5)
+    exact = solve_forced(pier, motion, 20.5)
+    tilt = np.interp(exact.time, run.time, run.tilt)
+    assert np.abs(tilt - exact.tilt).max() < 0.01 * pier.alpha
+    assert run.uplift_time == pytest.approx(exact.uplift_time, abs=UPLIFT_STEPS * run.time_step)
+    assert run.uplift_direction == pytest.approx(exact.uplift_direction, abs=UPLIFT_ANGLE)
+    # at rest there is no contact azimuth, and as soon as the cylinder leans by 1e-6 rad there is
+    resting = run.tilt < 5e-6 * pier.alpha
+    assert resting[run.time < run.uplift_time].all()
+    assert not resting[run.time > run.uplift_time + 0.03].any()
+    assert np.isnan(run.rolling_angle[resting]).all()
+    assert np.isnan(run.contact_point[resting]).all()
+    assert np.isfinite(run.rolling_angle[~resting]).all()
+    # the guide keeps the contact on the original circle; the rest is the resolution of Bullet and MuJoCo
+    radius = np.hypot(*run.contact_point[~resting].T)
+    assert np.abs(radius - pier.base_radius).max() < 2e-3 * pier.base_radius
+    assert np.abs(run.twist).max() < 1e-4
+
+
+@pytest.mark.parametrize("case", range(6))
+def test_uplift(case: int, solve_forced: Callable[..., Any]) -> None:
+    random = np.random.default_rng(case)
+    tan_alpha = random.uniform(0.1, 0.35)
+    motion = el_centro_1940().scaled(random.uniform(1.2, 3.0) * tan_alpha / 0.2)
+    motion = motion.rotated(random.uniform(0.0, 2.0 * np.pi))
+    cylinder = Cylinder(semidiagonal=10.0 ** random.uniform(0.0, 1.5), tan_alpha=tan_alpha)
+    exact = solve_forced(cylinder, motion, 4.0)
+    run = multibody.simulate(cylinder, motion, duration=exact.uplift_time + 0.3)
+    assert run.uplift_time == pytest.approx(exact.uplift_time, abs=UPLIFT_STEPS * run.time_step)
+    turned = np.angle(np.exp(1j * (run.uplift_direction - exact.uplift_direction)))
+    assert abs(turned) < UPLIFT_ANGLE
+    # soon after, the cylinder rolls where it should: unwrapped from the uplift, not from noise before
+    soon = exact.time < exact.uplift_time + 0.2
+    leaning = soon & (exact.tilt > 1e-4)
+    angle = np.interp(exact.time[leaning], run.time, run.rolling_angle)
+    np.testing.assert_allclose(angle, exact.rolling_angle[leaning], atol=0.02)
+    # one of the cases passes the threshold for half a millisecond and stands again
+    assert leaning.any() == (case != 1)
+
+
+def test_an_engine_that_tips_early_is_seen(pier: Cylinder) -> None:
+    # four corners carry the base: between two of them it tips at cos(45 deg) of the load
+    early = multibody.simulate(pier, el_centro_1940().scaled(2.0), duration=2.0, standing_corners=4)
+    exact = multibody.simulate(pier, el_centro_1940().scaled(2.0), duration=2.0)
+    assert early.uplift_time < exact.uplift_time - 5 * exact.time_step
+
+
+def test_vertical_motion(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
+    motion = el_centro_1940(vertical=True).scaled(2.0)
+    run = multibody.simulate(pier, motion, duration=5.0)
+    exact = solve_forced(pier, motion, 5.0)
+    assert relative_difference(run, exact, 5.0) < TRACE["mujoco"]
+    flat = solve_forced(pier, GroundMotion(motion.acceleration[:, :2], motion.time_step), 5.0)
+    assert relative_difference(run, flat, 5.0) > 0.05
+
+
+def test_open_ground_follows_the_rolling_model(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
+    motion = el_centro_1940().scaled(2.0)
+    run = multibody.simulate(pier, motion, duration=6.0, support="free")
+    # the same resolution as in the recess
+    assert relative_difference(run, solve_forced(pier, motion, 6.0, rolls_out=True), 6.0) < TRACE["mujoco"]
+    assert relative_difference(run, solve_forced(pier, motion, 6.0), 6.0) > 3 * TRACE["mujoco"]
+
+
+def test_step_load_uplifts_at_once(engine: str, pier: Cylinder) -> None:
+    pulse = GroundMotion([[3.0, 4.0], [3.0, 4.0], [0.0, 0.0]], 0.2)
+    run = multibody.simulate(pier, pulse, engine=engine)
+    # within a step in MuJoCo; in Bullet the four contacts of standing take over from one another
+    assert run.uplift_time <= {"mujoco": 1, "pybullet": 5}[engine] * run.time_step
+    assert run.uplift_direction == pytest.approx(np.arctan2(-4.0, -3.0), abs=1e-3)
+
+
+def test_weak_motion_leaves_it_standing(engine: str, pier: Cylinder) -> None:
+    run = multibody.simulate(pier, el_centro_1940().scaled(0.5), duration=4.0, engine=engine)
+    assert run.outcome == "rest"
+    assert np.isnan(run.uplift_time)
+    assert np.isnan(run.rolling_angle).all()
+    assert len(run.passes) == 0
+    # contact yields: MuJoCo leans by 1e-9 rad, Bullet by 1e-7
+    assert run.peak_tilt < 1e-6
+    assert run.residual_displacement < 1e-6
