@@ -21,6 +21,9 @@ window.addEventListener("load", () => setTimeout(() => {
   const plots = Array.from(document.querySelectorAll(".plotly-graph-div"));
   const found = [
     "drawn", plots.filter((plot) => plot.querySelector(".main-svg")).length,
+    "cut off", plots.filter(
+      (plot) => plot.querySelector(".main-svg").getBoundingClientRect().right >
+        plot.parentElement.getBoundingClientRect().right + 1).length,
     "too wide by", document.documentElement.scrollWidth - document.documentElement.clientWidth,
   ].join(" ");
   document.body.dataset.found = found;
@@ -59,5 +62,5 @@ def test_page_is_drawn_without_error_and_without_horizontal_scrolling(comparison
     done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
     said = re.search(r'data-inner="([^"]*)"', done.stdout)
     assert said, done.stdout[-500:]
-    assert html.unescape(said.group(1)) == f"drawn {FIGURES} too wide by 0"
+    assert html.unescape(said.group(1)) == f"drawn {FIGURES} cut off 0 too wide by 0"
     assert "CONSOLE" not in done.stderr
