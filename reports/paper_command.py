@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 import time
 from collections.abc import Callable
@@ -35,12 +36,28 @@ def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-out")) -> None
             if not _LEAST_GRID <= grid <= _MOST_GRID:
                 raise ValueError(f"--grid must be from {_LEAST_GRID} to {_MOST_GRID}, got {grid}")
             require_writable(out)
+        for line in _described(grid):
+            print(line)
         sections = _sections(grid)
         contents = paper_files(sections)
         with user_input():
             replace_files(out, contents)
     _print_verdicts(sections)
     print(f"\nWritten to {out}: {', '.join(contents)}")
+
+
+def _described(grid: int) -> list[str]:
+    from .paper import earthquake, free, overturning
+    from .spectrum_output import describe_grid
+
+    bodies = [(4, free.CYLINDER), (5, earthquake.CYLINDER)]
+    lines = [
+        f"Figure {number}: R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}, "
+        f"b = {body.base_radius:.4g} m, 2h = {2.0 * body.half_height:.4g} m, "
+        f"alpha = {math.degrees(body.alpha):.4g} deg"
+        for number, body in bodies
+    ]
+    return lines + [f"Figure 6: {line}" for line in describe_grid(**overturning.problem(grid))]
 
 
 def paper_files(sections: list[Section]) -> dict[str, bytes]:

@@ -88,12 +88,18 @@ def spectrum(
             motion = _motion(tan_alpha, largest, record_x, record_y, record_z, units)
             _require_spatial(model)
             require_writable(out)
-        for line in describe_grid(tan_alpha, motion, **grid):
-            print(line)
         from rockwobble.compare.spectrum_check import check_cells
 
-        from .spectrum_output import CHECKED_CELLS, print_spectrum, run_spectrum, spectrum_files
+        from .spectrum_output import (
+            CHECKED_CELLS,
+            describe_grid,
+            print_spectrum,
+            run_spectrum,
+            spectrum_files,
+        )
 
+        for line in describe_grid(tan_alpha, motion, **grid):
+            print(line)
         result = run_spectrum(tan_alpha, motion, model=model, **grid)
         checked = check_cells(result, CHECKED_CELLS)
         print_spectrum(result, checked)
@@ -101,26 +107,6 @@ def spectrum(
         with user_input():
             replace_files(out, contents)
     print(f"\nWritten to {out}: {', '.join(contents)}")
-
-
-def describe_grid(
-    tan_alpha: float, motion: GroundMotion, *, semidiagonals: Array, intensities: Array
-) -> list[str]:
-    """Return the lines that echo a grid: what was understood, in numbers."""
-    from rockwobble.models import Cylinder
-
-    first, last = (Cylinder(semidiagonal=float(semidiagonals[i]), tan_alpha=tan_alpha) for i in (0, -1))
-    return [
-        f"Cylinders: {len(semidiagonals)} sizes, R = {first.semidiagonal:g} to {last.semidiagonal:g} m, "
-        f"b = {first.base_radius:.4g} to {last.base_radius:.4g} m, "
-        f"2h = {2.0 * first.half_height:.4g} to {2.0 * last.half_height:.4g} m, "
-        f"alpha = {math.degrees(first.alpha):.4g} deg (tan alpha = {tan_alpha:g})",
-        f"Ground: {motion.name or 'record'}, {motion.acceleration.shape[1]} components, "
-        f"{motion.duration:.4g} s, peak resultant {motion.peak:.4g} m/s^2",
-        f"Intensities: {len(intensities)}, the record scaled to a peak resultant of {intensities[0]:g} to "
-        f"{intensities[-1]:g} g tan alpha, {intensities[0] * tan_alpha:.3g} to "
-        f"{intensities[-1] * tan_alpha:.3g} g",
-    ]
 
 
 def _motion(

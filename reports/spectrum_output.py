@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,7 @@ from rich.table import Table
 from rockwobble.compare.lowest_overturning import islands_frame
 from rockwobble.compare.planar_contrast import planar_contrast
 from rockwobble.compare.spectrum import SERIES, OverturningSpectrum, overturning_spectrum
-from rockwobble.models import GroundMotion
+from rockwobble.models import Cylinder, GroundMotion
 
 from .paper.provenance import parquet
 from .spectrum_figure import TITLES, spectrum_figure
@@ -29,6 +30,24 @@ Array = NDArray[np.float64]
 
 # cells run again singly: enough to find one wrong cell in twenty almost surely, in half a second
 CHECKED_CELLS = 60
+
+
+def describe_grid(
+    tan_alpha: float, motion: GroundMotion, *, semidiagonals: Array, intensities: Array
+) -> list[str]:
+    """Return the lines that echo a grid: what was understood, in numbers."""
+    first, last = (Cylinder(semidiagonal=float(semidiagonals[i]), tan_alpha=tan_alpha) for i in (0, -1))
+    return [
+        f"Cylinders: {len(semidiagonals)} sizes, R = {first.semidiagonal:g} to {last.semidiagonal:g} m, "
+        f"b = {first.base_radius:.4g} to {last.base_radius:.4g} m, "
+        f"2h = {2.0 * first.half_height:.4g} to {2.0 * last.half_height:.4g} m, "
+        f"alpha = {math.degrees(first.alpha):.4g} deg (tan alpha = {tan_alpha:g})",
+        f"Ground: {motion.name or 'record'}, {motion.acceleration.shape[1]} components, "
+        f"{motion.duration:.4g} s, peak resultant {motion.peak:.4g} m/s^2",
+        f"Intensities: {len(intensities)}, the record scaled to a peak resultant of {intensities[0]:g} to "
+        f"{intensities[-1]:g} g tan alpha, {intensities[0] * tan_alpha:.3g} to "
+        f"{intensities[-1] * tan_alpha:.3g} g",
+    ]
 
 
 def run_spectrum(

@@ -32,7 +32,7 @@ CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = 0.5  # tilt over alpha
 _SMALL_SPIN = 1e-3  # [rad/s]
 _SHARE_OF_STEADY = 0.4  # of the spin of steady wobble, in between
-_DURATION = 10.0  # [s]
+_DURATION = 15.0  # [s]
 _RTOL = 1e-11
 # a pass takes some minimum tilt over tilt rate, here a quarter of a millisecond [s]
 _SAMPLE_STEP = 5e-5
@@ -45,7 +45,7 @@ _LITTLE = math.radians(10.0)
 _WELL = math.radians(1.0)
 # steady to the eye
 _STEADY = 1e-3
-# Two maxima of a spin a tenth as large: the force must at least keep the greater part of the ratio
+# a tenth of the spin gives ten times the force in the limit: the greater part of that
 _GROWTH = 5.0
 # a millionth of the base radius is below what any survey of a structure resolves
 _RESIDUAL = 1e-6
@@ -104,7 +104,7 @@ def free_figure(data: FreeModes) -> bytes:
             zip(("a, b", "c, d", "e, f"), data.responses.items(), strict=True)
         ):
             spin = float(response.rolling_rate[0])
-            rows[0, column].set_title(f"({letters}) {mode}: φ'(0) = {spin:.3g} rad/s")
+            rows[0, column].set_title(f"({letters}) {mode}\nφ'(0) = {spin:.3g} rad/s")
             _orbit(rows[0, column], response)
             _histories(rows[1:, column], response)
         for row, label in zip(

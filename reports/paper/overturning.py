@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
 from rockwobble.compare.planar_contrast import edge_difference, planar_contrast, unconservative_from
 from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SPATIAL, OverturningSpectrum
+from rockwobble.models import el_centro_1940
 
 from .claim import Claim, verdict_of
 
@@ -17,6 +19,16 @@ INTENSITIES = (1.0, 12.0)  # [g tan alpha]
 GRID = 100
 # "large": what begins above the upper fifth of the sizes is no statement on large cylinders
 _LARGE = 0.2
+
+
+def problem(grid: int = GRID) -> dict[str, Any]:
+    """Return what `overturning_spectrum` is asked: `grid` sizes and as many intensities."""
+    return {
+        "tan_alpha": TAN_ALPHA,
+        "motion": el_centro_1940(),
+        "semidiagonals": np.linspace(*SIZES, grid),
+        "intensities": np.linspace(*INTENSITIES, grid),
+    }
 
 
 def overturning_claims(spectrum: OverturningSpectrum) -> list[Claim]:

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from rockwobble.compare.lowest_overturning import islands_frame
 from rockwobble.compare.planar_contrast import planar_contrast
 from rockwobble.compare.spectrum_check import check_cells
-from rockwobble.models import el_centro_1940
 
 from ..spectrum_figure import spectrum_figure
 from ..spectrum_output import CHECKED_CELLS, run_spectrum
@@ -65,12 +62,7 @@ def earthquake_section() -> Section:
 
 def overturning_section(grid: int = overturning.GRID) -> Section:
     """Run figure 6 on a grid of `grid` sizes and as many intensities."""
-    spectrum = run_spectrum(
-        overturning.TAN_ALPHA,
-        el_centro_1940(),
-        semidiagonals=np.linspace(*overturning.SIZES, grid),
-        intensities=np.linspace(*overturning.INTENSITIES, grid),
-    )
+    spectrum = run_spectrum(**overturning.problem(grid))
     checked = check_cells(spectrum, CHECKED_CELLS)
     return Section(
         number=6,
