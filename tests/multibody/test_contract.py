@@ -1,0 +1,215 @@
+"""What any engine must do, and what is refused."""
+
+from __future__ import annotations
+
+import importlib.util
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import multibody
+from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)
+
+
+def test_fields_and_shapes(engine: str) -> None:
+    run = multibody.simulate(
+        PIER, initial=RELEASE, duration=0.5037, sample_step=0.02, engine=engine, support="free"
+    )
+    n = len(run.time)
+    # multiples of the sample step and the exact end
+    np.testing.assert_array_equal(run.time[:-1], 0.02 * np.arange(26))
+    assert run.time[-1] == 0.5037
+    for name in [
+        "tilt",
+        "tilt_rate",
+        "rolling_angle",
+        "rolling_rate",
+        "twist",
+        "energy",
+        "energy_error",
+        "slip",
+    ]:
+        assert getattr(run, name).shape == (n,), name
+        assert np.isfinite(getattr(run, name)).all(), name
+    assert run.contact_point.shape == (n, 2)
+    assert run.centre_of_mass.shape == (n, 3)
+    assert (run.engine, run.support, run.outcome) == (engine, "free", "completed")
+    assert run.engine_version[0].isdigit()
+    assert run.time_step == pytest.approx(1e-4)
+    assert run.wall_time > 0.0
+    assert len(run.settings) > 3
+    assert (run.uplift_time, run.uplift_direction) == (0.0, 0.0)
+    assert list(run.passes.columns) == ["time", "minimum_tilt", "angle_of_turn", "resolved"]
+    assert run.passes["resolved"].dtype == bool
+    frame = run.to_frame()
+    assert len(frame) == n
+    np.testing.assert_array_equal(frame["contact_x"], run.contact_point[:, 0])
+    with pytest.raises(TypeError):
+        run.settings["iterations"] = 1  # type: ignore[index]
+
+
+def test_starts_in_the_stated_state(engine: str) -> None:
+    initial = InitialState(0.12, tilt_rate=0.3, rolling_angle=-2.0, rolling_rate=0.7)
+    run = multibody.simulate(PIER, initial=initial, duration=0.05, engine=engine)
+    # loaded penetration is 1e-11 m
+    assert run.tilt[0] == pytest.approx(0.12, rel=1e-12)
+    assert run.tilt_rate[0] == pytest.approx(0.3, rel=1e-9)
+    assert run.rolling_angle[0] == pytest.approx(-2.0, rel=1e-12)
+    assert run.rolling_rate[0] == pytest.approx(0.7, rel=1e-6)
+    # no transient of the contact: the tilt goes on smoothly, second order in 10 ms
+    expected = 0.12 + 0.3 * run.time[1]
+    assert run.tilt[1] == pytest.approx(expected, abs=1e-4)
+
+
+def test_a_run_repeats_bit_for_bit(engine: str) -> None:
+    motion = el_centro_1940().scaled(2.0)
+    first, second = (multibody.simulate(PIER, motion, duration=2.0, engine=engine) for _ in range(2))
+    np.testing.assert_array_equal(first.tilt, second.tilt)
+
+
+def test_rotated_problem_has_a_rotated_answer(engine: str) -> None:
+    # a release does not know the axes of the scene
+    turned = InitialState(RELEASE.tilt, rolling_angle=1.234, rolling_rate=RELEASE.rolling_rate)
+    first = multibody.simulate(PIER, initial=RELEASE, duration=1.0, engine=engine)
+    second = multibody.simulate(PIER, initial=turned, duration=1.0, engine=engine)
+    # solvers stop at a tolerance: friction rows are not isotropic below it
+    np.testing.assert_allclose(second.tilt, first.tilt, atol=1e-8)
+    np.testing.assert_allclose(second.rolling_angle - 1.234, first.rolling_angle, atol=1e-6)
+
+
+def test_overturning_ends_with_the_side_on_the_ground(engine: str) -> None:
+    run = multibody.simulate(PIER, initial=InitialState(1.3 * PIER.alpha), duration=10.0, engine=engine)
+    assert run.outcome == "overturned"
+    assert run.tilt[-1] == run.peak_tilt == 0.5 * np.pi
+    assert run.time[-1] < 10.0
+    assert (np.diff(run.time) > 0.0).all()
+    assert (np.diff(run.tilt) > 0.0).all()
+
+
+def test_progress_rises_to_one_and_interrupts(engine: str) -> None:
+    seen: list[float] = []
+    multibody.simulate(PIER, initial=RELEASE, duration=3.0, engine=engine, progress=seen.append)
+    assert seen == sorted(seen)
+    assert seen[-1] == 1.0
+    assert len(seen) > 2
+
+    def interrupt(fraction: float) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        multibody.simulate(PIER, initial=RELEASE, duration=3.0, engine=engine, progress=interrupt)
+
+
+def test_clients_are_closed_and_nothing_is_printed(
+    engine: str, capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.chdir(tmp_path)
+
+    def fail(fraction: float) -> None:
+        raise RuntimeError
+
+    with pytest.raises(RuntimeError):
+        multibody.simulate(PIER, initial=RELEASE, duration=0.1, engine=engine, progress=fail)
+    # one that diverges is where MuJoCo would write a file
+    multibody.simulate(PIER, initial=RELEASE, duration=0.1, engine=engine, guide_stiffness=1e12)
+    if engine == "pybullet":
+        import pybullet
+
+        assert not pybullet.getConnectionInfo(0)["isConnected"]
+    assert capfd.readouterr() == ("", "")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_import_loads_no_engine() -> None:
+    code = (
+        "import sys, rockwobble.multibody as m; m.available_engines();"
+        "print([n for n in ('mujoco', 'pybullet', 'pandas', 'scipy') if n in sys.modules])"
+    )
+    shown = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert shown.stdout.strip() == "[]"
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"engine": "chrono"}, "engine must be one of mujoco, pybullet, got 'chrono'"),
+        ({"support": "glued"}, "support must be one of guided, free, got 'glued'"),
+        (
+            {"time_step": 1e-2},
+            "time_step must be at most 0.001 s for contact at this size and gravity, got 0.01",
+        ),
+        ({"time_step": -1.0}, "time_step must be positive [s], got -1.0"),
+        ({"sample_step": 0.0}, "sample_step must be positive [s], got 0.0"),
+        ({"duration": None}, "duration [s] must be given where there is no ground motion"),
+        ({"gravity": 0.0}, "gravity must be positive [m/s^2], got 0.0"),
+        ({"friction": -1.0}, "friction must not be negative, got -1.0"),
+        ({"stifness": 1.0}, "'stifness' is not a setting of mujoco; allowed are contact_time_constant, "),
+        (
+            {"integrator": "leapfrog"},
+            "integrator must be one of Euler, implicitfast, implicit, RK4, discrete, ",
+        ),
+        ({"impedance": 1.0}, "impedance must be above 0 and at most 0.9999, got 1.0"),
+        ({"friction_damping": float("nan")}, "friction_damping must be above 0 and at most 2, got nan"),
+        ({"contact_time_constant": "soft"}, "contact_time_constant must be above 0, got 'soft'"),
+        ({"iterations": 0}, "iterations must be a positive whole number, got 0"),
+        ({"standing_corners": 7}, "standing_corners must be one of 0, 4, 8, "),
+        ({"engine": "pybullet", "impedance": 0.9}, "'impedance' is not a setting of pybullet; allowed are "),
+        (
+            {"engine": "pybullet", "contact_slop": -1.0},
+            "contact_slop must be at least 0 and at most 0.1, got -1",
+        ),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(change: dict[str, Any], message: str) -> None:
+    if change.get("engine") == "pybullet" and "pybullet" not in multibody.available_engines():
+        pytest.skip("no wheel of pybullet here")
+    arguments: dict[str, Any] = {"initial": RELEASE, "duration": 1.0, **change}
+    with pytest.raises(ValueError, match=r"must|setting") as caught:
+        multibody.simulate(PIER, **arguments)
+    assert str(caught.value).startswith(message)
+    assert "\n" not in str(caught.value)
+
+
+def test_the_largest_step_scales_with_the_cylinder() -> None:
+    small = Cylinder(semidiagonal=0.06, tan_alpha=0.2)
+    with pytest.raises(ValueError, match=r"at most 0\.0001 s"):
+        multibody.simulate(small, initial=RELEASE, duration=0.1, time_step=2e-4)
+
+
+def test_an_engine_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    found: Callable[..., Any] = importlib.util.find_spec
+
+    def find(name: str, *rest: Any) -> Any:
+        return None if name == "pybullet" else found(name, *rest)
+
+    monkeypatch.setattr(importlib.util, "find_spec", find)
+    assert multibody.available_engines() == ("mujoco",)
+    assert "pybullet" in multibody.engine_names()
+    with pytest.raises(
+        multibody.EngineNotInstalledError, match="'pybullet' is not installed here: pip install"
+    ):
+        multibody.simulate(PIER, initial=RELEASE, duration=0.1, engine="pybullet")
+
+
+def test_without_a_motion_but_standing_it_stands(engine: str) -> None:
+    run = multibody.simulate(PIER, duration=1.0, engine=engine)
+    assert run.outcome == "rest"
+    assert run.peak_tilt < 1e-8
+    assert run.energy == pytest.approx(np.zeros(len(run.time)), abs=1e-8)
+
+
+def test_motion_ends_and_the_run_goes_on(engine: str) -> None:
+    pulse = GroundMotion([[0.0, 0.0], [4.0, 1.0], [-1.0, 2.0], [0.0, 0.0]], 0.2)
+    run = multibody.simulate(PIER, pulse, duration=1.5, engine=engine)
+    assert run.time[-1] == 1.5
+    after = run.time > 0.6
+    # no excitation, no work: contact takes 1e-6 of the energy scale, 1.1 m^2/s^2
+    assert np.ptp(run.energy[after]) < 5e-6

@@ -1,0 +1,119 @@
+"""A run that went wrong says so: settings and steps at which the engines fail."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import multibody
+from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.multibody.body import scaled_body
+from rockwobble.multibody.engine import Steps
+from rockwobble.multibody.guard import energy_scale, first_breach
+from rockwobble.multibody.kinematics import kinematics
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)
+BODY = scaled_body(PIER, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("settings", "reason"),
+    [
+        # a spring that the step cannot follow, stiff and undamped contact, a guide stiffer than the step
+        ({"contact_time_constant": 2e-5}, "energy"),
+        ({"contact_time_constant": 1e-6}, "energy"),
+        ({"contact_damping_ratio": 1e-3}, "energy"),
+        ({"guide_stiffness": 1e10}, "energy"),
+        ({"engine": "pybullet", "guide_stiffness": 1e10}, "energy"),
+        ({"engine": "pybullet", "guide_stiffness": 1e14}, ""),
+        # contact that sinks in by centimetres
+        ({"contact_time_constant": 0.2}, "sank"),
+        ({"engine": "pybullet", "contact_slop": 0.1, "contact_erp": 1e-9}, "sank"),
+    ],
+)
+def test_failures_are_outcomes(settings: dict[str, Any], reason: str) -> None:
+    if settings.get("engine") == "pybullet" and "pybullet" not in multibody.available_engines():
+        pytest.skip("no wheel of pybullet here")
+    run = multibody.simulate(PIER, initial=RELEASE, duration=2.0, **settings)
+    assert run.outcome == "failed"
+    assert reason in run.message
+    assert np.isnan(run.peak_tilt)
+    # the trajectory ends where the failure begins, and is sound until then
+    assert run.time[-1] < 2.0
+    for name in ("tilt", "energy", "centre_of_mass", "twist"):
+        assert np.isfinite(getattr(run, name)).all()
+    assert (run.energy_error < 0.05 * energy_scale(BODY, 9.81)).all()
+    assert isinstance(run.to_frame(), object)
+
+
+def test_a_guide_that_gives_way_fails() -> None:
+    squat = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
+    initial = InitialState(squat.alpha / 2, rolling_rate=0.5)
+    run = multibody.simulate(squat, initial=initial, duration=4.0, guide_stiffness=1e-3)
+    assert run.outcome == "failed"
+    assert "twist" in run.message
+    free = multibody.simulate(squat, initial=initial, duration=4.0, support="free")
+    assert free.outcome == "completed"
+    assert abs(free.residual_twist) > 0.02
+
+
+@pytest.mark.parametrize("tan_alpha", [0.05, 0.5, 10.0])
+@pytest.mark.parametrize("friction", [0.0, 10.0])
+def test_extremes_are_sound_or_say_so(engine: str, tan_alpha: float, friction: float) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    initial = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
+    run = multibody.simulate(cylinder, initial=initial, duration=2.0, friction=friction, engine=engine)
+    scale = energy_scale(scaled_body(cylinder, 1.0), 9.81)
+    assert run.outcome == "completed"
+    # no engine makes energy: largest gain 1e-4 of the scale, at tan alpha 10
+    assert run.energy_error.max() < 5e-4 * scale
+    assert ("slipped" in run.message) == (friction == 0.0)
+
+
+def test_flight_is_said(engine: str) -> None:
+    # thirty radians in a second at half of alpha throw it up
+    run = multibody.simulate(
+        PIER, initial=InitialState(PIER.alpha / 2, rolling_rate=30.0), duration=0.2, engine=engine
+    )
+    assert "left the ground at 0.0" in run.message
+
+
+def test_strong_shaking_overturns(engine: str) -> None:
+    # 10 g
+    time = np.arange(0.0, 3.0, 0.01)
+    shaking = np.column_stack([98.1 * np.sin(6.0 * time), 60.0 * np.cos(5.0 * time)])
+    run = multibody.simulate(PIER, GroundMotion(shaking, 0.01), engine=engine)
+    assert run.outcome == "overturned"
+    assert run.peak_tilt == 0.5 * np.pi
+
+
+def test_passes_too_close_to_the_apex_are_marked(engine: str) -> None:
+    # a spin of 1e-6 rad/s passes at 1e-7 rad, far less than the tilt that a step crosses
+    near = multibody.simulate(
+        PIER, initial=InitialState(PIER.alpha / 2, rolling_rate=1e-6), duration=2.5, engine=engine
+    )
+    assert not near.passes["resolved"].any()
+    assert "passes are closer to the apex than" in near.message
+    # the tilt rate just before the apex, in steps; samples miss its largest value by a little
+    assert near.contact_resolution == pytest.approx(1e-4 * np.abs(near.tilt_rate).max(), rel=0.02)
+
+
+def test_the_first_breach_counts() -> None:
+    n = 10
+    upright = np.tile([1.0, 0.0, 0.0, 0.0], (n, 1))
+    position = np.tile([0.0, 0.0, BODY.mass_centre_height], (n, 1))
+    position[7:, 2] -= 0.1
+    position[9, 0] = np.nan
+    steps = Steps(position, upright, np.zeros((n, 3)), np.zeros((n, 3)))
+    state = kinematics(steps, steps, BODY, 9.81)
+    energy = np.zeros(n)
+    breach = first_breach(state, energy, BODY, 9.81, guided=True)
+    assert breach is not None
+    assert (breach.index, "sank" in breach.reason) == (7, True)
+    energy[4] = np.inf
+    breach = first_breach(state, energy, BODY, 9.81, guided=True)
+    assert breach is not None
+    assert (breach.index, "energy" in breach.reason) == (4, True)
