@@ -33,15 +33,14 @@ def in_memory(entry: Callable[..., Any]) -> bool:
 def on_disk(entry: Callable[..., Any]) -> bool:
     """Return whether compiled code of `entry` is kept on disk.
 
-    That cache compares only the file that holds the entry point, so what was compiled from an older
-    state of any file in this folder is removed here first.
+    That cache compares only the file that holds the entry point, so whatever was compiled from an
+    older state of any file in this folder is removed here first.
     """
-    folder = Path(cast("Any", entry).stats.cache_path)
     newest = max(path.stat().st_mtime for path in Path(__file__).parent.glob("*.py"))
     fresh = False
-    for index in folder.glob(f"*{entry.__name__}-*.nbi"):
+    for index in Path(cast("Any", entry).stats.cache_path).glob("*.nbi"):
         if index.stat().st_mtime < newest:
             index.unlink(missing_ok=True)
-        else:
+        elif f".{entry.__name__}-" in index.name:
             fresh = True
     return fresh

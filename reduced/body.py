@@ -12,7 +12,7 @@ J      m^2      I1 + h^2, transverse inertia about the centre of the base       
 C      m^2      I2 + b^2                                                        (18)
 E      m^2      h b                                                             (18)
 g      m/s^2    gravity                                                         (17)
-p2     1/s^2    p^2 = g R/A, frequency parameter squared                        (23)
+p      1/s      sqrt(g R/A), frequency parameter; p2 is its square              (23)
 ====== ======== =============================================================== ========
 """
 
@@ -40,6 +40,7 @@ class Body(NamedTuple):
     sin_alpha: float
     cos_alpha: float
     alpha: float
+    p: float
 
 
 def body_of(cylinder: Cylinder, gravity: float) -> Body:
@@ -54,6 +55,7 @@ def body_of(cylinder: Cylinder, gravity: float) -> Body:
         I2 = 0.5 * b * b
     A = I1 + h * h + b * b
     R = cylinder.semidiagonal
+    p2 = gravity * R / A
     return Body(
         b=b,
         h=h,
@@ -64,8 +66,9 @@ def body_of(cylinder: Cylinder, gravity: float) -> Body:
         C=I2 + b * b,
         E=h * b,
         g=gravity,
-        p2=gravity * R / A,
+        p2=p2,
         sin_alpha=b / R,
         cos_alpha=h / R,
         alpha=math.atan(cylinder.tan_alpha),
+        p=p2**0.5,
     )

@@ -8,7 +8,7 @@ Every step ends at the next record sample at the latest, because the forcing has
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, hypot, pi, sin, sqrt
+from math import cos, hypot, pi, sin
 from typing import NamedTuple
 
 import numpy as np
@@ -189,7 +189,7 @@ def make_driver(system: System) -> Driver:
         extrema, extremum_count = np.empty((64, 4)), 0
         steps, recorded = np.empty((64, 1 + size)), 0
         step_count = 0
-        first_start = START / sqrt(body.p2)
+        first_start = START / body.p
 
         resting = y[0] == 0.0
         uplift_time, uplift_direction = np.nan, np.nan

@@ -126,7 +126,7 @@ class Problem:
         return SetUp(kernels.MARCHES[self.model], record, start, 0.0)
 
     def _step_budget(self, samples: int) -> int:
-        times = self.duration * math.sqrt(self.body.p2)
+        times = self.duration * self.body.p
         return int(min(_BUDGET + _BUDGET_PER_SAMPLE * samples + _BUDGET_PER_TIME * times, 2**62))
 
     def _start(self, size: int, azimuth: float) -> tuple[float, ...]:
@@ -152,7 +152,7 @@ class Problem:
             largest = int(squares.argmax()) if len(squares) else 0
             peak = math.sqrt(squares[largest]) if len(squares) else 0.0
             if self.initial is not None and self.initial.tilt > 0.0:
-                if abs(self.initial.rolling_rate) > _LEAST_SPIN * math.sqrt(self.body.p2):
+                if abs(self.initial.rolling_rate) > _LEAST_SPIN * self.body.p:
                     return None
                 azimuth = self.initial.rolling_angle
             elif peak > 0.0:

@@ -41,25 +41,25 @@ class System(NamedTuple):
 
 
 @jit
-def scales(body: Body, rtol: float, tilt: float, rate: float, L: float, flat: bool) -> tuple[float, float]:
-    """Return the tilt and the rate that the errors of a step are relative to.
+def scales(
+    body: Body, rtol: float, tilt: float, rate: float, spin_rate: float, flat: bool
+) -> tuple[float, float]:
+    """Return what the errors of tilt and of tilt rate are divided by: both inverses over the tolerance.
 
     Near the apex the motion is that of a point at the polar distance theta, with one speed in all
-    directions: the tilt is held to itself, and the rates to that speed. Planar motion goes through
-    theta = 0, so there the tilt is held to what the speed makes of it in the time 1/p. Near
-    theta = alpha, where every difference grows as exp(p t), the distance from alpha takes the place
-    of theta. An error below the rounding of the tilt cannot be told from none.
+    directions (`spin_rate` is its part across): the tilt is held to itself, and the rates to that
+    speed. Planar motion goes through theta = 0, so there the tilt is held to what the speed makes of
+    it in the time 1/p. Near theta = alpha, where every difference grows as exp(p t), the distance
+    from alpha takes the place of theta. An error below the rounding of the tilt cannot be told from
+    none.
     """
     tilt = abs(tilt)
-    p = sqrt(body.p2)
     from_alpha = abs(body.alpha - tilt)
-    speed = abs(rate)
-    if not flat:
-        speed += abs(L) / (body.J * tilt)
-    velocity = speed + p * min(sqrt(body.sin_alpha * tilt), from_alpha)
-    distance = min(tilt + velocity / p if flat else tilt, from_alpha + speed / p)
-    least = _ROUNDING * tilt / rtol
-    return max(distance, least), max(velocity, p * least)
+    speed = abs(rate) + spin_rate
+    velocity = speed + body.p * min(sqrt(body.sin_alpha * tilt), from_alpha)
+    distance = min(tilt + velocity / body.p if flat else tilt, from_alpha + speed / body.p)
+    least = _ROUNDING * tilt
+    return 1.0 / max(rtol * distance, least), 1.0 / max(rtol * velocity, body.p * least)
 
 
 @jit
@@ -90,8 +90,8 @@ def _planar_placed(y: State, theta: float, omega: float, phi: float, L: float) -
 
 @jit
 def _planar_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
-    tilt, rate = scales(body, rtol, y[0], y[1], 0.0, True)
-    return max(abs(error[0]) / tilt, abs(error[1]) / rate) / rtol
+    per_tilt, per_rate = scales(body, rtol, y[0], y[1], 0.0, True)
+    return max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
 
 
 @jit
@@ -123,11 +123,10 @@ def _recess_placed(y: State, theta: float, omega: float, phi: float, L: float) -
 
 @jit
 def _recess_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
-    tilt, rate = scales(body, rtol, y[0], y[1], y[3], flat)
-    ratio = max(abs(error[0]) / tilt, abs(error[1]) / rate)
-    if not flat:
-        ratio = max(ratio, abs(error[2]), abs(error[3]) / (body.J * y[0] * rate))
-    return ratio / rtol
+    per_lever = 0.0 if flat else 1.0 / (body.J * y[0])
+    per_tilt, per_rate = scales(body, rtol, y[0], y[1], abs(y[3]) * per_lever, flat)
+    ratio = max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
+    return max(ratio, abs(error[2]) * (1.0 / rtol), abs(error[3]) * per_lever * per_rate)
 
 
 @jit
@@ -175,13 +174,11 @@ def _rolling_placed(y: State, theta: float, omega: float, phi: float, L: float) 
 
 @jit
 def _rolling_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
-    tilt, rate = scales(body, rtol, y[0], y[1], y[3], flat)
+    ratio = _recess_ratio(body, rtol, y[:4], error[:4], flat)
+    _, per_rate = scales(body, rtol, y[0], y[1], 0.0 if flat else abs(y[3]) / (body.J * y[0]), flat)
     M = body.C - body.E * body.E / body.J
-    ratio = max(abs(error[0]) / tilt, abs(error[1]) / rate)
-    if not flat:
-        ratio = max(ratio, abs(error[2]), abs(error[3]) / (body.J * y[0] * rate))
-    ratio = max(ratio, abs(error[4]), abs(error[5]) / (sqrt(body.A * M) * rate))
-    return max(ratio, abs(error[6]) / body.b, abs(error[7]) / body.b) / rtol
+    ratio = max(ratio, abs(error[4]) / rtol, abs(error[5]) * per_rate / sqrt(body.A * M))
+    return max(ratio, max(abs(error[6]), abs(error[7])) / (rtol * body.b))
 
 
 PLANAR = System(_planar_derivative, _planar_combine, _planar_momenta, _planar_placed, _planar_ratio)

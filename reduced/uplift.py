@@ -9,7 +9,7 @@ sign change tells all.
 
 from __future__ import annotations
 
-from math import atan2, hypot, pi, sqrt
+from math import atan2, hypot, pi
 
 import numpy as np
 
@@ -142,7 +142,7 @@ def started(
 @jit
 def starts_as_step(body: Body, F0: float, F1: float) -> bool:
     """Return whether the jump F0 of theta'' [rad/s^2] outweighs its rise F1 t where the series ends."""
-    return abs(F1) * 1e-3 * START / sqrt(body.p2) < F0
+    return abs(F1) * 1e-3 * START / body.p < F0
 
 
 @jit
@@ -153,7 +153,7 @@ def start_length(body: Body, a: Vector, slope: Vector, at: float) -> float:
     F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
     along = (ax * slope[0] + ay * slope[1]) / max(hypot(ax, ay), WEAK * body.g)
     F1 = factor * (along - slope[2] * body.sin_alpha / body.cos_alpha)
-    p = sqrt(body.p2)
+
     if not starts_as_step(body, F0, F1):
         return START / p
     return min(STEP_START / p, 1e-3 * F0 / abs(F1)) if F1 != 0.0 else STEP_START / p
