@@ -153,7 +153,6 @@ def start_length(body: Body, a: Vector, slope: Vector, at: float) -> float:
     F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
     along = (ax * slope[0] + ay * slope[1]) / max(hypot(ax, ay), WEAK * body.g)
     F1 = factor * (along - slope[2] * body.sin_alpha / body.cos_alpha)
-
     if not starts_as_step(body, F0, F1):
-        return START / p
-    return min(STEP_START / p, 1e-3 * F0 / abs(F1)) if F1 != 0.0 else STEP_START / p
+        return START / body.p
+    return min(STEP_START / body.p, 1e-3 * F0 / abs(F1)) if F1 != 0.0 else STEP_START / body.p
