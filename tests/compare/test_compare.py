@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare import SUMMARY_COLUMNS, compare, execution
+from rockwobble.compare import SUMMARY_COLUMNS, compare, driver, execution
 from rockwobble.compare.execution import Job, simulate_all
 from rockwobble.compare.process_pool import WorkerDiedError
 from rockwobble.models import Case, GroundMotion, InitialState, Run, Suite
@@ -206,8 +206,10 @@ def test_a_process_that_dies_is_a_failed_row(monkeypatch, made_up, case):
     assert not found.trajectories
 
 
-def test_a_suite_is_cases_times_runs(made_up, case, cylinder):
+def test_a_suite_is_cases_times_runs(made_up, case, cylinder, monkeypatch):
     made_up()
+    # no engine runs, so none needs to be installed: PyBullet is not everywhere
+    monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
     other = Case("second", cylinder, case.motion)
     suite = Suite([case, other], [Run("mujoco", "guided"), Run("pybullet", "guided")])
     summary = compare(suite, workers=1).summary
@@ -245,7 +247,8 @@ def test_files_hold_the_whole_result(made_up, case, tmp_path):
     }
     summary = pd.read_csv(tmp_path / "summary.csv", keep_default_na=False, na_values=["nan"])
     assert list(summary.columns) == list(SUMMARY_COLUMNS)
-    assert summary.tilt_rms.tolist() == found.summary.tilt_rms.tolist()
+    # the default parser of older pandas is off by a rounding
+    assert summary.tilt_rms.tolist() == pytest.approx(found.summary.tilt_rms.tolist(), rel=ROUNDING)
     samples = pd.read_parquet(tmp_path / "trajectories.parquet")
     assert samples.groupby("run").size().to_dict() == {"mujoco guided": 1001, "mujoco free": 1001}
     assert set(pd.read_parquet(tmp_path / "responses.parquet").model) == {"recess", "rolling"}

@@ -70,14 +70,15 @@ class PaperModel:
         y = [growth * start**3 / 6, growth * start**2 / 2, phi + turning * start, turning]
         t, states = uplift + start, []
         for i in range(first + 1, round(until / time_step) + 1):
+            end = i * time_step
             y = solve_ivp(
-                lambda t, y: self.rates(y, *ground(min(t, i * time_step * (1 - 1e-16)))),
-                (t, i * time_step),
+                lambda t, y, end=end: self.rates(y, *ground(min(t, end * (1 - 1e-16)))),
+                (t, end),
                 y,
                 "DOP853",
                 rtol=rtol,
                 atol=1e-18,
             ).y[:, -1]
-            t = i * time_step
+            t = end
             states.append(y)
         return uplift, phi, np.array(states)

@@ -177,7 +177,9 @@ def test_simulate_a_reduced_model(folder, capsys):
     assert "running recess model" in captured.err
     samples = pd.read_csv("rockwobble-out/run.csv")
     assert len(samples) == 201
-    assert samples.equals(pd.read_parquet("rockwobble-out/run.parquet").astype(samples.dtypes.to_dict()))
+    kept = pd.read_parquet("rockwobble-out/run.parquet").astype(samples.dtypes.to_dict())
+    # the default parser of older pandas is off by a rounding
+    pd.testing.assert_frame_equal(samples, kept, rtol=1e-15, atol=0.0)
     about = json.loads(Path("rockwobble-out/run.json").read_text())
     assert about["result"]["outcome"] == "completed"
     assert about["case"]["initial"]["rolling_rate"] == 0.5
