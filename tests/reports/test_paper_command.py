@@ -49,7 +49,7 @@ def test_every_claim_has_numbers_and_a_verdict(made):
 def test_the_page_says_how_it_was_made(made):
     page = (made / "paper.md").read_text()
     assert f"numpy {np.__version__}" in page
-    assert "Made by `rockwobble " in page
+    assert "Made by `rockwobble" in page
 
 
 def test_the_data_of_the_pictures_are_beside_them(made):
