@@ -11,10 +11,13 @@ import pytest
 from rockwobble import multibody
 from rockwobble.models import Cylinder, InitialState
 
-# Largest tilt difference over 8 s at the default step, in alpha. What is left is the creep of the rim while
-# it rolls, (1/1.8 - 1/2) h of its acceleration in MuJoCo and h/2 in Bullet: 7e-7, 1.2e-5, 6.4e-5 at tan alpha
-# 0.2, 1, 3 in the one, 5e-6, 1.1e-4, 3.8e-4 in the other.
-TILT = {"mujoco": 1e-4, "pybullet": 5e-4}
+# Largest tilt difference over 8 s at the default step, in alpha, for each tan(alpha). What is left is the
+# creep of the rim while it rolls, (1/1.8 - 1/2) h of its acceleration in MuJoCo and h/2 in Bullet: 8e-7,
+# 1.2e-5, 6.4e-5 in the one, 5e-6, 1.1e-4, 3.8e-4 in the other.
+TILT = {
+    "mujoco": {0.2: 2e-6, 0.3: 3e-6, 1.0: 3e-5, 3.0: 1e-4},
+    "pybullet": {0.2: 1.2e-5, 0.3: 3e-5, 1.0: 2e-4, 3.0: 5e-4},
+}
 # 1e-9 of the tilt is left by rounding, which the last bits of the scale factors change.
 SIZE = 1e-9
 
@@ -36,9 +39,13 @@ def test_free_response_follows_the_model_of_its_support(
     exact = solve_free(cylinder, initial, run.time, rolls_out=support == "free")
     assert run.outcome == "completed"
     assert run.message == ""
-    assert np.abs(run.tilt - exact.tilt).max() < TILT[engine] * cylinder.alpha
+    budget = TILT[engine][tan_alpha]
+    assert np.abs(run.tilt - exact.tilt).max() < budget * cylinder.alpha
     # the rolling angle magnifies a difference of tilt near the apex by 20
-    assert np.abs(run.rolling_angle - exact.rolling_angle).max() < 20 * TILT[engine]
+    assert np.abs(run.rolling_angle - exact.rolling_angle).max() < 20 * budget
+    # the recess holds the twist but for what its stiffness gives, 5e-6 rad; open ground lets it grow
+    assert np.abs(run.twist - exact.twist).max() < 20 * budget + 6e-6
+    assert (np.abs(run.twist).max() > 2e-3) == (support == "free")
     # and the two supports are not the same: at tan alpha 3 they differ by 0.05 alpha
     other = solve_free(cylinder, initial, run.time, rolls_out=support != "free")
     assert np.abs(run.tilt - other.tilt).max() > 8e-4 * cylinder.alpha
@@ -75,13 +82,13 @@ def test_weak_gravity_is_a_slow_run(pier: Cylinder) -> None:
 
 
 def test_a_body_with_inertias_of_its_own(engine: str, solve_free: Callable[..., Any]) -> None:
-    # a pier that carries a deck: mass high up, thin, and an outline that is not twice the mass centre
-    column = Cylinder(semidiagonal=6.0, tan_alpha=0.3, height=8.0, transverse_inertia=5.0, axial_inertia=4.0)
+    # a pier that carries a deck, of a size of its own: mass high up, an outline not twice the mass centre
+    column = Cylinder(semidiagonal=3.0, tan_alpha=0.3, height=4.0, transverse_inertia=1.25, axial_inertia=1.0)
     initial = release(column)
     run = multibody.simulate(column, initial=initial, duration=3.0, engine=engine)
     exact = solve_free(column, initial, run.time)
-    assert np.abs(run.tilt - exact.tilt).max() < TILT[engine] * column.alpha
-    homogeneous = Cylinder(semidiagonal=6.0, tan_alpha=0.3)
+    assert np.abs(run.tilt - exact.tilt).max() < TILT[engine][0.3] * column.alpha
+    homogeneous = Cylinder(semidiagonal=3.0, tan_alpha=0.3)
     other = solve_free(homogeneous, initial, run.time)
     assert np.abs(run.tilt - other.tilt).max() > 0.05 * column.alpha
 
