@@ -269,8 +269,12 @@ def make_driver(system: System) -> Driver:
                         break
                 if lands or falls:
                     level = _HALF_PI if falls else 0.0
-                    h, y_new = crossing(body, y, k, turn if lands and turns else h, a_now, slope, level)
-                    turns = False
+                    # a hop within one step lands after its highest point, a dip before its lowest
+                    hops = lands and turns and turned_tilt > 0.0
+                    first = turn if hops else 0.0
+                    last = turn if lands and turns and not hops else h
+                    h, y_new = crossing(body, y, k, first, last, a_now, slope, level)
+                    turns = hops
                 whole = elapsed + h >= length
                 after = finish if whole else begin + (elapsed + h)
 

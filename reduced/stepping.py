@@ -99,15 +99,16 @@ def make_stepper(system: System) -> Stepper:
 
     @jit
     def crossing(
-        body: Body, y: State, k: State, h: float, a: Vector, slope: Vector, level: float
+        body: Body, y: State, k: State, first: float, last: float, a: Vector, slope: Vector, level: float
     ) -> tuple[float, State]:
-        """Return when, within `h`, the tilt reaches `level`, and the state there.
+        """Return when, from `first` to `last`, the tilt reaches `level`, and the state there.
 
-        Newton's method on partial steps, kept inside the bracket by bisection.
+        The tilt sinks to 0 or rises to any other level. Newton's method on partial steps, kept inside
+        the bracket by bisection.
         """
-        low, high = 0.0, h
-        side = y[0] - level
-        at = 0.5 * h
+        low, high = first, last
+        side = 1.0 if level == 0.0 else -1.0
+        at = 0.5 * (first + last)
         y_at = y
         for _ in range(80):
             y_at, _ = partial(body, y, k, at, a, slope)
@@ -119,7 +120,7 @@ def make_stepper(system: System) -> Stepper:
             guess = at - miss / y_at[1]
             if not low < guess < high:
                 guess = 0.5 * (low + high)
-            if abs(guess - at) <= 1e-15 * h:
+            if abs(guess - at) <= 1e-15 * last:
                 break
             at = guess
         return at, y_at

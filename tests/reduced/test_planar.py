@@ -82,6 +82,28 @@ def test_impacts_that_accumulate_end_at_rest():
         assert np.isnan(response.rolling_angle[-1])
 
 
+def test_hops_shorter_than_a_step_land_where_they_must():
+    """A release at 1e-4 alpha: a hop takes the time of a step and less."""
+    initial = InitialState(1e-4 * PIER.alpha)
+    quarter = reduced.planar_quarter_period(PIER, initial.tilt)
+    response = reduced.simulate(PIER, initial=initial, duration=2001.0 * quarter, model="planar", seating=0.0)
+    impacts = response.extrema[response.extrema[:, 1] == 0.0]
+    assert len(response.passes) == 1000
+    assert impacts[:, 0] == pytest.approx(quarter * (2.0 * np.arange(len(impacts)) + 1.0), rel=1e-6)
+    highest = response.extrema[response.extrema[:, 3] > 0.0][:, 1]
+    assert highest == pytest.approx(initial.tilt, rel=1e-5)
+
+
+@pytest.mark.parametrize("intensity", [5.444444, 6.111111])
+def test_planar_runs_from_chatter_into_rocking_do_not_hang(intensity):
+    motion = el_centro_1940().scaled(intensity * 0.1 * 9.81 / el_centro_1940().peak)
+    for plane in (0.0, 0.5 * math.pi):
+        response = reduced.simulate(
+            Cylinder(semidiagonal=0.5, tan_alpha=0.1), motion, model="planar", plane=plane
+        )
+        assert response.outcome == "overturned", response.message
+
+
 def one_sine(amplitude, omega, cylinder, p):
     """A one-sine pulse of peak `amplitude` alpha g at `omega` p, sampled finely."""
     count = 4000
