@@ -26,6 +26,6 @@ def body_friction(pair: float, convention: str) -> tuple[float, float]:
     if convention in ("pair", "maximum"):
         return pair, pair
     if convention == "product":
-        # equal shares: Bullet bounds the product at 10, so neither factor alone may carry it
+        # equal shares, because neither body is the rough one; Bullet bounds the product at 10
         return math.sqrt(pair), math.sqrt(pair)
     raise ValueError(f"convention must be one of {', '.join(CONVENTIONS)}, got {convention!r}")
