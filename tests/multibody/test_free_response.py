@@ -79,6 +79,8 @@ def test_weak_gravity_is_a_slow_run(pier: Cylinder) -> None:
     )
     fast = multibody.simulate(pier, initial=InitialState(pier.alpha / 2, rolling_rate=0.5), duration=2.0)
     np.testing.assert_allclose(slow.tilt, fast.tilt, rtol=SIZE)
+    np.testing.assert_allclose(slow.energy, fast.energy / 4, rtol=1e-7)
+    np.testing.assert_allclose(slow.rolling_rate, fast.rolling_rate / 2, rtol=1e-6)
 
 
 def test_a_body_with_inertias_of_its_own(engine: str, solve_free: Callable[..., Any]) -> None:
