@@ -8,7 +8,7 @@ Every step ends at the next record sample at the latest, because the forcing has
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import cos, hypot, pi, sin
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -16,17 +16,15 @@ from numpy.typing import NDArray
 
 from ._compile import jit
 from .body import Body
-from .equations import energy
+from .endings import HALF_PI, may_sit_down, surely_falls
 from .stepping import make_stepper
 from .systems import System
 from .trigonometry import sin_cos
 from .tsit5 import State, Vector, ground
-from .uplift import START, excess, nearest_branch, start_length, started, uplift_in
+from .uplift import START, nearest_branch, start_length, started, uplift_in
 
 REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a march ends
 MAXIMUM, MINIMUM = 1.0, -1.0
-
-_HALF_PI = 0.5 * pi
 
 
 class Options(NamedTuple):
@@ -105,38 +103,6 @@ def spin_momentum(body: Body, theta: float, phi_rate: float) -> float:
     s, c = sin_cos(theta)
     t = s / (1.0 + c)
     return s * s * (body.J + (2.0 * body.E + body.C * t) * t) * phi_rate
-
-
-@jit
-def may_sit_down(
-    body: Body, seating: float, theta: float, omega: float, L: float, S: float, a: Vector
-) -> bool:
-    """Return whether the cylinder comes to rest: f < 0 and too little energy left to matter.
-
-    The bound is the energy of a standstill at the tilt `seating` alpha, less what the ground
-    acceleration takes off the restoring moment.
-    """
-    limit = seating * body.alpha
-    if theta > 10.0 * limit:  # above the bound, unless az exceeds 9 g
-        return False
-    share = 1.0 + a[2] / body.g - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
-    if share <= 0.0 or excess(body, a) >= 0.0:
-        return False
-    return energy(body, theta, omega, L, S) < share * energy(body, limit, 0.0, 0.0, 0.0)
-
-
-@jit
-def surely_falls(body: Body, theta: float, strongest: float, lightest: float, time: float) -> bool:
-    """Return whether a tilt above alpha that does not decrease is bound to reach pi/2 within `time`.
-
-    `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium
-    tilt under these two, theta'' is positive and grows with theta. The spin only adds to it.
-    """
-    if lightest <= 0.0:
-        return False
-    beyond = theta - body.alpha
-    least = body.p2 / body.g * (lightest * sin(beyond) - strongest * cos(beyond))
-    return least > 0.0 and 2.0 * (_HALF_PI - theta) < least * time * time
 
 
 def make_driver(system: System) -> Driver:
@@ -261,14 +227,14 @@ def make_driver(system: System) -> Driver:
                     peak = max(peak, turned_tilt)
                 # with spin the tilt stays positive; without it the base meets the ground
                 lands = is_flat(y) and (y_new[0] <= 0.0 or (turns and turned_tilt <= 0.0))
-                falls = y_new[0] >= _HALF_PI
+                falls = y_new[0] >= HALF_PI
                 if len(later) > 0 and y_new[0] > body.alpha and y_new[1] >= 0.0:
                     strongest, lightest = scale * later[piece, 0], body.g + scale * later[piece, 1]
                     if surely_falls(body, y_new[0], strongest, lightest, options.duration - now - h):
-                        peak, status = _HALF_PI, OVERTURNED
+                        peak, status = HALF_PI, OVERTURNED
                         break
                 if lands or falls:
-                    level = _HALF_PI if falls else 0.0
+                    level = HALF_PI if falls else 0.0
                     # a hop within one step lands after its highest point, a dip before its lowest
                     hops = lands and turns and turned_tilt > 0.0
                     first = turn if hops else 0.0
