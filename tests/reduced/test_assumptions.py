@@ -1,0 +1,48 @@
+"""A response says in words where contact or friction would not have sufficed."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.models import Cylinder, GroundMotion, InitialState
+
+SQUAT = Cylinder(semidiagonal=2.0, tan_alpha=3.0)
+
+
+def test_free_rocking_of_a_squat_cylinder_loses_contact_and_says_so():
+    initial = InitialState(0.8 * SQUAT.alpha, rolling_rate=1e-3)
+    response = reduced.simulate(SQUAT, initial=initial, duration=3.0, sample_step=1e-3)
+    review = response.assumptions
+    assert not review.held
+    contact = review.breaches[0]
+    assert contact.assumption == "contact"
+    assert contact.extreme == review.least_normal_force < 0.0
+    assert "contact is lost, first at" in str(review)
+    # the same from the samples: their spacing is the doubt of first time, and a pass of each side's
+    lost = response.contact_force[:, 2] <= 0.0
+    assert contact.first_time == pytest.approx(response.time[lost][0], abs=0.02)
+    assert contact.duration == pytest.approx(1e-3 * lost.sum(), rel=0.2)
+    assert np.isinf(response.friction_needed[lost]).all()
+    assert math.isinf(review.largest_friction_needed)
+
+
+def test_steady_wobble_needs_the_friction_of_its_centripetal_force():
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    tilt = 0.5 * pier.alpha
+    rate = reduced.steady_wobble_rate(pier, tilt)
+    response = reduced.simulate(pier, initial=InitialState(tilt, rolling_rate=rate), duration=2.0)
+    radius = math.hypot(*response.centre_of_mass[0, :2])
+    review = response.assumptions
+    # the mass centre goes round on a circle at constant height: N is the weight
+    assert review.least_normal_force == pytest.approx(1.0, abs=1e-9)
+    assert review.largest_friction_needed == pytest.approx(rate**2 * radius / 9.81, rel=1e-8)
+    assert review.held
+    assert str(review).startswith("the assumptions held")
+
+
+def test_a_cylinder_that_stands_demands_nothing_of_the_model():
+    still = reduced.simulate(SQUAT, GroundMotion(np.zeros((10, 2)), 0.1))
+    assert still.assumptions.held
+    assert still.assumptions.largest_friction_needed == 0.0
