@@ -8,8 +8,6 @@ the whole pool. Here each process runs only `serve`, and one that dies fails onl
 from __future__ import annotations
 
 import contextlib
-import copyreg
-import io
 import os
 import pickle
 import queue
@@ -18,9 +16,8 @@ import sys
 import tempfile
 import threading
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from concurrent.futures import Executor, Future
-from types import MappingProxyType
 from typing import Any, BinaryIO, TypeVar
 
 T = TypeVar("T")
@@ -139,7 +136,7 @@ class _Worker:
 
     def call(self, function: Callable[..., Any], args: Any, kwargs: Any) -> Any:
         """Return or raise what the function does there."""
-        message = pickled((function, args, kwargs))
+        message = pickle.dumps((function, args, kwargs))
         stdin, stdout = self.process.stdin, self.process.stdout
         assert stdin is not None
         assert stdout is not None
@@ -173,20 +170,6 @@ class _Worker:
         return f": {words}" if words else ""
 
 
-def pickled(value: Any) -> bytes:
-    """Pickle a value in which there may be read-only mappings, which the standard library refuses."""
-    buffer = io.BytesIO()
-    pickler = pickle.Pickler(buffer, protocol=pickle.HIGHEST_PROTOCOL)
-    pickler.dispatch_table = copyreg.dispatch_table.copy()
-    pickler.dispatch_table[MappingProxyType] = lambda proxy: (_read_only, (dict(proxy),))
-    pickler.dump(value)
-    return buffer.getvalue()
-
-
-def _read_only(values: dict[Any, Any]) -> Mapping[Any, Any]:
-    return MappingProxyType(values)
-
-
 def serve() -> None:
     """Answer calls from the standard input until it closes; the body of a worker process."""
     answers = os.fdopen(os.dup(1), "wb")
@@ -196,7 +179,7 @@ def serve() -> None:
     while True:
         function, args, kwargs = calls.get()
         try:
-            answer = pickled((True, function(*args, **kwargs)))
+            answer = pickle.dumps((True, function(*args, **kwargs)))
         except Exception as error:
             answer = _failure(error)
         answers.write(answer)
@@ -206,7 +189,7 @@ def serve() -> None:
 def _failure(error: Exception) -> bytes:
     error.add_note(traceback.format_exc())  # the traceback itself does not travel
     try:
-        pickle.loads(answer := pickled((False, error)))
+        pickle.loads(answer := pickle.dumps((False, error)))
     except Exception:  # an exception class whose arguments do not make it again
         return pickle.dumps((False, RuntimeError(f"{type(error).__name__}: {error}")))
     return answer

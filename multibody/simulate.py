@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable, Mapping
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -122,7 +121,7 @@ def simulate(
         support=support,
         engine_version=backend.version(),
         time_step=step,
-        settings=MappingProxyType(resolved),
+        settings=dict(resolved),
         wall_time=clock.perf_counter() - started,
     )
 
