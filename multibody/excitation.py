@@ -41,19 +41,29 @@ class StepMeans:
             self._spacing = motion.time_step / scale.time
         areas = 0.5 * self._spacing * (self._samples[1:] + self._samples[:-1])
         self._velocity: Array = np.vstack([np.zeros(3), np.cumsum(areas, axis=0)])
+        self._slopes: Array = np.diff(self._samples, axis=0) / self._spacing
+        self._still = motion is None
 
     def __call__(self, first: int, count: int, centre: float = 0.0) -> Array:
         """Return the mean acceleration of steps `first` to `first + count - 1`, shape (count, 3) [m/s^2].
 
         `centre` is that of the time over which the force of a step is held, from its pose, in steps.
         """
+        if self._still:
+            return np.zeros((3, count)).T
         edges: Array = (np.arange(first, first + count + 1, dtype=float) + centre - 0.5) * self._step
-        return np.diff(self.ground_velocity(edges), axis=0) / self._step
+        velocity = self.ground_velocity(edges).T
+        return np.asarray((velocity[:, 1:] - velocity[:, :-1]) / self._step).T
 
     def ground_velocity(self, time: Array) -> Array:
         """Return the integral of the acceleration up to `time` (n,), shape (n, 3) [m/s]."""
         inside = np.clip(time, 0.0, self._spacing * (len(self._samples) - 1))
         index = np.minimum((inside / self._spacing).astype(np.intp), len(self._samples) - 2)
-        past = (inside - index * self._spacing)[:, None]
-        start, slope = self._samples[index], np.diff(self._samples, axis=0)[index] / self._spacing
-        return np.asarray(self._velocity[index] + past * (start + 0.5 * past * slope))
+        past = inside - index * self._spacing
+        # component by component, which is how the steps take it
+        velocity = np.empty((3, len(time)))
+        for row, start, speed, slope in zip(
+            velocity, self._samples.T, self._velocity.T, self._slopes.T, strict=True
+        ):
+            row[:] = speed[index] + past * (start[index] + 0.5 * past * slope[index])
+        return velocity.T

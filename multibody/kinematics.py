@@ -8,6 +8,7 @@ S, O   mass centre, centre of the original base circle; positions relative to O 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,21 +22,14 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Kinematics:
-    """Quantities of n consecutive poses; arrays of shape (n,) unless another is given.
+    """Quantities of n consecutive poses that a run follows at every step; arrays of shape (n,).
 
     Attributes
     ----------
-    tilt, tilt_rate, azimuth, rolling_rate, twist : ndarray
-        The azimuth is phi between -pi and pi. The rolling rate has no meaning at zero tilt (0 there).
-    contact_point : ndarray, shape (n, 2)
-        Lowest point of the rim, from above [m].
-    centre_of_mass, base_centre : ndarray, shape (n, 3)
-        [m]
+    tilt, tilt_rate, azimuth, twist : ndarray
+        The azimuth is phi between -pi and pi.
     energy : ndarray
         Kinetic and potential, per unit mass, zero standing [m^2/s^2].
-    momentum : ndarray
-        Momentum of the rolling angle per unit mass [m^2/s]: angular momentum about the contact point along
-        the vertical less the axis. It is L = B phi' in a recess, and keeps its sign through a pass.
     depth : ndarray
         Of the lowest point of the rim below the ground [m].
     slip_rate : ndarray
@@ -45,13 +39,8 @@ class Kinematics:
     tilt: Array
     tilt_rate: Array
     azimuth: Array
-    rolling_rate: Array
     twist: Array
-    contact_point: Array
-    centre_of_mass: Array
-    base_centre: Array
     energy: Array
-    momentum: Array
     depth: Array
     slip_rate: Array
 
@@ -60,70 +49,144 @@ def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinema
     """Return the quantities at `poses`, whose velocities are those of the step before.
 
     `after` holds the poses of one step later: the velocity at a pose is the mean of those before and
-    after it.
+    after it. Components are taken one by one, because this runs at every step of an engine and a cross
+    product of arrays costs as much as a step.
     """
-    velocity = 0.5 * (poses.velocity + after.velocity)
-    spin = 0.5 * (poses.angular_velocity + after.angular_velocity)
+    vx, vy, vz = mean_velocity(poses, after).T
+    wx, wy, wz = mean_spin(poses, after).T
+    ax, ay, az = axis_of(poses.quaternion).T
+    z = poses.position[:, 2]
+    b, h = body.base_radius, body.mass_centre_height
+    sine = np.sqrt(ax * ax + ay * ay)
+    safe = np.where(sine > 0.0, sine, 1.0)
+    height = z - h * az - b * sine  # of the lowest point
+    # from the mass centre to the lowest point of the rim, horizontally along the lean
+    out_x, out_y = ax / safe, ay / safe
+    reach = b * az - h * sine
+    down = height - z
+    slip_x = vx + wy * down - wz * reach * out_y
+    slip_y = vy + wz * reach * out_x - wx * down
+    along = wx * ax + wy * ay + wz * az
+    transverse, axial = body.transverse_inertia, body.axial_inertia
+    energy = vx * vx + vy * vy + vz * vz + transverse * (wx * wx + wy * wy + wz * wz)
+    energy += (axial - transverse) * along * along
+    return Kinematics(
+        # atan2 of both, because the cosine alone loses a tilt below 1e-8
+        tilt=np.arctan2(sine, az),
+        tilt_rate=wy * out_x - wx * out_y,
+        azimuth=np.arctan2(ay, ax),
+        twist=2.0 * np.arctan2(poses.quaternion[:, 3], poses.quaternion[:, 0]),
+        energy=0.5 * energy + gravity * (z - h),
+        depth=-height,
+        slip_rate=np.sqrt(slip_x * slip_x + slip_y * slip_y),
+    )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Rim:
+    """What is wanted of some poses only: where the rim stands, and how it turns.
+
+    Attributes
+    ----------
+    rolling_rate : ndarray, shape (n,)
+        phi' [rad/s]; it has no meaning at zero tilt (0 there).
+    contact_point : ndarray, shape (n, 2)
+        Lowest point of the rim, from above [m].
+    base_centre : ndarray, shape (n, 3)
+        [m]
+    momentum : ndarray, shape (n,)
+        Momentum of the rolling angle per unit mass [m^2/s]: angular momentum about the contact point along
+        the vertical less the axis. It is L = B phi' in a recess, and keeps its sign through a pass.
+    """
+
+    rolling_rate: Array
+    contact_point: Array
+    base_centre: Array
+    momentum: Array
+
+
+def rim(poses: Steps, after: Steps, body: Body) -> Rim:
+    """Return where the rim stands at `poses`; arguments as for `kinematics`."""
+    velocity, spin = mean_velocity(poses, after), mean_spin(poses, after)
     position = poses.position
     axis = axis_of(poses.quaternion)
     b, h = body.base_radius, body.mass_centre_height
     sine = np.hypot(axis[:, 0], axis[:, 1])
-    # atan2 of both, because the cosine alone loses a tilt below 1e-8
-    tilt = np.arctan2(sine, axis[:, 2])
     safe = np.where(sine > 0.0, sine, 1.0)
     outward = axis[:, :2] / safe[:, None]
     outward[sine == 0.0] = (1.0, 0.0)
     rate = np.cross(spin, axis)
-    tilt_rate = (spin[:, 1] * axis[:, 0] - spin[:, 0] * axis[:, 1]) / safe
-    rolling_rate = (axis[:, 0] * rate[:, 1] - axis[:, 1] * rate[:, 0]) / safe**2
     base_centre = position - h * axis
     contact = base_centre[:, :2] + b * axis[:, 2:] * outward
     lowest = np.column_stack([contact, base_centre[:, 2] - b * sine])
-    slip = velocity + np.cross(spin, lowest - position)
     along = np.einsum("ij,ij->i", spin, axis)
     turning = -axis
     turning[:, 2] += 1.0
     about_contact = np.cross(position - lowest, velocity) + body.transverse_inertia * spin
     about_contact += (body.axial_inertia - body.transverse_inertia) * along[:, None] * axis
-    energy = 0.5 * np.einsum("ij,ij->i", velocity, velocity) + gravity * (position[:, 2] - h)
-    energy += 0.5 * body.transverse_inertia * np.einsum("ij,ij->i", spin, spin)
-    energy += 0.5 * (body.axial_inertia - body.transverse_inertia) * along**2
-    return Kinematics(
-        tilt=tilt,
-        tilt_rate=tilt_rate,
-        azimuth=np.arctan2(axis[:, 1], axis[:, 0]),
-        rolling_rate=rolling_rate,
-        twist=2.0 * np.arctan2(poses.quaternion[:, 3], poses.quaternion[:, 0]),
+    return Rim(
+        rolling_rate=(axis[:, 0] * rate[:, 1] - axis[:, 1] * rate[:, 0]) / safe**2,
         contact_point=contact,
-        centre_of_mass=position,
         base_centre=base_centre,
-        energy=energy,
         momentum=np.einsum("ij,ij->i", turning, about_contact),
-        depth=b * sine - base_centre[:, 2],
-        slip_rate=np.hypot(slip[:, 0], slip[:, 1]),
     )
+
+
+def mean_velocity(poses: Steps, after: Steps) -> Array:
+    """Return the velocity of the mass centre at `poses`, shape (n, 3) [m/s]."""
+    return 0.5 * (poses.velocity + after.velocity)
+
+
+def mean_spin(poses: Steps, after: Steps) -> Array:
+    """Return the angular velocity at `poses`, shape (n, 3) [rad/s]."""
+    return 0.5 * (poses.angular_velocity + after.angular_velocity)
+
+
+def contact_force(poses: Steps, after: Steps, ground: Array, time_step: float, gravity: float) -> Array:
+    """Return the force of the ground and of walls on the cylinder in weights, shape (n, 3), world axes.
+
+    The mass centre obeys force/m = change of its velocity in the step + ground acceleration + g, exactly
+    for what the engine stepped with; `ground` (n, 3) is its acceleration [m/s^2]. The guide is a pure
+    couple, which does not show here.
+    """
+    force = (after.velocity - poses.velocity) / time_step + ground
+    force[:, 2] += gravity
+    return np.asarray(force / gravity)
 
 
 def axis_of(quaternion: Array) -> Array:
     """Return the axes of revolution, shape (n, 3), of quaternions (n, 4), scalar first."""
     w, x, y, z = quaternion.T
-    return np.column_stack([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])
+    axis = np.empty((3, len(quaternion)))
+    axis[0] = 2.0 * (x * z + w * y)
+    axis[1] = 2.0 * (y * z - w * x)
+    axis[2] = 1.0 - 2.0 * (x * x + y * y)
+    return axis.T
 
 
-def unwrap(azimuth: Array, momentum: Array, meaningful: NDArray[np.bool_], before: float) -> Array:
+def unwrap(
+    azimuth: Array,
+    momentum: Callable[[NDArray[np.intp]], Array],
+    meaningful: NDArray[np.bool_],
+    before: float,
+) -> Array:
     """Return the rolling angle without jumps, going on from `before` [rad].
 
     A change above a quarter turn in one step happens next to the apex, where the shorter way round may
-    be the wrong one: the sign of the momentum says which way the cylinder turned. Where the azimuth is
-    not `meaningful`, because the cylinder stands, the angle waits.
+    be the wrong one: the sign of the momentum, given for some indices, says which way the cylinder
+    turned. Where the azimuth is not `meaningful`, because the cylinder stands, the angle waits.
     """
-    last = np.maximum.accumulate(np.where(meaningful, np.arange(len(azimuth)), -1))
-    waiting = np.where(last < 0, before, azimuth[last])
+    waiting = azimuth
+    if not meaningful.all():
+        last = np.maximum.accumulate(np.where(meaningful, np.arange(len(azimuth)), -1))
+        waiting = np.where(last < 0, before, azimuth[last])
     change = np.diff(waiting, prepend=before)
     change -= 2.0 * np.pi * np.round(change / (2.0 * np.pi))
-    way = np.sign(momentum)
-    wrong = (np.abs(change) > 0.5 * np.pi) & (np.sign(change) == -way)
+    large = np.flatnonzero(np.abs(change) > 0.5 * np.pi)
     # the first lean after standing comes from no turn at all
-    wrong &= meaningful & np.concatenate([[True], meaningful[:-1]])
-    change[wrong] += 2.0 * np.pi * way[wrong]
+    large = large[meaningful[large] & (meaningful[large - 1] | (large == 0))]
+    if len(large):
+        way = np.sign(momentum(large))
+        wrong = np.sign(change[large]) == -way
+        change[large[wrong]] += 2.0 * np.pi * way[wrong]
     return np.asarray(before + np.cumsum(change))

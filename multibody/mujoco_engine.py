@@ -7,11 +7,11 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .engine import Array, Scene, Settings, Stepper, Steps
 from .kinematics import axis_of
 from .mujoco_scene import compile_scene
+from .ring_settings import RingSettings, take_ring
 from .settings import MujocoSettings
 from .start import Start
 
@@ -30,7 +30,7 @@ class MujocoEngine:
     @property
     def supports(self) -> tuple[str, ...]:
         """Supports that have a scene file."""
-        return ("guided", "free")
+        return ("guided", "free", "ring")
 
     def version(self) -> str:
         """Version of the package."""
@@ -39,9 +39,11 @@ class MujocoEngine:
         return str(mujoco.__version__)
 
     def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
-        """Return every setting; see `MujocoSettings`."""
-        resolved = MujocoSettings.resolve(given, scene.time_step * scene.unit_time)
-        return {name: getattr(resolved, name) for name in MujocoSettings.__dataclass_fields__}
+        """Return every setting; see `MujocoSettings` and, for the support "ring", `RingSettings`."""
+        others, ring = take_ring(given, scene.support)
+        resolved = MujocoSettings.resolve(others, scene.time_step * scene.unit_time)
+        found = {name: getattr(resolved, name) for name in MujocoSettings.__dataclass_fields__}
+        return found | (ring.as_dict() if ring is not None else {})
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
@@ -54,20 +56,23 @@ class MujocoEngine:
         mujoco.set_mju_user_warning(lambda message: None)
         try:
             with rollout.Rollout(nthread=0) as runner:
-                yield _MujocoStepper(scene, MujocoSettings(**settings), runner)
+                others, ring = take_ring(settings, scene.support)
+                yield _MujocoStepper(scene, MujocoSettings(**others), ring, runner)
         finally:
             mujoco.set_mju_user_warning(reporter)
 
 
 class _MujocoStepper:
-    def __init__(self, scene: Scene, settings: MujocoSettings, runner: Any) -> None:
+    def __init__(
+        self, scene: Scene, settings: MujocoSettings, ring: RingSettings | None, runner: Any
+    ) -> None:
         import mujoco
 
-        self._scene, self._settings, self._runner = scene, settings, runner
+        self._scene, self._settings, self._ring, self._runner = scene, settings, ring, runner
         self._columns = ["xyz".index(component) for component in scene.components]
         self._staggered = settings.integrator != "RK4"
         self._standing = scene.start.standing and settings.standing_corners > 0
-        self._model = compile_scene(scene, settings, standing=self._standing)
+        self._model = compile_scene(scene, settings, standing=self._standing, ring=ring)
         self._data = mujoco.MjData(self._model)
         self._warned: list[str] = []
         _set_start(self._model, self._data, scene, self._staggered)
@@ -83,32 +88,36 @@ class _MujocoStepper:
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         start = self._state[None]
-        blocks = []
+        blocks, walls = [], []
         done = 0
         while done < len(acceleration):
             if self._standing and 1.0 - axis_of(self._state[None, 4:8])[0, 2] > _RISEN:
                 self._leave_prisms()
             end = done + _STANDING_BLOCK if self._standing else len(acceleration)
-            blocks.append(self._roll(acceleration[done:end]))
+            block, wall = self._roll(acceleration[done:end])
+            blocks.append(block)
+            walls.append(wall)
             done = end
         # time, then position, quaternion, velocity in world axes, angular velocity in body axes
-        rows = np.vstack([start, *blocks])
+        # stored by component, which the recorder takes one by one
+        rows = np.ascontiguousarray(np.vstack([start, *blocks]).T).T
         quaternion = rows[:, 4:8]
         velocity, spin = rows[:, 8:11], to_world(quaternion, rows[:, 11:14])
+        wall = None if self._ring is None else np.vstack(walls)
         if self._staggered:
-            return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:])
+            return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:], wall)
         mean = 0.5 * (velocity[:-1] + velocity[1:]), 0.5 * (spin[:-1] + spin[1:])
-        return Steps(rows[1:, 1:4], quaternion[1:], *mean)
+        return Steps(rows[1:, 1:4], quaternion[1:], *mean, wall)
 
     def warnings(self) -> str:
         """Return the warnings of the engine."""
         return ", ".join(dict.fromkeys(self._warned + _warnings(self._data)))
 
-    def _roll(self, acceleration: Array) -> Array:
-        """Step in C; return the states (n, 14) after each step."""
+    def _roll(self, acceleration: Array) -> tuple[Array, Array]:
+        """Step in C; return the states (n, 14) after each step, and the sensors at its start."""
         control = np.zeros((1, len(acceleration), self._model.nu))
         control[0, :, : len(self._columns)] = -acceleration[:, self._columns]
-        states, _ = self._runner.rollout(
+        states, sensors = self._runner.rollout(
             self._model,
             self._data,
             self._state[None],
@@ -122,7 +131,7 @@ class _MujocoStepper:
             frozen = (np.diff(rows[:, 1:8], axis=0, prepend=self._state[None, 1:8]) == 0.0).all(axis=1)
             rows[frozen & (np.cumsum(~frozen[::-1])[::-1] == 0), 1:] = np.nan
         self._state = rows[-1].copy()
-        return rows
+        return rows, sensors[0]
 
     def _leave_prisms(self) -> None:
         """Go on without what only a standing cylinder needs: its corners cost time and brush the ground."""
@@ -130,7 +139,7 @@ class _MujocoStepper:
 
         self._warned += _warnings(self._data)
         self._standing = False
-        self._model = compile_scene(self._scene, self._settings, standing=False)
+        self._model = compile_scene(self._scene, self._settings, standing=False, ring=self._ring)
         self._data = mujoco.MjData(self._model)
 
 
@@ -146,10 +155,15 @@ def _warnings(data: mujoco.MjData) -> list[str]:
 
 def to_world(quaternion: Array, vector: Array) -> Array:
     """Turn vectors (n, 3) from body to world axes by quaternions (n, 4), scalar first."""
-    scalar, imaginary = quaternion[:, :1], quaternion[:, 1:]
-    twice = 2.0 * np.cross(imaginary, vector)
-    turned: NDArray[np.float64] = vector + scalar * twice + np.cross(imaginary, twice)
-    return turned
+    w, x, y, z = quaternion.T
+    a, b, c = vector.T
+    # v + w t + q x t with t = 2 q x v
+    along_x, along_y, along_z = 2.0 * (y * c - z * b), 2.0 * (z * a - x * c), 2.0 * (x * b - y * a)
+    turned = np.empty((3, len(vector)))
+    turned[0] = a + w * along_x + (y * along_z - z * along_y)
+    turned[1] = b + w * along_y + (z * along_x - x * along_z)
+    turned[2] = c + w * along_z + (x * along_y - y * along_x)
+    return turned.T
 
 
 def _set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, staggered: bool) -> None:

@@ -3,18 +3,20 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .engine import Scene, Steps
 from .guard import first_breach
-from .kinematics import Kinematics, axis_of, kinematics, unwrap
+from .kinematics import Kinematics, axis_of, contact_force, kinematics, mean_velocity, rim, unwrap
 from .passes import TurningPoint, turning_points
 from .start import Start
 from .uplift import UpliftWatch, sure_tilt
 
 Array = NDArray[np.float64]
+Indices = NDArray[np.intp]
 
 OVERTURNED = 0.5 * math.pi - 1e-3  # [rad] contact of the side may stop the fall a little before pi/2
 
@@ -22,7 +24,7 @@ FLIGHT = 1e-3  # of b, height that is flight: a rim that slides may hover below 
 SLIP = 0.01  # of b, slip that is more than the creep of a rim that rolls
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
-    "x", "y", "z", "energy", "energy_error", "slip",
+    "x", "y", "z", "force_x", "force_y", "force_z", "energy", "energy_error", "slip",
 )  # fmt: skip
 
 
@@ -50,7 +52,8 @@ class Recorder:
         self._angle = rolling_angle
         self._work = 0.0
         self._energy: float | None = None
-        self._tail: Array = np.empty((0, len(COLUMNS) + 1))
+        self._tail: Array = np.empty((3, 0))  # time, tilt and rolling angle of the last steps
+        self._row: Array = np.empty(len(COLUMNS) + 1)
         self._rows: list[Array] = []
         self._taken = 0
         self._depths: list[float] = []
@@ -82,8 +85,7 @@ class Recorder:
     @property
     def last_row(self) -> Array:
         """The last step analysed: time and the fields of `COLUMNS`."""
-        row: Array = self._tail[-1]
-        return row
+        return self._row
 
     @property
     def penetration(self) -> float:
@@ -97,28 +99,45 @@ class Recorder:
         follows the last pose known so far.
         """
         poses, after = self._pair(steps)
-        time: Array = self._scene.time_step * np.arange(
-            self._count, self._count + len(poses.position), dtype=float
-        )
-        state = kinematics(poses, after, self._scene.body, self._scene.gravity)
+        count = len(poses.position)
+        time: Array = self._scene.time_step * np.arange(self._count, self._count + count, dtype=float)
+        body = self._scene.body
+        state = kinematics(poses, after, body, self._scene.gravity)
         gained = self._energy_error(state, poses, after, acceleration)
         stop = self._stop(time, state, gained)
-        angle = unwrap(state.azimuth, state.momentum, state.tilt > self.floor, self._angle)
-        rows = np.column_stack(
-            [time, state.tilt, state.tilt_rate, angle, state.rolling_rate, state.twist, state.contact_point,
-             state.centre_of_mass, state.energy, gained, self._slip(time, state)]
-        )[:stop]  # fmt: skip
+        angle = unwrap(
+            state.azimuth,
+            lambda at: rim(_rows(poses, at), _rows(after, at), body).momentum,
+            state.tilt > self.floor,
+            self._angle,
+        )
+        slip = self._slip(time, state)
         if self._watch is not None and self.uplift is None:
             self.uplift = self._watch.watch(time, state.tilt, poses, after, acceleration)
-        self._follow(rows)
         self._depths.append(float(np.median(state.depth[: max(stop, 1)])))
         if stop:
-            self.base_centre = state.base_centre[stop - 1]
-        self._angle, self._count = float(angle[-1]), self._count + len(time)
+
+            def rows(at: Indices) -> Array:
+                some, later = _rows(poses, at), _rows(after, at)
+                place = rim(some, later, body)
+                self.base_centre = place.base_centre[-1]
+                force = contact_force(
+                    some, later, acceleration[at], self._scene.time_step, self._scene.gravity
+                )
+                return np.column_stack(
+                    [time[at], state.tilt[at], state.tilt_rate[at], angle[at], place.rolling_rate,
+                     state.twist[at], place.contact_point, some.position, force, state.energy[at], gained[at],
+                     slip[at]]
+                )  # fmt: skip
+
+            self._follow(np.stack([time[:stop], state.tilt[:stop], angle[:stop]]))
+            self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[:stop]).max()))
+            self._sample(time[:stop], rows)
+        self._angle, self._count = float(angle[-1]), self._count + count
 
     def fail(self, reason: str) -> None:
         """End the run at the last step analysed."""
-        self.ended, self.reason, self.end_time = "failed", reason, float(self._tail[-1, 0])
+        self.ended, self.reason, self.end_time = "failed", reason, float(self._row[0])
 
     def _pair(self, steps: Steps) -> tuple[Steps, Steps]:
         """Poses with the velocities before them, and the same one step later."""
@@ -133,10 +152,10 @@ class Recorder:
                 2.0 * start.angular_velocity[None] - steps.angular_velocity[:1],
             )
         joined = Steps(
-            np.vstack([self._last.position, steps.position]),
-            np.vstack([self._last.quaternion, steps.quaternion]),
-            np.vstack([self._last.velocity, steps.velocity]),
-            np.vstack([self._last.angular_velocity, steps.angular_velocity]),
+            _after(self._last.position, steps.position),
+            _after(self._last.quaternion, steps.quaternion),
+            _after(self._last.velocity, steps.velocity),
+            _after(self._last.angular_velocity, steps.angular_velocity),
         )
         self._last = _rows(joined, slice(-1, None))
         return _rows(joined, slice(0, -1)), _rows(joined, slice(1, None))
@@ -144,8 +163,8 @@ class Recorder:
     def _energy_error(self, state: Kinematics, poses: Steps, after: Steps, acceleration: Array) -> Array:
         """Energy less that of the start and the work of the excitation at each pose."""
         # the impulse of a step acts at its pose: half of it belongs to the energy there
-        velocity = 0.5 * (poses.velocity + after.velocity)
-        work = -np.einsum("ij,ij->i", acceleration, velocity) * self._scene.time_step
+        velocity = mean_velocity(poses, after)
+        work = -(acceleration * velocity).sum(axis=1) * self._scene.time_step
         until = self._work + np.cumsum(work) - 0.5 * work
         self._work += float(work.sum())
         if self._energy is None:
@@ -182,31 +201,51 @@ class Recorder:
         # the start belongs to every run
         return max(stop, 1) if self._count == 0 else stop
 
-    def _follow(self, rows: Array) -> None:
-        """Samples, turning points and peak of consecutive steps."""
-        joined = np.vstack([self._tail, rows])
-        self._tail = joined[-3:]
-        if not len(rows):
-            return
-        time, tilt, angle = joined[:, 0], joined[:, 1], joined[:, 3]
+    def _follow(self, track: Array) -> None:
+        """Turning points and peak of consecutive steps: time, tilt and rolling angle, shape (3, n)."""
+        joined = np.hstack([self._tail, track])
+        fresh = joined[:, max(self._tail.shape[1] - 2, 0) :]
+        tilt, angle = joined[1:]
         if self._at_turn and len(tilt) > 1:
             # released at rest in tilt, the start is a turning point as well
             self.points.append(TurningPoint(0.0, float(tilt[0]), float(angle[0]), bool(tilt[1] < tilt[0])))
             self._at_turn = False
-        if len(joined) > 2 and self.uplift is not None:
+        if joined.shape[1] > 2 and self.uplift is not None:
             # the two carried steps were inner ones already, except for the last of them
-            fresh = slice(max(len(joined) - len(rows) - 2, 0), None)
-            self.points.extend(turning_points(time[fresh], tilt[fresh], angle[fresh]))
+            self.points.extend(turning_points(*fresh))
+        self._tail = joined[:, -3:].copy()
         self.peak = max(self.peak, float(tilt.max()))
-        self.fastest = max(self.fastest, float(np.abs(joined[:, 2]).max()))
+
+    def _sample(self, time: Array, rows: Callable[[Indices], Array]) -> None:
+        """Take the samples that are due; `rows` gives the fields at some of the steps."""
+        last = len(time) - 1
         due = self._samples[self._taken : np.searchsorted(self._samples, time[-1], side="right")]
+        # the steps around each sample; -1 is the last step of the chunk before
+        before = np.searchsorted(time, due, side="right") - 1
+        after = np.minimum(before + 1, last)
+        needed = np.unique(np.concatenate([before, after, [last]]))
+        known = rows(needed[needed >= 0])
+        if needed[0] < 0:
+            known = np.vstack([self._row, known])
         if len(due):
-            fields = [np.interp(due, time, column) for column in joined[:, 1:].T]
-            self._rows.append(np.column_stack([due, *fields]))
+            left, right = (known[np.searchsorted(needed, at)] for at in (before, after))
+            span = right[:, 0] - left[:, 0]
+            part = np.where(span > 0.0, (due - left[:, 0]) / np.where(span > 0.0, span, 1.0), 0.0)[:, None]
+            taken = left + part * (right - left)
+            taken[:, 0] = due
+            self._rows.append(taken)
             self._taken += len(due)
+        self._row = known[-1]
 
 
-def _rows(steps: Steps, part: slice) -> Steps:
+def _after(last: Array, rows: Array) -> Array:
+    """One row and then rows (n, k), stored by component."""
+    joined = np.empty((rows.shape[1], len(rows) + 1))
+    joined[:, 0], joined[:, 1:] = last[0], rows.T
+    return joined.T
+
+
+def _rows(steps: Steps, part: slice | Indices) -> Steps:
     return Steps(
         steps.position[part], steps.quaternion[part], steps.velocity[part], steps.angular_velocity[part]
     )

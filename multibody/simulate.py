@@ -157,7 +157,10 @@ def _run(
         while done < total and not recorder.ended:
             count = min(_CHUNK, total - done)
             acceleration = means(done, count, stepper.hold_centre)
-            recorder.take(stepper.advance(acceleration), acceleration)
+            steps = stepper.advance(acceleration)
+            # the force belongs to the pose, wherever the engine holds it
+            at_pose = means(done, count) if stepper.hold_centre else acceleration
+            recorder.take(steps, at_pose)
             done += count
             warning = stepper.warnings()
             if warning and not recorder.ended:
@@ -188,6 +191,8 @@ def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> T
         rolling_rate=np.where(resting, 0.0, table["rolling_rate"] / scale.time),
         twist=table["twist"],
         contact_point=contact * scale.length,
+        contact_offset=(np.hypot(contact[:, 0], contact[:, 1]) - scene.body.base_radius) * scale.length,
+        contact_force=np.column_stack([table[f"force_{axis}"] for axis in "xyz"]),
         centre_of_mass=centre * scale.length,
         energy=table["energy"] * scale.energy,
         energy_error=table["energy_error"] * scale.energy,

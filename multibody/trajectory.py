@@ -35,6 +35,14 @@ class Trajectory:
         before the uplift, and where the tilt is below 5e-6 alpha.
     contact_point : ndarray, shape (n, 2)
         Lowest point of the rim [m]; NaN at rest.
+    contact_offset : ndarray, shape (n,)
+        How far the contact point is outside the circle of radius b about O [m], negative inside: the
+        distance by which the cylinder has rolled or slipped out of its place. NaN at rest.
+    contact_force : ndarray, shape (n, 3)
+        Of the ground, and of walls where there are some, on the cylinder in weights, world axes: from the
+        change of the engine's velocity in one step, so that a force shorter than a step is its mean.
+        The guide is a couple and has no part in it. At rest it is what holds a standing cylinder,
+        and in flight zero.
     centre_of_mass : ndarray, shape (n, 3)
         [m]
     energy : ndarray, shape (n,)
@@ -76,6 +84,8 @@ class Trajectory:
     rolling_rate: Array
     twist: Array
     contact_point: Array
+    contact_offset: Array
+    contact_force: Array
     centre_of_mass: Array
     energy: Array
     energy_error: Array
@@ -104,6 +114,10 @@ class Trajectory:
                 "twist": self.twist,
                 "contact_x": self.contact_point[:, 0],
                 "contact_y": self.contact_point[:, 1],
+                "contact_offset": self.contact_offset,
+                "force_x": self.contact_force[:, 0],
+                "force_y": self.contact_force[:, 1],
+                "force_z": self.contact_force[:, 2],
                 "centre_x": self.centre_of_mass[:, 0],
                 "centre_y": self.centre_of_mass[:, 1],
                 "centre_z": self.centre_of_mass[:, 2],
