@@ -5,7 +5,7 @@ from .contact import TILTED
 from .driver import compare
 from .execution import Crash, Job, Progress, simulate_all
 from .horizon import AGREEMENT
-from .runs import default_runs, installed_engines, missing_engines, require_runnable
+from .runs import default_runs, installed_engines, missing_engines, require_runnable, reserved_engines
 from .store import replace_files, require_writable
 from .summary import SUMMARY_COLUMNS
 from .tilt import relative_rms
@@ -31,5 +31,6 @@ __all__ = [
     "replace_files",
     "require_runnable",
     "require_writable",
+    "reserved_engines",
     "simulate_all",
 ]

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rockwobble.models import Case, Run
-from rockwobble.multibody import available_engines, engine_names
+from rockwobble.multibody import BrokenEngineError, available_engines
+from rockwobble.multibody.ability import require_able
 from rockwobble.multibody.froude import froude_scale
 from rockwobble.multibody.guard import check_time_step
-from rockwobble.multibody.registry import find_engine
+from rockwobble.multibody.registry import find_engine, standard_engines
 
 SUPPORTS = ("guided", "free")
 
@@ -17,13 +18,34 @@ SUPPORT_REFERENCES = {"free": ("rolling",)}
 
 
 def installed_engines() -> tuple[str, ...]:
-    """Return the engines that are installed here, those of a default run."""
+    """Return the engines that are installed here, whatever they can do."""
     return available_engines()
 
 
 def missing_engines() -> tuple[str, ...]:
-    """Return the known engines that are not installed here."""
-    return tuple(name for name in engine_names() if name not in installed_engines())
+    """Return the engines that every installation is meant to have and this one has not."""
+    return tuple(name for name in standard_engines() if name not in installed_engines())
+
+
+def reserved_engines() -> dict[str, str]:
+    """Return the installed engines that a default run leaves out, and why.
+
+    A default run takes the engines that serve any case: those with each support and with uplift. The
+    others run where they are named.
+    """
+    reasons = {name: _reservation(name) for name in installed_engines()}
+    return {name: reason for name, reason in reasons.items() if reason}
+
+
+def _reservation(name: str) -> str:
+    try:
+        engine = find_engine(name)
+    except BrokenEngineError as error:
+        # of another package: what is broken there stops nobody here
+        return str(error)
+    lacks = [f"no {support} support" for support in SUPPORTS if support not in engine.supports]
+    lacks += [] if engine.uplifts else ["no uplift"]
+    return f"{name} has {' and '.join(lacks)}" if lacks else ""
 
 
 def require_runnable(case: Case, run: Run) -> None:
@@ -32,12 +54,10 @@ def require_runnable(case: Case, run: Run) -> None:
     Raises
     ------
     ValueError
-        If the engine is unknown or not installed, does not have the support, or the time step is too
-        large for contact.
+        If the engine is unknown or not installed, does not have the support or cannot start the case,
+        or the time step is too large for contact.
     """
-    supports = find_engine(run.engine).supports
-    if run.support not in supports:
-        raise ValueError(f"support must be one of {', '.join(supports)}, got {run.support!r}")
+    require_able(find_engine(run.engine), run.engine, case, run.support)
     if run.time_step is not None:
         check_time_step(run.time_step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
 
@@ -45,11 +65,18 @@ def require_runnable(case: Case, run: Run) -> None:
 def default_runs(
     engines: Sequence[str] | None = None, supports: Sequence[str] | None = None
 ) -> tuple[Run, ...]:
-    """Return every installed engine with each support, the guided ones first."""
+    """Return every engine that serves any case with each support, the guided ones first.
+
+    Engines that are named run whatever they can do: with the supports that they have where none is named.
+    """
+    if engines is None:
+        reserved = reserved_engines()
+        engines = [name for name in installed_engines() if name not in reserved]
     return tuple(
         Run(engine, support)
         for support in (SUPPORTS if supports is None else supports)
-        for engine in (installed_engines() if engines is None else engines)
+        for engine in engines
+        if supports is not None or support in find_engine(engine).supports
     )
 
 

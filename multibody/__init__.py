@@ -5,8 +5,15 @@ reduced models as far as an engine has them. Nothing here knows the reduced mode
 and energy are derived from the pose of a rigid body.
 """
 
-from .registry import EngineNotInstalledError, available_engines, engine_names
+from .registry import BrokenEngineError, EngineNotInstalledError, available_engines, engine_names
 from .simulate import simulate
 from .trajectory import Trajectory
 
-__all__ = ["EngineNotInstalledError", "Trajectory", "available_engines", "engine_names", "simulate"]
+__all__ = [
+    "BrokenEngineError",
+    "EngineNotInstalledError",
+    "Trajectory",
+    "available_engines",
+    "engine_names",
+    "simulate",
+]

@@ -4,10 +4,36 @@ An engine runs one rigid body on rigid ground at the reference size. It opens a 
 it by a number of steps at a time under given ground accelerations. How it steps (a rollout in C, a loop
 in Python) is its own affair; so are its settings, which it resolves from the time step.
 
-Both engines here are semi-implicit: the new velocity moves the pose. Read as leapfrog, the pose n
-stands at n h and the velocity that led to it at (n - 1/2) h, which makes them second order where the
-naive reading is first order. A stepper therefore starts half a step back in velocity, and `Steps`
-holds the velocities between the poses.
+Writing one
+-----------
+Write a class with the members of `Engine`, whose constructor takes no argument and imports nothing
+heavy, and declare it in the metadata of its package:
+
+    [project.entry-points."rockwobble.engines"]
+    mine = "my_package.my_module:MyEngine"
+
+From then on "mine" is the name of an engine wherever one is asked for. What it must hold:
+
+* The scene is complete: body, start, friction, gravity and time step in SI units at the reference size,
+  mass 1, origin in the centre O of the original base circle, z up. Nothing is to be scaled; only settings
+  that are times come in the time of the user, `Scene.unit_time` of it in a second of the scene.
+* The ground keeps still, and its acceleration a acts as the body force -a at the mass centre.
+* Every step takes the time step of the scene and gives one row, whatever happens. Rows that it could not
+  compute are NaN, and `Stepper.warnings` then says why: that ends the run as "failed".
+* The poses are those after each step; their order in time is that of the calls, and it makes no
+  difference how many steps one call takes.
+* The velocity of a step is the mean over it, that is the displacement over h, and the rotation over h.
+  Recorded so, the velocity at a pose is the mean of those before and after it, to second order. In an
+  engine that steps as leapfrog does (the new velocity moves the pose: MuJoCo's Euler, Bullet) it is the
+  engine's own, which starts half a step back; in one that knows both at the pose (Runge-Kutta, the
+  trapezoidal rule) it is the mean of both ends.
+* The force of step n is the mean of the ground acceleration over one step about the time (n + c) h,
+  where c is `Stepper.hold_centre`: 0 in leapfrog, whose velocity moves from half a step before the pose
+  n to half a step after it; 1/2 where the force is held over the step ahead; 1 where it is taken at the
+  end of the step.
+* The same run gives the same bits, nothing is printed or written, and what was opened is closed.
+
+`rockwobble.multibody.testing` checks all that, by physics, for any engine.
 """
 
 from __future__ import annotations
@@ -26,6 +52,8 @@ from .start import Start
 Array = NDArray[np.float64]
 
 Settings = Mapping[str, Any]
+
+MEMBERS = ("supports", "uplifts", "version", "settings", "open")  # of an Engine
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -85,7 +113,7 @@ class Stepper(Protocol):
 
     @property
     def hold_centre(self) -> float:
-        """Centre of the time over which the force of step n is held, from pose n, in steps: 0 in leapfrog."""
+        """Centre c of the time over which the force of step n is a mean, from pose n, in steps: 0 to 1."""
         ...
 
     def advance(self, acceleration: Array) -> Steps:
@@ -93,7 +121,7 @@ class Stepper(Protocol):
         ...
 
     def warnings(self) -> str:
-        """Return what the engine has warned of so far, empty if nothing."""
+        """Return what the engine has warned of so far, empty if nothing; a warning ends the run."""
         ...
 
 
@@ -102,7 +130,12 @@ class Engine(Protocol):
 
     @property
     def supports(self) -> tuple[str, ...]:
-        """Names of the supports that it has."""
+        """Names of the supports that it has: "guided" (ideal recess), "free" (open ground)."""
+        ...
+
+    @property
+    def uplifts(self) -> bool:
+        """Whether it can start from a cylinder that stands; otherwise a run needs a release with a tilt."""
         ...
 
     def version(self) -> str:

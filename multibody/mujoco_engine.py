@@ -32,6 +32,11 @@ class MujocoEngine:
         """Supports that have a scene file."""
         return ("guided", "free", "ring")
 
+    @property
+    def uplifts(self) -> bool:
+        """The base is in contact as well as the rim."""
+        return True
+
     def version(self) -> str:
         """Version of the package."""
         import mujoco

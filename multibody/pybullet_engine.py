@@ -24,6 +24,11 @@ class PybulletEngine:
         """Supports that it has."""
         return ("guided", "free")
 
+    @property
+    def uplifts(self) -> bool:
+        """The base is in contact as well as the rim."""
+        return True
+
     def version(self) -> str:
         """Version of the package; the module itself tells only its interface number."""
         from importlib.metadata import version

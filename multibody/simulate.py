@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
+from .ability import require_able
 from .body import scaled_body
 from .engine import Engine, Scene
 from .excitation import StepMeans
@@ -61,7 +62,8 @@ def simulate(
         Default: standing at rest.
     duration : float, optional
         [s]; default that of the motion.
-    engine : {"mujoco", "pybullet"}
+    engine : {"mujoco", "pybullet", "exudyn"}
+        Or one that another package declares. Exudyn is an ideal rim: free, from a release only.
     support : {"guided", "free"}
         The ideal recess, which holds the twist at zero, or open ground.
     time_step : float, optional
@@ -76,7 +78,7 @@ def simulate(
     progress : callable, optional
         Called now and then with the fraction done.
     **settings
-        Of the engine: see `MujocoSettings` and `PybulletSettings`.
+        Of the engine: see `MujocoSettings`, `PybulletSettings` and `ExudynSettings`.
 
     Returns
     -------
@@ -101,8 +103,7 @@ def simulate(
     started = clock.perf_counter()
     case = Case("run", cylinder, motion, initial, duration, gravity, friction)
     backend = find_engine(engine)
-    if support not in backend.supports:
-        raise ValueError(f"support must be one of {', '.join(backend.supports)}, got {support!r}")
+    require_able(backend, engine, case, support)
     scale = froude_scale(cylinder.semidiagonal, gravity)
     step = REFERENCE_TIME_STEP * scale.time if time_step is None else _positive("time_step", time_step)
     check_time_step(step, scale.time)

@@ -95,10 +95,12 @@ def _runs(engines: list[str] | None, supports: list[str] | None, time_step: floa
 
 
 def _say_what_is_left_out() -> None:
-    from rockwobble.compare import missing_engines
+    from rockwobble.compare import missing_engines, reserved_engines
 
     for name in missing_engines():
         complain(f"{name} is not installed here and is left out")
+    for name, reason in reserved_engines().items():
+        complain(f"{reason}: left out, --engine {name} asks for it")
 
 
 def print_comparison(comparison: Comparison) -> None:

@@ -65,7 +65,7 @@ Engines = Annotated[
     list[str] | None,
     typer.Option(
         "--engine",
-        help="mujoco or pybullet; may be repeated. Default: all installed.",
+        help="mujoco, pybullet or exudyn; may be repeated. Default: all that serve any case.",
         rich_help_panel=_METHOD,
     ),
 ]

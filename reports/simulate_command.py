@@ -21,7 +21,9 @@ Model = Annotated[
 ]
 Engine = Annotated[
     str | None,
-    typer.Option("--engine", help="mujoco or pybullet instead of a reduced model.", rich_help_panel="Method"),
+    typer.Option(
+        "--engine", help="mujoco, pybullet or exudyn instead of a reduced model.", rich_help_panel="Method"
+    ),
 ]
 Support = Annotated[
     str,

@@ -18,6 +18,7 @@ from scipy.optimize import brentq
 
 from rockwobble.models import Cylinder, GroundMotion, InitialState
 from rockwobble.multibody import available_engines
+from rockwobble.multibody.registry import find_engine
 
 Array = NDArray[np.float64]
 Acceleration = Callable[[float], Array]
@@ -181,9 +182,9 @@ def forced_response(
     return Solution(np.array(times), table[:, 0], table[:, 2], table[:, 4], uplift, direction)
 
 
-@pytest.fixture(params=available_engines())
+@pytest.fixture(params=[name for name in available_engines() if find_engine(name).uplifts])
 def engine(request: pytest.FixtureRequest) -> str:
-    """Every engine that is installed here."""
+    """Every engine that is installed here and serves any case."""
     return str(request.param)
 
 
