@@ -5,7 +5,10 @@ from .cylinder import Cylinder
 from .el_centro import el_centro_1940
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
+from .p695 import p695_far_field
+from .pulses import pulse
 from .record_files import read_record
+from .suite_file import read_suite, shipped_suites
 
 __all__ = [
     "Case",
@@ -15,6 +18,10 @@ __all__ = [
     "Run",
     "Suite",
     "el_centro_1940",
+    "p695_far_field",
+    "pulse",
     "read_record",
+    "read_suite",
     "run_duration",
+    "shipped_suites",
 ]

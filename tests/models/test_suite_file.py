@@ -1,0 +1,306 @@
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pytest
+
+from rockwobble import models
+from rockwobble.models import el_centro_1940, read_suite, shipped_suites
+
+CASE = """
+[[cases]]
+name = "release"
+cylinder = { semidiagonal = 6, tan_alpha = 0.2 }
+release = { tilt_over_alpha = 0.5 }
+duration = 8
+"""
+RECORD = 'motion = { record = "el_centro_1940" }'
+STILL = "release = { tilt_over_alpha = 0.5 }"
+
+
+def replaced(old: str, new: str) -> str:
+    assert old in CASE
+    return CASE.replace(old, new)
+
+
+def test_everything_that_is_given_arrives(write):
+    text = """
+    [[runs]]
+    engine = "mujoco"
+    support = "free"
+    time_step = 1e-4
+    settings = { iterations = 50 }
+
+    [[cases]]
+    name = "all of it"
+    cylinder = { semidiagonal = 5, tan_alpha = 0.25, height = 8, transverse_inertia = 7, axial_inertia = 1.5 }
+    motion = { record = "el_centro_1940", vertical = true, scale = 2, rotation_deg = 30, time_shift = -0.5 }
+    release = { tilt_deg = 3, tilt_rate = 0.1, rolling_angle_deg = 90, rolling_rate = 0.2 }
+    duration = 4
+    gravity = 9.8
+    friction = 0.7
+    """
+    suite = read_suite(write(text, "all.suite.toml"))
+    (case,), (run,) = suite.cases, suite.runs
+    assert (run.engine, run.support, run.time_step, dict(run.settings)) == (
+        "mujoco",
+        "free",
+        1e-4,
+        {"iterations": 50},
+    )
+    body = case.cylinder
+    assert (body.semidiagonal, body.tan_alpha, body.height) == (5.0, 0.25, 8.0)
+    assert (body.transverse_inertia, body.axial_inertia) == (7.0, 1.5)
+    whole = el_centro_1940(vertical=True).scaled(2.0).rotated(math.radians(30.0))
+    assert case.motion.acceleration.tolist() == whole.acceleration[50:].tolist()
+    assert (case.initial.tilt, case.initial.tilt_rate) == (math.radians(3.0), 0.1)
+    assert (case.initial.rolling_angle, case.initial.rolling_rate) == (math.radians(90.0), 0.2)
+    assert (case.name, case.duration, case.gravity, case.friction) == ("all of it", 4.0, 9.8, 0.7)
+
+
+def test_lists_and_ranges_make_each_combination_once_and_name_it(write):
+    text = replaced("tan_alpha = 0.2", "tan_alpha = [0.1, 0.2]").replace(
+        "tilt_over_alpha = 0.5", "tilt_over_alpha = { from = 0.2, to = 0.6, step = 0.2 }"
+    )
+    suite = read_suite(write(text))
+    assert [case.name for case in suite.cases] == [
+        f"release: tan_alpha {slope}, tilt_over_alpha {tilt}"
+        for slope in (0.1, 0.2)
+        for tilt in (0.2, 0.4, 0.6)
+    ]
+    for case in suite.cases:
+        assert case.name == (
+            f"release: tan_alpha {case.cylinder.tan_alpha:g}, "
+            f"tilt_over_alpha {case.initial.tilt / case.cylinder.alpha:g}"
+        )
+    assert suite.runs == ()
+
+
+RANGES = {
+    "{ from = 1, to = 3, step = 0.5 }": [1.0, 1.5, 2.0, 2.5, 3.0],
+    "{ from = 0.1, to = 0.4, step = 0.1 }": [0.1, 0.2, 0.3, 0.4],
+    "{ from = 1, to = 2, count = 3 }": [1.0, 1.5, 2.0],
+    '{ from = 1, to = 100, count = 3, spacing = "log" }': [1.0, 10.0, 100.0],
+    "[3, 1.0000001, 1]": [3.0, 1.0000001, 1.0],
+}
+
+
+@pytest.mark.parametrize("given", RANGES)
+def test_values_of_a_range(write, given):
+    suite = read_suite(write(replaced("semidiagonal = 6", f"semidiagonal = {given}")))
+    assert [case.cylinder.semidiagonal for case in suite.cases] == RANGES[given]
+    assert len({case.name for case in suite.cases}) == len(RANGES[given])
+
+
+def test_lists_of_runs_make_each_combination(write):
+    text = '[[runs]]\nengine = ["mujoco", "pybullet"]\ntime_step = [1e-4, 2e-4]\n' + CASE
+    runs = read_suite(write(text)).runs
+    assert [(run.engine, run.support, run.time_step) for run in runs] == [
+        ("mujoco", "guided", 1e-4),
+        ("mujoco", "guided", 2e-4),
+        ("pybullet", "guided", 1e-4),
+        ("pybullet", "guided", 2e-4),
+    ]
+
+
+def test_files_of_a_record_stand_beside_the_suite(write, tmp_path, monkeypatch):
+    (tmp_path / "records").mkdir()
+    for name, peak in (("x", 1.0), ("y", 2.0)):
+        (tmp_path / "records" / f"{name}.csv").write_text(f"0, 0\n0.1, {peak}\n0.2, 0\n")
+    files = 'motion = { x = "records/x.csv", y = "records/y.csv", units = "m/s2", scale = 3 }'
+    path = write(replaced(STILL, files))
+    monkeypatch.chdir("/")
+    (case,) = read_suite(path).cases
+    assert case.motion.acceleration.tolist() == [[0.0, 0.0], [3.0, 6.0], [0.0, 0.0]]
+
+
+def test_times_uplift_is_the_peak_over_g_tan_alpha(write):
+    motion = 'motion = { record = "el_centro_1940", times_uplift = [1.5, 2] }'
+    for case in read_suite(write(replaced(STILL, motion) + "gravity = 3.7\n")).cases:
+        ratio = case.motion.peak / (3.7 * case.cylinder.tan_alpha)
+        assert ratio == pytest.approx(float(case.name.split()[-1]), rel=1e-14)  # one scaling, rounding
+
+
+def test_a_pulse(write):
+    motion = (
+        'motion = { pulse = "one-sine", period = 2, times_uplift = 3, azimuth_deg = 90, time_shift = 0.5 }'
+    )
+    (case,) = read_suite(write(replaced(STILL, motion))).cases
+    ay = case.motion.acceleration[:, 1]
+    at_quarter = round((0.5 + 0.5) / case.motion.time_step)
+    assert ay[at_quarter] == pytest.approx(3.0 * 9.81 * 0.2, rel=1e-12)
+    assert abs(ay[: round(0.5 / case.motion.time_step) + 1]).max() == 0.0
+    assert case.length == 8.0
+
+
+def test_a_body_by_its_dimensions(write):
+    body = "cylinder = { base_radius = 1, height = 10, mass_centre_height = [4, 6] }"
+    low, high = read_suite(write(replaced("cylinder = { semidiagonal = 6, tan_alpha = 0.2 }", body))).cases
+    assert low.cylinder.base_radius == pytest.approx(1.0)
+    assert (low.cylinder.mass_centre_height, high.cylinder.mass_centre_height) == pytest.approx((4.0, 6.0))
+    assert low.cylinder.height == high.cylinder.height == 10.0
+
+
+WRONG = {
+    replaced(
+        "tan_alpha = 0.2", "tan_alpha = -0.2"
+    ): "cases[0].cylinder.tan_alpha: must be positive, got -0.2",
+    replaced("tan_alpha = 0.2", "tan_alpha = [0.2, 0]"): (
+        "cases[0].cylinder.tan_alpha[1]: must be positive, got 0"
+    ),
+    replaced(
+        "tan_alpha = 0.2", "tan_alpha = [0.2, 0.2]"
+    ): "tan_alpha[1]: must differ from the others, got 0.2",
+    replaced("tan_alpha = 0.2", "tan_alpha = []"): "tan_alpha: must hold at least one value, got []",
+    replaced("tan_alpha = 0.2", 'tan_alpha = "0.2"'): "tan_alpha: must be a number, a list, or a range such",
+    replaced("tan_alpha = 0.2", "tan_alpha = true"): "tan_alpha: must be a number, a list, or a range such",
+    replaced("tan_alpha = 0.2", "tan_alpha = nan"): "tan_alpha: must be a finite number, got nan",
+    replaced("tan_alpha = 0.2", "tan_alfa = 0.2"): (
+        "cases[0].cylinder.tan_alfa: is not known here, did you mean tan_alpha?"
+    ),
+    replaced(", tan_alpha = 0.2", ""): "cases[0].cylinder.tan_alpha: must be given: either semidiagonal",
+    replaced("tan_alpha = 0.2", "tan_alpha = 0.2, base_radius = 1"): (
+        "cylinder.semidiagonal: must be left out: it does not go with base_radius and height"
+    ),
+    replaced("tan_alpha = 0.2", "tan_alpha = 0.2, axial_inertia = 99"): (
+        "cases[0].cylinder: axial_inertia must not exceed twice transverse_inertia, got 99"
+    ),
+    replaced("tan_alpha = 0.2", "tan_alpha = { from = 1, to = 3, step = 0.7 }"): (
+        "tan_alpha.step: must divide the range from 1 to 3, got 0.7"
+    ),
+    replaced("tan_alpha = 0.2", "tan_alpha = { from = 3, to = 1, step = 1 }"): (
+        "tan_alpha.to: must be above from = 3, got 1"
+    ),
+    replaced("tan_alpha = 0.2", "tan_alpha = { from = -1, to = 1, step = 1 }"): (
+        "cases[0].cylinder.tan_alpha: must be positive, got -1"
+    ),
+    replaced("tan_alpha = 0.2", "tan_alpha = { from = 1, to = 3 }"): (
+        "tan_alpha: a range must have either step or count"
+    ),
+    replaced("tan_alpha = 0.2", "tan_alpha = { from = 1, to = 3, steps = 1 }"): (
+        "tan_alpha.steps: is not known here, did you mean step?"
+    ),
+    replaced("tan_alpha = 0.2", "tan_alpha = { from = 0, to = 3, count = 4, spacing = 'log' }"): (
+        "tan_alpha.from: must be positive where spacing is log, got 0"
+    ),
+    replaced("tan_alpha = 0.2", "tan_alpha = { from = 1, to = 2, step = 1e-9 }"): (
+        "tan_alpha.step: must give at most 10000 values, got 1e+09"
+    ),
+    replaced("tan_alpha = 0.2", "tan_alpha = { from = 1, to = 2, count = 1.5 }"): (
+        "tan_alpha.count: must be a positive whole number, got 1.5"
+    ),
+    replaced("duration = 8", "duration = { from = 1, to = 200, step = 1 }").replace(
+        "tan_alpha = 0.2", "tan_alpha = { from = 1, to = 2, count = 200 }"
+    ): "cases[0]: must make at most 10000 cases, got 40000",
+    replaced("duration = 8", ""): "cases[0].duration: must be given [s]: only a record has a length",
+    replaced("duration = 8", "duratoin = 8"): "did you mean duration?",
+    replaced("duration = 8", "duration = 8\ncolour = 1"): (
+        "cases[0].colour: is not known here, allowed are name, cylinder, motion"
+    ),
+    replaced(
+        "duration = 8", "duration = 8\nfriction = -1"
+    ): "cases[0].friction: must not be negative, got -1",
+    replaced("tilt_over_alpha = 0.5", "tilt = 0.1, tilt_deg = 5"): (
+        "cases[0].release: must have exactly one of tilt, tilt_deg, tilt_over_alpha, got tilt and tilt_deg"
+    ),
+    replaced("tilt_over_alpha = 0.5", "tilt_deg = 95"): (
+        "cases[0].release: tilt must be at least 0 and below pi/2 [rad]"
+    ),
+    replaced("tilt_over_alpha = 0.5", "tilt_over_alpha = 0.5, spin = 1"): "release.spin: is not known here",
+    replaced(STILL, ""): "cases[0]: must have a motion or a release, got neither",
+    replaced(STILL, "release = 5"): "cases[0].release: must be a table of keys and values, got 5",
+    replaced(STILL, 'motion = { record = "el_centro" }'): (
+        "motion.record: must be one of el_centro_1940, p695, got 'el_centro'"
+    ),
+    replaced(STILL, 'motion = { record = "el_centro_1940", pulse = "one-sine" }'): (
+        "cases[0].motion: must have exactly one of record, x, pulse, got record and pulse"
+    ),
+    replaced(STILL, 'motion = { record = "el_centro_1940", pair = 3 }'): (
+        'motion.pair: must be left out: it belongs to record = "p695"'
+    ),
+    replaced(STILL, 'motion = { record = "el_centro_1940", scale = 2, times_uplift = 2 }'): (
+        "motion.times_uplift: must be left out: it replaces scale"
+    ),
+    replaced(STILL, 'motion = { record = "el_centro_1940", time_shift = 0.005 }'): (
+        "motion.time_shift: must be a whole number of the record's time steps of 0.01 s, got 0.005"
+    ),
+    replaced(STILL, 'motion = { record = "el_centro_1940", time_shift = -60 }'): (
+        "motion.time_shift: must leave a part of the record, which lasts 53.45 s, got -60"
+    ),
+    replaced(STILL, 'motion = { x = "x.csv" }'): "cases[0].motion.y: must be given: a record has two",
+    replaced(STILL, 'motion = { x = "x.csv", y = "y.csv" }'): "cases[0].motion: cannot read the record ",
+    replaced(STILL, 'motion = { x = "x.csv", y = "y.csv", units = "ft" }'): (
+        "motion.units: must be one of g, m/s2, cm/s2, got 'ft'"
+    ),
+    replaced(STILL, 'motion = { pulse = "sine", period = 1, amplitude = 1 }'): (
+        "motion.pulse: must be one of one-sine, one-cosine, half-sine, got 'sine'"
+    ),
+    replaced(
+        STILL, 'motion = { pulse = "one-sine", amplitude = 1 }'
+    ): "motion.period: must be given with a pulse",
+    replaced(STILL, 'motion = { pulse = "one-sine", period = 1 }'): (
+        "motion: must have exactly one of amplitude, times_uplift, got none of them"
+    ),
+    replaced(STILL, 'motion = { pulse = "one-sine", period = 1, amplitude = 1, scale = 2 }'): (
+        "motion.scale: must be left out: it belongs to a record"
+    ),
+    replaced('name = "release"\n', ""): "cases[0].name: must be given",
+    replaced('"release"', "5"): "cases[0].name: must be text, got 5",
+    replaced('"release"', '"a: b"'): "cases[0].name: must not hold a colon",
+    CASE + CASE: "cases[1].name: must differ from cases[0].name, got 'release' twice",
+    "": "cases: must be given",
+    "cases = []": "cases: List should have at least 1 item",
+    '[[runs]]\nengine = "mujoco"\nsuport = "free"\n' + CASE: (
+        "runs[0].suport: is not known here, did you mean support?"
+    ),
+    '[[runs]]\nsupport = "free"\n' + CASE: "runs[0].engine: must be given",
+    '[[runs]]\nengine = "mujoco"\ntime_step = -1\n' + CASE: "runs[0].time_step: must be positive, got -1",
+    '[run]\nengine = "mujoco"\n' + CASE: "run: is not known here, did you mean runs?",
+    "[[cases]\n": "is not a TOML file: ",
+    replaced("tan_alpha = 0.2", "tan_alpha = -0.2").replace("duration = 8", "duration = -8"): (
+        "cases[0].cylinder.tan_alpha: must be positive, got -0.2 (and 1 more error)"
+    ),
+}
+
+
+@pytest.mark.parametrize(("text", "words"), WRONG.items(), ids=[*WRONG.values()])
+def test_whatever_is_wrong_is_one_line_with_the_path_of_the_key(write, text, words):
+    with pytest.raises(ValueError, match=r"\S") as caught:
+        read_suite(write(text, "mine.suite.toml"))
+    message = str(caught.value)
+    assert message.startswith("mine.suite.toml")
+    assert words in message
+    assert "\n" not in message
+    assert "pydantic" not in message
+
+
+def test_a_file_that_is_not_there(tmp_path):
+    with pytest.raises(ValueError, match=r"none\.toml: No such file.*that ship are canon, p695, quick"):
+        read_suite(tmp_path / "none.toml")
+
+
+@pytest.mark.parametrize("name", ["quick", "canon"])
+def test_the_suites_that_ship_can_be_read_by_name(name):
+    suite = read_suite(name)
+    folder = Path(str(models.__path__[0])) / "suites"
+    again = read_suite(folder / f"{name}.suite.toml")
+    assert [case.name for case in suite.cases] == [case.name for case in again.cases]
+    assert {run.engine for run in suite.runs} == {"mujoco", "pybullet"}
+    assert name in shipped_suites()
+
+
+def test_the_canon_is_as_large_and_as_various_as_it_says():
+    cases = read_suite("canon").cases
+    assert len(cases) >= 40
+    groups = {case.name.split(":")[0].split(",")[0] for case in cases}
+    assert {"free response", "steady wobble", "one-sine pulse from rest", "El Centro"} <= groups
+
+
+def test_importing_the_models_loads_no_pydantic():
+    import subprocess
+    import sys
+
+    script = "import sys, rockwobble.models; print('pydantic' in sys.modules)"
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "False"
