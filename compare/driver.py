@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.metadata
-import platform
 from collections.abc import Iterable
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +11,8 @@ from rockwobble.models import Case, Run, Suite
 
 from .comparison import Comparison
 from .execution import Crash, Job, ProgressCallback, simulate_all
+from .provenance import package_versions
+from .run_store import open_run_store
 from .runs import default_runs, references_of, require_runnable, run_labels
 from .store import require_writable
 from .summary import SUMMARY_COLUMNS, crashed_row, summary_row
@@ -26,6 +27,7 @@ def compare(
     until: float | None = None,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
+    resume: str | Path | None = None,
 ) -> Comparison:
     """Run engines and reduced models on the same problem, and report how they differ.
 
@@ -45,6 +47,9 @@ def compare(
         Number of processes; 1 runs everything in this one. Default: one for each core.
     progress : callable, optional
         Called with a `Progress` at the start and at the end of each run.
+    resume : str or Path, optional
+        Folder, such as that of `out`, that keeps each run in `runs` as soon as it is finished. A second
+        call with the same inputs, after whatever ended the first, repeats none that is there.
 
     Returns
     -------
@@ -80,7 +85,8 @@ def compare(
         for case in cases
         for run, label in zip(chosen, labels, strict=True)
     ]
-    results = simulate_all(jobs, workers=workers, progress=progress)
+    with nullcontext() if resume is None else open_run_store(resume) as store:
+        results = simulate_all(jobs, workers=workers, progress=progress, store=store)
     by_label = {(job.case.name, job.label): result for job, result in zip(jobs, results, strict=True)}
     rows = [
         _row(case, model, by_label[case.name, model], label, run, by_label[case.name, label], until)
@@ -97,7 +103,7 @@ def compare(
             for key, result in by_label.items()
             if key[1] in labels and not isinstance(result, Crash)
         },
-        versions=_versions(),
+        versions=package_versions(),
         until=until,
     )
     if out is not None:
@@ -132,13 +138,3 @@ def _table(rows: list[dict[str, Any]]) -> Any:
     import pandas as pd
 
     return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS)).astype({"parted": bool, "agreed_passes": int})
-
-
-def _versions() -> dict[str, str]:
-    versions = {"python": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
-    for package in ("rockwobble", "numpy", "scipy", "numba", "mujoco", "pybullet"):
-        try:
-            versions[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            versions[package] = "not installed"
-    return versions

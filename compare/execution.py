@@ -7,12 +7,15 @@ import os
 import queue
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
-from dataclasses import dataclass
-from typing import Any, Literal
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, Literal
 
 from rockwobble.models import Case, Run
 
 from .process_pool import ProcessPool, WorkerDiedError
+
+if TYPE_CHECKING:
+    from .run_store import RunStore
 
 SAMPLE_STEP = 0.01
 
@@ -104,7 +107,11 @@ def _reduced(case: Case, model: str) -> Any:
 
 
 def simulate_all(
-    jobs: Sequence[Job], *, workers: int | None = None, progress: ProgressCallback | None = None
+    jobs: Sequence[Job],
+    *,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+    store: RunStore | None = None,
 ) -> list[Any]:
     """Run all jobs; return their results in the same order.
 
@@ -115,39 +122,57 @@ def simulate_all(
         Number of processes; 1 runs one job after the other in this process. Default: one for each
         core, but no more than jobs.
     progress : callable, optional
-        Told of the start and the end of each job, in this thread.
+        Told of the start and the end of each job that runs, in this thread.
+    store : RunStore, optional
+        Finished runs: a job found there does not run again, and one that runs is kept there at its end.
 
     Returns
     -------
     list
-        A Response, a Trajectory or, where the process died in a run, a Crash.
+        A Response, a Trajectory, a StoredTrace where it was found in the store or, where the process
+        died in a run, a Crash.
 
     Raises
     ------
     ValueError
         What a job raises for bad input; the other jobs are given up.
     """
-    count = min(_cores(), len(jobs)) if workers is None else workers
-    tell = progress or (lambda _: None)
-    if count <= 1:
-        return _one_by_one(jobs, tell)
-    return _in_parallel(jobs, count, tell)
+    results: list[Any] = [None if store is None else store.find(job) for job in jobs]
+    open_jobs = [index for index, result in enumerate(results) if result is None]
+    found = len(jobs) - len(open_jobs)
 
+    def told(event: Progress) -> None:
+        if progress is not None:
+            progress(replace(event, done=found + event.done, total=len(jobs)))
 
-def _one_by_one(jobs: Sequence[Job], tell: ProgressCallback) -> list[Any]:
-    results = []
-    for done, job in enumerate(jobs):
-        tell(_progress(job, "started", done, len(jobs)))
-        results.append(simulate(job))
-        tell(_progress(job, "finished", done + 1, len(jobs)))
+    def finished(index: int, result: Any) -> None:
+        results[open_jobs[index]] = result
+        if store is not None and not isinstance(result, Crash):
+            store.keep(jobs[open_jobs[index]], result)
+
+    _run_all([jobs[index] for index in open_jobs], workers, told, finished)
     return results
 
 
-def _in_parallel(jobs: Sequence[Job], workers: int, tell: ProgressCallback) -> list[Any]:
+def _run_all(
+    jobs: Sequence[Job], workers: int | None, tell: ProgressCallback, finished: Callable[[int, Any], None]
+) -> None:
+    count = min(_cores(), len(jobs)) if workers is None else workers
+    if count > 1 and jobs:
+        _in_parallel(jobs, count, tell, finished)
+        return
+    for done, job in enumerate(jobs):
+        tell(_progress(job, "started", done, len(jobs)))
+        finished(done, simulate(job))
+        tell(_progress(job, "finished", done + 1, len(jobs)))
+
+
+def _in_parallel(
+    jobs: Sequence[Job], workers: int, tell: ProgressCallback, keep: Callable[[int, Any], None]
+) -> None:
     # the callback is called from the caller's thread, so that it may draw, raise or be interrupted
     finished: queue.SimpleQueue[int] = queue.SimpleQueue()
     futures: dict[int, Future[Any]] = {}
-    results: list[Any] = [None] * len(jobs)
     # the longest first, so that no core is idle at the end
     waiting = sorted(range(len(jobs)), key=lambda index: _cost(jobs[index]))
     with ProcessPool(workers) as pool:
@@ -163,13 +188,13 @@ def _in_parallel(jobs: Sequence[Job], workers: int, tell: ProgressCallback) -> l
         for done in range(1, len(jobs) + 1):
             index = finished.get()
             try:
-                results[index] = futures[index].result()
+                result = futures.pop(index).result()
             except WorkerDiedError as error:
-                results[index] = Crash(str(error))
+                result = Crash(str(error))
+            keep(index, result)
             tell(_progress(jobs[index], "finished", done, len(jobs)))
             if waiting:
                 start(done)
-    return results
 
 
 def _progress(job: Job, state: Literal["started", "finished"], done: int, total: int) -> Progress:

@@ -1,12 +1,20 @@
-"""Files of results: written beside and renamed, so that none is ever seen half-written."""
+"""Files of results: written beside and renamed, so that none is ever seen half-written.
+
+A file is forced to the disk before it gets its name. So whatever ends the process, or the machine, a
+name stands for a whole file, and what was not finished is a leftover whose name says so.
+"""
 
 from __future__ import annotations
 
 import contextlib
 import os
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+
+_PART = ".part"
+_LOCK = ".lock"
 
 
 def require_writable(folder: str | Path) -> Path:
@@ -54,14 +62,86 @@ def replace_files(folder: str | Path, contents: Mapping[str, bytes]) -> None:
             target = path / name
             if target.is_dir():
                 raise ValueError(f"the output file must not be a folder, got {target}")
-            part = path / f".{name}.{os.getpid()}.part"
+            part = _beside(target)
             beside[part] = target
             part.write_bytes(content)
+            _force_to_disk(part)
         for part, target in beside.items():
             part.replace(target)
+        _force_to_disk(path)
     except OSError as error:
         raise ValueError(f"the output folder {path} cannot be written: {error.strerror or error}") from None
     finally:
         for part in beside:
             with contextlib.suppress(OSError):
                 part.unlink(missing_ok=True)
+
+
+def write_whole(target: Path, content: bytes) -> None:
+    """Write one file into a folder that exists, whole or not at all.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be written.
+    """
+    part = _beside(target)
+    try:
+        part.write_bytes(content)
+        _force_to_disk(part)
+        part.replace(target)
+        _force_to_disk(target.parent)
+    except OSError as error:
+        part.unlink(missing_ok=True)
+        raise ValueError(f"{target} cannot be written: {error.strerror or error}") from None
+
+
+def remove_leftovers(folder: Path) -> None:
+    """Remove the files in `folder` that a process which ended did not finish.
+
+    Only for a folder that no other process writes to: see `sole_writer`.
+    """
+    for part in folder.glob(f".*{_PART}"):
+        part.unlink(missing_ok=True)
+
+
+@contextmanager
+def sole_writer(folder: Path) -> Iterator[None]:
+    """Hold `folder`, made where it does not exist, against other processes that would write to it.
+
+    The hold ends with the process, however that ends. Where the system has no such locks there is none.
+
+    Raises
+    ------
+    ValueError
+        If another process holds it.
+    """
+    path = require_writable(folder)
+    path.mkdir(parents=True, exist_ok=True)
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        yield
+        return
+    with (path / _LOCK).open("a") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise ValueError(f"another process is writing to {path}, wait for its end") from None
+        yield
+
+
+def _beside(target: Path) -> Path:
+    """Where the content of a file waits until it is whole."""
+    return target.with_name(f".{target.name}.{os.getpid()}{_PART}")
+
+
+def _force_to_disk(path: Path) -> None:
+    """Wait until a file, or the names in a folder, would survive a loss of power."""
+    if path.is_dir() and os.name == "nt":  # a folder cannot be opened there
+        return
+    descriptor = os.open(path, os.O_RDONLY if path.is_dir() else os.O_RDWR)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)

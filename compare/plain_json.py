@@ -1,0 +1,46 @@
+"""JSON that keeps every float to the last bit, and those that JSON has no word for."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+_FLOAT = "float"
+
+
+def dumps(value: Any, *, indent: int | None = None) -> str:
+    """Return strict JSON; nan and the infinities become ``{"float": "nan"}`` and the like.
+
+    Dataclasses and mappings become objects, arrays and tuples lists, and what JSON does not know text.
+    """
+    return json.dumps(_plain(value), indent=indent, allow_nan=False)
+
+
+def loads(text: str | bytes) -> Any:
+    """Return what `dumps` was given, but for mappings and lists in place of dataclasses and tuples."""
+    return json.loads(text, object_hook=_float)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, np.generic | np.ndarray):
+        value = value.tolist()
+    if isinstance(value, float) and not math.isfinite(value):
+        return {_FLOAT: str(value)}
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if dataclasses.is_dataclass(value) and not isinstance(value, type):
+        return {field.name: _plain(getattr(value, field.name)) for field in dataclasses.fields(value)}
+    if isinstance(value, Mapping):
+        return {str(key): _plain(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_plain(item) for item in value]
+    return str(value)
+
+
+def _float(found: dict[str, Any]) -> Any:
+    return float(found[_FLOAT]) if set(found) == {_FLOAT} and isinstance(found[_FLOAT], str) else found

@@ -1,0 +1,49 @@
+"""What a result was made with: versions of the packages, and the code itself."""
+
+from __future__ import annotations
+
+import hashlib
+import importlib
+import importlib.metadata
+import platform
+from functools import cache
+from pathlib import Path
+
+PACKAGES = ("rockwobble", "numpy", "scipy", "numba", "mujoco", "pybullet")
+_REDUCED = ("rockwobble", "numpy", "numba")
+
+
+def package_versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
+    """Return the versions of Python and of the packages and engines that results depend on."""
+    versions = {"python": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
+    for package in packages:
+        try:
+            versions[package] = importlib.metadata.version(package)
+        except importlib.metadata.PackageNotFoundError:
+            versions[package] = "not installed"
+    return versions
+
+
+def reduced_makers() -> dict[str, str]:
+    """Return versions and code on which the runs of the reduced models depend."""
+    return _makers(_REDUCED, "reduced")
+
+
+def engine_makers(engine: str) -> dict[str, str]:
+    """Return versions and code on which the runs of an engine depend."""
+    return _makers(("rockwobble", "numpy", engine), "multibody")
+
+
+def _makers(packages: tuple[str, ...], folder: str) -> dict[str, str]:
+    code = {f"code of {name}": _source_digest(name) for name in (folder, "models")}
+    return package_versions(packages) | code
+
+
+@cache
+def _source_digest(folder: str) -> str:
+    """Hash of the sources of one folder: in a checkout they change without a change of version."""
+    place = Path(str(importlib.import_module(f"rockwobble.{folder}").__file__)).parent
+    digest = hashlib.sha256()
+    for path in sorted(place.rglob("*.py")):
+        digest.update(f"{path.relative_to(place).as_posix()}\0".encode() + path.read_bytes())
+    return digest.hexdigest()[:16]

@@ -1,0 +1,95 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from rockwobble.compare.execution import Job
+from rockwobble.compare.fingerprint import fingerprint
+from rockwobble.compare.run_store import job_fingerprint
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+MOTION = GroundMotion([[0.0, 0.0], [1.0, 2.0], [0.0, 0.0]], 0.1, "pulse")
+VALUES = [
+    *(None, True, 1, 1.0, np.nextafter(1.0, 2.0), 0.0, -0.0, "1", "", [], {}, [1], [[1]], [1, 1], [[1], 1]),
+    *({"a": 1}, {"b": 1}, {"a": {"b": 1}}, ["a", "b"], ["ab"], ["a b"]),
+    *(np.array([1.0]), np.array([1]), np.array([[1.0]]), np.array([1.0, 0.0]), np.array([0.0, 1.0])),
+    *(
+        PIER,
+        MOTION,
+        InitialState(0.1),
+        InitialState(0.2),
+        Run("mujoco", "free"),
+        Run("mujoco", "guided"),
+    ),
+]
+
+
+def job(method: str | Run = "recess", name: str = "a", label: str = "b", **changes) -> Job:
+    case = {"cylinder": PIER, "motion": MOTION} | changes
+    return Job(case=Case(name, **case), method=method, label=label)
+
+
+def test_different_values_have_different_names():
+    names = [fingerprint(value) for value in VALUES]
+    assert len(set(names)) == len(names)
+
+
+def test_equal_values_have_one_name():
+    assert fingerprint(np.float64(0.5)) == fingerprint(0.5)
+    assert fingerprint((1, 2)) == fingerprint([1, 2])
+    assert fingerprint({"x": 1, "y": 2}) == fingerprint({"y": 2, "x": 1})
+    columns = np.asfortranarray(np.arange(6.0).reshape(2, 3))
+    assert fingerprint(columns) == fingerprint(np.ascontiguousarray(columns))
+
+
+def test_the_name_is_that_of_another_process():
+    code = (
+        "from rockwobble.compare.fingerprint import fingerprint; print(fingerprint({'a': [0.1, 'x', None]}))"
+    )
+    there = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    assert there.strip() == fingerprint({"a": [0.1, "x", None]})
+
+
+def test_what_has_no_bits_has_no_name():
+    with pytest.raises(ValueError, match=r"input of type object"):
+        fingerprint({"a": object()})
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        job("rolling"),
+        job(Run("mujoco", "guided")),
+        job(cylinder=Cylinder(semidiagonal=6.0, tan_alpha=0.2, height=11.0)),
+        job(motion=MOTION.scaled(1.0 + 1e-15)),
+        job(motion=GroundMotion(MOTION.acceleration, 0.11)),
+        job(initial=InitialState(0.1)),
+        job(duration=0.1),
+        job(gravity=9.8),
+        job(friction=0.9),
+    ],
+)
+def test_each_input_of_a_run_is_in_its_name(other):
+    assert job_fingerprint(other) != job_fingerprint(job())
+
+
+def test_engine_settings_are_in_the_name():
+    runs = [Run("mujoco", "free"), Run("mujoco", "free", 1e-4), Run("mujoco", "free", integrator="discrete")]
+    assert len({job_fingerprint(job(run)) for run in runs}) == 3
+
+
+def test_names_of_case_and_run_are_not():
+    assert job_fingerprint(job(name="x", label="y")) == job_fingerprint(job())
+
+
+def test_code_and_versions_are_in_the_name(monkeypatch):
+    before = job_fingerprint(job())
+    monkeypatch.setattr("rockwobble.compare.provenance._source_digest", lambda folder: "another")
+    assert job_fingerprint(job()) != before
+    monkeypatch.undo()
+    monkeypatch.setattr("importlib.metadata.version", lambda package: "0")
+    assert job_fingerprint(job()) != before
