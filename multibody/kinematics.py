@@ -142,18 +142,6 @@ def mean_spin(poses: Steps, after: Steps) -> Array:
     return 0.5 * (poses.angular_velocity + after.angular_velocity)
 
 
-def contact_force(poses: Steps, after: Steps, ground: Array, time_step: float, gravity: float) -> Array:
-    """Return the force of the ground and of walls on the cylinder in weights, shape (n, 3), world axes.
-
-    The mass centre obeys force/m = change of its velocity in the step + ground acceleration + g, exactly
-    for what the engine stepped with; `ground` (n, 3) is its acceleration [m/s^2]. The guide is a pure
-    couple, which does not show here.
-    """
-    force = (after.velocity - poses.velocity) / time_step + ground
-    force[:, 2] += gravity
-    return np.asarray(force / gravity)
-
-
 def axis_of(quaternion: Array) -> Array:
     """Return the axes of revolution, shape (n, 3), of quaternions (n, 4), scalar first."""
     w, x, y, z = quaternion.T

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .engine import Scene, Steps
+from .forces import ForceSamples, force_of_steps
 from .guard import first_breach
-from .kinematics import Kinematics, axis_of, contact_force, kinematics, mean_velocity, rim, unwrap
+from .kinematics import Kinematics, axis_of, kinematics, mean_velocity, rim, unwrap
 from .passes import TurningPoint, turning_points
 from .start import Start
 from .uplift import UpliftWatch, sure_tilt
@@ -24,7 +25,7 @@ FLIGHT = 1e-3  # of b, height that is flight: a rim that slides may hover below 
 SLIP = 0.01  # of b, slip that is more than the creep of a rim that rolls
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
-    "x", "y", "z", "force_x", "force_y", "force_z", "energy", "energy_error", "slip",
+    "x", "y", "z", "energy", "energy_error", "slip",
 )  # fmt: skip
 
 
@@ -56,6 +57,7 @@ class Recorder:
         self._row: Array = np.empty(len(COLUMNS) + 1)
         self._rows: list[Array] = []
         self._taken = 0
+        self.forces = ForceSamples(samples, scene.time_step)
         self._depths: list[float] = []
         self._slipped = 0.0
         self.slip_time = math.nan  # when the slip became worth a remark [s]
@@ -121,18 +123,17 @@ class Recorder:
                 some, later = _rows(poses, at), _rows(after, at)
                 place = rim(some, later, body)
                 self.base_centre = place.base_centre[-1]
-                force = contact_force(
-                    some, later, acceleration[at], self._scene.time_step, self._scene.gravity
-                )
                 return np.column_stack(
                     [time[at], state.tilt[at], state.tilt_rate[at], angle[at], place.rolling_rate,
-                     state.twist[at], place.contact_point, some.position, force, state.energy[at], gained[at],
+                     state.twist[at], place.contact_point, some.position, state.energy[at], gained[at],
                      slip[at]]
                 )  # fmt: skip
 
             self._follow(np.stack([time[:stop], state.tilt[:stop], angle[:stop]]))
             self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[:stop]).max()))
             self._sample(time[:stop], rows)
+            force = force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity)
+            self.forces.add(force[:, :stop])
         self._angle, self._count = float(angle[-1]), self._count + count
 
     def fail(self, reason: str) -> None:

@@ -193,7 +193,7 @@ def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> T
         twist=table["twist"],
         contact_point=contact * scale.length,
         contact_offset=(np.hypot(contact[:, 0], contact[:, 1]) - scene.body.base_radius) * scale.length,
-        contact_force=np.column_stack([table[f"force_{axis}"] for axis in "xyz"]),
+        contact_force=recorder.forces.at(table["time"]),
         centre_of_mass=centre * scale.length,
         energy=table["energy"] * scale.energy,
         energy_error=table["energy_error"] * scale.energy,

@@ -40,9 +40,9 @@ class Trajectory:
         distance by which the cylinder has rolled or slipped out of its place. NaN at rest.
     contact_force : ndarray, shape (n, 3)
         Of the ground, and of walls where there are some, on the cylinder in weights, world axes: from the
-        change of the engine's velocity in one step, so that a force shorter than a step is its mean.
-        The guide is a couple and has no part in it. At rest it is what holds a standing cylinder,
-        and in flight zero.
+        change of the engine's velocity, as a mean over 65 steps (a Hann window about the sample), because
+        in a single step contact may be lost or carry twice the load. The guide is a couple and has no part
+        in it. At rest it is what holds a standing cylinder, and in flight zero.
     centre_of_mass : ndarray, shape (n, 3)
         [m]
     energy : ndarray, shape (n,)
