@@ -17,6 +17,7 @@ import numpy as np
 
 from .engine import Array, Scene, Settings, Stepper, Steps
 from .exudyn_settings import ExudynSettings
+from .kinematics import axis_of
 from .start import Start
 
 
@@ -71,9 +72,10 @@ class _ExudynStepper:
         self._solver = (
             kinds.TrapezoidalIndex2 if settings.integrator == "trapezoidal" else kinds.GeneralizedAlpha
         )
-        self._force_now = [0.0, 0.0, 0.0]
+        self._force_now: list[float] | None = None
         self._last = scene.start.velocity, scene.start.angular_velocity
-        self._failed = False
+        self._lean = _leans(scene.start.quaternion[None])[0]
+        self._warning = ""
 
     @property
     def hold_centre(self) -> float:
@@ -84,9 +86,10 @@ class _ExudynStepper:
         """Take one step for each row of `acceleration`."""
         count = len(acceleration)
         rows = np.full((count, 14), np.nan)
-        if not self._failed:
+        if not self._warning:
             stepped = self._integrate(acceleration)
-            rows[: len(stepped)] = stepped[:count]
+            rows[: len(stepped)] = stepped
+            self._check_apex(rows)
         place, turn, velocity, rates = np.split(rows, (3, 7, 10), axis=1)
         quaternion = self._start.quaternion + turn
         # the norm is held up to the tolerance of the iteration
@@ -98,12 +101,24 @@ class _ExudynStepper:
         )
 
     def warnings(self) -> str:
-        """Return whether a step was given up."""
-        return "Newton's iteration did not converge" if self._failed else ""
+        """Return why the run cannot go on, if it cannot."""
+        return self._warning
+
+    def _check_apex(self, rows: Array) -> None:
+        """Give up the rows (n, 14) from the one on that has jumped over the apex."""
+        leans = np.vstack([self._lean, _leans(self._start.quaternion + rows[:, 3:7])])
+        self._lean = leans[-1]
+        # more than a quarter turn in one step: the step is longer than twice the distance from the apex
+        over = np.flatnonzero((leans[1:] * leans[:-1]).sum(axis=1) < 0.0)
+        if len(over):
+            rows[over[0] :] = np.nan
+            self._warning = "the rim rolled through the apex, where it has no lowest point"
 
     def _integrate(self, acceleration: Array) -> Array:
         """Rows (n, 14) of Euler coordinates and their rates after each step; fewer where a step fails."""
-        self._forces = [self._force_now, *(-acceleration).tolist()]
+        forces = (-acceleration).tolist()
+        # the first step starts with the force of its end, which is second order; none before would be first
+        self._forces = [self._force_now or forces[0], *forces]
         self._force_now = self._forces[-1]
         integration = self._how.timeIntegration
         integration.numberOfSteps = len(acceleration)
@@ -118,7 +133,7 @@ class _ExudynStepper:
                 showCausingItems=False,
             )
         except (RuntimeError, ValueError):
-            self._failed = True
+            self._warning = "Newton's iteration did not converge"
         # accelerations go on from one call to the next
         integration.generalizedAlpha.computeInitialAccelerations = False
         stored = [self._system.GetSensorStoredData(sensor) for sensor in self._sensors]
@@ -193,6 +208,11 @@ def _rates(start: Start) -> Array:
     scalar, imaginary, spin = start.quaternion[0], start.quaternion[1:], start.angular_velocity
     turning = scalar * spin + np.cross(spin, imaginary)
     return np.asarray(0.5 * np.concatenate([[-spin @ imaginary], turning]))
+
+
+def _leans(quaternion: Array) -> Array:
+    """Horizontal parts (n, 2) of the axes, of quaternions (n, 4)."""
+    return axis_of(quaternion)[:, :2]
 
 
 def _means(first: Array, values: Array) -> Array:

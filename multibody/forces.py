@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 # Steps on each side of a sample. Under El Centro a quarter of MuJoCo's single steps are more than 1 % off the
 # reduced model's normal force, windows of 16 still 4 %, these none; longer ones blur the kinks of a record.
 HALF_WINDOW = 32
+_PULL = 1e-3  # weights; far above rounding
 _WEIGHTS: Array = np.hanning(2 * HALF_WINDOW + 3)[1:-1] / (HALF_WINDOW + 1.0)  # of a Hann window; sum 1
 
 
@@ -33,6 +34,19 @@ def force_of_steps(poses: Steps, after: Steps, ground: Array, time_step: float, 
     force: Array = (after.velocity.T - poses.velocity.T) / (time_step * gravity) + ground.T / gravity
     force[2] += 1.0
     return force
+
+
+def first_pull(time: Array, normal: Array) -> float:
+    """Return when the ground first pulled at the cylinder [s], from `normal` (n,) [weights]; NaN if never.
+
+    Contact does not pull, but a joint in its place does.
+    """
+    if not normal.min() < -_PULL:
+        return float("nan")
+    # not in single steps: where an engine pushes the rim out of the ground, the next step takes that back
+    mean = np.convolve(normal, np.full(HALF_WINDOW, 1.0 / HALF_WINDOW), mode="same")
+    pulled = np.flatnonzero(mean < -_PULL)
+    return float(time[pulled[0]]) if len(pulled) else float("nan")
 
 
 class ForceSamples:

@@ -65,6 +65,7 @@ class Recorder:
         # a standing cylinder leans by less, in no direction
         sure = sure_tilt(body)
         self.floor = (
+        self.pull_time = math.nan  # when the ground held the rim down, which only a joint does [s]
             sure
             if start.standing
             else min(sure, 0.5 * float(np.hypot(*axis_of(start.quaternion[None])[0, :2])))
@@ -138,6 +139,8 @@ class Recorder:
 
     def fail(self, reason: str) -> None:
         """End the run at the last step analysed."""
+            if math.isnan(self.pull_time):
+                self.pull_time = first_pull(time, force[2, :stop])
         self.ended, self.reason, self.end_time = "failed", reason, float(self._row[0])
 
     def _pair(self, steps: Steps) -> tuple[Steps, Steps]:

@@ -166,6 +166,8 @@ def _run(
             warning = stepper.warnings()
             if warning and not recorder.ended:
                 recorder.fail(f"the engine warned: {warning}")
+            elif warning and recorder.ended == "failed":
+                recorder.reason += f"; the engine warned: {warning}"
             if progress is not None:
                 progress(done / total)
 
