@@ -4,10 +4,15 @@ from .comparison import Comparison, describe_case, describe_run
 from .contact import TILTED
 from .driver import compare
 from .execution import Crash, Job, Progress, simulate_all
+from .foreign import Foreign, ForeignTrajectory, read_trajectory
 from .horizon import AGREEMENT
 from .runs import default_runs, installed_engines, missing_engines, require_runnable, reserved_engines
 from .store import replace_files, require_writable
 from .summary import SUMMARY_COLUMNS
+from .sweep import SweepIncompleteError, SweepProgress, sweep
+from .sweep_cases import CaseSweep
+from .sweep_grid import Grid
+from .sweep_store import SweepStore, open_sweep_store
 from .tilt import relative_rms
 from .traces import Pair, make_pair
 
@@ -15,11 +20,18 @@ __all__ = [
     "AGREEMENT",
     "SUMMARY_COLUMNS",
     "TILTED",
+    "CaseSweep",
     "Comparison",
     "Crash",
+    "Foreign",
+    "ForeignTrajectory",
+    "Grid",
     "Job",
     "Pair",
     "Progress",
+    "SweepIncompleteError",
+    "SweepProgress",
+    "SweepStore",
     "compare",
     "default_runs",
     "describe_case",
@@ -27,10 +39,13 @@ __all__ = [
     "installed_engines",
     "make_pair",
     "missing_engines",
+    "open_sweep_store",
+    "read_trajectory",
     "relative_rms",
     "replace_files",
     "require_runnable",
     "require_writable",
     "reserved_engines",
     "simulate_all",
+    "sweep",
 ]

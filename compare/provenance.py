@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-import importlib
 import importlib.metadata
+import importlib.util
 import platform
 from functools import cache
 from pathlib import Path
@@ -42,7 +42,9 @@ def _makers(packages: tuple[str, ...], folder: str) -> dict[str, str]:
 @cache
 def _source_digest(folder: str) -> str:
     """Hash of the sources of one folder: in a checkout they change without a change of version."""
-    place = Path(str(importlib.import_module(f"rockwobble.{folder}").__file__)).parent
+    found = importlib.util.find_spec(f"rockwobble.{folder}")  # importing it would load the compiler
+    assert found is not None
+    place = Path(str(found.origin)).parent
     digest = hashlib.sha256()
     for path in sorted(place.rglob("*.py")):
         digest.update(f"{path.relative_to(place).as_posix()}\0".encode() + path.read_bytes())

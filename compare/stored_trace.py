@@ -11,14 +11,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import plain_json
+from . import parquet_file, plain_json
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
 
-METADATA = b"rockwobble"  # of a Parquet file: under this name it says what it is
 # columns of `to_frame` that are components of one attribute
 _VECTORS = {
     "contact_point": ("contact_x", "contact_y"),
@@ -92,31 +91,22 @@ def stored(trace: Any) -> StoredTrace:
 
 def to_parquet(trace: StoredTrace, about: Mapping[str, Any]) -> bytes:
     """Return a run as one Parquet file: the samples, and in its metadata all the rest and `about`."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
     rest = {
         **about,
         "frame": trace.frame,
         "facts": trace.facts,
         "passes": {name: trace.passes[name].tolist() for name in trace.passes.columns},
     }
-    table = pa.Table.from_pandas(trace.samples, preserve_index=False)
-    table = table.replace_schema_metadata(
-        {**(table.schema.metadata or {}), METADATA: plain_json.dumps(rest).encode()}
-    )
-    buffer = io.BytesIO()
-    pq.write_table(table, buffer)
-    return buffer.getvalue()
+    return parquet_file.pack(trace.samples, rest)
 
 
 def from_parquet(content: bytes) -> StoredTrace:
     """Return the run in a Parquet file that `to_parquet` made."""
-    import pyarrow.parquet as pq
+    import pandas as pd
 
-    table = pq.read_table(io.BytesIO(content))
-    rest = plain_json.loads(table.schema.metadata[METADATA])
-    return StoredTrace(tuple(rest["frame"]), table.to_pandas(), passes_table(rest["passes"]), rest["facts"])
+    samples = pd.read_parquet(io.BytesIO(content))
+    rest = parquet_file.read_about(content)
+    return StoredTrace(tuple(rest["frame"]), samples, passes_table(rest["passes"]), rest["facts"])
 
 
 def passes_table(columns: Mapping[str, Sequence[Any]]) -> pd.DataFrame:
