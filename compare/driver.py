@@ -11,6 +11,7 @@ from rockwobble.models import Case, Run, Suite
 
 from .comparison import Comparison
 from .execution import Crash, Job, ProgressCallback, simulate_all
+from .foreign import Foreign, read_trajectories
 from .provenance import package_versions
 from .run_store import open_run_store
 from .runs import default_runs, references_of, require_runnable, run_labels
@@ -28,6 +29,7 @@ def compare(
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
+    foreign: Iterable[Foreign | str | Path] = (),
 ) -> Comparison:
     """Run engines and reduced models on the same problem, and report how they differ.
 
@@ -50,6 +52,9 @@ def compare(
     resume : str or Path, optional
         Folder, such as that of `out`, that keeps each run in `runs` as soon as it is finished. A second
         call with the same inputs, after whatever ended the first, repeats none that is there.
+    foreign : iterable of Foreign, str or Path, optional
+        CSV files of trajectories of this case from a shake table or another code, each one more run; what
+        they may hold is said in `rockwobble.compare.foreign_file`. With them, `runs` may be empty.
 
     Returns
     -------
@@ -58,7 +63,7 @@ def compare(
     Raises
     ------
     ValueError
-        If an engine, a support, a setting or the folder is not usable; nothing is written then.
+        If an engine, a support, a setting, a file or the folder is not usable; nothing is written then.
 
     Examples
     --------
@@ -73,12 +78,14 @@ def compare(
     if out is not None:
         require_writable(out)
     cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
-    chosen = _runs(case_or_suite, runs)
+    chosen = _runs(case_or_suite, runs, needed=not (foreign := tuple(foreign)))
     for case in cases:
         for run in chosen:
             require_runnable(case, run)
     labels = run_labels(chosen)
-    models = list(dict.fromkeys(model for run in chosen for model in references_of(run, reference)))
+    brought = read_trajectories(foreign, cases, taken=labels)
+    models = [reference] if brought else []
+    models = list(dict.fromkeys([*models, *(m for run in chosen for m in references_of(run, reference))]))
     jobs = [Job(case=case, method=model, label=model) for case in cases for model in models]
     jobs += [
         Job(case=case, method=run, label=label)
@@ -94,6 +101,10 @@ def compare(
         for run, label in zip(chosen, labels, strict=True)
         for model in references_of(run, reference)
     ]
+    rows += [
+        summary_row(cases[0], reference, by_label[name, reference], label, trajectory, until=until)
+        for (name, label), trajectory in brought.items()
+    ]
     comparison = Comparison(
         summary=_table(rows),
         cases={case.name: case for case in cases},
@@ -102,7 +113,8 @@ def compare(
             key: result
             for key, result in by_label.items()
             if key[1] in labels and not isinstance(result, Crash)
-        },
+        }
+        | brought,
         versions=package_versions(),
         until=until,
     )
@@ -111,8 +123,10 @@ def compare(
     return comparison
 
 
-def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None) -> tuple[Run, ...]:
+def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None, *, needed: bool) -> tuple[Run, ...]:
     chosen = tuple(runs) if runs is not None else ()
+    if runs is not None and not chosen and not needed:
+        return ()
     if not chosen and isinstance(case_or_suite, Suite):
         chosen = case_or_suite.runs
     chosen = chosen or default_runs()

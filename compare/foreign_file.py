@@ -1,0 +1,168 @@
+"""Trajectories from a shake table or another code, as CSV files.
+
+A header line names the columns, in any order, parted by commas, semicolons or tabs; lines before it that
+begin with # are comments. Units stand behind a name in brackets: "time [s], tilt [deg], azimuth [deg]".
+
+============== ============ =======================================================================
+column         unit         meaning
+============== ============ =======================================================================
+time           s, ms        s where the header is silent
+tilt           rad, deg     angle of the axis from the vertical
+azimuth        rad, deg     direction of the lean, counter-clockwise from x (east) as seen from above;
+                            may be empty where the cylinder stands
+qw, qx, qy, qz none         turn from the upright cylinder to its pose, scalar first, z up
+x, y, z        m, mm        mass centre from the original base centre, which moves with the ground;
+                            may be left out, m where the header is silent
+============== ============ =======================================================================
+
+There must be time, and tilt with azimuth, or the quaternions, or both. Other columns are ignored.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+ANGLE_UNITS = {"rad": 1.0, "deg": math.pi / 180.0}
+_UNITS = {
+    "time": {"s": 1.0, "ms": 1e-3},
+    "tilt": ANGLE_UNITS,
+    "azimuth": ANGLE_UNITS,
+    **{name: {"-": 1.0, "": 1.0} for name in ("qw", "qx", "qy", "qz")},
+    **{name: {"m": 1.0, "mm": 1e-3} for name in ("x", "y", "z")},
+}
+_SILENT = {"time": "s", "x": "m", "y": "m", "z": "m", "qw": "", "qx": "", "qy": "", "qz": ""}
+QUATERNION = ("qw", "qx", "qy", "qz")
+POSITION = ("x", "y", "z")
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Columns:
+    """What a file holds, in SI units and radians.
+
+    Parameters
+    ----------
+    path : Path
+        For messages.
+    lines : list of int
+        Line of each of the n samples.
+    values : dict
+        Array of shape (n,) of each known column; an empty cell is NaN.
+    """
+
+    path: Path
+    lines: list[int]
+    values: dict[str, Array]
+
+    def refuse(self, sample: int, reason: str) -> ValueError:
+        """Return the error for a sample, with the number of its line."""
+        return ValueError(f"{self.path.name}, line {self.lines[sample]}: {reason}")
+
+
+def read_columns(path: Path, angle_unit: str | None = None) -> Columns:
+    """Read the known columns of a CSV file.
+
+    Parameters
+    ----------
+    path : Path
+    angle_unit : {"rad", "deg"}, optional
+        Of tilt and azimuth where the header is silent.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, a column is missing or in an unknown unit, or a cell is no number.
+    """
+    if angle_unit is not None and angle_unit not in ANGLE_UNITS:
+        raise ValueError(f"the unit of angles must be one of {', '.join(ANGLE_UNITS)}, got {angle_unit!r}")
+    rows = _rows(path)
+    first, header = next(rows, (0, []))
+    if not first:
+        raise ValueError(f"the trajectory {path} is empty")
+    factors = _known_columns(path, header, angle_unit)
+    lines: list[int] = []
+    table: list[list[float]] = []
+    for number, cells in rows:
+        if len(cells) != len(header):
+            raise ValueError(
+                f"{path.name}, line {number}: expected {len(header)} cells as in the header, got {len(cells)}"
+            )
+        lines.append(number)
+        table.append([_number(path, number, header[at], cells[at]) for at, _, _ in factors])
+    if len(table) < 3:
+        raise ValueError(f"{path.name} must hold at least three samples, got {len(table)}")
+    values = np.array(table, dtype=np.float64).T
+    return Columns(path, lines, {name: values[i] * scale for i, (_, name, scale) in enumerate(factors)})
+
+
+def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
+    """Yield number and cells of each line that is neither empty nor a comment."""
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or "it is no text"
+        raise ValueError(f"cannot read the trajectory {path}: {reason}") from None
+    mark = ""
+    for number, line in enumerate(lines, start=1):
+        text = line.strip()
+        if not text or text.startswith("#"):
+            continue
+        if not mark:
+            mark = next((candidate for candidate in ";\t" if candidate in text), ",")
+        yield number, [cell.strip().strip('"').strip() for cell in line.split(mark)]
+
+
+def _known_columns(path: Path, header: list[str], angle_unit: str | None) -> list[tuple[int, str, float]]:
+    """Return place, name and factor to SI units of each known column."""
+    found: list[tuple[int, str, float]] = []
+    for at, title in enumerate(header):
+        match = re.fullmatch(r"(\w+)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?", title)
+        name = match[1].lower() if match else ""
+        if match is None or name not in _UNITS:
+            continue
+        if any(name == other for _, other, _ in found):
+            raise ValueError(f"{path.name} must have each column once, got {name} twice")
+        unit = match[2] if match[2] is not None else _SILENT.get(name, angle_unit)
+        if unit is None:
+            raise ValueError(
+                f"{path.name} does not say the unit of {name}: name the column '{name} [deg]' or "
+                f"'{name} [rad]', or give the unit of angles"
+            )
+        if unit not in _UNITS[name]:
+            raise ValueError(f"{path.name}: {name} must be in {' or '.join(_UNITS[name])}, got {unit!r}")
+        found.append((at, name, _UNITS[name][unit]))
+    _require_enough(path, [name for _, name, _ in found], header)
+    return found
+
+
+def _require_enough(path: Path, names: list[str], header: list[str]) -> None:
+    for group in (QUATERNION, POSITION, ("tilt", "azimuth")):
+        given = [name for name in group if name in names]
+        missing = [name for name in group if name not in names]
+        if given and missing:
+            raise ValueError(f"{path.name} must have {', '.join(group)} together, got no {missing[0]}")
+    if "time" not in names or not {"tilt", "qw"} & set(names):
+        raise ValueError(
+            f"{path.name} must have columns time, and tilt and azimuth or qw, qx, qy and qz, "
+            f"got {', '.join(title for title in header if title)[:80] or 'none'}"
+        )
+
+
+def _number(path: Path, line: int, title: str, cell: str) -> float:
+    if not cell or cell.lower() == "nan":
+        return math.nan
+    try:
+        value = float(cell)
+    except ValueError:
+        raise ValueError(f"{path.name}, line {line}: {title} must be a number, got {cell[:40]!r}") from None
+    if not math.isfinite(value):
+        raise ValueError(f"{path.name}, line {line}: {title} must be finite, got {cell!r}")
+    return value

@@ -1,0 +1,279 @@
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import multibody, reduced
+from rockwobble.compare import Foreign, compare, make_pair, read_trajectory
+from rockwobble.models import Case, Cylinder, InitialState, Run, Suite, el_centro_1940
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+RELEASE = Case(
+    "release",
+    PIER,
+    initial=InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.3, rolling_angle=1.0),
+    duration=4.0,
+)
+SHAKEN = Case("shaken", PIER, el_centro_1940().scaled(2.0), duration=8.0)
+CASES = {"release": RELEASE, "shaken": SHAKEN}
+ROUNDING = 1e-9  # of degrees and quaternions in double precision, [alpha] and [rad]
+
+
+def wrapped(angle):
+    return np.mod(angle + math.pi, 2.0 * math.pi) - math.pi
+
+
+def angles(trace) -> pd.DataFrame:
+    return pd.DataFrame(
+        {
+            "time [s]": trace.time,
+            "tilt [deg]": np.degrees(trace.tilt),
+            "azimuth [deg]": np.degrees(wrapped(trace.rolling_angle)),
+        }
+    )
+
+
+def quaternions(trace) -> pd.DataFrame:
+    """Turn by -phi + tau about the axis, tilt about y, turn by phi about z."""
+    phi = np.nan_to_num(trace.rolling_angle)
+    half, turn = 0.5 * trace.tilt, 0.5 * np.nan_to_num(trace.twist)
+    lean = phi - turn
+    return pd.DataFrame(
+        {
+            "time [ms]": 1e3 * trace.time,
+            "qw": np.cos(half) * np.cos(turn),
+            "qx": -np.sin(half) * np.sin(lean),
+            "qy": np.sin(half) * np.cos(lean),
+            "qz": np.cos(half) * np.sin(turn),
+            "x [mm]": 1e3 * trace.centre_of_mass[:, 0],
+            "y [mm]": 1e3 * trace.centre_of_mass[:, 1],
+            "z [mm]": 1e3 * trace.centre_of_mass[:, 2],
+        }
+    )
+
+
+@pytest.fixture(scope="module")
+def guided():
+    return {
+        name: multibody.simulate(
+            PIER, case.motion, initial=case.initial, duration=case.duration, time_step=5e-4
+        )
+        for name, case in CASES.items()
+    }
+
+
+@pytest.fixture
+def save(tmp_path: Path):
+    def write(table: pd.DataFrame | str, name: str = "table.csv") -> Path:
+        path = tmp_path / name
+        path.write_text(table if isinstance(table, str) else table.to_csv(index=False))
+        return path
+
+    return write
+
+
+def rows(case, path, **given):
+    """Rows of the engine, run again as in `guided`, and of the file."""
+    found = compare(
+        case,
+        runs=[Run("mujoco", "guided", 5e-4)],
+        foreign=[Foreign(path=path, **given)],
+        workers=1,
+    )
+    table = found.summary.set_index("run")
+    return table.loc["mujoco guided"], table.loc[path.stem]
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_trajectory_that_goes_out_and_comes_back_has_the_same_metrics(guided, save, name):
+    engine, foreign = rows(CASES[name], save(angles(guided[name])))
+    assert foreign["support"] == "foreign"
+    for column in ("tilt_rms", "tilt_rms_relative"):
+        assert foreign[column] == pytest.approx(engine[column], abs=ROUNDING)
+    # a parabola through samples 0.01 s apart instead of through the engine's steps: (p dt)^4 of the tilt
+    assert foreign["peak_tilt"] == pytest.approx(engine["peak_tilt"], abs=1e-5)
+    assert foreign["turn_difference"] == pytest.approx(engine["turn_difference"], abs=1e-6)
+    same = ["agreement_horizon", "parted", "agreed_passes", "outcome", "closest_pass"]
+    assert foreign[same].tolist() == engine[same].tolist()
+    assert math.isnan(foreign["energy_loss"])
+    assert "energy_loss" in foreign["message"]
+
+
+def test_quaternions_and_positions_bring_twist_and_place_back(guided, save):
+    engine, foreign = rows(SHAKEN, save(quaternions(guided["shaken"])))
+    assert foreign["tilt_rms"] == pytest.approx(engine["tilt_rms"], abs=ROUNDING)
+    for column in ("residual_twist", "residual_displacement", "contact_rms"):
+        assert engine[column] != 0.0
+        assert foreign[column] == pytest.approx(engine[column], abs=1e-6)  # rounding at small tilt
+    assert not math.isnan(foreign["contact_rms"])
+
+
+def test_uplift_is_found_from_the_samples(guided, save):
+    trajectory = read_trajectory(save(angles(guided["shaken"])), SHAKEN)
+    # one sample: what the cube root leaves of an uplift that is not a pure ramp
+    assert trajectory.uplift_time == pytest.approx(guided["shaken"].uplift_time, abs=0.01)
+    # the direction turns by its own rate in the time to the first sample that leans
+    assert trajectory.uplift_direction == pytest.approx(guided["shaken"].uplift_direction, abs=0.05)
+    assert np.isnan(trajectory.rolling_angle[trajectory.time < trajectory.uplift_time]).all()
+    assert read_trajectory(save(angles(guided["release"])), RELEASE).uplift_time == 0.0
+
+
+def test_passes_and_whole_turns_are_those_of_the_engine(guided, save):
+    own, back = guided["shaken"].passes, read_trajectory(save(angles(guided["shaken"])), SHAKEN).passes
+    own = own[own["time"] > 2.0]  # the first dips by 3e-6 rad, less than what counts as noise
+    assert len(back) == len(own) >= 2
+    assert back["time"].to_numpy() == pytest.approx(own["time"].to_numpy(), abs=1e-3)  # a tenth of a sample
+    assert back["angle_of_turn"].to_numpy() == pytest.approx(own["angle_of_turn"].to_numpy(), abs=1e-3)
+    assert back["resolved"].all()
+
+
+@pytest.mark.parametrize("every", [2, 3])
+def test_other_samples_are_brought_to_those_of_the_comparison(save, every):
+    response = reduced.simulate(PIER, initial=RELEASE.initial, duration=4.0, sample_step=0.004)
+    trajectory = read_trajectory(save(angles(response).iloc[::every]), RELEASE)
+    reference = reduced.simulate(PIER, initial=RELEASE.initial, duration=4.0)
+    pair = make_pair(PIER, reference, trajectory)
+    assert len(pair.time) >= 400
+    # a local cubic through samples 0.012 s apart at most, times p^3 of the tilt
+    assert np.abs(pair.tilt_difference).max() < 2e-5
+    assert np.nanmax(np.abs(pair.rolling_angle - pair.reference_rolling_angle)) < 2e-3
+
+
+def test_a_pass_between_two_samples_is_guessed_by_the_sense_of_the_turning_and_said(save):
+    start = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.01)
+    case = Case("near", PIER, initial=start, duration=5.0)
+    response = reduced.simulate(PIER, initial=start, duration=5.0)
+    trajectory = read_trajectory(save(angles(response)), case)
+    assert not trajectory.passes["resolved"].all()
+    assert "fell between two samples" in trajectory.message
+    assert trajectory.rolling_angle[-1] == pytest.approx(response.rolling_angle[-1], abs=1e-9)
+
+
+CHANGES = {
+    "early by 0.05 s": (lambda table: table, {"time_offset": -0.05}, "tilt_rms", 1e-3),
+    "turned by 10 deg": (
+        lambda table: table.assign(**{"azimuth [deg]": table["azimuth [deg]"] + 10.0}),
+        {},
+        "contact_rms",
+        0.1,
+    ),
+    "tilt 2 % larger": (
+        lambda table: table.assign(**{"tilt [deg]": 1.02 * table["tilt [deg]"]}),
+        {},
+        "peak_tilt_difference",
+        5e-3,
+    ),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_what_is_wrong_with_a_trajectory_shows(guided, save, change):
+    wrong, given, column, least = CHANGES[change]
+    table = wrong(angles(guided["shaken"]))
+    engine, foreign = rows(SHAKEN, save(table), **given)
+    assert abs(foreign[column]) > abs(engine[column]) + least
+
+
+def test_a_time_offset_takes_back_a_late_clock(guided, save):
+    table = angles(guided["shaken"])
+    late = table.assign(**{"time [s]": table["time [s]"] + 3.0})
+    with pytest.raises(ValueError, match=r"table\.csv, line 2: the trajectory begins 3 s after the start"):
+        read_trajectory(save(late), SHAKEN)
+    trajectory = read_trajectory(Foreign(path=save(late), time_offset=-3.0), SHAKEN)
+    assert trajectory.tilt == pytest.approx(guided["shaken"].tilt, abs=1e-7)  # times rounded by the shift
+
+
+def test_noise_of_a_measurement_is_no_uplift(guided, save):
+    table = angles(guided["shaken"])
+    generator = np.random.default_rng(1)
+    noisy = table.assign(**{"tilt [deg]": table["tilt [deg]"] + generator.uniform(0.0, 0.01, len(table))})
+    noisy["azimuth [deg]"] = noisy["azimuth [deg]"].fillna(0.0)
+    path = save(noisy)
+    assert read_trajectory(path, SHAKEN).uplift_time == 0.0
+    quiet = read_trajectory(Foreign(path=path, noise=math.radians(0.02)), SHAKEN)
+    assert quiet.uplift_time == pytest.approx(guided["shaken"].uplift_time, abs=0.15)  # a ramp to 0.02 deg
+
+
+def test_a_fall_ends_the_trajectory(save):
+    fall = InitialState(tilt=1.01 * PIER.alpha, tilt_rate=0.1)
+    case = Case("fall", PIER, initial=fall, duration=20.0)
+    response = reduced.simulate(PIER, initial=fall, duration=20.0)
+    assert response.outcome == "overturned"
+    found = compare(case, runs=[], foreign=[save(angles(response))], workers=1)
+    (row,) = found.summary.to_dict("records")
+    assert (row["outcome"], row["message"].split(";")[0]) == ("overturned", "both overturned")
+    assert row["peak_tilt"] == row["reference_peak_tilt"]
+
+
+def test_a_trajectory_alone_is_held_against_the_model(guided, save, tmp_path):
+    found = compare(
+        RELEASE, runs=[], foreign=[save(angles(guided["release"]))], workers=1, out=tmp_path / "out"
+    )
+    assert found.summary[["run", "reference"]].to_numpy().tolist() == [["table", "recess"]]
+    kept = pd.read_parquet(tmp_path / "out" / "trajectories.parquet")
+    assert set(kept["run"]) == {"table"}
+
+
+TURN = "time,qw,qx,qy,qz"
+GOOD = "time [s],tilt [deg],azimuth [deg]\n0,1,0\n0.01,2,1\n0.02,3,2\n0.03,2,3\n"
+BAD = {
+    "": "is empty",
+    "# only\n": "is empty",
+    GOOD.replace("0.02,", "0.005,"): "line 4: time must rise [s], got 0.005 after 0.01",
+    GOOD.replace("0.02,", "0.01,"): "line 4: time must rise [s], got 0.01 after 0.01",
+    GOOD + "0.2,1,2\n": "line 6: a gap of 0.17 s where the usual step is 0.01 s",
+    "# table 3\n" + GOOD.replace("3,2\n", "much,2\n"): "line 5: tilt [deg] must be a number, got 'much'",
+    GOOD.replace("3,2\n", ",2\n"): "line 4: tilt is missing",
+    GOOD.replace("3,2\n", "3,\n"): "line 4: azimuth must be given where the tilt is 0.05236 rad",
+    GOOD.replace("3,2\n", "-3,2\n"): "line 4: tilt must not be negative",
+    GOOD.replace("3,2\n", "inf,2\n"): "line 4: tilt [deg] must be finite, got 'inf'",
+    GOOD.replace("3,2\n", "3\n"): "line 4: expected 3 cells as in the header, got 2",
+    GOOD.replace("tilt [deg]", "tilt"): "does not say the unit of tilt: name the column 'tilt [deg]'",
+    GOOD.replace("tilt [deg]", "tilt [grad]"): "tilt must be in rad or deg, got 'grad'",
+    GOOD.replace(",azimuth [deg]", ",heading [deg]"): "must have tilt, azimuth together, got no azimuth",
+    GOOD.replace("time [s]", "t"): "must have columns time, and tilt and azimuth or qw, qx, qy and qz",
+    GOOD.replace("azimuth", "tilt"): "must have each column once, got tilt twice",
+    GOOD.split("0.01")[0]: "must hold at least three samples, got 1",
+    f"{TURN}\n0,1,0,0,0\n0.01,2,0,0,0\n0.02,1,0,0,0\n": "line 3: a quaternion must have the length 1, got 2",
+    f"{TURN},tilt [rad],azimuth [rad]\n0,1,0,0,0,0,0\n.01,.99875,.04998,0,0,.1,0\n.02,0,0,0,1,.1,0\n": (
+        "line 4: tilt and quaternion must agree, got tilts of 0.1 and 0 rad"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", BAD)
+def test_whatever_is_wrong_with_a_file_is_one_line_with_its_number(save, text):
+    with pytest.raises(ValueError, match=r"table\.csv") as caught:
+        read_trajectory(save(text), RELEASE)
+    assert BAD[text] in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_other_marks_between_cells_and_units_by_option(save, mark):
+    silent = GOOD.replace(" [deg]", "").replace(" [s]", "").replace(",", mark)
+    trajectory = read_trajectory(Foreign(path=save(silent), angle_unit="deg"), RELEASE)
+    same = read_trajectory(save(GOOD), RELEASE)
+    assert trajectory.tilt.tolist() == same.tilt.tolist()
+    assert trajectory.tilt.max() == pytest.approx(math.radians(3.0))
+
+
+def test_a_file_that_is_not_there_and_options_out_of_range(tmp_path):
+    with pytest.raises(ValueError, match=r"cannot read the trajectory .*none\.csv: No such file"):
+        read_trajectory(tmp_path / "none.csv", RELEASE)
+    with pytest.raises(ValueError, match="time_offset must be finite"):
+        Foreign(path=tmp_path / "x.csv", time_offset=math.nan)
+    with pytest.raises(ValueError, match="noise must be above 0"):
+        Foreign(path=tmp_path / "x.csv", noise=0.0)
+
+
+def test_labels_and_cases_must_be_clear(guided, save):
+    path = save(angles(guided["release"]))
+    with pytest.raises(ValueError, match="each run must have its own label, got 'table' twice"):
+        compare(RELEASE, runs=[], foreign=[path, path])
+    with pytest.raises(ValueError, match="a trajectory belongs to one case, got 2 cases"):
+        compare(Suite([RELEASE, SHAKEN], []), foreign=[path])
