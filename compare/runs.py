@@ -13,8 +13,9 @@ from rockwobble.multibody.registry import find_engine, standard_engines
 
 SUPPORTS = ("guided", "free")
 
-# a cylinder on open ground is free to roll out: the rolling model is its own reduced model
-SUPPORT_REFERENCES = {"free": ("rolling",)}
+# a cylinder on open ground is free to roll out: the rolling model is its own reduced model; so it is in a ring
+# until it first touches a wall
+SUPPORT_REFERENCES = {"free": ("rolling",), "ring": ("rolling",)}
 
 
 def installed_engines() -> tuple[str, ...]:
@@ -68,7 +69,9 @@ def default_runs(
     """Return every engine that serves any case with each support, the guided ones first.
 
     Engines that are named run whatever they can do: with the supports that they have where none is named.
+    Where supports are named and engines are not, each support gets the engines that have it.
     """
+    named = engines is not None and supports is not None
     if engines is None:
         reserved = reserved_engines()
         engines = [name for name in installed_engines() if name not in reserved]
@@ -76,7 +79,7 @@ def default_runs(
         Run(engine, support)
         for support in (SUPPORTS if supports is None else supports)
         for engine in engines
-        if supports is not None or support in find_engine(engine).supports
+        if named or support in find_engine(engine).supports
     )
 
 

@@ -89,6 +89,24 @@ class Scene:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Wall:
+    """Contact with the walls of a ring at n poses.
+
+    Attributes
+    ----------
+    touching : ndarray of bool, shape (n,)
+    force : ndarray, shape (n,)
+        Size of the sum of all forces of walls on the cylinder, per unit mass [m/s^2].
+    depth : ndarray, shape (n,)
+        Of the deepest contact [m].
+    """
+
+    touching: NDArray[np.bool_]
+    force: Array
+    depth: Array
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Steps:
     """Poses after each of n steps, and the velocities that led to them.
 
@@ -99,13 +117,16 @@ class Steps:
     quaternion : ndarray, shape (n, 4)
         Scalar first.
     velocity, angular_velocity : ndarray, shape (n, 3)
-        During the step that ends at the pose, world axes [m/s], [rad/s].
+        Means over the step that ends at the pose, world axes [m/s], [rad/s].
+    wall : Wall, optional
+        Contact with walls at the poses from which the steps start. None without walls.
     """
 
     position: Array
     quaternion: Array
     velocity: Array
     angular_velocity: Array
+    wall: Wall | None = None
 
 
 class Stepper(Protocol):

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .body import Body
+from .engine import Wall
 from .kinematics import Kinematics
 
 Array = NDArray[np.float64]
@@ -56,7 +57,12 @@ def check_time_step(time_step: float, unit_time: float) -> None:
 
 
 def first_breach(
-    state: Kinematics, energy_error: Array, body: Body, gravity: float, guided: bool
+    state: Kinematics,
+    energy_error: Array,
+    body: Body,
+    gravity: float,
+    guided: bool,
+    wall: Wall | None = None,
 ) -> Breach | None:
     """Return the earliest breach among n steps, or None."""
     scale = energy_scale(body, gravity)
@@ -67,6 +73,8 @@ def first_breach(
             (energy_error > ENERGY_GAIN * scale, "the engine gained energy that nothing supplied"),
             (state.depth > PENETRATION * body.base_radius, "the cylinder sank into the ground"),
         ]
+        if wall is not None:
+            rules.append((wall.depth > PENETRATION * body.base_radius, "the cylinder sank into a wall"))
         if guided:
             rules.append((np.abs(state.twist) > GUIDE_TWIST, "the guide did not hold the twist"))
     breaches = [Breach(int(np.argmax(broken)), reason) for broken, reason in rules if broken.any()]

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .engine import Array, Scene, Settings, Stepper, Steps
+from .engine import Array, Scene, Settings, Stepper, Steps, Wall
 from .kinematics import axis_of
 from .mujoco_scene import compile_scene
+from .ring_geometry import check_start
 from .ring_settings import RingSettings, take_ring
 from .settings import MujocoSettings
 from .start import Start
@@ -45,7 +46,9 @@ class MujocoEngine:
 
     def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
         """Return every setting; see `MujocoSettings` and, for the support "ring", `RingSettings`."""
-        others, ring = take_ring(given, scene.support)
+        others, ring = take_ring(given, scene.support, scene.body.tan_alpha)
+        if ring is not None:
+            check_start(ring, scene)
         resolved = MujocoSettings.resolve(others, scene.time_step * scene.unit_time)
         found = {name: getattr(resolved, name) for name in MujocoSettings.__dataclass_fields__}
         return found | (ring.as_dict() if ring is not None else {})
@@ -61,7 +64,7 @@ class MujocoEngine:
         mujoco.set_mju_user_warning(lambda message: None)
         try:
             with rollout.Rollout(nthread=0) as runner:
-                others, ring = take_ring(settings, scene.support)
+                others, ring = take_ring(settings, scene.support, scene.body.tan_alpha)
                 yield _MujocoStepper(scene, MujocoSettings(**others), ring, runner)
         finally:
             mujoco.set_mju_user_warning(reporter)
@@ -99,20 +102,20 @@ class _MujocoStepper:
             if self._standing and 1.0 - axis_of(self._state[None, 4:8])[0, 2] > _RISEN:
                 self._leave_prisms()
             end = done + _STANDING_BLOCK if self._standing else len(acceleration)
-            block, wall = self._roll(acceleration[done:end])
+            block, sensors = self._roll(acceleration[done:end])
             blocks.append(block)
-            walls.append(wall)
+            walls.append(sensors)
             done = end
         # time, then position, quaternion, velocity in world axes, angular velocity in body axes
         # stored by component, which the recorder takes one by one
         rows = np.ascontiguousarray(np.vstack([start, *blocks]).T).T
         quaternion = rows[:, 4:8]
         velocity, spin = rows[:, 8:11], to_world(quaternion, rows[:, 11:14])
-        wall = None if self._ring is None else np.vstack(walls)
+        touch = None if self._ring is None else _wall(np.vstack(walls))
         if self._staggered:
-            return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:], wall)
+            return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:], touch)
         mean = 0.5 * (velocity[:-1] + velocity[1:]), 0.5 * (spin[:-1] + spin[1:])
-        return Steps(rows[1:, 1:4], quaternion[1:], *mean, wall)
+        return Steps(rows[1:, 1:4], quaternion[1:], *mean, touch)
 
     def warnings(self) -> str:
         """Return the warnings of the engine."""
@@ -156,6 +159,11 @@ def _warnings(data: mujoco.MjData) -> list[str]:
         mujoco.mjtWarning(int(index)).name.removeprefix("mjWARN_").lower()
         for index in np.flatnonzero(data.warning.number)
     ]
+
+
+def _wall(sensors: Array) -> Wall:
+    """From the sensors (n, 5) of the scene: number of contacts, net force of the mass of 1 kg, distance."""
+    return Wall(sensors[:, 0] > 0.0, np.linalg.norm(sensors[:, 1:4], axis=1), -sensors[:, 4])
 
 
 def to_world(quaternion: Array, vector: Array) -> Array:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from .engine import Scene
 from .friction import body_friction
+from .mujoco_ring import set_walls
+from .ring_settings import RingSettings
 from .settings import MujocoSettings
 
 if TYPE_CHECKING:
@@ -15,10 +17,12 @@ if TYPE_CHECKING:
 _PRISMS = 12  # in the scene file; four corners each
 
 
-def compile_scene(scene: Scene, settings: MujocoSettings, *, standing: bool) -> mujoco.MjModel:
+def compile_scene(
+    scene: Scene, settings: MujocoSettings, *, standing: bool, ring: RingSettings | None = None
+) -> mujoco.MjModel:
     """Return the compiled model of `scene`: its file, with what the case does not need taken out.
 
-    The prisms that carry the cylinder are there only while it is `standing`.
+    The prisms that carry the cylinder are there only while it is `standing`, the walls only of a `ring`.
     """
     import mujoco
 
@@ -26,7 +30,9 @@ def compile_scene(scene: Scene, settings: MujocoSettings, *, standing: bool) -> 
         spec = mujoco.MjSpec.from_file(str(folder / f"{scene.support}.xml"))
     _set_options(spec, scene, settings)
     _set_body(spec, scene)
-    _set_contact(spec, scene, settings, standing)
+    if ring is not None:
+        set_walls(spec, ring, scene.body.base_radius)
+    _set_contact(spec, scene, settings, standing, ring)
     for component in set("xyz") - set(scene.components):
         spec.delete(spec.actuator(f"push_{component}"))
     for name in ("guide_vertical", "guide_axial"):
@@ -74,7 +80,9 @@ def _set_body(spec: Any, scene: Scene) -> None:
         geom.size = [radius, half, 0.0] if geom.name == "cylinder" else [radius / 2**0.5] * 2 + [half]
 
 
-def _set_contact(spec: Any, scene: Scene, settings: MujocoSettings, standing: bool) -> None:
+def _set_contact(
+    spec: Any, scene: Scene, settings: MujocoSettings, standing: bool, ring: RingSettings | None
+) -> None:
     count = settings.standing_corners // 4 if standing else 0
     for index in range(_PRISMS):
         name = f"prism{index}"
@@ -84,8 +92,9 @@ def _set_contact(spec: Any, scene: Scene, settings: MujocoSettings, standing: bo
         else:
             # the corners of all prisms stand evenly on the rim
             spec.geom(name).alt.euler = [0.0, 0.0, 90.0 * index / count]
-    friction, _ = body_friction(scene.friction, "pair")
+    ground, _ = body_friction(scene.friction, "pair")
     for pair in spec.pairs:
+        friction = ground if ring is None or pair.geomname1 == "ground" else ring.ring_friction
         pair.friction = [friction, friction, 0.0, 0.0, 0.0]
         pair.condim = 3
         pair.solref = [settings.contact_time_constant / scene.unit_time, settings.contact_damping_ratio]

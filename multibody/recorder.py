@@ -8,13 +8,14 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from .engine import Scene, Steps
-from .forces import ForceSamples, force_of_steps
+from .engine import Scene, Steps, Wall
+from .forces import ForceSamples, first_pull, force_of_steps
 from .guard import first_breach
 from .kinematics import Kinematics, axis_of, kinematics, mean_velocity, rim, unwrap
 from .passes import TurningPoint, turning_points
 from .start import Start
 from .uplift import UpliftWatch, sure_tilt
+from .wall_watch import WallWatch
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.intp]
@@ -25,7 +26,8 @@ FLIGHT = 1e-3  # of b, height that is flight: a rim that slides may hover below 
 SLIP = 0.01  # of b, slip that is more than the creep of a rim that rolls
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
-    "x", "y", "z", "energy", "energy_error", "slip",
+    "x", "y", "z", "energy", "energy_error", "slip", "wall_contact",
+    "wall_impulse",
 )  # fmt: skip
 
 
@@ -60,12 +62,13 @@ class Recorder:
         self.forces = ForceSamples(samples, scene.time_step)
         self._depths: list[float] = []
         self._slipped = 0.0
+        self.walls = WallWatch(scene.time_step)
         self.slip_time = math.nan  # when the slip became worth a remark [s]
         self.flight_time = math.nan  # when the rim left the ground [s]
+        self.pull_time = math.nan  # when the ground held the rim down, which only a joint does [s]
         # a standing cylinder leans by less, in no direction
         sure = sure_tilt(body)
         self.floor = (
-        self.pull_time = math.nan  # when the ground held the rim down, which only a joint does [s]
             sure
             if start.standing
             else min(sure, 0.5 * float(np.hypot(*axis_of(start.quaternion[None])[0, :2])))
@@ -107,7 +110,8 @@ class Recorder:
         body = self._scene.body
         state = kinematics(poses, after, body, self._scene.gravity)
         gained = self._energy_error(state, poses, after, acceleration)
-        stop = self._stop(time, state, gained)
+        wall_contact, wall_impulse = self.walls.take(time, steps.wall)
+        stop = self._stop(time, state, gained, steps.wall)
         angle = unwrap(
             state.azimuth,
             lambda at: rim(_rows(poses, at), _rows(after, at), body).momentum,
@@ -127,7 +131,7 @@ class Recorder:
                 return np.column_stack(
                     [time[at], state.tilt[at], state.tilt_rate[at], angle[at], place.rolling_rate,
                      state.twist[at], place.contact_point, some.position, state.energy[at], gained[at],
-                     slip[at]]
+                     slip[at], wall_contact[at], wall_impulse[at]]
                 )  # fmt: skip
 
             self._follow(np.stack([time[:stop], state.tilt[:stop], angle[:stop]]))
@@ -135,12 +139,12 @@ class Recorder:
             self._sample(time[:stop], rows)
             force = force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity)
             self.forces.add(force[:, :stop])
+            if math.isnan(self.pull_time):
+                self.pull_time = first_pull(time, force[2, :stop])
         self._angle, self._count = float(angle[-1]), self._count + count
 
     def fail(self, reason: str) -> None:
         """End the run at the last step analysed."""
-            if math.isnan(self.pull_time):
-                self.pull_time = first_pull(time, force[2, :stop])
         self.ended, self.reason, self.end_time = "failed", reason, float(self._row[0])
 
     def _pair(self, steps: Steps) -> tuple[Steps, Steps]:
@@ -186,7 +190,7 @@ class Recorder:
                 setattr(self, name, float(time[np.argmax(happens)]))
         return slipped
 
-    def _stop(self, time: Array, state: Kinematics, gained: Array) -> int:
+    def _stop(self, time: Array, state: Kinematics, gained: Array, wall: Wall | None) -> int:
         """Number of steps of this chunk that belong to the result."""
         stop = len(time)
         over = np.flatnonzero(state.tilt >= OVERTURNED)
@@ -197,7 +201,7 @@ class Recorder:
             self.end_time = float(time[stop] + max(0.5 * math.pi - state.tilt[stop], 0.0) / rate)
             self.end_time = min(self.end_time, float(self._samples[-1]))
         breach = first_breach(
-            state, gained, self._scene.body, self._scene.gravity, self._scene.support == "guided"
+            state, gained, self._scene.body, self._scene.gravity, self._scene.support == "guided", wall
         )
         if breach is not None and breach.index < stop:
             stop = breach.index

@@ -21,9 +21,13 @@ def remarks(recorder: Recorder, passes: pd.DataFrame, resolution: float, scale: 
     if not math.isnan(recorder.slip_time):
         found.append(f"contact slipped from {recorder.slip_time * scale.time:.4g} s on")
     if not math.isnan(recorder.pull_time):
-        found.append(f"a joint holds the rim down at {recorder.pull_time * scale.time:.4g} s: contact is lost")
+        found.append(
+            f"a joint holds the rim down at {recorder.pull_time * scale.time:.4g} s: contact is lost"
+        )
     if not math.isnan(recorder.flight_time):
         found.append(f"the cylinder left the ground at {recorder.flight_time * scale.time:.4g} s")
+    if not math.isnan(recorder.walls.first):
+        found.append(f"the cylinder touched a wall from {recorder.walls.first * scale.time:.4g} s on")
     close = passes[~passes["resolved"]]
     if len(close):
         found.append(

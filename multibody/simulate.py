@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from .ability import require_able
+from .auto_step import AUTO, STEP_TOLERANCE, find_step
 from .body import scaled_body
 from .engine import Engine, Scene
 from .excitation import StepMeans
@@ -44,7 +45,7 @@ def simulate(
     duration: float | None = None,
     engine: str = "mujoco",
     support: str = "guided",
-    time_step: float | None = None,
+    time_step: float | Literal["auto"] | None = None,
     friction: float = 1.0,
     sample_step: float = 0.01,
     gravity: float = 9.81,
@@ -64,11 +65,14 @@ def simulate(
         [s]; default that of the motion.
     engine : {"mujoco", "pybullet", "exudyn"}
         Or one that another package declares. Exudyn is an ideal rim: free, from a release only.
-    support : {"guided", "free"}
-        The ideal recess, which holds the twist at zero, or open ground.
-    time_step : float, optional
+    support : {"guided", "free", "ring"}
+        The ideal recess, which holds the twist at zero; open ground; or a real recess of inclined walls,
+        which MuJoCo has.
+    time_step : float or "auto", optional
         [s]; default 1e-4 s at a semidiagonal of 6 m and a gravity of 9.81 m/s^2, and so in proportion to
-        sqrt(semidiagonal/gravity): accuracy does not depend on size.
+        sqrt(semidiagonal/gravity): accuracy does not depend on size. "auto" halves the step, from four
+        times the default, until the tilt has settled within `step_tolerance`, another keyword, of alpha
+        (default 1e-3), and says what error is left: see `auto_step`.
     friction : float
         Coulomb coefficient of the pair cylinder and ground [-].
     sample_step : float
@@ -78,7 +82,8 @@ def simulate(
     progress : callable, optional
         Called now and then with the fraction done.
     **settings
-        Of the engine: see `MujocoSettings`, `PybulletSettings` and `ExudynSettings`.
+        Of the engine: see `MujocoSettings`, `PybulletSettings` and `ExudynSettings`; of a ring: see
+        `RingSettings`.
 
     Returns
     -------
@@ -100,19 +105,42 @@ def simulate(
     >>> run.outcome, len(run.time)
     ('completed', 101)
     """
-    started = clock.perf_counter()
     case = Case("run", cylinder, motion, initial, duration, gravity, friction)
+    if time_step == AUTO:
+        tolerance = _positive("step_tolerance", settings.pop("step_tolerance", STEP_TOLERANCE), "of alpha")
+
+        def attempt(step: float, tell: Progress) -> Trajectory:
+            return _simulate(case, engine, support, step, sample_step, tell, settings)
+
+        unit_time = froude_scale(cylinder.semidiagonal, gravity).time
+        return find_step(attempt, unit_time, cylinder.alpha, tolerance, progress)
+    if "step_tolerance" in settings:
+        raise ValueError(f'step_tolerance goes with time_step="auto", got time_step={time_step!r}')
+    return _simulate(case, engine, support, time_step, sample_step, progress, settings)
+
+
+def _simulate(
+    case: Case,
+    engine: str,
+    support: str,
+    time_step: float | None,
+    sample_step: float,
+    progress: Progress | None,
+    settings: Mapping[str, Any],
+) -> Trajectory:
+    """Run with one time step [s]; None is the default."""
+    started = clock.perf_counter()
     backend = find_engine(engine)
     require_able(backend, engine, case, support)
-    scale = froude_scale(cylinder.semidiagonal, gravity)
+    scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
     step = REFERENCE_TIME_STEP * scale.time if time_step is None else _positive("time_step", time_step)
     check_time_step(step, scale.time)
     scene = _scene(case, support, step, scale)
     resolved = backend.settings(settings, scene)
     samples = _sample_times(case.length, _positive("sample_step", sample_step)) / scale.time
-    release = InitialState(0.0) if initial is None else initial
+    release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(scene, samples, release.rolling_angle, release.tilt_rate == 0.0)
-    means = StepMeans(motion, scale, scene.time_step)
+    means = StepMeans(case.motion, scale, scene.time_step)
     _run(backend, scene, resolved, recorder, means, samples[-1], progress)
     return _trajectory(
         recorder,
@@ -200,6 +228,9 @@ def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> T
         energy=table["energy"] * scale.energy,
         energy_error=table["energy_error"] * scale.energy,
         slip=table["slip"] * scale.length,
+        wall_contact=table["wall_contact"] * scale.time,
+        wall_impulse=table["wall_impulse"] * scale.length / scale.time,
+        first_wall_contact=recorder.walls.first * scale.time,
         peak_tilt=_peak(recorder, outcome),
         outcome=outcome,
         message=remarks(recorder, passes, resolution, scale),
@@ -260,8 +291,8 @@ def _sample_times(end: float, sample_step: float) -> Array:
     return times if math.isclose(times[-1], end, rel_tol=1e-9) else np.append(times, end)
 
 
-def _positive(name: str, value: float) -> float:
+def _positive(name: str, value: float, unit: str = "s") -> float:
     number = float(value)
     if not (math.isfinite(number) and number > 0.0):
-        raise ValueError(f"{name} must be positive [s], got {value!r}")
+        raise ValueError(f"{name} must be positive [{unit}], got {value!r}")
     return number

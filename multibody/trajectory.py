@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
@@ -52,6 +53,12 @@ class Trajectory:
         took (negative) or made (positive).
     slip : ndarray, shape (n,)
         Distance over which the contact has slipped so far [m].
+    wall_contact : ndarray, shape (n,)
+        Time for which the cylinder has been in contact with walls so far [s]; zero without a ring.
+    wall_impulse : ndarray, shape (n,)
+        Of the force of the walls so far, per unit mass [m/s]: its size added up, whatever its direction.
+    first_wall_contact : float
+        Time [s]; NaN if there was none.
     peak_tilt : float
         Vertex of the parabola through the largest step [rad]; pi/2 where overturned, NaN where failed.
     outcome : {"rest", "completed", "overturned", "failed"}
@@ -69,6 +76,10 @@ class Trajectory:
         Horizontal distance of the base centre from O at the end [m].
     residual_twist : float
         [rad]
+    error_estimate : float
+        Error of the tilt that the time step leaves, until `settled_until` [rad]; NaN unless time_step="auto".
+    settled_until : float
+        How far traces of successive steps agree [s]; NaN unless time_step="auto".
     """
 
     engine: str
@@ -90,6 +101,9 @@ class Trajectory:
     energy: Array
     energy_error: Array
     slip: Array
+    wall_contact: Array
+    wall_impulse: Array
+    first_wall_contact: float
     peak_tilt: float
     outcome: str
     message: str
@@ -99,6 +113,8 @@ class Trajectory:
     contact_resolution: float
     residual_displacement: float
     residual_twist: float
+    error_estimate: float = math.nan
+    settled_until: float = math.nan
 
     def to_frame(self) -> pd.DataFrame:
         """Return the sampled fields as a table with one row for each sample and units in SI."""
@@ -124,5 +140,7 @@ class Trajectory:
                 "energy": self.energy,
                 "energy_error": self.energy_error,
                 "slip": self.slip,
+                "wall_contact": self.wall_contact,
+                "wall_impulse": self.wall_impulse,
             }
         )

@@ -139,7 +139,7 @@ def test_import_loads_no_engine() -> None:
     ("change", "message"),
     [
         ({"engine": "chrono"}, "engine must be one of mujoco, pybullet, exudyn, got 'chrono'"),
-        ({"support": "glued"}, "support must be one of guided, free, got 'glued'"),
+        ({"support": "glued"}, "support must be one of guided, free, ring in mujoco, got 'glued'"),
         (
             {"time_step": 1e-2},
             "time_step must be at most 0.001 s for contact at this size and gravity, got 0.01",

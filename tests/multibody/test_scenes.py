@@ -14,11 +14,15 @@ from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.engine import Scene
 from rockwobble.multibody.mujoco_engine import MujocoEngine
 from rockwobble.multibody.mujoco_scene import compile_scene
+from rockwobble.multibody.ring_geometry import wall_feet, wall_orientations
+from rockwobble.multibody.ring_settings import RingSettings, take_ring
 from rockwobble.multibody.settings import MujocoSettings
 from rockwobble.multibody.start import starting_state
 
 FOLDER = Path(next(iter(rockwobble.models.__path__))) / "scenes"
 SCENES = sorted(FOLDER.glob("*.xml"))
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+ROUNDING = 1e-12  # of lengths and normals of the order of 1
 
 
 def test_there_is_one_scene_for_each_support() -> None:
@@ -53,22 +57,40 @@ def test_scene_holds_the_defaults_of_a_run(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("support", "standing", "components", "actuators", "geoms"),
-    [
-        ("guided", True, "xy", 4, 14),
-        ("guided", True, "xyz", 5, 14),
-        ("guided", False, "", 2, 2),
-        ("free", True, "xy", 2, 14),
-        ("free", False, "xyz", 3, 2),
-        ("free", False, "", 0, 2),
-    ],
+    ("support", "guides", "walls", "sensors"), [("guided", 2, 0, 0), ("free", 0, 0, 0), ("ring", 0, 32, 2)]
 )
+@pytest.mark.parametrize("components", ["", "xy", "xyz"])
+@pytest.mark.parametrize(("standing", "prisms"), [(True, 12), (False, 0)])
 def test_scene_has_only_what_the_case_needs(
-    support: str, standing: bool, components: str, actuators: int, geoms: int
+    support: str, guides: int, walls: int, sensors: int, components: str, standing: bool, prisms: int
 ) -> None:
     model = _compiled(support, standing=standing, components=components)
-    assert (model.nu, model.ngeom, model.npair) == (actuators, geoms, geoms - 1)
-    assert (model.nsensor, model.ntendon, model.neq, model.nv) == (0, 0, 0, 6)
+    assert model.nu == guides + len(components)
+    # ground and cylinder, and a pair for each that touches the ground or the cylinder
+    assert (model.ngeom, model.npair) == (2 + prisms + walls, 1 + prisms + walls)
+    assert model.nsensor == sensors
+    # world and cylinder, and the ring that the sensors name
+    assert model.nbody == (3 if walls else 2)
+    assert (model.ntendon, model.neq, model.nv, model.nsite) == (0, 0, 6, 2)
+
+
+@pytest.mark.parametrize("facets", [3, 31, 32, 100])
+def test_ring_has_the_walls_that_are_asked_for(facets: int) -> None:
+    ring = RingSettings(ring_inclination=0.4, ring_clearance=0.05, ring_facets=facets, ring_friction=0.3)
+    model = _compiled("ring", standing=False, components="", ring=ring)
+    walls = [index for index in range(model.ngeom) if model.geom(index).name.startswith("wall")]
+    assert (len(walls), model.ngeom, model.npair) == (facets, 2 + facets, 1 + facets)
+    np.testing.assert_allclose(model.geom_pos[walls], wall_feet(ring, PIER.base_radius), atol=ROUNDING)
+    np.testing.assert_allclose(model.geom_quat[walls], wall_orientations(ring), atol=ROUNDING)
+    cylinder = model.geom("cylinder").id
+    for index in range(model.npair):
+        pair = {int(model.pair_geom1[index]), int(model.pair_geom2[index])}
+        assert cylinder in pair
+        friction = 1.0 if model.geom("ground").id in pair else 0.3
+        np.testing.assert_allclose(model.pair_friction[index], [friction, friction, 0.0, 0.0, 0.0])
+    # no other contact of a wall, whatever else touches it: the prisms reach as far as the cylinder
+    assert (model.geom_contype[walls] == 0).all()
+    assert (model.geom_conaffinity[walls] == 0).all()
 
 
 def test_corners_stand_evenly_on_the_rim() -> None:
@@ -101,8 +123,9 @@ def _compiled(
     components: str,
     cylinder: Cylinder | None = None,
     standing_corners: int = 48,
+    ring: RingSettings | None = None,
 ) -> mujoco.MjModel:
-    cylinder = cylinder or Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    cylinder = cylinder or PIER
     body = scaled_body(cylinder, 1.0)
     scene = Scene(
         body=body,
@@ -115,4 +138,6 @@ def _compiled(
         unit_time=1.0,
     )
     settings = MujocoSettings.resolve({"standing_corners": standing_corners}, 1e-4)
-    return compile_scene(scene, settings, standing=standing)
+    if support == "ring" and ring is None:
+        _, ring = take_ring({}, "ring", cylinder.tan_alpha)
+    return compile_scene(scene, settings, standing=standing, ring=ring)

@@ -78,7 +78,7 @@ BAD = {
     "unknown engine": (["--engine", "bullet"], "engine must be one of mujoco, pybullet, got 'bullet'"),
     "unknown support": (
         ["--engine", "mujoco", "--support", "glued"],
-        "support must be one of guided, free, got 'glued'",
+        "support must be one of guided, free, ring in mujoco, got 'glued'",
     ),
     "large time step": (["--engine", "mujoco", "--time-step", "0.01"], "time_step must be at most 0.001 s"),
     "folder that is a file": (["--out", "taken"], "the output folder must be a folder, got taken"),

@@ -1,0 +1,76 @@
+"""Settings of the support "ring": the walls of a real recess, as parameters of a run."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from typing import Any
+
+STEEPEST = 1.5  # [rad] a wall that leans further is a floor
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RingSettings:
+    """A ring of facets around the base, each an infinite half-space.
+
+    Attributes
+    ----------
+    ring_clearance : float
+        Distance of the foot of the walls from the base circle, in base radii.
+    ring_inclination : float
+        Of the walls, outward from the vertical [rad].
+    ring_facets : int
+        Number of walls.
+    ring_friction : float
+        Coulomb coefficient of the pair wall and cylinder [-].
+
+    Raises
+    ------
+    ValueError
+        If a value is out of range.
+    """
+
+    ring_clearance: float = 1e-3
+    ring_inclination: float
+    ring_facets: int = 32
+    ring_friction: float = 0.5
+
+    def __post_init__(self) -> None:
+        _require("ring_clearance", self.ring_clearance, 100.0, "base radii")
+        _require("ring_inclination", self.ring_inclination, STEEPEST, "rad, outward from the vertical")
+        _require("ring_friction", self.ring_friction, 100.0, "")
+        if type(self.ring_facets) is not int or not 3 <= self.ring_facets <= 360:
+            raise ValueError(f"ring_facets must be a whole number from 3 to 360, got {self.ring_facets!r}")
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the settings by name."""
+        return asdict(self)
+
+
+def take_ring(
+    given: Mapping[str, Any], support: str, tan_alpha: float
+) -> tuple[dict[str, Any], RingSettings | None]:
+    """Return the settings that are not of the ring, and the ring; None for every other support.
+
+    The inclination is arctan(tan_alpha) unless given.
+
+    Raises
+    ------
+    ValueError
+        If a setting of the ring is given for another support, or is out of range.
+    """
+    names = {field.name for field in fields(RingSettings)}
+    others = {name: value for name, value in given.items() if name not in names}
+    walls = {name: value for name, value in given.items() if name in names}
+    if support == "ring":
+        return others, RingSettings(**{"ring_inclination": min(math.atan(tan_alpha), STEEPEST), **walls})
+    if walls:
+        raise ValueError(f"{', '.join(walls)} is for support 'ring' only, got support {support!r}")
+    return others, None
+
+
+def _require(name: str, value: Any, high: float, unit: str) -> None:
+    number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if not (number and 0.0 <= value <= high):
+        raise ValueError(f"{name} must be from 0 to {high:g}{f' [{unit}]' if unit else ''}, got {value!r}")

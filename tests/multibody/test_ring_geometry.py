@@ -1,0 +1,164 @@
+"""Where walls are touched: the closed form against the points of a cylinder, and against the engine."""
+
+from __future__ import annotations
+
+import math
+
+import mujoco
+import numpy as np
+import pytest
+
+from rockwobble.models import Cylinder, InitialState
+from rockwobble.multibody.body import scaled_body
+from rockwobble.multibody.engine import Array, Scene
+from rockwobble.multibody.kinematics import axis_of
+from rockwobble.multibody.mujoco_scene import compile_scene
+from rockwobble.multibody.ring_geometry import clearance_needed, rim_overhang, wall_feet, wall_orientations
+from rockwobble.multibody.ring_settings import RingSettings
+from rockwobble.multibody.settings import MujocoSettings
+from rockwobble.multibody.start import starting_state
+
+ROUNDING = 1e-12  # of quantities of the order of b or of 1
+# clearance by which the engine is tried on both sides; a pose is good to 1e-15 m
+MARGIN = 1e-9
+
+SLENDERNESS = (0.1, 0.2, 1.0, 3.0)
+# next to each other, or with the wall steeper by little and by much; the last turn to the stationary branch
+ANGLES = ((0.05, 0.0), (0.2, 0.1), (0.2, 0.3), (0.5, 0.5), (0.7, 0.1), (1.2, 0.0), (1.5, 0.05))
+
+
+def test_the_ring_stands_where_its_settings_say() -> None:
+    ring = RingSettings(ring_clearance=0.02, ring_inclination=0.3, ring_facets=12)
+    feet, turns = wall_feet(ring, 2.0), wall_orientations(ring)
+    normals = axis_of(turns)
+    assert feet.shape == normals.shape == (12, 3)
+    np.testing.assert_allclose(np.linalg.norm(turns, axis=1), 1.0, atol=ROUNDING)
+    np.testing.assert_allclose(np.hypot(feet[:, 0], feet[:, 1]), 2.04, atol=ROUNDING)
+    # each faces the middle, and the wall rises outward by tan(0.3) for each metre of height
+    upward = np.column_stack([feet[:, :2] / 2.04 * math.tan(0.3), np.ones(12)])
+    np.testing.assert_allclose(np.einsum("ij,ij->i", normals, upward), 0.0, atol=ROUNDING)
+    assert (np.einsum("ij,ij->i", normals[:, :2], feet[:, :2]) < 0.0).all()
+
+
+@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
+@pytest.mark.parametrize(("tilt", "inclination"), ANGLES)
+def test_clearance_is_that_of_the_points_of_the_cylinder(
+    tan_alpha: float, tilt: float, inclination: float
+) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    b = cylinder.base_radius
+    points = _rims(cylinder, tilt)
+    # how far out of the original circle each point lies along the ground, in the direction of each wall
+    azimuth = np.linspace(0.0, math.pi, 721)
+    radial = np.outer(points[:, 0], np.cos(azimuth)) + np.outer(points[:, 1], np.sin(azimuth))
+    out = (radial - points[:, 2:] * math.tan(inclination)).max() / b - 1.0
+    # walls 0.25 deg apart: (half a step)^2/2 is 2e-6, of a body up to 20 b high; the wall ahead is among them
+    assert clearance_needed(cylinder, tilt, inclination) == pytest.approx(max(out, 0.0), abs=2e-5)
+
+
+def test_walls_that_lean_enough_need_none_and_upright_ones_the_side() -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    b, height = cylinder.base_radius, 2.0 * cylinder.half_height
+    for tilt in (0.0, 1e-3, 0.1, 0.4):
+        assert clearance_needed(cylinder, tilt, tilt) == 0.0
+        assert clearance_needed(cylinder, tilt, tilt + 0.1) == 0.0
+        # a vertical wall as high as the cylinder stands back w tan(theta), w the height that its side reaches
+        w = height * math.cos(tilt)
+        assert clearance_needed(cylinder, tilt, 0.0) * b == pytest.approx(w * math.tan(tilt), abs=ROUNDING)
+
+
+@pytest.mark.parametrize("tilt", [0.01, 0.3, 1.2])
+def test_overhang_of_the_rim_is_that_of_its_points(tilt: float) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    base = _rims(cylinder, tilt)[:7200]
+    reach = np.hypot(base[:, 0], base[:, 1])
+    furthest = int(np.argmax(reach))
+    overhang, height = rim_overhang(tilt)
+    b = cylinder.base_radius
+    # the largest of 7200 points misses the top of a parabola by the square of half a step
+    assert overhang == pytest.approx(reach[furthest] / b - 1.0, abs=1e-6)
+    assert height == pytest.approx(base[furthest, 2] / b, abs=1e-3)
+    c = math.cos(tilt)
+    design = math.sqrt(1.0 + (1.0 - c) * ((1.0 - c) + c * c / (1.0 + c))) - 1.0
+    assert overhang == pytest.approx(design, abs=ROUNDING)
+
+
+@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
+@pytest.mark.parametrize(("tilt", "inclination"), [angles for angles in ANGLES if angles[0] > angles[1]])
+def test_engine_touches_a_wall_just_where_the_geometry_says(
+    tan_alpha: float, tilt: float, inclination: float
+) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    needed = clearance_needed(cylinder, tilt, inclination)
+    assert needed > 0.0
+    # the ring has eight walls: the lean is such that one of them is where the cylinder reaches furthest
+    off = _off_the_lean(cylinder, tilt, inclination)
+    poses = [(tilt, off), (tilt, 0.5 * math.pi + off)]
+    assert (_wall_contacts(cylinder, needed - MARGIN, inclination, poses) > 0).all()
+    assert (_wall_contacts(cylinder, needed + MARGIN, inclination, poses) == 0).all()
+
+
+@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
+def test_engine_touches_no_wall_that_leans_enough(tan_alpha: float) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    tilts = np.linspace(0.02, 1.0, 15) * cylinder.alpha
+    poses = [(tilt, azimuth) for tilt in tilts for azimuth in (0.0, 0.1, 2.0)]
+    assert (_wall_contacts(cylinder, MARGIN, cylinder.alpha, poses) == 0).all()
+    # and touches those of a foot that is too near
+    assert (_wall_contacts(cylinder, 0.0, 0.5 * cylinder.alpha, [(cylinder.alpha, 0.0)]) > 0).all()
+
+
+@pytest.mark.parametrize(
+    "change", [{"tilt": -0.1}, {"tilt": 2.0}, {"inclination": -0.1}, {"inclination": 1.6}]
+)
+def test_angles_out_of_range_are_refused(change: dict[str, float]) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    with pytest.raises(ValueError, match=r"must be from 0 to .*, got"):
+        clearance_needed(cylinder, **{"tilt": 0.1, "inclination": 0.1, **change})
+
+
+def _rims(cylinder: Cylinder, tilt: float) -> Array:
+    """Points of the rim of the base, then of the top, leaning along x on the original circle, (14400, 3)."""
+    b, s, c = cylinder.base_radius, math.sin(tilt), math.cos(tilt)
+    around = 2.0 * math.pi * np.arange(7200) / 7200
+    # the lowest point is that at which `around` is zero
+    base = np.column_stack(
+        [b * (1.0 - c) + b * c * np.cos(around), b * np.sin(around), b * s * (1.0 - np.cos(around))]
+    )
+    axis = 2.0 * cylinder.half_height * np.array([s, 0.0, c])
+    return np.vstack([base, base + axis])
+
+
+def _off_the_lean(cylinder: Cylinder, tilt: float, inclination: float) -> float:
+    """Azimuth between the lean and the wall that the cylinder reaches first [rad]."""
+    slope = 2.0 * cylinder.half_height / cylinder.base_radius + math.tan(0.5 * tilt)
+    along = min(math.sin(tilt - inclination), slope / math.hypot(1.0, slope))
+    cosine = (along + math.cos(tilt) * math.sin(inclination)) / (math.sin(tilt) * math.cos(inclination))
+    return math.acos(min(cosine, 1.0))
+
+
+def _wall_contacts(
+    cylinder: Cylinder, clearance: float, inclination: float, poses: list[tuple[float, float]]
+) -> Array:
+    """Number of contacts with walls that the engine finds, at tilts and azimuths."""
+    body = scaled_body(cylinder, 1.0)
+    starts = [starting_state(body, InitialState(tilt, rolling_angle=azimuth), 1.0) for tilt, azimuth in poses]
+    scene = Scene(
+        body=body,
+        start=starts[0],
+        support="ring",
+        friction=1.0,
+        time_step=1e-4,
+        gravity=9.81,
+        components="",
+        unit_time=1.0,
+    )
+    ring = RingSettings(ring_clearance=clearance, ring_inclination=inclination, ring_facets=8)
+    model = compile_scene(scene, MujocoSettings.resolve({}, 1e-4), standing=False, ring=ring)
+    data = mujoco.MjData(model)
+    found = []
+    for start in starts:
+        data.qpos[:3], data.qpos[3:] = start.position, start.quaternion
+        mujoco.mj_forward(model, data)
+        found.append(data.sensordata[0])
+    return np.array(found)
