@@ -5,6 +5,7 @@ reduced models as far as an engine has them. Nothing here knows the reduced mode
 and energy are derived from the pose of a rigid body.
 """
 
+from .ensemble import simulate_many
 from .registry import BrokenEngineError, EngineNotInstalledError, available_engines, engine_names
 from .simulate import simulate
 from .trajectory import Trajectory
@@ -16,4 +17,5 @@ __all__ = [
     "available_engines",
     "engine_names",
     "simulate",
+    "simulate_many",
 ]

@@ -56,16 +56,22 @@ class MujocoEngine:
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
         """Open the scene at its start."""
-        import mujoco
         from mujoco import rollout
+
+        with self.together(), rollout.Rollout(nthread=0) as runner:
+            others, ring = take_ring(settings, scene.support, scene.body.tan_alpha)
+            yield _MujocoStepper(scene, MujocoSettings(**others), ring, runner)
+
+    @contextlib.contextmanager
+    def together(self) -> Iterator[None]:
+        """Let several runs go side by side in threads: rollouts leave the interpreter free."""
+        import mujoco
 
         reporter = mujoco.get_mju_user_warning()
         # warnings are counted in the data; the engine would also write them to a file where the user works
         mujoco.set_mju_user_warning(lambda message: None)
         try:
-            with rollout.Rollout(nthread=0) as runner:
-                others, ring = take_ring(settings, scene.support, scene.body.tan_alpha)
-                yield _MujocoStepper(scene, MujocoSettings(**others), ring, runner)
+            yield
         finally:
             mujoco.set_mju_user_warning(reporter)
 
