@@ -155,9 +155,7 @@ class _ExudynStepper:
             )
         )
         inertia = [body.transverse_inertia, body.transverse_inertia, body.axial_inertia, 0.0, 0.0, 0.0]
-        cylinder = system.AddObject(
-            items.ObjectRigidBody(physicsMass=1.0, physicsInertia=inertia, nodeNumber=node)
-        )
+        cylinder = system.AddObject(items.ObjectRigidBody(mass=1.0, inertia=inertia, nodeNumber=node))
         centre = system.AddMarker(items.MarkerBodyMass(bodyNumber=cylinder))
         system.AddLoad(items.LoadMassProportional(markerNumber=centre, loadVector=[0.0, 0.0, -scene.gravity]))
         if self._excited:
