@@ -13,8 +13,8 @@ from rockwobble.multibody.registry import find_engine, standard_engines
 
 SUPPORTS = ("guided", "free")
 
-# a cylinder on open ground is free to roll out: the rolling model is its own reduced model; so it is in a ring
-# until it first touches a wall
+# a cylinder on open ground is free to roll out: the rolling model is its own reduced model, as it is in a
+# ring until the first touch of a wall
 SUPPORT_REFERENCES = {"free": ("rolling",), "ring": ("rolling",)}
 
 
@@ -59,7 +59,7 @@ def require_runnable(case: Case, run: Run) -> None:
         or the time step is too large for contact.
     """
     require_able(find_engine(run.engine), run.engine, case, run.support)
-    if run.time_step is not None:
+    if run.time_step is not None and run.time_step != "auto":
         check_time_step(run.time_step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
 
 
@@ -69,18 +69,28 @@ def default_runs(
     """Return every engine that serves any case with each support, the guided ones first.
 
     Engines that are named run whatever they can do: with the supports that they have where none is named.
-    Where supports are named and engines are not, each support gets the engines that have it.
+    Where only supports are named, each gets the engines that have it, or all if none has, which will say so.
     """
-    named = engines is not None and supports is not None
+    if engines is not None and supports is not None:
+        return tuple(Run(engine, support) for support in supports for engine in engines)
     if engines is None:
         reserved = reserved_engines()
         engines = [name for name in installed_engines() if name not in reserved]
-    return tuple(
-        Run(engine, support)
-        for support in (SUPPORTS if supports is None else supports)
-        for engine in engines
-        if named or support in find_engine(engine).supports
-    )
+    runs = []
+    for support in SUPPORTS if supports is None else supports:
+        able = [engine for engine in engines if support in find_engine(engine).supports]
+        runs += [Run(engine, support) for engine in able or (engines if supports is not None else ())]
+    return tuple(runs)
+
+
+def unsupported(supports: Sequence[str]) -> tuple[str, ...]:
+    """Return why a default run with these supports leaves out installed engines, one sentence for each."""
+    reserved = reserved_engines()
+    names = [name for name in installed_engines() if name not in reserved]
+    lacks = [
+        (name, support) for support in supports for name in names if support not in find_engine(name).supports
+    ]
+    return tuple(f"{name} has no {support} support and is left out there" for name, support in lacks)
 
 
 def references_of(run: Run, reference: str) -> tuple[str, ...]:
@@ -89,12 +99,21 @@ def references_of(run: Run, reference: str) -> tuple[str, ...]:
     return (reference, *more)
 
 
+def _step_label(time_step: float | str) -> str:
+    return time_step if isinstance(time_step, str) else f"{time_step:g} s"
+
+
+def own_model(support: str) -> str:
+    """Return the reduced model that describes a support: what an exact engine would follow."""
+    return "rolling" if support == "free" else "recess"
+
+
 def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
     """Return a label for each run: engine and support, and as much more as tells them apart."""
     labels = [f"{run.engine} {run.support}" for run in runs]
     if len(set(labels)) < len(labels):
         labels = [
-            f"{label} {run.time_step:g} s" if run.time_step and labels.count(label) > 1 else label
+            f"{label} {_step_label(run.time_step)}" if run.time_step and labels.count(label) > 1 else label
             for label, run in zip(labels, runs, strict=True)
         ]
     if len(set(labels)) < len(labels):

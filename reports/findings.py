@@ -6,7 +6,12 @@ import math
 from typing import Any
 
 PEAK_WORTH_A_WORD = 0.01  # difference of peak tilts, relative
-PLACES = {"guided": "In an ideal recess (guided)", "free": "On open ground (free)"}
+PLACES = {
+    "guided": "In an ideal recess (guided)",
+    "free": "On open ground (free)",
+    "ring": "In a recess of walls (ring)",
+}
+TOUCHED = "touched a wall"  # in the message of a run
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -48,6 +53,12 @@ def _reason(row: Any, length: float) -> str:
         return (
             "on open ground the cylinder may roll out of its place, which a recess forbids; this is a "
             "difference of support, not of accuracy"
+        )
+    if row.support == "ring" and (row.reference == "recess" or TOUCHED in row.message):
+        return (
+            "the walls of a ring hold the cylinder only where it has rolled out as far as their clearance, "
+            "and each touch takes energy, which neither model knows; this is a difference of support, not of "
+            "accuracy"
         )
     if foretold < length and row.agreement_horizon >= foretold:
         return (

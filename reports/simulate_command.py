@@ -29,7 +29,7 @@ Support = Annotated[
     str,
     typer.Option(
         "--support",
-        help="Of the engine: guided (ideal recess) or free (open ground).",
+        help="Of the engine: guided (ideal recess), free (open ground) or ring (walls, MuJoCo only).",
         rich_help_panel="Method",
     ),
 ]

@@ -5,7 +5,7 @@ import importlib.util
 import pytest
 
 from rockwobble.compare import default_runs, installed_engines, missing_engines
-from rockwobble.compare.runs import references_of, require_runnable, run_labels
+from rockwobble.compare.runs import references_of, require_runnable, run_labels, unsupported
 from rockwobble.models import Case, Cylinder, Run
 
 
@@ -52,6 +52,26 @@ def test_open_ground_is_held_against_both_models():
     assert references_of(Run("mujoco", "guided"), "recess") == ("recess",)
     assert references_of(Run("mujoco", "free"), "recess") == ("recess", "rolling")
     assert references_of(Run("mujoco", "free"), "rolling") == ("rolling",)
+    assert references_of(Run("mujoco", "ring"), "recess") == ("recess", "rolling")
+
+
+def test_a_support_that_no_engine_has_is_refused(case):
+    runs = default_runs(supports=["glued"])
+    assert runs
+    for run in runs:
+        with pytest.raises(ValueError, match=r"got 'glued'"):
+            require_runnable(case, run)
+
+
+def test_a_ring_runs_with_the_engines_that_have_it_unless_others_are_named(case):
+    assert [(run.engine, run.support) for run in default_runs(supports=["ring"])] == [("mujoco", "ring")]
+    both = default_runs(supports=["ring", "free"])
+    assert ("pybullet", "ring") not in [(run.engine, run.support) for run in both]
+    if "pybullet" in installed_engines():
+        assert unsupported(["ring", "free"]) == ("pybullet has no ring support and is left out there",)
+        assert ("pybullet", "free") in [(run.engine, run.support) for run in both]
+        with pytest.raises(ValueError, match=r"one of guided, free in pybullet, got 'ring'"):
+            require_runnable(case, *default_runs(["pybullet"], ["ring"]))
 
 
 def test_labels_tell_runs_apart_with_as_little_as_possible():

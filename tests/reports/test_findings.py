@@ -47,6 +47,12 @@ def test_agreement_to_the_end():
         ({"predicted_horizon": 30.0, "closest_pass": math.nan}, "an error of the method and not of chance"),
         ({"support": "free"}, "on open ground the cylinder may roll out"),
         ({"support": "free", "reference": "rolling"}, "a pass comes closer to the apex"),
+        ({"support": "ring"}, "only where it has rolled out as far as their clearance"),
+        (
+            {"support": "ring", "reference": "rolling", "message": "the cylinder touched a wall from 2 s on"},
+            "each touch takes energy",
+        ),
+        ({"support": "ring", "reference": "rolling"}, "a pass comes closer to the apex"),
     ],
 )
 def test_a_parting_and_its_reason_follow_from_the_numbers(values, words):
