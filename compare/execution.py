@@ -206,7 +206,9 @@ def _cost(job: Job) -> float:
     if isinstance(job.method, str):
         return math.inf  # may compile
     per_step = 1.0 if job.method.engine == "mujoco" else 3.0
-    return job.case.length / (job.method.time_step or 1e-4) * per_step
+    step = job.method.time_step or 1e-4
+    # the usual search ends at half of the default step
+    return job.case.length / (2.5e-5 if step == "auto" else step) * per_step
 
 
 def _cores() -> int:

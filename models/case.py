@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
+from typing import Any, Literal
 
 from ._validation import require_finite, require_positive
 from .cylinder import Cylinder
@@ -87,24 +87,31 @@ class Run:
         Name of the engine, such as "mujoco" or "pybullet".
     support : str
         What holds the cylinder in place: "guided", "free", ...
-    time_step : float, optional
-        [s]; default: the engine's own choice for the size of the cylinder.
+    time_step : float or "auto", optional
+        [s]; default: the engine's own choice for the size of the cylinder. "auto": halved until the
+        result has settled.
     **settings
         Passed to the engine as they are.
 
     Raises
     ------
     ValueError
-        If the time step is not positive.
+        If the time step is neither positive nor "auto".
     """
 
     engine: str
     support: str
-    time_step: float | None
+    time_step: float | Literal["auto"] | None
     settings: Mapping[str, Any]
 
-    def __init__(self, engine: str, support: str, time_step: float | None = None, **settings: Any) -> None:
-        if time_step is not None:
+    def __init__(
+        self,
+        engine: str,
+        support: str,
+        time_step: float | Literal["auto"] | None = None,
+        **settings: Any,
+    ) -> None:
+        if time_step is not None and not (isinstance(time_step, str) and time_step == "auto"):
             time_step = require_positive("time_step", time_step, "s")
         object.__setattr__(self, "engine", engine)
         object.__setattr__(self, "support", support)
@@ -116,7 +123,9 @@ class Run:
         return _restore_run, (self.engine, self.support, self.time_step, dict(self.settings))
 
 
-def _restore_run(engine: str, support: str, time_step: float | None, settings: dict[str, Any]) -> Run:
+def _restore_run(
+    engine: str, support: str, time_step: float | Literal["auto"] | None, settings: dict[str, Any]
+) -> Run:
     return Run(engine, support, time_step, **settings)
 
 

@@ -48,7 +48,7 @@ def build_suite(table: SuiteTable, folder: Path) -> Suite:
 def _runs(table: RunTable, path: str) -> Iterator[Run]:
     for engine, support, step in itertools.product(table.engine, table.support, table.time_step or (None,)):
         with located(path):
-            yield Run(engine, support, step, **table.settings)  # type: ignore[arg-type]
+            yield Run(engine, support, step, **table.settings)
 
 
 def _cases(table: CaseTable, path: str, folder: Path) -> Iterator[Case]:

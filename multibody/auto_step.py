@@ -1,0 +1,199 @@
+"""time_step="auto": the step is halved until the tilt no longer depends on it.
+
+Runs of successive steps are held against each other, each against the one of twice its step. Two traces
+that near passes of the apex tell apart are compared only up to the last pass before they part, for
+beyond it no step is small enough: they part where they differ by 1 % of alpha. The tilt has settled when
+
+* the two agree within the tolerance to the end of the run; or
+* they agree within the tolerance until they part, and a further halving does not put off the parting.
+
+Halving ends without that where it no longer brings the traces closer, which engines know (a smaller step
+is not always better), or at the smallest step. The run that is kept is the last that was an improvement.
+
+The estimate of the remaining error is Richardson's: with differences d1 and then d2 of successive
+halvings, the order is p = log2(d1/d2), and what is left of the finer one d2/(2^p - 1).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .guard import LARGEST_STEP
+from .trajectory import Trajectory
+
+AUTO = "auto"
+COARSEST = 4e-4  # [s] at the reference size: four times the default, so that easy cases cost a fourth
+SMALLEST = 6.25e-6  # [s] at the reference size: six halvings; below it rounding and cost grow, not accuracy
+STEP_TOLERANCE = 1e-3  # of alpha; the default, a tenth of the difference at which traces part
+_PARTED = 0.01  # of alpha
+_PUT_OFF = 1.05  # a parting later by less is no gain
+_CLOSER = 0.9  # a difference reduced by less is no gain
+_ORDERS = 0.5, 2.0  # least and largest order that an estimate relies on
+
+assert COARSEST <= LARGEST_STEP
+
+Attempt = Callable[[float, Callable[[float], None]], Trajectory]
+Progress = Callable[[float], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Closeness:
+    """How close two traces of one case are.
+
+    Attributes
+    ----------
+    difference : float
+        Largest difference of the tilt until `until` [rad].
+    until : float
+        The end of the shorter trace, or the last pass before the parting [s].
+    parting : float
+        Where they part; infinite if they do not [s].
+    """
+
+    difference: float
+    until: float
+    parting: float
+
+
+def find_step(
+    attempt: Attempt, unit_time: float, alpha: float, tolerance: float, progress: Progress | None
+) -> Trajectory:
+    """Return the run whose tilt has settled, or the best one with the reason why it has not.
+
+    Parameters
+    ----------
+    attempt : callable
+        Runs with a time step [s] and a callback for its fraction done.
+    unit_time : float
+        User seconds in one second of the reference scene.
+    alpha : float
+        Of the cylinder [rad].
+    tolerance : float
+        In alpha.
+    progress : callable, optional
+        Called with the fraction done, as if all steps down to the smallest had to be tried.
+    """
+    steps = [COARSEST * unit_time]
+    while steps[-1] > SMALLEST * unit_time * 1.5:
+        steps.append(0.5 * steps[-1])
+    shares = _shares(steps)
+    best, coarser = None, None  # the run to keep, and the last one
+    found: list[Closeness] = []  # of the run to keep and all before it
+    verdict, spent = "it still changes at the smallest step that is tried", 0.0
+    for index, step in enumerate(steps):
+        run = attempt(step, _part(progress, shares[index], shares[index + 1]))
+        spent += run.wall_time
+        if best is None or best.outcome == "failed":
+            best = run
+        elif run.outcome == "failed":
+            verdict = f"at {run.time_step:.3g} s the run fails, because {run.message}"
+            break
+        else:
+            assert coarser is not None
+            trial = [*found, closeness(coarser, run, alpha)]
+            end, gain = _judge(trial, tolerance * alpha)
+            if gain:
+                best, found = run, trial
+            if end is not None:
+                verdict = end
+                break
+        coarser = run
+    if progress is not None:
+        progress(1.0)
+    assert best is not None
+    return replace(_reported(best, found, verdict, alpha), wall_time=spent)
+
+
+def closeness(coarse: Trajectory, fine: Trajectory, alpha: float) -> Closeness:
+    """Return how close two traces are in tilt, by their samples."""
+    count = min(len(coarse.time), len(fine.time))
+    same = np.abs(coarse.time[:count] - fine.time[:count]) <= 1e-9 * max(fine.time[-1], 1.0)
+    # the last sample of a run that overturned stands at its own time
+    count = count if same.all() else int(np.argmin(same))
+    distance = np.abs(coarse.tilt[:count] - fine.tilt[:count])
+    beyond = np.flatnonzero(distance > _PARTED * alpha)
+    if not len(beyond):
+        ends_alike = coarse.outcome == fine.outcome or "overturned" not in (coarse.outcome, fine.outcome)
+        end = float(fine.time[count - 1])
+        return Closeness(float(distance.max(initial=0.0)), end, math.inf if ends_alike else end)
+    parting = float(fine.time[beyond[0]])
+    passes = np.asarray(fine.passes["time"], dtype=float)
+    earlier = passes[passes < parting]
+    until = float(earlier[-1]) if len(earlier) else 0.0
+    within = distance[: int(np.searchsorted(fine.time, until, side="right"))]
+    return Closeness(float(within.max(initial=0.0)), until, parting)
+
+
+def _judge(found: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
+    """Return why to stop, "" where the tilt has settled and None to go on, and whether the last is a gain."""
+    last = found[-1]
+    close = last.difference <= tolerance
+    if math.isinf(last.parting) and close:
+        return "", True
+    if len(found) < 2:
+        return None, True
+    before = found[-2]
+    if last.parting > before.parting * _PUT_OFF:
+        return None, True
+    if math.isfinite(last.parting):
+        # the one before parted later: the smaller step is the worse one
+        gain = last.parting >= before.parting / _PUT_OFF
+        return ("" if close and gain else "a smaller step does not put off the parting"), gain
+    if last.difference > _CLOSER * before.difference:
+        return "a smaller step does not bring it closer", last.difference <= before.difference
+    return None, True
+
+
+def _estimate(found: list[Closeness]) -> tuple[float, float]:
+    """Return Richardson's estimate of the error that is left [rad], and the order that it rests on."""
+    last = found[-1]
+    order = 1.0
+    if len(found) > 1 and last.difference > 0.0 and found[-2].until >= last.until / _PUT_OFF:
+        order = math.log2(max(found[-2].difference, 1e-300) / last.difference)
+    order = min(max(order, _ORDERS[0]), _ORDERS[1])
+    return last.difference / (2.0**order - 1.0), order
+
+
+def _reported(run: Trajectory, found: list[Closeness], verdict: str, alpha: float) -> Trajectory:
+    if not found:
+        said = f"no other step can be held against {run.time_step:.3g} s: {verdict}"
+        return run if run.outcome == "failed" else replace(run, message=_joined(run.message, said))
+    last = found[-1]
+    until = (
+        "" if math.isinf(last.parting) else f" until {last.until:.4g} s, the last pass before traces part,"
+    )
+    error, order = _estimate(found)
+    if verdict:
+        said = (
+            f"the tilt has not settled by halving the step: {verdict}; at {run.time_step:.3g} s "
+            f"it differs{until} by {last.difference / alpha:.1e} alpha from that at twice the step"
+        )
+    else:
+        said = (
+            f"time step {run.time_step:.3g} s: the tilt is{until} within {error / alpha:.1e} alpha of its "
+            f"limit, by Richardson with order {order:.2g}"
+        )
+    message = _joined(run.message, said)
+    return replace(run, error_estimate=error, settled_until=last.until, message=message)
+
+
+def _joined(*parts: str) -> str:
+    return "; ".join(part for part in parts if part)
+
+
+def _shares(steps: list[float]) -> list[float]:
+    """Fractions of the whole work that are done before each step and after the last."""
+    work = np.cumsum([0.0, *(1.0 / step for step in steps)])
+    return [float(value) for value in work / work[-1]]
+
+
+def _part(progress: Progress | None, start: float, end: float) -> Progress:
+    def tell(fraction: float) -> None:
+        if progress is not None:
+            progress(start + (end - start) * fraction)
+
+    return tell

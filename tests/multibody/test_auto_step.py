@@ -1,0 +1,170 @@
+"""time_step="auto": halved until the tilt has settled, with an estimate of the error that holds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import multibody
+from rockwobble.models import Cylinder, InitialState, Run
+from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
+from rockwobble.multibody.trajectory import Trajectory
+
+ALPHA = 0.2
+# Richardson with a measured order is good for a factor; three is what it misses by at the bounds of the order
+ESTIMATE = 3.0
+
+
+@pytest.mark.parametrize(("support", "tan_alpha"), [("guided", 0.2), ("free", 3.0)])
+def test_the_error_is_as_estimated(
+    engine: str, support: str, tan_alpha: float, solve_free: Callable[..., Any]
+) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    release = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
+    told: list[float] = []
+    run = multibody.simulate(
+        cylinder,
+        initial=release,
+        duration=2.0,
+        engine=engine,
+        support=support,
+        time_step="auto",
+        step_tolerance=2e-4,
+        progress=told.append,
+    )
+    exact = solve_free(cylinder, release, run.time, rolls_out=support == "free")
+    assert run.outcome == "completed"
+    assert run.settled_until == 2.0
+    error = float(np.abs(run.tilt - exact.tilt).max())
+    assert error < ESTIMATE * run.error_estimate
+    assert run.error_estimate < 2e-4 * cylinder.alpha
+    assert f"time step {run.time_step:.3g} s" in run.message
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+
+
+def test_a_run_with_a_given_step_has_no_estimate(pier: Cylinder) -> None:
+    run = multibody.simulate(pier, initial=InitialState(0.1), duration=0.02)
+    assert np.isnan(run.error_estimate)
+    assert np.isnan(run.settled_until)
+
+
+def test_the_step_scales_with_size() -> None:
+    small = Cylinder(semidiagonal=0.06, tan_alpha=0.2)
+    release = InitialState(small.alpha / 2, rolling_rate=5.0)
+    run = multibody.simulate(small, initial=release, duration=0.1, time_step="auto")
+    assert run.time_step == pytest.approx(0.1 * COARSEST / 2)
+
+
+def made(tilt: Any, *, passes: tuple[float, ...] = (), outcome: str = "completed") -> Trajectory:
+    """Return a trajectory with that tilt and nothing else to speak of."""
+    import pandas as pd
+
+    n = len(tilt)
+    zeros, points = np.zeros(n), np.zeros((n, 3))
+    return Trajectory(
+        engine="made", support="free", engine_version="", time_step=1.0, settings={}, wall_time=1.0,
+        time=0.01 * np.arange(n), tilt=np.asarray(tilt, dtype=float), tilt_rate=zeros, rolling_angle=zeros,
+        rolling_rate=zeros, twist=zeros, contact_point=points[:, :2], contact_offset=zeros,
+        contact_force=points, centre_of_mass=points, energy=zeros, energy_error=zeros, slip=zeros,
+        wall_contact=zeros, wall_impulse=zeros, first_wall_contact=np.nan, peak_tilt=0.1, outcome=outcome,
+        message="why" if outcome == "failed" else "", uplift_time=0.0, uplift_direction=0.0,
+        passes=pd.DataFrame({"time": passes}), contact_resolution=1e-6, residual_displacement=0.0,
+        residual_twist=0.0,
+    )  # fmt: skip
+
+
+def search(
+    tilt_of: Callable[[float], Any], tolerance: float = 1e-3, **kept: Any
+) -> tuple[Trajectory, list[float]]:
+    """Find the step of a made-up engine; return the run and the steps that were tried."""
+    from dataclasses import replace
+
+    steps: list[float] = []
+
+    def attempt(step: float, _: Any) -> Trajectory:
+        steps.append(step)
+        given = tilt_of(step)
+        run = given if isinstance(given, Trajectory) else made(given, **kept)
+        return replace(run, time_step=step)
+
+    return find_step(attempt, 1.0, ALPHA, tolerance, None), steps
+
+
+@pytest.mark.parametrize("order", [1.0, 2.0])
+def test_the_estimate_is_exact_where_the_order_is(order: float) -> None:
+    shape = np.sin(np.arange(100))
+    run, steps = search(lambda step: 0.1 + 10.0 * (step / COARSEST) ** order * 2e-4 * shape, 2e-3)
+    # known from the third run on, when the order was measured
+    assert len(steps) >= 3
+    error = np.abs(run.tilt - 0.1).max()
+    assert run.error_estimate == pytest.approx(error, rel=1e-6)
+    assert f"order {order:g}" in run.message
+
+
+def test_halving_ends_where_it_no_longer_helps() -> None:
+    # converging at first, and then worse with each step
+    level = {COARSEST: 8e-4, COARSEST / 2: 4e-4, COARSEST / 4: 2e-4, COARSEST / 8: 6e-4}
+    run, steps = search(lambda step: np.full(50, 0.1 + level[step]), 1e-4)
+    assert "does not bring it closer" in run.message
+    assert "has not settled" in run.message
+    assert run.time_step == COARSEST / 4
+    assert len(steps) == 4
+
+
+def test_halving_ends_at_the_smallest_step() -> None:
+    run, steps = search(lambda step: 0.1 + np.full(50, 0.0015 * (step / COARSEST) ** 0.2), 1e-7)
+    assert steps[-1] == pytest.approx(SMALLEST)
+    assert "has not settled by halving the step: it still changes at the smallest step" in run.message
+
+
+def test_a_parting_that_stays_is_where_agreement_ends() -> None:
+    def tilt(step: float) -> Any:
+        side = 1.0 if round(np.log2(COARSEST / step)) % 2 else -1.0
+        return 0.1 + np.where(np.arange(200) < 120, 1e-5 * step / COARSEST, 0.05 * side)
+
+    run, _ = search(tilt, passes=(0.5, 1.1, 1.5))
+    assert run.settled_until == 1.1
+    assert run.error_estimate < 2e-5
+    assert "until 1.1 s, the last pass before traces part," in run.message
+
+
+def test_failed_steps_are_passed_over() -> None:
+    fails = made([0.1], outcome="failed")
+    run, steps = search(lambda step: fails if step > 0.9 * COARSEST else np.full(50, 0.1))
+    assert run.outcome == "completed"
+    assert len(steps) == 3
+    run, _ = search(lambda step: fails)
+    assert run.outcome == "failed"
+    assert run.message == "why"
+    run, _ = search(lambda step: fails if step < 0.9 * COARSEST else np.full(50, 0.1))
+    assert run.time_step == COARSEST
+    assert "the run fails, because why" in run.message
+
+
+def test_closeness_knows_an_end_before_the_other() -> None:
+    whole, short = made(np.full(50, 0.1)), made(np.full(30, 0.1), outcome="overturned")
+    assert closeness(whole, short, ALPHA) == Closeness(0.0, pytest.approx(0.29), pytest.approx(0.29))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ({"time_step": "fine"}, 'a number \\[s\\] or "auto"'),
+        ({"time_step": "auto", "step_tolerance": 0.0}, "step_tolerance must be positive"),
+        ({"time_step": 1e-4, "step_tolerance": 1e-3}, 'goes with time_step="auto"'),
+        ({"time_step": "auto", "nonsense": 1}, "not a setting"),
+    ],
+)
+def test_what_is_refused(pier: Cylinder, arguments: dict[str, Any], line: str) -> None:
+    with pytest.raises(ValueError, match=line):
+        multibody.simulate(pier, initial=InitialState(0.1), duration=0.1, **arguments)
+
+
+def test_a_run_takes_it() -> None:
+    assert Run("mujoco", "free", "auto").time_step == "auto"
+    with pytest.raises(ValueError, match="time_step"):
+        Run("mujoco", "free", "aut")  # type: ignore[arg-type]
