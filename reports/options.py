@@ -11,6 +11,7 @@ from typing import Annotated
 import typer
 
 _BODY, _GROUND, _RELEASE, _METHOD = "Cylinder", "Ground motion", "Release", "Method"
+_FOREIGN = "Trajectory of a shake table or another code"
 
 Semidiagonal = Annotated[
     float, typer.Option("--semidiagonal", help="R = sqrt(b^2 + h^2), in m.", rich_help_panel=_BODY)
@@ -73,7 +74,8 @@ Supports = Annotated[
     list[str] | None,
     typer.Option(
         "--support",
-        help="guided (ideal recess) or free (open ground); may be repeated. Default: both.",
+        help="guided (ideal recess), free (open ground) or ring (walls, MuJoCo only); may be repeated. "
+        "Default: guided and free.",
         rich_help_panel=_METHOD,
     ),
 ]
@@ -83,6 +85,47 @@ TimeStep = Annotated[
         "--time-step",
         help="Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size.",
         rich_help_panel=_METHOD,
+    ),
+]
+SuiteName = Annotated[
+    str | None,
+    typer.Argument(
+        metavar="[SUITE]",
+        help="A suite of cases and runs: a TOML file, or one that ships: canon, p695, quick.",
+        show_default=False,
+    ),
+]
+Trajectories = Annotated[
+    list[Path] | None,
+    typer.Option(
+        "--trajectory",
+        help="CSV of time, tilt and azimuth (or qw, qx, qy, qz) from a shake table or another code; "
+        "may be repeated.",
+        rich_help_panel=_FOREIGN,
+    ),
+]
+TrajectoryAngles = Annotated[
+    str | None,
+    typer.Option(
+        "--trajectory-angles",
+        help="deg or rad, where its header does not say.",
+        rich_help_panel=_FOREIGN,
+    ),
+]
+TrajectoryOffset = Annotated[
+    float,
+    typer.Option(
+        "--trajectory-offset",
+        help="Added to its times, in s, so that 0 is the start of the run.",
+        rich_help_panel=_FOREIGN,
+    ),
+]
+TrajectoryNoise = Annotated[
+    float | None,
+    typer.Option(
+        "--trajectory-noise-deg",
+        help="Tilt below which it counts as standing, in deg. Default: 1e-4 alpha.",
+        rich_help_panel=_FOREIGN,
     ),
 ]
 Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]

@@ -19,10 +19,17 @@ _COMPILES = ("recess", "rolling", "planar")
 
 
 @contextmanager
-def shown_progress() -> Iterator[Tell]:
-    """Yield a callback that shows the runs: as moving lines in a terminal, as plain lines elsewhere."""
-    with _moving() if sys.stderr.isatty() else _plain() as tell:
-        yield tell
+def shown_progress(*, many: bool = False) -> Iterator[Tell]:
+    """Yield a callback that shows the runs: as moving lines in a terminal, as plain lines elsewhere.
+
+    Of `many` cases the runs are named with their case, and one bar says how far they are.
+    """
+    if sys.stderr.isatty():
+        with _one_bar() if many else _moving() as tell:
+            yield tell
+    else:
+        with _plain(many=many) as tell:
+            yield tell
 
 
 def _name(label: str) -> str:
@@ -52,18 +59,56 @@ def _moving() -> Iterator[Tell]:
 
 
 @contextmanager
-def _plain() -> Iterator[Tell]:
+def _one_bar() -> Iterator[Tell]:
+    from rich.console import Console
+    from rich.progress import (
+        BarColumn,
+        MofNCompleteColumn,
+        TextColumn,
+        TimeElapsedColumn,
+        TimeRemainingColumn,
+    )
+    from rich.progress import Progress as Bars
+
+    columns = (
+        BarColumn(),
+        MofNCompleteColumn(),
+        TimeElapsedColumn(),
+        TextColumn("left"),
+        TimeRemainingColumn(),
+        # a name may have brackets, which would be markup
+        TextColumn("{task.description}", markup=False),
+    )
+    with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
+        running: dict[tuple[str, str], str] = {}
+        task = bars.add_task("", total=None)
+
+        def tell(event: Progress) -> None:
+            run = (event.case, event.label)
+            if event.state == "started":
+                running[run] = f"{event.case}, {event.label}"
+            else:
+                running.pop(run, None)
+            last = next(reversed(running.values()), "")
+            bars.update(task, completed=event.done, total=event.total, description=last)
+
+        yield tell
+
+
+@contextmanager
+def _plain(*, many: bool) -> Iterator[Tell]:
     begun: dict[tuple[str, str], float] = {}
 
     def tell(event: Progress) -> None:
         run = (event.case, event.label)
+        place = f"{event.case}, " if many else ""
         if event.state == "started":
             begun[run] = time.monotonic()
-            print(f"running {_name(event.label)} ...", file=sys.stderr, flush=True)
+            print(f"running {place}{_name(event.label)} ...", file=sys.stderr, flush=True)
         else:
             took = time.monotonic() - begun[run]
             print(
-                f"  done {event.label} in {took:.1f} s ({event.done} of {event.total})",
+                f"  done {place}{event.label} in {took:.1f} s ({event.done} of {event.total})",
                 file=sys.stderr,
                 flush=True,
             )

@@ -31,10 +31,10 @@ def user_input() -> Iterator[None]:
 
 
 @contextmanager
-def interruptible() -> Iterator[None]:
-    """Turn Ctrl-C into one line and exit code 130."""
+def interruptible(left: str = "nothing was written") -> Iterator[None]:
+    """Turn Ctrl-C into one line, which says what is left behind, and exit code 130."""
     try:
         yield
     except KeyboardInterrupt:
-        complain("interrupted, nothing was written")
+        complain(f"interrupted, {left}")
         raise typer.Exit(INTERRUPTED) from None
