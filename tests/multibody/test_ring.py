@@ -1,0 +1,190 @@
+"""Runs in a ring: what is refused, what is reported, and when walls are touched."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import multibody
+from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.multibody import Trajectory
+from rockwobble.multibody.body import scaled_body
+from rockwobble.multibody.engine import Steps, Wall
+from rockwobble.multibody.guard import PENETRATION, first_breach
+from rockwobble.multibody.kinematics import kinematics
+from rockwobble.multibody.ring_geometry import clearance_needed
+from rockwobble.multibody.start import starting_state
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
+# rounding of 1e-15 after the first touches of a wall, each of which multiplies it
+TURNED = 1e-9
+# loss of energy that is no touch: an undisturbed run of this length gains or loses 1e-5 of its energy
+LOSSLESS = 1e-4
+
+
+def ring(
+    cylinder: Cylinder = SQUAT,
+    *,
+    tilt: float = 0.5,
+    rolling_rate: float = 0.5,
+    duration: float = 2.0,
+    **settings: Any,
+) -> Trajectory:
+    """Release at a tilt in alpha."""
+    initial = InitialState(tilt * cylinder.alpha, rolling_rate=rolling_rate)
+    return multibody.simulate(cylinder, initial=initial, duration=duration, support="ring", **settings)
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"ring_clearance": -0.1}, "ring_clearance must be from 0 to 100 [base radii], got -0.1"),
+        ({"ring_clearance": math.nan}, "ring_clearance must be from 0 to 100 [base radii], got nan"),
+        ({"ring_clearance": "wide"}, "ring_clearance must be from 0 to 100 [base radii], got 'wide'"),
+        (
+            {"ring_inclination": 1.6},
+            "ring_inclination must be from 0 to 1.5 [rad, outward from the vertical]",
+        ),
+        ({"ring_facets": 2}, "ring_facets must be a whole number from 3 to 360, got 2"),
+        ({"ring_facets": 8.0}, "ring_facets must be a whole number from 3 to 360, got 8.0"),
+        ({"ring_friction": -1.0}, "ring_friction must be from 0 to 100, got -1.0"),
+        (
+            {"ring_inclination": 0.1},
+            "a release at a tilt of 0.3927 rad needs walls that lean by as much or stand back by 0.5",
+        ),
+        ({"ring_stiffness": 1.0}, "'ring_stiffness' is not a setting of mujoco; allowed are "),
+        (
+            {"support": "guided", "ring_facets": 8},
+            "ring_facets is for support 'ring' only, got support 'guided'",
+        ),
+        (
+            {"support": "free", "ring_clearance": 0.1, "ring_facets": 8},
+            "ring_clearance, ring_facets is for support 'ring' only, got support 'free'",
+        ),
+        ({"engine": "pybullet"}, "support must be one of guided, free in pybullet, got 'ring'"),
+    ],
+)
+def test_what_is_refused(settings: dict[str, Any], message: str) -> None:
+    if settings.get("engine") == "pybullet" and "pybullet" not in multibody.available_engines():
+        pytest.skip("no wheel of pybullet here")
+    arguments = {"support": "ring", **settings}
+    with pytest.raises(ValueError, match=r"must|only|needs|not a setting") as caught:
+        multibody.simulate(SQUAT, initial=InitialState(SQUAT.alpha / 2), duration=1.0, **arguments)
+    assert str(caught.value).startswith(message)
+    assert "\n" not in str(caught.value)
+
+
+def test_settings_of_the_ring_are_reported_with_their_defaults() -> None:
+    run = ring(PIER, duration=0.05, ring_facets=12)
+    assert run.settings["ring_facets"] == 12
+    assert run.settings["ring_inclination"] == pytest.approx(PIER.alpha)
+    assert {"ring_clearance", "ring_friction"} <= set(run.settings)
+    free = multibody.simulate(PIER, initial=InitialState(0.1), duration=0.05, support="free")
+    assert not any(name.startswith("ring") for name in free.settings)
+
+
+def test_a_wide_ring_is_open_ground() -> None:
+    initial = InitialState(SQUAT.alpha / 2, rolling_rate=0.5)
+    wide = ring(ring_clearance=0.2)
+    free = multibody.simulate(SQUAT, initial=initial, duration=2.0, support="free")
+    # the same steps in the same order
+    np.testing.assert_allclose(wide.tilt, free.tilt, atol=1e-12)
+    assert math.isnan(wide.first_wall_contact)
+    assert not wide.wall_contact.any()
+    assert not wide.wall_impulse.any()
+    assert "wall" not in wide.message
+
+
+def test_a_cylinder_that_rolls_out_meets_the_wall_and_loses_energy() -> None:
+    run = ring(ring_clearance=1e-3)
+    assert run.outcome == "completed"
+    assert 0.5 < run.first_wall_contact < 1.5
+    assert f"touched a wall from {run.first_wall_contact:.4g} s on" in run.message
+    before = run.time < run.first_wall_contact
+    energy = run.energy[0]
+    assert not run.wall_contact[before].any()
+    assert (np.abs(run.energy_error[before]) < LOSSLESS * energy).all()
+    assert run.energy_error[-1] < -100 * LOSSLESS * energy
+    # time in contact and impulse only grow, together, and no faster than the clock
+    assert (np.diff(run.wall_contact) >= 0.0).all()
+    assert (np.diff(run.wall_impulse) >= 0.0).all()
+    assert 0.0 < run.wall_contact[-1] <= run.time[-1] - run.first_wall_contact + run.time_step
+    assert run.wall_impulse[-1] > 0.0
+    grows = np.diff(run.wall_impulse) > 0.0
+    assert (np.diff(run.wall_contact)[grows] > 0.0).all()
+    assert {"wall_contact", "wall_impulse"} <= set(run.to_frame())
+
+
+def test_first_contact_is_when_the_geometry_says() -> None:
+    # a plane motion rolls nowhere: only a wall that is too steep is in the way, once the tilt has grown
+    tilt = SQUAT.alpha / 2
+    inclination = 0.3
+    clearance = clearance_needed(SQUAT, tilt, inclination) + 1e-3
+    fall = InitialState(tilt, tilt_rate=0.3)
+    run = multibody.simulate(
+        SQUAT, initial=fall, duration=1.0, support="ring", sample_step=1e-3,
+        ring_clearance=clearance, ring_inclination=inclination,
+    )  # fmt: skip
+    first = run.first_wall_contact
+    touching = float(np.interp(first, run.time, run.tilt))
+    assert touching > tilt
+    # to the tilt of one step, 0.3 rad/s for 1e-4 s, where a radian needs 2.2 radii
+    assert clearance_needed(SQUAT, touching, inclination) == pytest.approx(clearance, abs=1e-4)
+
+
+def test_a_standing_cylinder_touches_no_wall_that_stands_back() -> None:
+    run = multibody.simulate(PIER, duration=0.3, support="ring", ring_clearance=1e-6)
+    assert run.outcome == "rest"
+    assert math.isnan(run.first_wall_contact)
+
+
+def test_walls_stop_a_cylinder_that_slides() -> None:
+    # 0.05 g on friction of 0.01, for half a second: 5 cm on open ground
+    push = GroundMotion(np.tile([-0.05 * 9.81, 0.0], (51, 1)), 0.01)
+    free = multibody.simulate(SQUAT, push, support="free", friction=0.01, duration=0.5)
+    held = multibody.simulate(SQUAT, push, support="ring", friction=0.01, duration=0.5, ring_clearance=1e-3)
+    b = SQUAT.base_radius
+    assert free.residual_displacement > 0.04
+    # the clearance, and the hop of a wedge that leans: the impact is plastic, so that it stays within twice
+    assert 0.9e-3 * b < held.residual_displacement < 2e-3 * b
+    assert held.first_wall_contact > 0.0
+
+
+def test_result_does_not_depend_on_the_size() -> None:
+    large, small = (
+        ring(Cylinder(semidiagonal=size, tan_alpha=1.0), rolling_rate=0.5 * rate, duration=1.0 / rate)
+        for size, rate in ((6.0, 1.0), (0.06, 10.0))
+    )
+    assert small.tilt[-1] == pytest.approx(large.tilt[-1], abs=TURNED)
+    assert small.first_wall_contact * 10.0 == pytest.approx(large.first_wall_contact, rel=TURNED)
+    assert small.wall_contact[-1] * 10.0 == pytest.approx(large.wall_contact[-1], rel=TURNED)
+    assert small.wall_impulse[-1] * 10.0 == pytest.approx(large.wall_impulse[-1], rel=1e-6)
+
+
+def test_a_turn_by_one_facet_changes_nothing() -> None:
+    turn = 2.0 * math.pi / 32
+    starts = [InitialState(SQUAT.alpha / 2, rolling_rate=0.5, rolling_angle=angle) for angle in (0.0, turn)]
+    one, other = (multibody.simulate(SQUAT, initial=start, duration=1.0, support="ring") for start in starts)
+    # each touch multiplies what rounding leaves: 3e-15 before the first, 5e-12 after 20 ms of them, and 3e-4
+    # a quarter of a second later
+    assert one.wall_contact[-1] > 0.01
+    np.testing.assert_allclose(other.tilt, one.tilt, atol=TURNED)
+    np.testing.assert_allclose(other.rolling_angle - turn, one.rolling_angle, atol=TURNED)
+
+
+def test_sinking_into_a_wall_is_a_breach() -> None:
+    body = scaled_body(SQUAT, 1.0)
+    start = starting_state(body, None, 1.0)
+    still = np.zeros((5, 3))
+    poses = Steps(np.tile(start.position, (5, 1)), np.tile(start.quaternion, (5, 1)), still, still)
+    state = kinematics(poses, poses, body, 9.81)
+    depth = np.array([0.0, 0.0, 0.5, 1.5, 2.0]) * PENETRATION * body.base_radius
+    wall = Wall(depth > 0.0, np.zeros(5), depth)
+    breach = first_breach(state, np.zeros(5), body, 9.81, guided=False, wall=wall)
+    assert breach is not None
+    assert (breach.index, breach.reason) == (3, "the cylinder sank into a wall")
+    assert first_breach(state, np.zeros(5), body, 9.81, guided=False) is None
