@@ -4,9 +4,9 @@ import importlib.util
 
 import pytest
 
-from rockwobble.compare import default_runs, installed_engines, missing_engines
+from rockwobble.compare import default_runs, installed_engines, missing_engines, reserved_engines
 from rockwobble.compare.runs import references_of, require_runnable, run_labels, unsupported
-from rockwobble.models import Case, Cylinder, Run
+from rockwobble.models import Case, Cylinder, InitialState, Run
 
 
 @pytest.fixture
@@ -32,6 +32,30 @@ def test_an_engine_without_a_wheel_is_left_out_and_refused_by_name(monkeypatch, 
     assert "pybullet" not in {run.engine for run in default_runs()}
     with pytest.raises(ValueError, match=r"'pybullet' is not installed here: pip install pybullet"):
         require_runnable(case, Run("pybullet", "guided"))
+
+
+def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeypatch, case):
+    pytest.importorskip("exudyn", reason="exudyn is not installed")
+    assert "exudyn" in installed_engines()
+    assert "exudyn" not in {run.engine for run in default_runs()}
+    assert reserved_engines()["exudyn"] == "exudyn has no guided support and no uplift"
+    # named, it runs on open ground; a support that is named stays, and is refused
+    assert default_runs(engines=("exudyn",)) == (Run("exudyn", "free"),)
+    (guided,) = default_runs(engines=("exudyn",), supports=("guided",))
+    with pytest.raises(ValueError, match="support must be free in exudyn, got 'guided'"):
+        require_runnable(case, guided)
+    with pytest.raises(ValueError, match="exudyn cannot uplift a cylinder that stands"):
+        require_runnable(case, Run("exudyn", "free"))
+    released = Case("released", case.cylinder, initial=InitialState(0.1), duration=1.0)
+    require_runnable(released, Run("exudyn", "free"))
+    find = importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "exudyn" else find(name))
+    # an extra that is not installed is nobody's loss, until it is named
+    assert "exudyn" not in missing_engines()
+    with pytest.raises(
+        ValueError, match=r"'exudyn' is not installed here: pip install 'rockwobble\[exudyn\]'"
+    ):
+        require_runnable(released, Run("exudyn", "free"))
 
 
 def test_unknown_engines_and_supports_are_refused(case):

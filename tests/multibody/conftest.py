@@ -6,6 +6,7 @@ phi, Lambda (the paper's L), tau, S; with S = 0 throughout it is the model in th
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -196,6 +197,34 @@ def solve_free() -> Callable[..., Solution]:
 @pytest.fixture
 def solve_forced() -> Callable[..., Solution]:
     return forced_response
+
+
+def released_response(cylinder: Cylinder, motion: GroundMotion, initial: InitialState, time: Array) -> Array:
+    """Tilt on open ground from a release under a motion of two components, at the given times."""
+    model = _constants(cylinder, rolls_out=True)
+    samples = np.arange(len(motion.acceleration)) * motion.time_step
+    state = np.array([initial.tilt, initial.tilt_rate, initial.rolling_angle, 0.0, 0.0, 0.0])
+    state[3] = model.inertia(initial.tilt) * initial.rolling_rate
+
+    def slope(now: float, y: Array) -> list[float]:
+        ax, ay = (np.interp(now, samples, component) for component in motion.acceleration.T)
+        return model.derivative(y, np.array([ax, ay, 0.0]))
+
+    tilts = []
+    # from sample to sample, because the forcing has a kink there
+    for begin, end in itertools.pairwise(samples):
+        at = time[(time >= begin - 1e-12) & (time < end - 1e-12)]
+        run = solve_ivp(
+            slope, (begin, end), state, method="DOP853", rtol=_RTOL, atol=_ATOL, t_eval=[*at, end]
+        )
+        state = run.y[:, -1]
+        tilts.append(run.y[0, :-1])
+    return np.append(np.concatenate(tilts), state[0])
+
+
+@pytest.fixture
+def solve_released() -> Callable[..., Array]:
+    return released_response
 
 
 @pytest.fixture

@@ -1,0 +1,138 @@
+"""Exudyn's ideal rim against the equations of the rolling model, and what it refuses."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import multibody
+from rockwobble.models import Cylinder, GroundMotion, InitialState
+
+pytest.importorskip("exudyn", reason="exudyn is not installed")
+
+TABLE = Path(__file__).parents[1] / "reference" / "finite_release.csv"
+TURN = 1e-4  # [deg] printed to 1e-6; the trapezoidal rule leaves 2e-5 to 7e-5
+TILT = 2e-6  # of alpha; 8e-7 at 2e-4 s for the squattest, less for all others
+FORCED = 3e-7  # of alpha; 5e-8 at 2e-4 s, of which half is the excitation
+ORDER = 0.2
+
+Solve = Callable[..., Any]
+
+
+def free(cylinder: Cylinder, initial: InitialState, **changes: Any) -> multibody.Trajectory:
+    return multibody.simulate(cylinder, initial=initial, engine="exudyn", support="free", **changes)
+
+
+def table() -> list[tuple[float, ...]]:
+    lines = [line for line in TABLE.read_text().splitlines() if not line.startswith("#")]
+    rows = csv.DictReader(lines)
+    return [
+        tuple(float(row[key]) for key in ("h_over_b", "phi_rate", "rolling_turn_deg", "rolling_period_s"))
+        for row in rows
+    ]
+
+
+@pytest.mark.parametrize(("slenderness", "rate", "turn", "period"), table())
+def test_angle_of_turn(slenderness: float, rate: float, turn: float, period: float) -> None:
+    cylinder = Cylinder.from_dimensions(base_radius=1.0, height=2.0 * slenderness)
+    release = InitialState(cylinder.alpha / 2, rolling_rate=rate)
+    # second order in step over the time scale of the pass, its least tilt over the speed of the fall
+    finer = {(1.0, 0.03): 5.0, (1.0, 0.1): 2.0, (2.0, 0.03): 2.0}.get((slenderness, rate), 1.0)
+    step = 1e-4 * math.sqrt(cylinder.semidiagonal / 6.0) / finer
+    run = free(cylinder, release, duration=period + 0.1, time_step=step)
+    found = math.degrees(run.passes["angle_of_turn"].iloc[0])
+    assert found == pytest.approx(turn, abs=TURN)
+    assert run.settings["integrator"] == "trapezoidal"
+    assert run.message == ""
+
+
+@pytest.mark.parametrize("tan_alpha", [0.1, 0.2, 0.5, 1.0, 3.0])
+def test_free_response_for_eight_seconds(tan_alpha: float, solve_free: Solve) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    release = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
+    run = free(cylinder, release, duration=8.0, time_step=2e-4, sample_step=0.02)
+    exact = solve_free(cylinder, release, run.time, rolls_out=True)
+    assert np.abs(run.tilt - exact.tilt).max() / cylinder.alpha < TILT
+    # the magnification of a pass from tilt to turn and twist
+    assert np.abs(run.twist - exact.twist).max() < 10.0 * TILT
+    assert np.abs(run.rolling_angle - exact.rolling_angle).max() < 10.0 * TILT
+
+
+@pytest.mark.parametrize("integrator", ["trapezoidal", "generalized-alpha"])
+def test_second_order_under_excitation(integrator: str, pier: Cylinder, solve_released: Solve) -> None:
+    # not zero at the start, and rough: a force shifted by a part of a step is first order
+    motion = GroundMotion([[0.6, -0.4], [0.9, 0.5], [-0.8, 0.7], [0.3, -0.9], [0.2, 0.1]], 0.4)
+    release = InitialState(pier.alpha / 2, rolling_rate=0.5)
+    steps = np.array([8e-4, 4e-4, 2e-4])
+    runs = [
+        free(pier, release, motion=motion, time_step=step, sample_step=0.05, integrator=integrator)
+        for step in steps
+    ]
+    exact = solve_released(pier, motion, release, runs[0].time)
+    errors = [np.abs(run.tilt - exact).max() / pier.alpha for run in runs]
+    slope = np.polyfit(np.log(steps), np.log(errors), 1)[0]
+    assert slope == pytest.approx(2.0, abs=ORDER)
+    assert errors[-1] < FORCED
+
+
+def test_rolling_through_the_apex_ends_the_run(
+    pier: Cylinder, solve_free: Solve, capfd: pytest.CaptureFixture[str]
+) -> None:
+    release = InitialState(pier.alpha / 2, rolling_rate=1e-6)
+    run = free(pier, release, duration=3.0)
+    assert run.outcome == "failed"
+    assert math.isnan(run.peak_tilt)
+    words = "the state is not finite; the engine warned: the rim rolled through the apex, where it has no"
+    assert run.message.startswith(words)
+    # it is cut where that happened, at the first pass, and was right until then
+    assert 1.1 < run.time[-1] < 1.3
+    exact = solve_free(pier, release, run.time[:-1], rolls_out=True)
+    assert np.abs(run.tilt[:-1] - exact.tilt).max() / pier.alpha < TILT
+    assert capfd.readouterr() == ("", "")
+
+
+def test_contact_that_would_be_lost_is_said(pier: Cylinder) -> None:
+    squat = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
+    run = free(squat, InitialState(squat.alpha / 2, rolling_rate=10.0), duration=1.0)
+    assert run.message.startswith("a joint holds the rim down at 0.1")
+    first = float(run.message.split(" at ")[1].split()[0])
+    pulled = run.time[run.contact_force[:, 2] < -1e-2]
+    assert pulled[0] == pytest.approx(first, abs=0.02)
+    assert free(pier, InitialState(pier.alpha / 2, rolling_rate=0.5), duration=3.0).message == ""
+
+
+def test_a_step_that_does_not_converge_ends_the_run_in_silence(
+    pier: Cylinder, capfd: pytest.CaptureFixture[str]
+) -> None:
+    run = free(pier, InitialState(pier.alpha / 2, rolling_rate=0.5), duration=0.2, iterations=1)
+    assert run.outcome == "failed"
+    assert "the engine warned: Newton's iteration did not converge" in run.message
+    assert capfd.readouterr() == ("", "")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"initial": None}, "exudyn cannot uplift a cylinder that stands: give a release with a tilt, got a"),
+        ({"initial": InitialState(0.0)}, "exudyn cannot uplift a cylinder that stands: give a release"),
+        ({"support": "guided"}, "support must be free in exudyn, got 'guided'"),
+        ({"impedance": 0.9}, "'impedance' is not a setting of exudyn; allowed are integrator, "),
+        ({"integrator": "RK44"}, "integrator must be one of trapezoidal, generalized-alpha, got 'RK44'"),
+        ({"spectral_radius": 1.1}, "spectral_radius must be at least 0 and at most 1, got 1.1"),
+        ({"relative_tolerance": 0.0}, "relative_tolerance must be above 0 and at most 0.001, got 0"),
+        ({"iterations": 0}, "iterations must be a positive whole number, got 0"),
+    ],
+)
+def test_what_it_cannot_do_is_refused_in_one_line(change: dict[str, Any], message: str) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    given: dict[str, Any] = {"initial": InitialState(0.1), "support": "free", "duration": 1.0, **change}
+    with pytest.raises(ValueError, match=r"must|setting|uplift") as caught:
+        multibody.simulate(cylinder, engine="exudyn", **given)
+    assert str(caught.value).startswith(message)
+    assert "\n" not in str(caught.value)
