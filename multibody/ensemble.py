@@ -16,7 +16,7 @@ import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager
-from typing import Any
+from typing import Any, Literal
 
 from rockwobble.models import Case
 
@@ -37,7 +37,7 @@ def simulate_many(
     *,
     engine: str = "mujoco",
     support: str = "guided",
-    time_step: float | None = None,
+    time_step: float | Literal["auto"] | None = None,
     sample_step: float = 0.01,
     progress: Progress | None = None,
     workers: int | None = None,

@@ -13,6 +13,7 @@ from .kinematics import axis_of
 from .mujoco_scene import compile_scene
 from .ring_geometry import check_start
 from .ring_settings import RingSettings, take_ring
+from .scene_counts import SceneCounts
 from .settings import MujocoSettings
 from .start import Start
 
@@ -126,6 +127,19 @@ class _MujocoStepper:
     def warnings(self) -> str:
         """Return the warnings of the engine."""
         return ", ".join(dict.fromkeys(self._warned + _warnings(self._data)))
+
+    def step_alone(self, count: int) -> None:
+        """Take `count` steps of the engine and nothing else: what the cost of a run is measured against."""
+        import mujoco
+
+        mujoco.mj_step(self._model, self._data, nstep=count)
+
+    def counts(self) -> SceneCounts:
+        """Return what the last step solved."""
+        data = self._data
+        return SceneCounts(
+            degrees_of_freedom=self._model.nv, contacts=int(data.ncon), constraint_rows=int(data.nefc)
+        )
 
     def _roll(self, acceleration: Array) -> tuple[Array, Array]:
         """Step in C; return the states (n, 14) after each step, and the sensors at its start."""

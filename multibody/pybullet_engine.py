@@ -13,6 +13,7 @@ import numpy as np
 
 from .engine import Array, Scene, Settings, Stepper, Steps
 from .friction import body_friction
+from .scene_counts import SceneCounts
 from .settings import PybulletSettings
 
 _LEANS = 1e-7  # [rad] a cylinder that leans less has no lowest point to speak of
@@ -103,6 +104,11 @@ class _PybulletStepper:
     def warnings(self) -> str:
         """Bullet does not warn."""
         return ""
+
+    def counts(self) -> SceneCounts:
+        """Return what the last step solved: a normal and two directions of friction for each contact."""
+        contacts = len(self._bullet.getContactPoints(self._body, physicsClientId=self._client))
+        return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
 
     def _loop(self, gravity: list[list[float]]) -> tuple[list[Any], list[Any]]:
         """Step under an apparent gravity [m/s^2] for each step: rigid ground need not move."""

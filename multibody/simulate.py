@@ -14,16 +14,15 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from .ability import require_able
 from .auto_step import AUTO, STEP_TOLERANCE, find_step
-from .body import scaled_body
 from .engine import Engine, Scene
 from .excitation import StepMeans
-from .froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, Scale, froude_scale
+from .froude import REFERENCE_TIME_STEP, Scale, froude_scale
 from .guard import check_time_step
 from .passes import passes_between
 from .recorder import COLUMNS, Recorder
 from .registry import find_engine
 from .remarks import remarks
-from .start import starting_state
+from .scene_of_case import make_scene
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -106,7 +105,9 @@ def simulate(
     ('completed', 101)
     """
     case = Case("run", cylinder, motion, initial, duration, gravity, friction)
-    if time_step == AUTO:
+    if isinstance(time_step, str):
+        if time_step != AUTO:
+            raise ValueError(f'time_step must be a number [s] or "auto", got {time_step!r}')
         tolerance = _positive("step_tolerance", settings.pop("step_tolerance", STEP_TOLERANCE), "of alpha")
 
         def attempt(step: float, tell: Progress) -> Trajectory:
@@ -135,7 +136,7 @@ def _simulate(
     scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
     step = REFERENCE_TIME_STEP * scale.time if time_step is None else _positive("time_step", time_step)
     check_time_step(step, scale.time)
-    scene = _scene(case, support, step, scale)
+    scene = make_scene(case, support, step, scale)
     resolved = backend.settings(settings, scene)
     samples = _sample_times(case.length, _positive("sample_step", sample_step)) / scale.time
     release = InitialState(0.0) if case.initial is None else case.initial
@@ -152,21 +153,6 @@ def _simulate(
         time_step=step,
         settings=dict(resolved),
         wall_time=clock.perf_counter() - started,
-    )
-
-
-def _scene(case: Case, support: str, step: float, scale: Scale) -> Scene:
-    body = scaled_body(case.cylinder, scale.length)
-    motion = case.motion
-    return Scene(
-        body=body,
-        start=starting_state(body, case.initial, scale.time),
-        support=support,
-        friction=case.friction,
-        time_step=step / scale.time,
-        gravity=REFERENCE_GRAVITY,
-        components="" if motion is None else "xyz" if motion.has_vertical else "xy",
-        unit_time=scale.time,
     )
 
 

@@ -1,0 +1,123 @@
+"""What a MuJoCo run costs over the bare steps of its scene in C.
+
+`multibody.simulate`, with all that it follows at every step (guard, passes, uplift, energy, slip), against
+`mj_step` on the same compiled scene from the same start, in turn, in processor time of this thread.
+``python -m rockwobble.compare.run_overhead`` prints the table.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble import multibody
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.multibody.scene_of_case import open_scene
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ROUNDS = 15
+SECONDS = 20.0  # of the run
+_STEP = 1e-4
+
+_PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+
+
+def run_overheads(
+    *, rounds: int = ROUNDS, seconds: float = SECONDS, say: Callable[[str], None] | None = None
+) -> pd.DataFrame:
+    """Measure the overhead for each support, released, on still ground and under a tenth of El Centro.
+
+    Parameters
+    ----------
+    rounds : int
+        Times that each is measured; the ratio is taken inside each round, and its median over them.
+    seconds : float
+        Length of the run [s].
+    say : callable, optional
+        Told what happens, line by line.
+
+    Returns
+    -------
+    DataFrame
+        One row for each scene: support, ground, steps, bare and run (microseconds of a step), ratio.
+    """
+    import pandas as pd
+
+    release = InitialState(0.5 * _PIER.alpha, rolling_rate=0.5)
+    grounds: dict[str, GroundMotion | None] = {"still": None, "El Centro / 10": el_centro_1940().scaled(0.1)}
+    cases = [
+        (support, ground, Case(f"{support}, {ground}", _PIER, motion, release, seconds))
+        for support in ("guided", "free")
+        for ground, motion in grounds.items()
+    ]
+    steps = round(seconds / _STEP)
+    times = np.empty((rounds, len(cases), 2))
+    for number in range(rounds):
+        if say is not None:
+            say(f"round {number + 1} of {rounds}, {len(cases)} runs of {steps} steps")
+        for place, (support, _, case) in enumerate(cases):
+            times[number, place] = _bare(case, support, steps), _whole(case, support)
+    ratio = np.median(times[:, :, 1] / times[:, :, 0], axis=0)
+    bare, whole = 1e6 * np.median(times, axis=0).T / steps
+    return pd.DataFrame(
+        {
+            "support": [support for support, _, _ in cases],
+            "ground": [ground for _, ground, _ in cases],
+            "steps": steps,
+            "bare": bare,
+            "run": whole,
+            "ratio": ratio,
+        }
+    )
+
+
+def _bare(case: Case, support: str, steps: int) -> float:
+    with open_scene(case, "mujoco", support, {}, _STEP) as stepper:
+        begin = time.thread_time()
+        stepper.step_alone(steps)
+        return time.thread_time() - begin
+
+
+def _whole(case: Case, support: str) -> float:
+    begin = time.thread_time()
+    multibody.simulate(
+        case.cylinder,
+        case.motion,
+        initial=case.initial,
+        duration=case.duration,
+        support=support,
+        time_step=_STEP,
+    )
+    return time.thread_time() - begin
+
+
+def main() -> None:
+    """Print the table."""
+    import argparse
+    import sys
+
+    parser = argparse.ArgumentParser(
+        prog="python -m rockwobble.compare.run_overhead",
+        description="Cost of a MuJoCo run over the bare steps of its scene in C. Example: --rounds 5",
+    )
+    parser.add_argument("--rounds", type=int, default=ROUNDS, help="times each run is measured (%(default)s)")
+    parser.add_argument("--seconds", type=float, default=SECONDS, help="length of a run [s] (%(default)s)")
+    given = parser.parse_args()
+    table = run_overheads(
+        rounds=given.rounds, seconds=given.seconds, say=lambda line: print(line, file=sys.stderr)
+    )
+    print(f"{'support':8} {'ground':15} {'steps':>8} {'bare [us]':>10} {'run [us]':>9} {'ratio':>6}")
+    for row in table.to_dict("records"):
+        print(
+            f"{row['support']:8} {row['ground']:15} {row['steps']:8d} {row['bare']:10.2f} {row['run']:9.2f} "
+            f"{row['ratio']:6.3f}"
+        )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,23 @@
+"""What an open scene makes an engine compute in each step."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SceneCounts:
+    """Sizes of the problem that the last step solved.
+
+    Attributes
+    ----------
+    degrees_of_freedom : int
+    contacts : int
+        Points.
+    constraint_rows : int
+        Scalar constraints, normal and of friction.
+    """
+
+    degrees_of_freedom: int
+    contacts: int
+    constraint_rows: int

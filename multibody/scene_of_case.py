@@ -1,0 +1,57 @@
+"""From a case to the scene that every engine gets."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+from rockwobble.models import Case
+
+from .ability import require_able
+from .body import scaled_body
+from .engine import Scene
+from .froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, Scale, froude_scale
+from .registry import find_engine
+from .start import starting_state
+
+
+def make_scene(case: Case, support: str, step: float, scale: Scale) -> Scene:
+    """Return the scene of a case, in the units of the reference size; `step` is the user's [s]."""
+    body = scaled_body(case.cylinder, scale.length)
+    motion = case.motion
+    return Scene(
+        body=body,
+        start=starting_state(body, case.initial, scale.time),
+        support=support,
+        friction=case.friction,
+        time_step=step / scale.time,
+        gravity=REFERENCE_GRAVITY,
+        components="" if motion is None else "xyz" if motion.has_vertical else "xy",
+        unit_time=scale.time,
+    )
+
+
+@contextlib.contextmanager
+def open_scene(
+    case: Case, engine: str, support: str, settings: Mapping[str, Any], time_step: float | None = None
+) -> Iterator[Any]:
+    """Open the scene of a case as `simulate` does, for who wants to step it alone.
+
+    Yields
+    ------
+    Stepper
+        With whatever members its engine adds.
+
+    Raises
+    ------
+    ValueError
+        As `simulate` does.
+    """
+    backend = find_engine(engine)
+    require_able(backend, engine, case, support)
+    scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
+    step = REFERENCE_TIME_STEP * scale.time if time_step is None else time_step
+    scene = make_scene(case, support, step, scale)
+    with backend.open(scene, backend.settings(settings, scene)) as stepper:
+        yield stepper

@@ -1,0 +1,58 @@
+"""What a scene costs: the counts are exact, the times are times."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rockwobble import multibody
+from rockwobble.compare.run_overhead import run_overheads
+from rockwobble.compare.scene_cost import print_table, scene_costs
+
+ENGINES = [name for name in ("mujoco", "pybullet") if name in multibody.available_engines()]
+
+
+@pytest.mark.parametrize("engine", ENGINES)
+def test_every_scene_is_counted(engine: str, capsys: pytest.CaptureFixture[str]) -> None:
+    lines: list[str] = []
+    table = scene_costs([engine], rounds=2, steps=20, say=lines.append)
+    assert len(lines) == 2
+    assert set(table["engine"]) == {engine}
+    assert (table["degrees_of_freedom"] == 6).all()
+    assert (table["microseconds"] > 0.0).all()
+    assert (table["ratio"] == 1.0).any()
+    counts = {
+        (row.support, row.option): (row.contacts, row.constraint_rows)
+        for row in table.itertuples(index=False)
+    }
+    assert len(counts) == len(table)
+    # a rim stands on one point, with a normal and two directions of friction
+    assert counts["free", "released"] == counts["guided", "released"] == (1, 3)
+    if engine == "mujoco":
+        # the plane carries the cylinder itself on three points, and a prism on four
+        for corners in (4, 12, 48):
+            assert counts["guided", f"standing on {corners} corners"] == (corners + 3, 3 * (corners + 3))
+        # a pyramid of four edges
+        assert counts["guided", "pyramidal cone"] == (1, 4)
+        # walls that are out of reach are no contact
+        assert counts["ring", "32 walls"] == (1, 3)
+    print_table(table)
+    shown = capsys.readouterr().out
+    assert "…" not in shown
+    assert "guided" in shown
+
+
+def test_bad_input_is_refused() -> None:
+    with pytest.raises(ValueError, match="engine must be one of mujoco, pybullet, got 'chrono'"):
+        scene_costs(["chrono"])
+    with pytest.raises(ValueError, match="rounds and steps must be positive, got 0 and 5"):
+        scene_costs(rounds=0, steps=5)
+
+
+def test_overhead_is_a_ratio_of_the_same_steps() -> None:
+    table = run_overheads(rounds=1, seconds=0.05)
+    assert list(table["support"]) == ["guided", "guided", "free", "free"]
+    assert (table["steps"] == 500).all()
+    np.testing.assert_allclose(table["ratio"], table["run"] / table["bare"])
+    # a run does all that the bare steps do
+    assert (table["ratio"] > 1.0).all()
