@@ -6,7 +6,7 @@ import io
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,6 +14,7 @@ import numpy as np
 
 from rockwobble.models import Case
 
+from .error_budget import ErrorBudget
 from .store import replace_files
 from .traces import Trace
 
@@ -40,6 +41,8 @@ class Comparison:
         Version of each package and engine that took part.
     until : float or None
         End of the window of the RMS columns, in the time of the run [s]; None is the whole run.
+    budgets : dict
+        Error budget for each (case, label of the run, reduced model), where it was asked for.
     """
 
     summary: pd.DataFrame
@@ -48,6 +51,7 @@ class Comparison:
     trajectories: Mapping[tuple[str, str], Any]
     versions: Mapping[str, str]
     until: float | None = None
+    budgets: Mapping[tuple[str, str, str], ErrorBudget] = field(default_factory=dict)
 
     def save(self, folder: str | Path) -> None:
         """Write the results to `folder`: whole files or none, other files there are left alone.
@@ -65,7 +69,7 @@ class Comparison:
 
     def files(self) -> dict[str, bytes]:
         """Return name and content of each file that `save` writes."""
-        return {
+        found = {
             "summary.csv": self.summary.to_csv(index=False).encode(),
             "responses.parquet": _parquet(_stacked(self.responses, "model")),
             "trajectories.parquet": _parquet(_stacked(self.trajectories, "run")),
@@ -73,6 +77,19 @@ class Comparison:
             "excitation.parquet": _parquet(self._excitation()),
             "comparison.json": (json.dumps(self._about(), indent=2, allow_nan=False) + "\n").encode(),
         }
+        return found | ({"budget.parquet": _parquet(self._budget())} if self.budgets else {})
+
+    def _budget(self) -> pd.DataFrame:
+        import pandas as pd
+
+        tables = []
+        for (case, label, model), budget in self.budgets.items():
+            table = budget.to_frame()
+            for place, (name, value) in enumerate((("case", case), ("run", label), ("reference", model))):
+                table.insert(place, name, value)
+            tables.append(table)
+        whole: pd.DataFrame = pd.concat(tables, ignore_index=True)
+        return whole
 
     def _passes(self) -> pd.DataFrame:
         import pandas as pd

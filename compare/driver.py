@@ -2,21 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
 from rockwobble.models import Case, Run, Suite
 
+from .case_budgets import case_budgets
 from .comparison import Comparison
+from .error_budget import ErrorBudget
 from .execution import Crash, Job, ProgressCallback, simulate_all
 from .foreign import Foreign, read_trajectories
+from .predicted_horizon import Simulate, estimated_error, measured_error, predict_horizon
 from .provenance import package_versions
 from .run_store import open_run_store
-from .runs import default_runs, references_of, require_runnable, run_labels
+from .runs import default_runs, own_model, references_of, require_runnable, run_labels
 from .store import require_writable
-from .summary import SUMMARY_COLUMNS, crashed_row, summary_row
+from .summary import SUMMARY_COLUMNS, crashed_row, foreign_row, summary_row
 
 
 def compare(
@@ -30,6 +33,7 @@ def compare(
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
     foreign: Iterable[Foreign | str | Path] = (),
+    budget: bool = False,
 ) -> Comparison:
     """Run engines and reduced models on the same problem, and report how they differ.
 
@@ -40,7 +44,7 @@ def compare(
         Default: those of the suite, else every installed engine with supports "guided" and "free".
     reference : str, optional
         Reduced model that each run is held against. A run on open ground ("free") is also held
-        against the model that is free to roll out, "rolling".
+        against the model that is free to roll out, "rolling", and so is one in a ring of walls ("ring").
     out : str or Path, optional
         Folder to save the results in; checked before anything runs.
     until : float, optional
@@ -55,6 +59,10 @@ def compare(
     foreign : iterable of Foreign, str or Path, optional
         CSV files of trajectories of this case from a shake table or another code, each one more run; what
         they may hold is said in `rockwobble.compare.foreign_file`. With them, `runs` may be empty.
+    budget : bool, optional
+        Whether to repeat each run at finer time steps, as far as traces agree, and split its difference
+        into model form, numerics and what stays unexplained: see `ErrorBudget`. Takes some seven times
+        as long for runs that agree to their end.
 
     Returns
     -------
@@ -85,7 +93,9 @@ def compare(
     labels = run_labels(chosen)
     brought = read_trajectories(foreign, cases, taken=labels)
     models = [reference] if brought else []
-    models = list(dict.fromkeys([*models, *(m for run in chosen for m in references_of(run, reference))]))
+    for run in chosen:
+        models += [*references_of(run, reference), own_model(run.support)]
+    models = list(dict.fromkeys(models))
     jobs = [Job(case=case, method=model, label=model) for case in cases for model in models]
     jobs += [
         Job(case=case, method=run, label=label)
@@ -93,16 +103,29 @@ def compare(
         for run, label in zip(chosen, labels, strict=True)
     ]
     with nullcontext() if resume is None else open_run_store(resume) as store:
-        results = simulate_all(jobs, workers=workers, progress=progress, store=store)
-    by_label = {(job.case.name, job.label): result for job, result in zip(jobs, results, strict=True)}
-    rows = [
-        _row(case, model, by_label[case.name, model], label, run, by_label[case.name, label], until)
-        for case in cases
-        for run, label in zip(chosen, labels, strict=True)
-        for model in references_of(run, reference)
-    ]
+
+        def run_all(jobs: list[Job]) -> list[Any]:
+            return simulate_all(jobs, workers=workers, progress=progress, store=store)
+
+        by_label = {
+            (job.case.name, job.label): result for job, result in zip(jobs, run_all(jobs), strict=True)
+        }
+        by_run = dict(zip(labels, chosen, strict=True))
+        budgets = case_budgets(cases, by_run, reference, by_label, run_all) if budget else {}
+
+        def twin(case: Case, model: str) -> Any:
+            # milliseconds: not worth a process, nor a word about its progress
+            job = Job(case=case, method=model, label=f"twin of {model}")
+            return simulate_all([job], workers=1, store=store)[0]
+
+        rows = [
+            _row(case, model, by_label, label, run, budgets.get((case.name, label, model)), twin, until)
+            for case in cases
+            for run, label in zip(chosen, labels, strict=True)
+            for model in references_of(run, reference)
+        ]
     rows += [
-        summary_row(cases[0], reference, by_label[name, reference], label, trajectory, until=until)
+        foreign_row(cases[0], reference, by_label[name, reference], label, trajectory, until=until)
         for (name, label), trajectory in brought.items()
     ]
     comparison = Comparison(
@@ -117,6 +140,7 @@ def compare(
         | brought,
         versions=package_versions(),
         until=until,
+        budgets=budgets,
     )
     if out is not None:
         comparison.save(out)
@@ -136,16 +160,51 @@ def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None, *, needed: bo
 
 
 def _row(
-    case: Case, model: str, reference: Any, label: str, run: Run, trial: Any, until: float | None
+    case: Case,
+    model: str,
+    results: Mapping[tuple[str, str], Any],
+    label: str,
+    run: Run,
+    budget: ErrorBudget | None,
+    twin: Simulate,
+    until: float | None,
 ) -> dict[str, Any]:
-    if isinstance(reference, Crash):
-        # the reduced models have no way to end a process: this is no result, but a broken installation
-        raise RuntimeError(  # noqa: TRY004
-            f"the {model} model left no response: {reference.message}"
-        )
+    reference, own, trial = (
+        results[case.name, model],
+        results[case.name, own_model(run.support)],
+        results[case.name, label],
+    )
+    for name, response in ((model, reference), (own_model(run.support), own)):
+        if isinstance(response, Crash):
+            # the reduced models have no way to end a process: this is no result, but a broken installation
+            raise RuntimeError(  # noqa: TRY004
+                f"the {name} model left no response: {response.message}"
+            )
     if isinstance(trial, Crash):
         return crashed_row(case, model, reference, label, run, trial.message)
-    return summary_row(case, model, reference, label, trial, until=until)
+    error = (
+        estimated_error(case, run.engine, trial.time_step) if budget is None else measured_error(case, budget)
+    )
+    prediction = predict_horizon(
+        case,
+        reference=reference,
+        own=own,
+        own_model=own_model(run.support),
+        contact_resolution=trial.contact_resolution,
+        error=error,
+        simulate=twin,
+    )
+    return summary_row(
+        case,
+        model,
+        reference,
+        label,
+        trial,
+        prediction=prediction,
+        estimated_error=error,
+        budget=budget,
+        until=until,
+    )
 
 
 def _table(rows: list[dict[str, Any]]) -> Any:

@@ -1,4 +1,4 @@
-"""How long two traces agree, as measured and as foretold.
+"""How long two traces agree.
 
 Each near pass of the apex may turn one motion to the left and its neighbour to the right, so two
 traces of one problem part at some time however good both are. What counts is when.
@@ -49,32 +49,6 @@ def agreement_horizon(pair: Pair, *, broken: bool = False) -> Horizon:
     end = float(pair.time[beyond[0]])
     # a trial that moves before the reference uplifts has no agreement at all
     return Horizon(length=max(0.0, end - pair.start), end=end, parted=True)
-
-
-def predicted_horizon(reference: Trace, contact_resolution: float, length: float) -> float:
-    """Return when an engine must lose the trace, from the reduced model alone.
-
-    That is the first pass whose minimum tilt is below what the engine's contact resolves: there it
-    is left to chance on which side the motion passes the apex.
-
-    Parameters
-    ----------
-    reference : Trace
-        Response of the reduced model.
-    contact_resolution : float
-        Smallest minimum tilt that the engine resolves [rad].
-    length : float
-        Length of the run [s].
-
-    Returns
-    -------
-    float
-        From uplift or release [s]; `length` where no pass is too close.
-    """
-    start = reference.uplift_time if math.isfinite(reference.uplift_time) else 0.0
-    unresolved = np.asarray(reference.passes["minimum_tilt"], dtype=np.float64) < contact_resolution
-    times = np.asarray(reference.passes["time"], dtype=np.float64)[unresolved]
-    return max(0.0, float(times[0]) - start) if len(times) else length
 
 
 def agreed_passes(reference: Trace, horizon: Horizon) -> int:

@@ -13,7 +13,9 @@ from rockwobble.models import Case, Run
 
 from .contact import contact_rms
 from .energy import energy_loss
-from .horizon import agreed_passes, agreement_horizon, closest_pass, predicted_horizon
+from .error_budget import BUDGET_COLUMNS, ErrorBudget
+from .horizon import agreed_passes, agreement_horizon, closest_pass
+from .predicted_horizon import Prediction, close_pass, verdict
 from .tilt import tilt_rms, tilt_rms_relative
 from .traces import EngineTrace, Trace, make_pair
 from .turning import direction_difference, first_unresolved_pass, turn_difference
@@ -41,7 +43,7 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "agreement_horizon": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
         "parted": ("", "whether there was such a difference; if not, the horizon is the run's length"),
         "agreed_passes": ("", "passes by the apex within the agreement"),
-        "predicted_horizon": ("s", "first pass closer to the apex than the engine's contact resolves"),
+        "predicted_horizon": ("s", "when the traces have to part, from the reduced models alone"),
         "residual_displacement": ("b", "distance of the base centre from its old place at the end"),
         "residual_twist": ("deg", "turn of the cylinder about its axis at the end"),
         "energy_loss": ("", "energy lost by the engine's run over the largest energy reached"),
@@ -52,12 +54,32 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "closest_pass": ("alpha", "smallest minimum tilt of the reduced model's passes within the agreement"),
         "engine_version": ("", "version of the engine"),
         "run": ("", "label of the run, as in the files of samples and in the figures"),
+        "predicted_by": ("", "what ends the agreement there: a pass, growth or model form; empty: nothing"),
+        "parting": ("", "in time: within a factor of 2 of the prediction; else later, or earlier"),
+        "estimated_error": ("alpha", "RMS error of the engine in its first second, on which growth rests"),
+        "whole_rms": ("alpha", "RMS of the tilt difference until 80 % of the agreement; with a budget only"),
+        "model_form_rms": ("alpha", "of it: reduced model of the support minus the reference"),
+        "numerics_rms": ("alpha", "of it: engine minus the engine extrapolated to a step of zero"),
+        "unexplained_rms": ("alpha", "of it: engine extrapolated minus reduced model of its support"),
+        "unexplained_share": ("", "unexplained over whole; above 0.2 it is a finding"),
+        "limit_error": ("alpha", "uncertainty of the extrapolation"),
+        "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
+        "finest_step": ("s", "smallest time step that the extrapolation rests on"),
     }
 )
 
 
 def summary_row(
-    case: Case, model: str, reference: Trace, label: str, trial: EngineTrace, *, until: float | None = None
+    case: Case,
+    model: str,
+    reference: Trace,
+    label: str,
+    trial: EngineTrace,
+    *,
+    prediction: Prediction,
+    estimated_error: float = math.nan,
+    budget: ErrorBudget | None = None,
+    until: float | None = None,
 ) -> dict[str, Any]:
     """Return all columns of the summary for one engine run and one reduced model.
 
@@ -72,6 +94,12 @@ def summary_row(
         Label of the engine's run.
     trial : EngineTrace
         Trajectory of the engine.
+    prediction : Prediction
+        When the two have to part.
+    estimated_error : float, optional
+        Error of the engine that the prediction rests on [alpha].
+    budget : ErrorBudget, optional
+        What their difference is made of; without one its columns are NaN.
     until : float, optional
         End of the window of tilt_rms, tilt_rms_relative and contact_rms, in the time of the run
         [s]. Default: the whole run.
@@ -106,7 +134,7 @@ def summary_row(
         "agreement_horizon": horizon.length,
         "parted": horizon.parted,
         "agreed_passes": agreed_passes(reference, horizon),
-        "predicted_horizon": predicted_horizon(reference, trial.contact_resolution, whole.end),
+        "predicted_horizon": prediction.length,
         "residual_displacement": trial.residual_displacement / radius,
         "residual_twist": math.degrees(trial.residual_twist),
         "energy_loss": energy_loss(trial, case.motion),
@@ -119,7 +147,20 @@ def summary_row(
         "run": label,
     }
     row["message"] = _message(model, reference, trial, whole.end, case.length, _undefined(row))
-    return row
+    row |= {
+        "predicted_by": prediction.reason,
+        "parting": verdict(horizon.length, horizon.parted, prediction.length, prediction.reason),
+        "estimated_error": estimated_error,
+    }
+    return row | (dict.fromkeys(BUDGET_COLUMNS, math.nan) if budget is None else budget.columns())
+
+
+def foreign_row(
+    case: Case, model: str, reference: Trace, label: str, trial: EngineTrace, *, until: float | None = None
+) -> dict[str, Any]:
+    """Return the row of a trajectory from elsewhere: nothing is known of its steps and errors."""
+    prediction = close_pass(reference, trial.contact_resolution, case.length)
+    return summary_row(case, model, reference, label, trial, prediction=prediction, until=until)
 
 
 def crashed_row(
@@ -142,6 +183,8 @@ def crashed_row(
         "reference_wall_time": reference.wall_time,
         "engine_version": "",
         "run": label,
+        "predicted_by": "",
+        "parting": "",
     }
     return row
 

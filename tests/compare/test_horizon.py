@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.horizon import agreed_passes, agreement_horizon, closest_pass, predicted_horizon
+from rockwobble.compare.horizon import agreed_passes, agreement_horizon, closest_pass
+from rockwobble.compare.predicted_horizon import close_pass
 from rockwobble.compare.traces import make_pair
 
 SAMPLE = 0.01  # a horizon is known to one sample
@@ -65,10 +66,12 @@ def test_a_parting_before_uplift_leaves_no_agreement(cylinder, make_trace):
 
 
 @pytest.mark.parametrize(("resolution", "expected"), [(1e-7, 40.0), (1e-5, 28.0), (5e-5, 8.5), (1e-2, 3.0)])
-def test_predicted_horizon_is_the_first_pass_below_the_resolution(growing, resolution, expected):
-    assert predicted_horizon(growing[0], resolution, 40.0) == pytest.approx(expected)
+def test_a_foreign_trajectory_is_foretold_by_its_first_unresolved_pass(growing, resolution, expected):
+    prediction = close_pass(growing[0], resolution, 40.0)
+    assert prediction.length == pytest.approx(expected)
+    assert prediction.reason == ("" if expected == 40.0 else "pass")
 
 
 def test_a_reference_without_passes_predicts_no_parting(make_trace):
     time = np.arange(11) * SAMPLE
-    assert predicted_horizon(make_trace(time, np.full_like(time, 0.1)), 1e-3, 0.1) == 0.1
+    assert close_pass(make_trace(time, np.full_like(time, 0.1)), 1e-3, 0.1).length == 0.1
