@@ -94,42 +94,46 @@ class Rim:
         Lowest point of the rim, from above [m].
     base_centre : ndarray, shape (n, 3)
         [m]
-    momentum : ndarray, shape (n,)
-        Momentum of the rolling angle per unit mass [m^2/s]: angular momentum about the contact point along
-        the vertical less the axis. It is L = B phi' in a recess, and keeps its sign through a pass.
     """
 
     rolling_rate: Array
     contact_point: Array
     base_centre: Array
-    momentum: Array
 
 
 def rim(poses: Steps, after: Steps, body: Body) -> Rim:
     """Return where the rim stands at `poses`; arguments as for `kinematics`."""
-    velocity, spin = mean_velocity(poses, after), mean_spin(poses, after)
-    position = poses.position
+    wx, wy, wz = mean_spin(poses, after).T
     axis = axis_of(poses.quaternion)
-    b, h = body.base_radius, body.mass_centre_height
-    sine = np.hypot(axis[:, 0], axis[:, 1])
+    ax, ay, az = axis.T
+    sine = np.sqrt(ax * ax + ay * ay)
     safe = np.where(sine > 0.0, sine, 1.0)
     outward = axis[:, :2] / safe[:, None]
     outward[sine == 0.0] = (1.0, 0.0)
-    rate = np.cross(spin, axis)
-    base_centre = position - h * axis
-    contact = base_centre[:, :2] + b * axis[:, 2:] * outward
-    lowest = np.column_stack([contact, base_centre[:, 2] - b * sine])
-    along = np.einsum("ij,ij->i", spin, axis)
-    turning = -axis
-    turning[:, 2] += 1.0
-    about_contact = np.cross(position - lowest, velocity) + body.transverse_inertia * spin
-    about_contact += (body.axial_inertia - body.transverse_inertia) * along[:, None] * axis
+    base_centre = poses.position - body.mass_centre_height * axis
+    # the horizontal part of spin x axis, across the lean
+    rate_x, rate_y = wy * az - wz * ay, wz * ax - wx * az
     return Rim(
-        rolling_rate=(axis[:, 0] * rate[:, 1] - axis[:, 1] * rate[:, 0]) / safe**2,
-        contact_point=contact,
+        rolling_rate=(ax * rate_y - ay * rate_x) / safe**2,
+        contact_point=base_centre[:, :2] + body.base_radius * axis[:, 2:] * outward,
         base_centre=base_centre,
-        momentum=np.einsum("ij,ij->i", turning, about_contact),
     )
+
+
+def rolling_momentum(poses: Steps, after: Steps, body: Body) -> Array:
+    """Return the momentum of the rolling angle per unit mass, shape (n,) [m^2/s].
+
+    It is the angular momentum about the contact point along the vertical less the axis: L = B phi' in a
+    recess. It keeps its sign through a pass. Arguments as for `kinematics`.
+    """
+    velocity, spin = mean_velocity(poses, after), mean_spin(poses, after)
+    axis, place = axis_of(poses.quaternion), rim(poses, after, body)
+    sine = np.hypot(axis[:, 0], axis[:, 1])
+    lowest = np.column_stack([place.contact_point, place.base_centre[:, 2] - body.base_radius * sine])
+    along = np.einsum("ij,ij->i", spin, axis)
+    about_contact = np.cross(poses.position - lowest, velocity) + body.transverse_inertia * spin
+    about_contact += (body.axial_inertia - body.transverse_inertia) * along[:, None] * axis
+    return np.asarray(np.einsum("ij,ij->i", np.array([0.0, 0.0, 1.0]) - axis, about_contact))
 
 
 def mean_velocity(poses: Steps, after: Steps) -> Array:

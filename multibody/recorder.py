@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from .engine import Scene, Steps, Wall
 from .forces import ForceSamples, first_pull, force_of_steps
 from .guard import first_breach
-from .kinematics import Kinematics, axis_of, kinematics, mean_velocity, rim, unwrap
+from .kinematics import Kinematics, axis_of, kinematics, mean_velocity, rim, rolling_momentum, unwrap
 from .passes import TurningPoint, turning_points
 from .start import Start
 from .uplift import UpliftWatch, sure_tilt
@@ -114,7 +114,7 @@ class Recorder:
         stop = self._stop(time, state, gained, steps.wall)
         angle = unwrap(
             state.azimuth,
-            lambda at: rim(_rows(poses, at), _rows(after, at), body).momentum,
+            lambda at: rolling_momentum(_rows(poses, at), _rows(after, at), body),
             state.tilt > self.floor,
             self._angle,
         )
