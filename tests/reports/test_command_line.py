@@ -75,7 +75,18 @@ BAD = {
         ["--engine", "mujoco", "--time-step", "-1"],
         "time_step must be positive [s], got -1.0",
     ),
-    "unknown engine": (["--engine", "bullet"], "engine must be one of mujoco, pybullet, got 'bullet'"),
+    "unknown engine": (
+        ["--engine", "bullet"],
+        "engine must be one of mujoco, pybullet, exudyn, got 'bullet'",
+    ),
+    "no uplift": (
+        ["--engine", "exudyn", "--support", "free"],
+        "exudyn cannot uplift a cylinder that stands: give",
+    ),
+    "not its support": (
+        ["--engine", "exudyn", "--support", "guided", "--release-tilt-deg", "5"],
+        "support must be free in exudyn, got 'guided'",
+    ),
     "unknown support": (
         ["--engine", "mujoco", "--support", "glued"],
         "support must be one of guided, free, ring in mujoco, got 'glued'",
