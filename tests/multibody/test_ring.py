@@ -154,6 +154,21 @@ def test_walls_stop_a_cylinder_that_slides() -> None:
     assert held.first_wall_contact > 0.0
 
 
+def test_impulse_is_that_of_the_force_of_the_wall() -> None:
+    # at rest against a wall without friction: its normal force holds the push, one part in a thousand
+    # is left of the impact
+    push, steep = 0.05 * 9.81, 0.4
+    motion = GroundMotion(np.tile([-push, 0.0], (51, 1)), 0.01)
+    run = multibody.simulate(
+        PIER, motion, support="ring", friction=0.0, duration=0.5, ring_clearance=1e-4, ring_friction=0.0,
+        ring_inclination=steep,
+    )  # fmt: skip
+    late = run.time > 0.3
+    slope = np.polyfit(run.time[late], run.wall_impulse[late], 1)[0]
+    assert slope == pytest.approx(push / math.cos(steep), rel=1e-3)
+    assert np.polyfit(run.time[late], run.wall_contact[late], 1)[0] == pytest.approx(1.0, rel=1e-3)
+
+
 def test_result_does_not_depend_on_the_size() -> None:
     large, small = (
         ring(Cylinder(semidiagonal=size, tan_alpha=1.0), rolling_rate=0.5 * rate, duration=1.0 / rate)
