@@ -141,6 +141,10 @@ def _facts(case: Case, trace: Any) -> dict[str, str]:
     else:
         facts["residual displacement"] = f"{trace.residual_displacement / b:.3g} b"
         facts["residual twist"] = f"{math.degrees(trace.residual_twist):.3g} deg"
+        if math.isfinite(trace.first_wall_contact):
+            facts["wall contact"] = (
+                f"{trace.wall_contact[-1]:.3g} s in all, first at {trace.first_wall_contact:.4g} s"
+            )
         facts["time step"] = f"{trace.time_step:g} s"
     facts["computing time"] = f"{trace.wall_time:.3g} s"
     return facts
