@@ -230,9 +230,11 @@ def _print_groups(comparison: Comparison, console: Console) -> None:
 def _contents(comparison: Comparison) -> dict[str, bytes]:
     from .figure import comparison_figure
     from .page import comparison_page
+    from .suite_page import suite_page
 
     command = shlex.join(["rockwobble", *sys.argv[1:]])
-    page = comparison_page(comparison, command)
+    many = len(comparison.cases) > _SINGLY
+    page = suite_page(comparison, command) if many else comparison_page(comparison, command)
     return {
         **comparison.files(),
         "report.html": page.encode(),

@@ -67,6 +67,26 @@ def worst_cases(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[str
     return lines
 
 
+def worst_first(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[dict[str, Any]]:
+    """Return what the overview of a page says of each case: its worst run, and the worst case first."""
+    rows = _with_shares(summary, lengths)
+    order = {name: index for index, name in enumerate(lengths)}
+    worst = rows.sort_values(["share", "tilt_rms_relative"], ascending=[True, False], kind="stable")
+    return [
+        {
+            "case": row["case"],
+            "index": order[row["case"]],
+            "run": row["run"],
+            "parted": bool(row["parted"]),
+            "agrees": f"{row['agreement_horizon']:.2f}",
+            "length": f"{lengths[row['case']]:.4g}",
+            "rms": _number(100.0 * row["tilt_rms_relative"]),
+            "peak": _number(abs(row["peak_tilt_difference"])),
+        }
+        for _, row in worst.drop_duplicates("case").iterrows()
+    ]
+
+
 def suite_headline(summary: pd.DataFrame) -> str:
     """Return how many runs agree to their end, and with what."""
     rows = _own_rows(summary)
