@@ -3,6 +3,9 @@
 from .comparison import Comparison, describe_case, describe_run
 from .contact import TILTED
 from .driver import compare
+from .ensemble import Ensemble, ensemble
+from .ensemble_members import perturbed_starts, synthetic_motions, with_motions
+from .error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
 from .execution import Crash, Job, Progress, simulate_all
 from .foreign import Foreign, ForeignTrajectory, read_trajectory
 from .horizon import AGREEMENT
@@ -18,11 +21,15 @@ from .traces import Pair, make_pair
 
 __all__ = [
     "AGREEMENT",
+    "LARGEST_SHARE",
     "SUMMARY_COLUMNS",
     "TILTED",
+    "WORTH_EXPLAINING",
     "CaseSweep",
     "Comparison",
     "Crash",
+    "Ensemble",
+    "ErrorBudget",
     "Foreign",
     "ForeignTrajectory",
     "Grid",
@@ -36,10 +43,13 @@ __all__ = [
     "default_runs",
     "describe_case",
     "describe_run",
+    "ensemble",
+    "findings",
     "installed_engines",
     "make_pair",
     "missing_engines",
     "open_sweep_store",
+    "perturbed_starts",
     "read_trajectory",
     "relative_rms",
     "replace_files",
@@ -48,4 +58,6 @@ __all__ = [
     "reserved_engines",
     "simulate_all",
     "sweep",
+    "synthetic_motions",
+    "with_motions",
 ]

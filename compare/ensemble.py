@@ -1,0 +1,218 @@
+"""Ensembles: what can be compared beyond the horizon, where single traces say nothing."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockwobble.models import Case, Run, Suite
+
+from .distributions import Contrast, contrast
+from .ensemble_members import perturbed_starts
+from .execution import Crash, Job, ProgressCallback, simulate_all
+from .run_store import open_run_store
+from .runs import default_runs, require_runnable, run_labels
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MODELS = ("recess", "rolling")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Ensemble:
+    """Peak tilts of many members by several methods.
+
+    Parameters
+    ----------
+    members : DataFrame
+        One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed),
+        outcome, message, wall_time [s].
+    methods : DataFrame
+        One row for each method: runs, overturned, failed, failed_members (their names), and median and
+        quantiles of the peak tilt of what did not fail [alpha].
+    contrasts : DataFrame
+        One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high.
+    about : dict
+        Seed, kind and size of the perturbation, and the draws of the bootstrap.
+    """
+
+    members: pd.DataFrame
+    methods: pd.DataFrame
+    contrasts: pd.DataFrame
+    about: dict[str, Any]
+
+
+def ensemble(
+    case_or_members: Case | Suite | Sequence[Case],
+    *,
+    runs: Iterable[Run] | None = None,
+    models: Sequence[str] = MODELS,
+    size: int = 20,
+    perturbation: float = 0.01,
+    seed: int = 0,
+    draws: int = 1000,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+    resume: str | Path | None = None,
+) -> Ensemble:
+    """Run many members by each method, and hold the distributions of peak tilt against each other.
+
+    Parameters
+    ----------
+    case_or_members : Case, Suite or sequence of Case
+        One case is run with `size` perturbed starts, see `perturbed_starts`; several are the members,
+        such as one body under many records.
+    runs : iterable of Run, optional
+        Default: those of the suite, else every installed engine with supports "guided" and "free".
+    models : sequence of str, optional
+        Reduced models. The first is named first in every contrast.
+    size : int, optional
+        Number of perturbed starts.
+    perturbation : float, optional
+        Their relative standard deviation.
+    seed : int, optional
+        Of the perturbations and of the bootstrap.
+    draws : int, optional
+        Of the bootstrap.
+    workers, progress, resume
+        As in `compare`.
+
+    Returns
+    -------
+    Ensemble
+        Failed runs have no peak; they are counted and named, and their member does not count in the
+        contrasts of their method.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two members, or an engine or a number is not usable.
+
+    Examples
+    --------
+    >>> from rockwobble.models import Cylinder, el_centro_1940
+    >>> case = Case("pier", Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
+    >>> found = ensemble(case, runs=[], size=5, workers=1)
+    >>> found.methods[["method", "runs", "failed"]].values.tolist()
+    [['recess', 5, 0], ['rolling', 5, 0]]
+    """
+    about: dict[str, Any] = {"seed": seed, "draws": draws}
+    if isinstance(case_or_members, Case):
+        members = perturbed_starts(case_or_members, size, perturbation=perturbation, seed=seed)
+        about |= {"members": "perturbed starts", "size": size, "perturbation": perturbation}
+    else:
+        members = list(case_or_members.cases if isinstance(case_or_members, Suite) else case_or_members)
+        about |= {"members": "cases", "size": len(members)}
+    if len(members) < 2 or len({case.name for case in members}) < len(members):
+        raise ValueError(f"an ensemble has at least 2 members of different names, got {len(members)}")
+    chosen = _runs(case_or_members, runs)
+    for case in members:
+        for run in chosen:
+            require_runnable(case, run)
+    methods: dict[str, str | Run] = {model: model for model in models}
+    methods |= dict(zip(run_labels(chosen), chosen, strict=True))
+    jobs = [
+        Job(case=case, method=method, label=label) for case in members for label, method in methods.items()
+    ]
+    with nullcontext() if resume is None else open_run_store(resume) as store:
+        results = simulate_all(jobs, workers=workers, progress=progress, store=store)
+    table = _members(jobs, results)
+    return Ensemble(
+        members=table,
+        methods=_methods(table),
+        contrasts=_contrasts(table, list(methods), draws=draws, seed=seed),
+        about=about,
+    )
+
+
+def _runs(case_or_members: Case | Suite | Sequence[Case], runs: Iterable[Run] | None) -> tuple[Run, ...]:
+    if runs is not None:
+        return tuple(runs)
+    if isinstance(case_or_members, Suite) and case_or_members.runs:
+        return case_or_members.runs
+    return default_runs()
+
+
+def _members(jobs: Sequence[Job], results: Sequence[Any]) -> pd.DataFrame:
+    import pandas as pd
+
+    rows = []
+    for job, result in zip(jobs, results, strict=True):
+        crashed = isinstance(result, Crash)
+        failed = crashed or result.outcome == "failed"
+        rows.append(
+            {
+                "member": job.case.name,
+                "method": job.label,
+                "peak_tilt": math.nan if failed else result.peak_tilt / job.case.cylinder.alpha,
+                "outcome": "failed" if failed else result.outcome,
+                "message": result.message,
+                "wall_time": math.nan if crashed else result.wall_time,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def _methods(members: pd.DataFrame) -> pd.DataFrame:
+    import pandas as pd
+
+    rows = []
+    for method, runs in members.groupby("method", sort=False):
+        failed = runs[runs["outcome"] == "failed"]
+        peaks = np.sort(runs["peak_tilt"].dropna().to_numpy(float))
+        low, median, high = np.quantile(peaks, [0.16, 0.5, 0.84]) if len(peaks) else [math.nan] * 3
+        rows.append(
+            {
+                "method": method,
+                "runs": len(runs),
+                "rocked": int((runs["peak_tilt"] > 0.0).sum()),
+                "overturned": int((runs["outcome"] == "overturned").sum()),
+                "failed": len(failed),
+                "failed_members": ", ".join(failed["member"]),
+                "peak_16": low,
+                "peak_median": median,
+                "peak_84": high,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def _contrasts(members: pd.DataFrame, methods: list[str], *, draws: int, seed: int) -> pd.DataFrame:
+    import pandas as pd
+
+    names = members["member"].unique()
+    peaks = members.pivot_table("peak_tilt", "member", "method", dropna=False).reindex(names)
+    fell = (
+        members.assign(fell=members["outcome"] == "overturned")
+        .pivot_table("fell", "member", "method", aggfunc="max")
+        .reindex(names)
+        .astype(bool)
+    )
+    rows = []
+    for against, method in itertools.combinations(methods, 2):
+        ours, theirs = (peaks[name].to_numpy(float) for name in (method, against))
+        if np.count_nonzero(np.isfinite(ours) & np.isfinite(theirs)) < 2:
+            continue
+        found = contrast(
+            ours, theirs, fell[method].to_numpy(bool), fell[against].to_numpy(bool), draws=draws, seed=seed
+        )
+        masked = names[~(np.isfinite(ours) & np.isfinite(theirs))]
+        rows.append({"method": method, "against": against, **_flat(found), "masked": ", ".join(masked)})
+    return pd.DataFrame(rows)
+
+
+def _flat(found: Contrast) -> dict[str, float | int]:
+    row: dict[str, float | int] = {"count": found.count}
+    for name in ("ks", "wasserstein", "median_ratio"):
+        interval = getattr(found, name)
+        row |= {name: interval.value, f"{name}_low": interval.low, f"{name}_high": interval.high}
+    names = ("ks_p", "overturned", "against_overturned", "both_overturned", "overturned_p")
+    return row | {name: getattr(found, name) for name in names}

@@ -1,0 +1,125 @@
+"""What the members of an ensemble are: one problem many times over, each a little or altogether different."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Case, GroundMotion
+
+# of the Kanai-Tajimi filter, firm soil: K. Kanai 1957, H. Tajimi 1960
+_GROUND_FREQUENCY, _GROUND_DAMPING = 5.0 * math.pi, 0.6
+# a second, high-pass filter (R. W. Clough, J. Penzien) takes what a ground cannot do: drift away
+_CORNER_FREQUENCY, _CORNER_DAMPING = 0.5 * math.pi, 0.6
+_TIME_STEP = 0.01
+# of the duration: rise and strong part of the envelope, followed by an exponential decay
+_RISE, _STRONG, _DECAY = 0.15, 0.4, 4.0
+
+
+def perturbed_starts(case: Case, count: int, *, perturbation: float, seed: int) -> list[Case]:
+    """Return one problem `count` times, each with slightly different conditions.
+
+    From a release its tilt and its rolling rate, from rest the two horizontal components of the ground
+    motion, are multiplied by 1 + perturbation * N with a standard normal N of its own for each.
+
+    Parameters
+    ----------
+    case : Case
+    count : int
+    perturbation : float
+        Relative standard deviation.
+    seed : int
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or nothing moves the cylinder.
+    """
+    _require_count(count)
+    if not 0.0 < perturbation <= 0.1:
+        raise ValueError(f"perturbation must be above 0 and at most 0.1, got {perturbation!r}")
+    factors = 1.0 + perturbation * np.random.default_rng(seed).standard_normal((count, 2))
+    return [
+        dataclasses.replace(_perturbed(case, *map(float, pair)), name=f"{case.name} #{index + 1}")
+        for index, pair in enumerate(factors)
+    ]
+
+
+def _perturbed(case: Case, first: float, second: float) -> Case:
+    initial, motion = case.initial, case.motion
+    if initial is not None and initial.tilt > 0.0:
+        released = dataclasses.replace(
+            initial, tilt=initial.tilt * first, rolling_rate=initial.rolling_rate * second
+        )
+        return dataclasses.replace(case, initial=released)
+    if motion is None:
+        raise ValueError("an ensemble needs a release or a ground motion, got a cylinder at rest")
+    acceleration = np.array(motion.acceleration)
+    acceleration[:, 0] *= first
+    acceleration[:, 1] *= second
+    return dataclasses.replace(case, motion=GroundMotion(acceleration, motion.time_step, motion.name))
+
+
+def synthetic_motions(count: int, *, peak: float, seed: int, duration: float = 20.0) -> list[GroundMotion]:
+    """Return `count` made-up ground motions of two components: filtered noise with an envelope.
+
+    White noise through the filters of Kanai-Tajimi and Clough-Penzien on firm soil, both components
+    alike and independent, each motion scaled to the same peak.
+
+    Parameters
+    ----------
+    count : int
+    peak : float
+        Largest horizontal resultant [m/s^2].
+    seed : int
+    duration : float, optional
+        [s]
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range.
+    """
+    _require_count(count)
+    for name, value in (("peak", peak), ("duration", duration)):
+        if not (math.isfinite(value) and value > 0.0):
+            raise ValueError(f"{name} must be positive and finite, got {value!r}")
+    size = round(duration / _TIME_STEP) + 1
+    noise = np.random.default_rng(seed).standard_normal((count, size, 2))
+    frequency = 2.0 * math.pi * np.fft.rfftfreq(2 * size, _TIME_STEP)
+    spectrum = _transfer(np.asarray(frequency, dtype=np.float64))[None, :, None] * np.fft.rfft(noise, 2 * size, axis=1)
+    filtered = np.fft.irfft(spectrum, axis=1)[:, :size]
+    share = np.arange(size) / (size - 1)
+    envelope = np.minimum(share / _RISE, 1.0) * np.exp(-_DECAY * np.maximum(share - _RISE - _STRONG, 0.0))
+    shaped = filtered * envelope[None, :, None]
+    shaped *= peak / np.hypot(shaped[..., 0], shaped[..., 1]).max(axis=1)[:, None, None]
+    return [
+        GroundMotion(samples, _TIME_STEP, f"synthetic {seed}-{index + 1}")
+        for index, samples in enumerate(shaped)
+    ]
+
+
+def _transfer(frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
+    """Response of both filters to acceleration of the rock, by circular frequency [rad/s]."""
+    ground = _GROUND_FREQUENCY**2 + 2j * _GROUND_DAMPING * _GROUND_FREQUENCY * frequency
+    ground /= _GROUND_FREQUENCY**2 - frequency**2 + 2j * _GROUND_DAMPING * _GROUND_FREQUENCY * frequency
+    corner = -(frequency**2) / (
+        _CORNER_FREQUENCY**2 - frequency**2 + 2j * _CORNER_DAMPING * _CORNER_FREQUENCY * frequency
+    )
+    return np.asarray(ground * corner)
+
+
+def with_motions(case: Case, motions: list[GroundMotion]) -> list[Case]:
+    """Return one problem under each of several ground motions, as long as each of them."""
+    return [
+        dataclasses.replace(case, name=f"{case.name}: {motion.name}", motion=motion, duration=None)
+        for motion in motions
+    ]
+
+
+def _require_count(count: int) -> None:
+    if count < 2:
+        raise ValueError(f"an ensemble has at least 2 members, got {count!r}")
