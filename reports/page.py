@@ -9,14 +9,16 @@ from typing import TYPE_CHECKING, Any
 from . import charts
 from .case_view import CaseView, case_views
 from .findings import finding, headline
+from .playback import playback
 from .problem import describe
+from .template import PLOT_CONFIG, render
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
     from rockwobble.compare import Comparison
 
-_CONFIG = {"responsive": True, "displaylogo": False, "modeBarButtonsToRemove": ["select2d", "lasso2d"]}
+_PLAYED = 4  # cases that are played in the page, 0.3 MB each; `rockwobble view` plays any other
 
 
 def comparison_page(comparison: Comparison, command: str = "") -> str:
@@ -28,22 +30,12 @@ def comparison_page(comparison: Comparison, command: str = "") -> str:
     command : str, optional
         What made it, for the reader who wants to make it again.
     """
-    import jinja2
-    from plotly.offline import get_plotlyjs
-
     from rockwobble.compare import SUMMARY_COLUMNS
 
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("rockwobble.reports", "templates"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     views = case_views(comparison)
-    return environment.get_template("compare.html.j2").render(
+    return render(
+        "compare.html.j2",
         command=command,
-        plotly_js=get_plotlyjs(),
         cases=[_case(view, index) for index, view in enumerate(views)],
         columns=[
             {"name": name, "unit": unit, "meaning": meaning}
@@ -63,6 +55,7 @@ def _case(view: CaseView, index: int) -> dict[str, Any]:
         "headline": headline(view.rows, length),
         "findings": [finding(row, length) for _, row in view.rows.iterrows()],
         "rows": [{name: _cell(value) for name, value in row.items()} for _, row in view.rows.iterrows()],
+        "playback": playback(view) if index < _PLAYED else None,
         "tilt": _plot(charts.tilt_chart(view), f"tilt-{index}"),
         "difference": _plot(charts.difference_chart(view), f"difference-{index}"),
         "orbits": _plots(charts.orbit_charts(view), f"orbit-{index}"),
@@ -84,7 +77,7 @@ def _plots(panels: list[tuple[str, go.Figure]], name: str) -> list[dict[str, str
 def _plot(figure: go.Figure, name: str) -> str:
     """Return the element of a figure and the script that draws it."""
     return str(
-        figure.to_html(full_html=False, include_plotlyjs=False, div_id=html.escape(name), config=_CONFIG)
+        figure.to_html(full_html=False, include_plotlyjs=False, div_id=html.escape(name), config=PLOT_CONFIG)
     )
 
 
