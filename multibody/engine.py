@@ -120,6 +120,8 @@ class Steps:
         Means over the step that ends at the pose, world axes [m/s], [rad/s].
     wall : Wall, optional
         Contact with walls at the poses from which the steps start. None without walls.
+    unsolved : bool, optional
+        Whether the solver stopped before it converged, in the last of these steps.
     """
 
     position: Array
@@ -127,6 +129,7 @@ class Steps:
     velocity: Array
     angular_velocity: Array
     wall: Wall | None = None
+    unsolved: bool = False
 
 
 class Stepper(Protocol):

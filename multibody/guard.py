@@ -21,6 +21,7 @@ from .kinematics import Kinematics
 Array = NDArray[np.float64]
 
 ENERGY_GAIN = 0.02  # of the energy at which the cylinder stands on its rim in balance
+ENERGY_DRIFT = 1e-3  # of the same, either way: worth a remark; sound runs stay below 5e-4
 PENETRATION = 0.01  # of b
 GUIDE_TWIST = 0.02  # [rad] about one degree
 LARGEST_STEP = 1e-3  # [s] at the reference size; contact needs it ten times shorter than the fastest pass

@@ -120,9 +120,9 @@ class _MujocoStepper:
         velocity, spin = rows[:, 8:11], to_world(quaternion, rows[:, 11:14])
         touch = None if self._ring is None else _wall(np.vstack(walls))
         if self._staggered:
-            return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:], touch)
+            return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:], touch, self._unsolved())
         mean = 0.5 * (velocity[:-1] + velocity[1:]), 0.5 * (spin[:-1] + spin[1:])
-        return Steps(rows[1:, 1:4], quaternion[1:], *mean, touch)
+        return Steps(rows[1:, 1:4], quaternion[1:], *mean, touch, self._unsolved())
 
     def warnings(self) -> str:
         """Return the warnings of the engine."""
@@ -140,6 +140,11 @@ class _MujocoStepper:
         return SceneCounts(
             degrees_of_freedom=self._model.nv, contacts=int(data.ncon), constraint_rows=int(data.nefc)
         )
+
+    def _unsolved(self) -> bool:
+        # the rollout keeps what the last step did; an empty island has used no iteration
+        used = int(self._data.solver_niter.max())
+        return used >= self._settings.iterations and self._settings.tolerance > 0.0
 
     def _roll(self, acceleration: Array) -> tuple[Array, Array]:
         """Step in C; return the states (n, 14) after each step, and the sensors at its start."""

@@ -17,6 +17,7 @@ from .scene_counts import SceneCounts
 from .settings import PybulletSettings
 
 _LEANS = 1e-7  # [rad] a cylinder that leans less has no lowest point to speak of
+_RESIDUAL = 1e-10  # of an iteration, squared [m^2/s^2]; what a standing cylinder leaves is far below
 _NO_SPIN = (0.0, 0.0, 0.0)
 
 
@@ -69,6 +70,7 @@ class _PybulletStepper:
         self._stiffness = stiffness if scene.support == "guided" else 0.0
         self._ground, self._body = _build(pybullet, client, scene, settings)
         self._lengths = scene.body.base_radius, scene.body.mass_centre_height
+        self._iterations, self._unsolved = settings.iterations, False
         self._overshoot = settings.friction_damping - 1.0
         start = scene.start
         self._position = start.position
@@ -93,13 +95,14 @@ class _PybulletStepper:
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         before = self._position, self._quaternion
-        positions, quaternions = self._loop((-acceleration - [0.0, 0.0, self._gravity]).tolist())
+        positions, quaternions = self._loop((-acceleration - [0.0, 0.0, self._gravity]).tolist(), before[1])
         position = np.array(positions)
         quaternion = np.roll(np.array(quaternions), 1, axis=1)
         self._position, self._quaternion = position[-1], quaternion[-1]
         # the new velocity moves the pose, so poses give the velocities, and the loop is spared a call
         velocity = np.diff(np.vstack([before[0], position]), axis=0) / self._step
-        return Steps(position, quaternion, velocity, _turning(before[1], quaternion) / self._step)
+        turning = _turning(before[1], quaternion) / self._step
+        return Steps(position, quaternion, velocity, turning, unsolved=self._unsolved)
 
     def warnings(self) -> str:
         """Bullet does not warn."""
@@ -110,7 +113,13 @@ class _PybulletStepper:
         contacts = len(self._bullet.getContactPoints(self._body, physicsClientId=self._client))
         return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
 
-    def _loop(self, gravity: list[list[float]]) -> tuple[list[Any], list[Any]]:
+    def _analyse(self, wanted: bool) -> None:
+        # of every step it would cost a tenth
+        self._bullet.setPhysicsEngineParameter(
+            reportSolverAnalytics=int(wanted), physicsClientId=self._client
+        )
+
+    def _loop(self, gravity: list[list[float]], start: Array) -> tuple[list[Any], list[Any]]:
         """Step under an apparent gravity [m/s^2] for each step: rigid ground need not move."""
         # local names, because this is the one loop over steps in Python
         bullet, client, body = self._bullet, self._client, self._body
@@ -122,8 +131,12 @@ class _PybulletStepper:
         positions: list[Any] = []
         quaternions: list[Any] = []
         add_position, add_quaternion = positions.append, quaternions.append
-        w, x, y, z = self._quaternion.tolist()
-        for along_x, along_y, along_z in gravity:
+        report: Any = ()
+        w, x, y, z = start.tolist()
+        last = len(gravity) - 1
+        for index, (along_x, along_y, along_z) in enumerate(gravity):
+            if index == last:
+                self._analyse(True)
             pull(along_x, along_y, along_z, client)
             if stiffness and z:
                 # along the vertical plus the axis, proportional to the twist
@@ -144,10 +157,15 @@ class _PybulletStepper:
                 out, down = b * az / sine - h, h * az + b * sine
                 slip_x, slip_y = vx - wy * down - wz * out * ay, vy + wz * out * ax + wx * down
                 move(ground, (-overshoot * slip_x, -overshoot * slip_y, 0.0), _NO_SPIN, client)
-            step(client)
+            report = step(client)
             place, (x, y, z, w) = pose(body, client)
             add_position(place)
             add_quaternion((x, y, z, w))
+        self._analyse(False)
+        self._unsolved = any(
+            island["numIterationsUsed"] >= self._iterations and island["remainingResidual"] > _RESIDUAL
+            for island in report
+        )
         return positions, quaternions
 
 

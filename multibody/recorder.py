@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from .engine import Scene, Steps, Wall
 from .forces import ForceSamples, first_pull, force_of_steps
-from .guard import first_breach
+from .guard import energy_scale, first_breach
 from .kinematics import Kinematics, axis_of, kinematics, mean_velocity, rim, rolling_momentum, unwrap
 from .passes import TurningPoint, turning_points
 from .start import Start
@@ -65,6 +65,9 @@ class Recorder:
         self.walls = WallWatch(scene.time_step)
         self.slip_time = math.nan  # when the slip became worth a remark [s]
         self.flight_time = math.nan  # when the rim left the ground [s]
+        self.drift = 0.0  # largest energy error, with its sign, over the energy scale
+        self.looks = 0  # at the solver, and how often it had not converged
+        self.unsolved = 0
         self.pull_time = math.nan  # when the ground held the rim down, which only a joint does [s]
         # a standing cylinder leans by less, in no direction
         sure = sure_tilt(body)
@@ -104,6 +107,7 @@ class Recorder:
         `acceleration` (n, 3) is the ground's during `steps`: its first row belongs to the step that
         follows the last pose known so far.
         """
+        self.looks, self.unsolved = self.looks + 1, self.unsolved + steps.unsolved
         poses, after = self._pair(steps)
         count = len(poses.position)
         time: Array = self._scene.time_step * np.arange(self._count, self._count + count, dtype=float)
@@ -135,6 +139,10 @@ class Recorder:
                 )  # fmt: skip
 
             self._follow(np.stack([time[:stop], state.tilt[:stop], angle[:stop]]))
+            extreme = float(gained[:stop][np.abs(gained[:stop]).argmax()]) / energy_scale(
+                body, self._scene.gravity
+            )
+            self.drift = max(self.drift, extreme, key=abs)
             self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[:stop]).max()))
             self._sample(time[:stop], rows)
             force = force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity)

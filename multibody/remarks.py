@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 from .froude import Scale
+from .guard import ENERGY_DRIFT
 from .recorder import Recorder
 
 if TYPE_CHECKING:
@@ -28,6 +29,15 @@ def remarks(recorder: Recorder, passes: pd.DataFrame, resolution: float, scale: 
         found.append(f"the cylinder left the ground at {recorder.flight_time * scale.time:.4g} s")
     if not math.isnan(recorder.walls.first):
         found.append(f"the cylinder touched a wall from {recorder.walls.first * scale.time:.4g} s on")
+    if abs(recorder.drift) > ENERGY_DRIFT:
+        found.append(
+            f"contact {'made' if recorder.drift > 0.0 else 'took'} {abs(recorder.drift):.1e} of the energy "
+            "that balances the cylinder on its rim"
+        )
+    if recorder.unsolved:
+        found.append(
+            f"the solver had not converged in {recorder.unsolved} of the {recorder.looks} steps looked at"
+        )
     close = passes[~passes["resolved"]]
     if len(close):
         found.append(
