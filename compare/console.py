@@ -1,0 +1,57 @@
+"""Tables and progress of the commands of this folder."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+from .execution import Progress
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def parse_plain(module: str, description: str, arguments: Sequence[str] | None = None) -> None:
+    """Answer --help at once, and refuse arguments, for a command without options."""
+    parser = argparse.ArgumentParser(prog=f"python -m rockwobble.compare.{module}", description=description)
+    parser.parse_args(arguments)
+
+
+def tell(event: Progress) -> None:
+    """Say on standard error which run has finished."""
+    if event.state == "finished":
+        print(f"{event.done}/{event.total} {event.case}, {event.label}", file=sys.stderr, flush=True)
+
+
+def show(table: pd.DataFrame, title: str, formats: Mapping[str, str], note: str = "") -> None:
+    """Print a table with rich.
+
+    Parameters
+    ----------
+    table : DataFrame
+    title : str
+    formats : mapping
+        For each column that is shown, in this order, how its values are printed, such as ".1e"; "" for
+        text. What is not finite is shown as a dash.
+    note : str, optional
+        Below the table.
+    """
+    from rich.console import Console
+    from rich.table import Table
+
+    shown = Table(title=title, caption=note or None, title_justify="left", caption_justify="left")
+    for name, form in formats.items():
+        shown.add_column(name.replace("_", " "), justify="right" if form else "left", overflow="fold")
+    for row in table.to_dict("records"):
+        shown.add_row(*(_text(row[name], form) for name, form in formats.items()))
+    # a table that is read by a program or kept in a file is not folded to the width of no terminal
+    console = Console(width=None if sys.stdout.isatty() else 160)
+    console.print(shown)
+
+
+def _text(value: Any, form: str) -> str:
+    if not form:
+        return str(value)
+    return f"{value:{form}}" if abs(value) < float("inf") else "-"

@@ -1,0 +1,225 @@
+"""How the engines converge to the reduced models: free response, angle of turn, sizes.
+
+`python -m rockwobble.compare.convergence` prints three tables.
+
+1. Guided against the recess model and free against the rolling model over 8 s, released at 0.3, 0.5 and
+   0.8 alpha with 0.5 rad/s at 6 m, for tan(alpha) from 0.1 to 3: error at each step, and the order. A release
+   in which the model itself loses contact with the ground is left out, and said below the table.
+2. The angle of turn from tilt maximum to tilt maximum, b = 1 m, h = 2 b, released at alpha/2 with 0.1 rad/s,
+   against exact quadrature (recess) and against the rolling model.
+3. The first table's release at 0.5 alpha for cylinders of 1 cm, 6 m and 100 m.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockwobble import multibody, reduced
+from rockwobble.models import Case, Cylinder, InitialState, Run
+
+from .console import parse_plain, show, tell
+from .execution import Job, ProgressCallback, simulate_all
+from .traces import make_pair
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MODELS = {"guided": "recess", "free": "rolling"}
+SLENDERNESS = (0.1, 0.2, 0.5, 1.0, 3.0)
+RELEASES = (0.3, 0.5, 0.8)  # of alpha
+STEPS = (2e-4, 1e-4, 5e-5, 2.5e-5)  # [s] at 6 m; the second is the default
+TURN_STEPS = (4e-4, 2e-4, 1e-4, 5e-5)
+SIZES = (0.01, 6.0, 100.0)  # [m]
+_LENGTH = 8.0  # [s] at 6 m
+_RATE = 0.5  # [rad/s] at 6 m
+_MODEL_TOLERANCE = 1e-11  # of the reduced models: their error is nothing against that of an engine
+
+
+def engines_here() -> tuple[str, ...]:
+    """Return the engines that have both supports and are installed."""
+    return tuple(name for name in ("mujoco", "pybullet") if name in multibody.available_engines())
+
+
+def release_case(tan_alpha: float, part: float, size: float = 6.0) -> Case:
+    """Return the release at `part` of alpha, the same for all sizes in Froude's sense."""
+    cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+    time = math.sqrt(size / 6.0)
+    release = InitialState(tilt=part * cylinder.alpha, rolling_rate=_RATE / time)
+    name = f"R {size:g} m, tan alpha {tan_alpha:g}, {part:g} alpha"
+    return Case(name, cylinder, None, release, _LENGTH * time)
+
+
+def reference(case: Case, support: str) -> reduced.Response:
+    """Return the response of the reduced model of a support."""
+    return reduced.simulate(
+        case.cylinder,
+        initial=case.initial,
+        duration=case.duration,
+        model=MODELS[support],
+        rtol=_MODEL_TOLERANCE,
+        friction=case.friction,
+    )
+
+
+def loses_contact(case: Case) -> str:
+    """Return which reduced model says that the cylinder leaves the ground, and when; empty if none does."""
+    for support, model in MODELS.items():
+        for breach in reference(case, support).assumptions.breaches:
+            if breach.assumption == "contact":
+                return f"{case.name}: the {model} model loses contact at {breach.first_time:.3g} s"
+    return ""
+
+
+def convergence(
+    cases: Sequence[Case],
+    *,
+    engines: Sequence[str] | None = None,
+    steps: Sequence[float] = STEPS,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> pd.DataFrame:
+    """Measure the tilt error of each case, support and engine at each step.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        Releases.
+    engines : sequence of str, optional
+        Default: those that are installed.
+    steps : sequence of float
+        From large to small [s] at the reference size of 6 m.
+    workers : int, optional
+        Processes.
+    progress : callable, optional
+
+    Returns
+    -------
+    DataFrame
+        case, support, engine, the errors error_1, error_2, ... [alpha] (NaN where the run failed), order
+        (slope of log error over log step) and message (of the smallest step).
+    """
+    import pandas as pd
+
+    engines = engines_here() if engines is None else engines
+    keys = [(case, support, engine) for case in cases for support in MODELS for engine in engines]
+    jobs = [
+        Job(
+            case=_frictional(case),
+            method=Run(engine, support, step * math.sqrt(case.cylinder.semidiagonal / 6.0)),
+            label=f"{engine} {support} {step:g} s",
+        )
+        for case, support, engine in keys
+        for step in steps
+    ]
+    trials = simulate_all(jobs, workers=workers, progress=progress)
+    references = {(case.name, support): reference(case, support) for case in cases for support in MODELS}
+    rows = []
+    for index, (case, support, engine) in enumerate(keys):
+        mine = trials[len(steps) * index : len(steps) * (index + 1)]
+        errors = [tilt_error(case, references[case.name, support], trial) for trial in mine]
+        rows.append(
+            {
+                "case": case.name,
+                "support": support,
+                "engine": engine,
+                **{f"error_{number + 1}": error for number, error in enumerate(errors)},
+                "order": order(steps, errors),
+                "message": getattr(mine[-1], "message", "the process died"),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def _frictional(case: Case) -> Case:
+    """The case with more than enough friction: the models assume that it suffices."""
+    return Case(
+        case.name, case.cylinder, case.motion, case.initial, case.duration, case.gravity, friction=5.0
+    )
+
+
+def tilt_error(case: Case, model: Any, trial: Any) -> float:
+    """Return the largest tilt difference in alpha; NaN where the run failed."""
+    if getattr(trial, "outcome", "failed") == "failed":
+        return math.nan
+    return float(np.abs(make_pair(case.cylinder, model, trial).tilt_difference).max())
+
+
+def order(steps: Sequence[float], errors: Sequence[float]) -> float:
+    """Return the slope of log error over log step; NaN without two errors."""
+    known = np.isfinite(errors) & (np.asarray(errors) > 0.0)
+    if known.sum() < 2:
+        return math.nan
+    slope = np.polyfit(np.log(np.asarray(steps)[known]), np.log(np.asarray(errors)[known]), 1)[0]
+    return float(slope)
+
+
+def angle_of_turn(
+    *,
+    engines: Sequence[str] | None = None,
+    steps: Sequence[float] = TURN_STEPS,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> pd.DataFrame:
+    """Measure the angle of turn for b = 1 m, h = 2 b, alpha/2 and 0.1 rad/s.
+
+    Returns
+    -------
+    DataFrame
+        support, engine, exact [deg], and the differences error_1, ... at `steps` [deg at the size of 6 m].
+    """
+    import pandas as pd
+
+    engines = engines_here() if engines is None else engines
+    cylinder = Cylinder.from_dimensions(base_radius=1.0, height=4.0)
+    release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.1)
+    case = Case("b 1 m, h 2 b", cylinder, None, release, 2.0, friction=5.0)
+    unit_time = math.sqrt(cylinder.semidiagonal / 6.0)
+    keys = [(support, engine) for support in MODELS for engine in engines]
+    jobs = [
+        Job(case=case, method=Run(engine, support, step * unit_time), label=f"{engine} {support} {step:g} s")
+        for support, engine in keys
+        for step in steps
+    ]
+    trials = iter(simulate_all(jobs, workers=workers, progress=progress))
+    rows = []
+    for support, engine in keys:
+        exact = (
+            reduced.angle_of_turn(cylinder, release)
+            if support == "guided"
+            else float(reference(case, support).passes["angle_of_turn"].iloc[0])
+        )
+        turns = [float(next(trials).passes["angle_of_turn"].iloc[0]) for _ in steps]
+        errors = {f"error_{n + 1}": math.degrees(turn - exact) for n, turn in enumerate(turns)}
+        rows.append({"support": support, "engine": engine, "exact": math.degrees(exact), **errors})
+    return pd.DataFrame(rows)
+
+
+def main() -> None:
+    """Print the tables."""
+    parse_plain("convergence", "How the engines converge to the reduced models.")
+    cases = [release_case(tan_alpha, part) for tan_alpha in SLENDERNESS for part in RELEASES]
+    lost = {case.name: loses_contact(case) for case in cases}
+    kept = [case for case in cases if not lost[case.name]]
+    errors = {f"error_{number + 1}": ".1e" for number in range(len(STEPS))}
+    names = {"case": "", "support": "", "engine": ""}
+    steps = "largest tilt difference in alpha, at steps of " + ", ".join(f"{step:g} s" for step in STEPS)
+    left_out = "\n".join(f"left out: {line}" for line in lost.values() if line)
+    form = names | errors | {"order": ".2f"}
+    show(convergence(kept, progress=tell), "Free response over 8 s", form, f"{steps}\n{left_out}")
+    turns = {f"error_{number + 1}": ".1e" for number in range(len(TURN_STEPS))}
+    show(
+        angle_of_turn(progress=tell),
+        "Angle of turn, b = 1 m, h = 2 b, alpha/2, 0.1 rad/s",
+        {"support": "", "engine": "", "exact": ".4f"} | turns,
+        "in degrees; differences at steps of " + ", ".join(f"{step:g} s" for step in TURN_STEPS) + " at 6 m",
+    )
+    sizes = [release_case(tan_alpha, 0.5, size) for tan_alpha in (0.2, 1.0) for size in SIZES]
+    show(convergence(sizes, progress=tell), "The same at every size", form, steps + " at 6 m")
+
+
+if __name__ == "__main__":
+    main()

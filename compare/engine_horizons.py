@@ -1,0 +1,158 @@
+"""Until when MuJoCo follows its reduced model under El Centro from rest, and what ends it.
+
+`python -m rockwobble.compare.engine_horizons` prints the table: the record at 1, 1.5 and 2 times, on
+cylinders of three sizes and slendernesses, guided against the recess model and free against the rolling
+model, and free against the recess model for contrast.
+
+What must end an agreement is read off the reduced model: its first pass closer to the apex than the
+engine's contact resolves, or the growth of the engine's small error through the passes before that (a
+twin of the model, disturbed by as much as the engine errs, leaves it).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockwobble.models import Case, Cylinder, Run, el_centro_1940
+
+from .console import parse_plain, show, tell
+from .execution import Job, ProgressCallback, simulate, simulate_all
+from .horizon import agreement_horizon
+from .predicted_horizon import estimated_error, predict_horizon, verdict
+from .traces import make_pair
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+CYLINDERS = ((6.0, 0.2), (10.0, 0.1), (2.0, 0.3))  # semidiagonal [m], tan alpha
+SCALES = (1.0, 1.5, 2.0)
+PAIRS = (("guided", "recess"), ("free", "rolling"), ("free", "recess"))
+_OWN = {"guided": "recess", "free": "rolling"}
+
+
+def cases() -> tuple[Case, ...]:
+    """Return the cases of the table."""
+    record = el_centro_1940()
+    return tuple(
+        Case(
+            f"R {size:g} m, tan alpha {tan_alpha:g}, times {scale:g}",
+            Cylinder(semidiagonal=size, tan_alpha=tan_alpha),
+            record.scaled(scale),
+        )
+        for size, tan_alpha in CYLINDERS
+        for scale in SCALES
+    )
+
+
+def horizons(
+    chosen: Sequence[Case] | None = None,
+    *,
+    engine: str = "mujoco",
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> pd.DataFrame:
+    """Measure how long an engine follows its model, and what the model says must end that.
+
+    Parameters
+    ----------
+    chosen : sequence of Case, optional
+        Default: those of the table.
+    engine : str
+    workers : int, optional
+        Processes.
+    progress : callable, optional
+
+    Returns
+    -------
+    DataFrame
+        case, support, reference, outcome (of the engine), uplift [s], length [s, of the motion from
+        uplift], horizon [s from uplift], parted, rms (of the tilt difference up to the horizon) [alpha],
+        resolution (smallest tilt of a pass that the engine resolves) [rad], close_pass [s from uplift] and
+        close_tilt [rad] (the first pass of the engine's own model below it; NaN without one), passes
+        (those before the horizon), closest (smallest tilt of them) [rad], foretold [s] and reason (what
+        has to end the agreement, and when), and agreed ("in time", "later", "earlier" or "never, as
+        foretold").
+    """
+    import pandas as pd
+
+    chosen = cases() if chosen is None else chosen
+    methods: list[tuple[str, Run | str]] = [
+        *((model, model) for model in ("recess", "rolling")),
+        *((support, Run(engine, support)) for support in _OWN),
+    ]
+    jobs = [Job(case=case, method=method, label=label) for case in chosen for label, method in methods]
+    results = simulate_all(jobs, workers=workers, progress=progress)
+    rows = []
+    for index, case in enumerate(chosen):
+        block = results[len(methods) * index : len(methods) * (index + 1)]
+        traces = dict(zip((label for label, _ in methods), block, strict=True))
+        rows += [_row(case, traces, support, model) for support, model in PAIRS]
+    return pd.DataFrame(rows)
+
+
+def _row(case: Case, traces: dict[str, Any], support: str, model: str) -> dict[str, Any]:
+    trial, own, reference = traces[support], traces[_OWN[support]], traces[model]
+    row = {"case": case.name, "support": support, "reference": model}
+    if not hasattr(trial, "tilt"):
+        return row | {"outcome": "failed", "agreed": f"the process died: {trial.message}"}
+    start = reference.uplift_time
+    if not math.isfinite(start):
+        same = trial.outcome == reference.outcome
+        return row | {"outcome": trial.outcome, "agreed": "both rest" if same else "only one uplifts"}
+    pair = make_pair(case.cylinder, reference, trial)
+    horizon = agreement_horizon(pair, broken=trial.outcome == "failed")
+    prediction = predict_horizon(
+        case,
+        reference=reference,
+        own=own,
+        own_model=_OWN[support],
+        contact_resolution=trial.contact_resolution,
+        error=estimated_error(case, trial.engine, trial.time_step),
+        simulate=lambda twin, name: simulate(Job(case=twin, method=name, label=name)),
+    )
+    times = own.passes["time"].to_numpy(float)
+    minima = own.passes["minimum_tilt"].to_numpy(float)
+    close = np.flatnonzero(minima < trial.contact_resolution)
+    before = minima[times <= horizon.end]
+    within = (pair.time >= start) & (pair.time <= horizon.end)
+    return row | {
+        "outcome": trial.outcome,
+        "uplift": start,
+        "length": pair.end - start,
+        "horizon": horizon.end - start,
+        "parted": horizon.parted,
+        "rms": float(np.sqrt(np.mean(pair.tilt_difference[within] ** 2))),
+        "resolution": trial.contact_resolution,
+        "close_pass": float(times[close[0]]) - start if len(close) else math.nan,
+        "close_tilt": float(minima[close[0]]) if len(close) else math.nan,
+        "passes": len(before),
+        "closest": float(before.min()) if len(before) else math.nan,
+        "foretold": prediction.length,
+        "reason": prediction.reason,
+        "agreed": verdict(horizon.end - start, horizon.parted, prediction.length, prediction.reason),
+    }
+
+
+def main() -> None:
+    """Print the table."""
+    parse_plain("engine_horizons", "Until when MuJoCo follows its reduced model, and what ends it.")
+    formats = {
+        "case": "", "support": "", "reference": "", "length": ".2f", "horizon": ".2f", "rms": ".1e",
+        "passes": ".0f", "closest": ".1e", "resolution": ".1e", "close_pass": ".2f", "close_tilt": ".1e",
+        "foretold": ".2f", "reason": "", "agreed": "",
+    }  # fmt: skip
+    show(
+        horizons(progress=tell),
+        "MuJoCo and its reduced models, El Centro 1940 from rest",
+        formats,
+        "times in s from uplift, tilts of passes in rad, rms up to the horizon in alpha; close pass: the "
+        "first of the engine's own model below the contact resolution",
+    )
+
+
+if __name__ == "__main__":
+    main()

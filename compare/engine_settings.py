@@ -1,0 +1,230 @@
+"""Which settings of an engine give the least error for a given cost.
+
+`python -m rockwobble.compare.engine_settings` prints the table. Each variant differs from the default in
+one setting. First the time of a step is measured, in turns, so that a change of the machine's speed meets
+all alike; then each runs with the step that its time allows, so that all cost the same. The errors are
+those of the tilt, guided against the recess model and free against the rolling model:
+
+* shaken: two cases with teeth under El Centro to 15 s, (10 m, 0.1) as recorded and (6 m, 0.2) doubled,
+  relative RMS, the larger of the two;
+* released: at half of alpha with 0.5 rad/s for 4 s at tan alpha 0.2, 1 and 3, the largest in alpha.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockwobble import multibody
+from rockwobble.models import Case, Cylinder, InitialState, Run, el_centro_1940
+
+from .console import parse_plain, show, tell
+from .execution import Job, ProgressCallback, simulate_all
+from .tilt import tilt_rms_relative
+from .traces import make_pair
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+STEP = 1e-4  # [s] of the default at the reference size
+_PILOT = 0.5  # [s] of motion timed in each turn
+_TURNS = 5
+_MODELS = {"guided": "recess", "free": "rolling"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Variant:
+    """An engine and what is not the default.
+
+    Parameters
+    ----------
+    engine : str
+    what : str
+        In words.
+    settings : dict
+        Those that do not depend on the step.
+    contact, guide : float, optional
+        Contact time constant over the step, and 2 h sqrt(guide stiffness); default that of the engine.
+    """
+
+    engine: str
+    what: str
+    settings: dict[str, Any] = field(default_factory=dict)
+    contact: float = math.nan
+    guide: float = math.nan
+
+    def run(self, support: str, time_step: float, unit_time: float) -> Run:
+        """Return the run with a step [s] at the reference size; `unit_time` scales it to the case."""
+        step = time_step * unit_time
+        more: dict[str, Any] = {}
+        if math.isfinite(self.contact):
+            more["contact_time_constant"] = self.contact * step
+        if math.isfinite(self.guide):
+            more["guide_stiffness"] = (0.5 * self.guide / step) ** 2
+        return Run(self.engine, support, step, **self.settings, **more)
+
+
+def variants(engines: Sequence[str] | None = None) -> list[Variant]:
+    """Return the defaults of the engines that are installed, and what differs from them by one setting."""
+    dampings = (1.0, 1.6, 1.9)
+    found = [
+        Variant(engine="mujoco", what="default"),
+        *(
+            Variant(engine="mujoco", what=f"integrator {name}", settings={"integrator": name})
+            for name in ("implicitfast", "implicit", "RK4", "discrete")
+        ),
+        Variant(
+            engine="mujoco", what="discrete, contact 0.2 h", settings={"integrator": "discrete"}, contact=0.2
+        ),
+        *(
+            Variant(engine="mujoco", what=f"contact time constant {contact:g} h", contact=contact)
+            for contact in (1.0, 1.5, 4.0, 10.0)
+        ),
+        *_varied("mujoco", "friction_damping", dampings),
+        *_guides("mujoco"),
+        Variant(engine="pybullet", what="default"),
+        *_varied("pybullet", "friction_damping", dampings),
+        *_varied("pybullet", "contact_erp", (0.05, 0.8)),
+        *_guides("pybullet"),
+    ]
+    known = multibody.available_engines() if engines is None else engines
+    return [variant for variant in found if variant.engine in known]
+
+
+def _varied(engine: str, name: str, values: Sequence[float]) -> list[Variant]:
+    words = name.replace("_", " ")
+    return [Variant(engine=engine, what=f"{words} {value:g}", settings={name: value}) for value in values]
+
+
+def _guides(engine: str) -> list[Variant]:
+    return [
+        Variant(engine=engine, what=f"guide 2 h sqrt(k) = {guide:g}", guide=guide)
+        for guide in (0.025, 0.05, 0.1, 0.2, 0.4, 0.8)
+    ]
+
+
+def cases() -> tuple[Case, ...]:
+    """Return the cases, those under El Centro first."""
+    record = el_centro_1940()
+    shaken, released = [], []
+    for size, tan_alpha, motion in ((10.0, 0.1, record), (6.0, 0.2, record.scaled(2.0))):
+        cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+        shaken.append(Case(f"El Centro, R {size:g} m, tan alpha {tan_alpha:g}", cylinder, motion, None, 15.0))
+    for tan_alpha in (0.2, 1.0, 3.0):
+        cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+        release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
+        released.append(Case(f"release, tan alpha {tan_alpha:g}", cylinder, None, release, 4.0))
+    return (*shaken, *released)
+
+
+def seconds_per_step(chosen: Sequence[Variant]) -> np.ndarray[Any, np.dtype[np.float64]]:
+    """Return the time of a step of each variant [s]: the median ratio to the first, times its time."""
+    case = cases()[-2]
+    steps = _PILOT / STEP
+    times = np.empty((_TURNS, len(chosen)))
+    for turn in times:
+        for index, variant in enumerate(chosen):
+            run = variant.run("guided", STEP, 1.0)
+            started = time.process_time()
+            multibody.simulate(
+                case.cylinder,
+                initial=case.initial,
+                duration=_PILOT,
+                engine=run.engine,
+                support=run.support,
+                time_step=STEP,
+                **run.settings,
+            )
+            turn[index] = (time.process_time() - started) / steps
+    ratio: np.ndarray[Any, np.dtype[np.float64]] = np.median(times / times[:, :1], axis=0)
+    return ratio * float(np.median(times[:, 0]))
+
+
+def measure(
+    chosen: Sequence[Variant] | None = None,
+    *,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> pd.DataFrame:
+    """Run all variants at equal cost.
+
+    Returns
+    -------
+    DataFrame
+        engine, setting, microseconds (a step), time_step [s] (at which it costs what the default of its
+        engine costs at 1e-4 s), and the errors shaken_guided, shaken_free, released_guided and
+        released_free. NaN where a run failed.
+    """
+    import pandas as pd
+
+    chosen = variants() if chosen is None else chosen
+    cost = seconds_per_step(chosen)
+    base = {variant.engine: cost[index] for index, variant in reversed(list(enumerate(chosen)))}
+    # a tenth more or less is noise of the clock, and a step of its own would make the errors differ by it
+    ratio = [value / base[variant.engine] for variant, value in zip(chosen, cost, strict=True)]
+    steps = [STEP * (1.0 if abs(each - 1.0) < 0.1 else each) for each in ratio]
+    jobs = [Job(case=case, method=model, label=model) for case in cases() for model in _MODELS.values()]
+    for variant, step in zip(chosen, steps, strict=True):
+        for case in cases():
+            unit_time = math.sqrt(case.cylinder.semidiagonal / 6.0)
+            jobs += [
+                Job(
+                    case=case,
+                    method=variant.run(support, step, unit_time),
+                    label=f"{variant.engine} {variant.what}",
+                )
+                for support in _MODELS
+            ]
+    results = simulate_all(jobs, workers=workers, progress=progress)
+    count = 2 * len(cases())
+    rows = []
+    for index, (variant, step) in enumerate(zip(chosen, steps, strict=True)):
+        block = results[count * (index + 1) : count * (index + 2)]
+        errors = [
+            _error(job.case, reference, trial)
+            for job, reference, trial in zip(jobs[:count], results[:count], block, strict=True)
+        ]
+        rows.append(
+            {
+                "engine": variant.engine,
+                "setting": variant.what,
+                "microseconds": 1e6 * cost[index],
+                "time_step": step,
+                "shaken_guided": float(np.max(errors[0:4:2])),
+                "shaken_free": float(np.max(errors[1:4:2])),
+                "released_guided": float(np.max(errors[4::2])),
+                "released_free": float(np.max(errors[5::2])),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def _error(case: Case, reference: Any, trial: Any) -> float:
+    if getattr(trial, "outcome", "failed") == "failed":
+        return math.nan
+    pair = make_pair(case.cylinder, reference, trial)
+    if case.motion is not None:
+        return tilt_rms_relative(pair)
+    return float(np.abs(pair.tilt_difference).max())
+
+
+def main() -> None:
+    """Print the table."""
+    parse_plain("engine_settings", "Which settings of an engine give the least error for a given cost.")
+    errors = ("shaken_guided", "shaken_free", "released_guided", "released_free")
+    formats = {"engine": "", "setting": "", "microseconds": ".1f", "time_step": ".2e"}
+    show(
+        measure(progress=tell),
+        "Error of the tilt at equal cost",
+        formats | dict.fromkeys(errors, ".1e"),
+        "time step at 6 m in s; shaken: RMS over that of the model; released: largest, in alpha; - failed",
+    )
+
+
+if __name__ == "__main__":
+    main()
