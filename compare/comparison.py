@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 import math
 from collections.abc import Mapping
@@ -14,8 +13,12 @@ import numpy as np
 
 from rockwobble.models import Case
 
+from .comparison_file import RESTORE, load_comparison, restore_bytes
 from .error_budget import ErrorBudget
+from .fingerprint import fingerprint
+from .parquet_file import pack
 from .store import replace_files
+from .stored_trace import stored
 from .traces import Trace
 
 if TYPE_CHECKING:
@@ -67,17 +70,33 @@ class Comparison:
         """
         replace_files(folder, self.files())
 
+    @classmethod
+    def load(cls, folder: str | Path) -> Comparison:
+        """Return the comparison that was saved in `folder`, without running anything.
+
+        Responses and trajectories are `StoredTrace`: what was sampled and measured, with the same bits, under
+        the same names.
+
+        Raises
+        ------
+        ValueError
+            If the folder holds no comparison.
+        """
+        return load_comparison(folder)
+
     def files(self) -> dict[str, bytes]:
         """Return name and content of each file that `save` writes."""
         found = {
             "summary.csv": self.summary.to_csv(index=False).encode(),
-            "responses.parquet": _parquet(_stacked(self.responses, "model")),
-            "trajectories.parquet": _parquet(_stacked(self.trajectories, "run")),
-            "passes.parquet": _parquet(self._passes()),
-            "excitation.parquet": _parquet(self._excitation()),
+            "summary.parquet": self._pack(self.summary),
+            "responses.parquet": self._pack(_stacked(self.responses, "model")),
+            "trajectories.parquet": self._pack(_stacked(self.trajectories, "run")),
+            "passes.parquet": self._pack(self._passes()),
+            "excitation.parquet": self._pack(self._excitation()),
             "comparison.json": (json.dumps(self._about(), indent=2, allow_nan=False) + "\n").encode(),
+            RESTORE: restore_bytes(self),
         }
-        return found | ({"budget.parquet": _parquet(self._budget())} if self.budgets else {})
+        return found | ({"budget.parquet": self._pack(self._budget())} if self.budgets else {})
 
     def _budget(self) -> pd.DataFrame:
         import pandas as pd
@@ -90,6 +109,11 @@ class Comparison:
             tables.append(table)
         whole: pd.DataFrame = pd.concat(tables, ignore_index=True)
         return whole
+
+    def _pack(self, table: pd.DataFrame) -> bytes:
+        """Return a table as Parquet that says what made it and from what."""
+        inputs = fingerprint([_inputs(case) for case in self.cases.values()])
+        return pack(table, {"kind": "rockwobble comparison", "versions": self.versions, "inputs": inputs})
 
     def _passes(self) -> pd.DataFrame:
         import pandas as pd
@@ -193,14 +217,21 @@ def _stacked(traces: Mapping[tuple[str, str], Trace], name: str) -> pd.DataFrame
 
     tables = []
     for (case, label), trace in traces.items():
-        table = trace.to_frame()
+        table = stored(trace).samples.copy()
         table.insert(0, "case", case)
         table.insert(1, name, label)
         tables.append(table)
     return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame({"case": [], name: []})
 
 
-def _parquet(table: pd.DataFrame) -> bytes:
-    buffer = io.BytesIO()
-    table.to_parquet(buffer, index=False)
-    return buffer.getvalue()
+def _inputs(case: Case) -> dict[str, Any]:
+    """What a case depends on, without the names of it and its motion."""
+    motion = case.motion
+    return {
+        "cylinder": case.cylinder,
+        "motion": None if motion is None else (motion.acceleration, motion.time_step),
+        "initial": case.initial,
+        "length": case.length,
+        "gravity": case.gravity,
+        "friction": case.friction,
+    }

@@ -9,7 +9,7 @@ import platform
 from functools import cache
 from pathlib import Path
 
-PACKAGES = ("rockwobble", "numpy", "scipy", "numba", "mujoco", "pybullet")
+PACKAGES = ("rockwobble", "numpy", "scipy", "numba", "pandas", "pyarrow", "mujoco", "pybullet", "exudyn")
 _REDUCED = ("rockwobble", "numpy", "numba")
 
 

@@ -24,6 +24,13 @@ _VECTORS = {
     "centre_of_mass": ("centre_x", "centre_y", "centre_z"),
     "contact_force": ("force_x", "force_y", "force_z"),
 }
+# what every run has, or only some
+_NAMES = (
+    *("model", "engine", "engine_version", "support", "time_step", "settings", "outcome", "message"),
+    *("peak_tilt", "uplift_time", "uplift_direction", "wall_time", "contact_resolution"),
+    *("residual_displacement", "residual_twist", "energy", "contact_point", "assumptions"),
+)
+_INTERNAL = ("momentum", "twist_momentum", "roll_out")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -78,13 +85,13 @@ def stored(trace: Any) -> StoredTrace:
     frame = trace.to_frame()
     samples, facts = frame.copy(), {}
     for name in _public_names(trace):
-        value = getattr(trace, name)
+        value = getattr(trace, name, None)
         if isinstance(value, np.ndarray):
             if value.shape == (len(frame),) and name not in samples:
                 samples[name] = value
             elif value.shape in ((len(frame), 2), (len(frame), 3)) and name not in _VECTORS:
                 samples[[f"{name}_{axis}" for axis in "xyz"[: value.shape[1]]]] = value
-        elif name == "assumptions" or _is_plain(value):
+        elif (name == "assumptions" and value is not None) or _is_plain(value):
             facts[name] = plain_json.loads(plain_json.dumps(value))
     return StoredTrace(tuple(frame.columns), samples, trace.passes, facts)
 
@@ -122,16 +129,16 @@ def passes_table(columns: Mapping[str, Sequence[Any]]) -> pd.DataFrame:
 
 
 def _public_names(trace: Any) -> list[str]:
-    fields = [field.name for field in dataclasses.fields(trace)]
+    """Names of all that a run has, but the variables that only its solver knows."""
     kind = type(trace)
-    derived = [
-        name for name in dir(kind) if isinstance(getattr(kind, name), property) or name == "assumptions"
-    ]
-    return [name for name in dict.fromkeys(fields + derived) if not name.startswith("_")]
+    fields = [field.name for field in dataclasses.fields(trace)] if dataclasses.is_dataclass(trace) else []
+    derived = [name for name in dir(kind) if isinstance(getattr(kind, name), property)]
+    names = dict.fromkeys([*_NAMES, *fields, *derived])
+    return [name for name in names if not name.startswith("_") and name not in _INTERNAL]
 
 
 def _is_plain(value: Any) -> bool:
-    return value is None or isinstance(value, bool | int | float | str | Mapping | np.generic)
+    return isinstance(value, bool | int | float | str | Mapping | np.generic)
 
 
 def _assumptions(values: Mapping[str, Any]) -> Any:

@@ -171,7 +171,9 @@ def _run(
         if store is None:
             results[index] = columns
         else:
-            store.write_chunk(index, columns, {"versions": chunks[index].makers})
+            store.write_chunk(
+                index, columns, {"versions": chunks[index].makers, "seeds": store.about["seeds"]}
+            )
         clock.finished(chunks[index].rows)
 
     with open_workers(scheduler, workers, len(waiting)) if waiting else nullcontext() as place:

@@ -9,8 +9,10 @@ import typer
 
 from .compare_command import compare
 from .paper_command import figures
+from .show_command import show
 from .simulate_command import simulate
 from .spectrum_command import spectrum
+from .sweep_command import sweep
 from .terminal import BAD_INPUT, INTERRUPTED, complain
 
 app = typer.Typer(
@@ -25,6 +27,8 @@ app.command(epilog="Example: rockwobble simulate --release-tilt-deg 5 --rolling-
     simulate
 )
 app.command(epilog="Example: rockwobble spectrum --tan-alpha 0.2 --sizes 50 --intensities 50")(spectrum)
+app.command(epilog="Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid")(sweep)
+app.command(epilog="Example: rockwobble show rockwobble-sweep")(show)
 app.command(epilog="Example: rockwobble figures --out paper")(figures)
 
 # typer brings its own click in some versions and imports click in others: one base class, two homes

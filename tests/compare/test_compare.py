@@ -239,6 +239,8 @@ def test_files_hold_the_whole_result(made_up, case, tmp_path):
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {
         "summary.csv",
+        "summary.parquet",
+        "restore.json",
         "responses.parquet",
         "trajectories.parquet",
         "passes.parquet",

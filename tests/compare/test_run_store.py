@@ -40,11 +40,23 @@ def counted(monkeypatch) -> list[str]:
     return ran
 
 
+def jobs(*methods: str | Run, case: Case = CASE) -> list[Job]:
+    return [
+        Job(case=case, method=method, label=str(getattr(method, "support", method))) for method in methods
+    ]
+
+
+def run(folder: Path, wanted: list[Job], **options) -> list:
+    with open_run_store(folder) as store:
+        return simulate_all(wanted, workers=1, store=store, **options)
+
+
 def test_a_second_comparison_repeats_nothing_and_finds_the_same(tmp_path, counted):
-    first = compare(CASE, runs=[GUIDED, FREE], workers=1, resume=tmp_path)
-    assert counted == ["recess", "rolling", "mujoco guided", "mujoco free"]
-    second = compare(CASE, runs=[GUIDED, FREE], workers=1, resume=tmp_path)
-    assert len(counted) == 4
+    first = compare(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
+    assert counted[:2] == ["recess", "mujoco guided"]
+    counted.clear()
+    second = compare(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
+    assert counted == []
     pd.testing.assert_frame_equal(first.summary, second.summary, check_exact=True)
     for found, kept in (
         *zip(first.responses.values(), second.responses.values(), strict=True),
@@ -97,11 +109,11 @@ def test_a_run_that_never_uplifts_is_kept_with_its_nan():
 
 
 def test_only_what_is_missing_runs(tmp_path, counted):
-    compare(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
+    run(tmp_path, jobs("recess", FREE))
     counted.clear()
     events = []
-    compare(CASE, runs=[GUIDED, FREE], workers=1, resume=tmp_path, progress=events.append)
-    assert counted == ["rolling", "mujoco free"]
+    run(tmp_path, jobs("recess", GUIDED, FREE, "rolling"), progress=events.append)
+    assert counted == ["guided", "rolling"]
     assert [(event.state, event.done, event.total) for event in events] == [
         ("started", 2, 4),
         ("finished", 3, 4),
@@ -110,32 +122,39 @@ def test_only_what_is_missing_runs(tmp_path, counted):
     ]
 
 
+def test_results_come_in_the_order_of_the_jobs(tmp_path):
+    run(tmp_path, jobs(FREE))
+    found = run(tmp_path, jobs("rolling", FREE, "recess", GUIDED))
+    assert [getattr(trace, "support", None) or trace.model for trace in found] == [
+        *("rolling", "free", "recess", "guided")
+    ]
+
+
 def test_an_interrupted_comparison_keeps_every_finished_run(tmp_path, counted):
     def interrupt(event):
-        if event.state == "started" and event.label == "mujoco guided":
+        if event.state == "started" and event.label == "guided":
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        compare(CASE, runs=[GUIDED], workers=1, resume=tmp_path, progress=interrupt)
+        run(tmp_path, jobs("recess", GUIDED), progress=interrupt)
     assert counted == ["recess"]
-    compare(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
-    assert counted == ["recess", "mujoco guided"]
+    run(tmp_path, jobs("recess", GUIDED))
+    assert counted == ["recess", "guided"]
 
 
 def test_runs_of_another_comparison_go_only_when_this_one_is_complete(tmp_path):
-    other = dataclasses.replace(CASE, duration=0.5)
-    compare(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
+    run(tmp_path, jobs("recess", "rolling"))
     before = set(runs_in(tmp_path))
 
-    def fail(_):
+    def interrupt(_):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        compare(other, runs=[GUIDED], workers=1, resume=tmp_path, progress=fail)
+        run(tmp_path, jobs(FREE), progress=interrupt)
     assert set(runs_in(tmp_path)) == before
-    compare(other, runs=[GUIDED], workers=1, resume=tmp_path)
+    run(tmp_path, jobs(FREE, "recess"))
     assert len(runs_in(tmp_path)) == len(before)
-    assert before & set(runs_in(tmp_path)) == {tmp_path / RUNS / ".lock"}
+    assert len(before & set(runs_in(tmp_path))) == len(before) - 1
 
 
 def test_a_run_that_ended_its_process_is_tried_again(tmp_path, monkeypatch):

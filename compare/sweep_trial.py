@@ -1,0 +1,215 @@
+"""Trials of the sweep: processes that are killed, and what the store costs.
+
+    python -m rockwobble.compare.sweep_trial kills 20     kills of a local sweep at random moments
+    python -m rockwobble.compare.sweep_trial dask         three Dask workers, one killed in the middle
+    python -m rockwobble.compare.sweep_trial overhead 3   100,000 runs with and without a store, in turn
+
+Each prints what it found, and ends with exit code 1 if a table differs in a single bit.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+import os
+import resource
+import statistics
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble.models import el_centro_1940
+
+from .sweep import SweepProgress, sweep
+from .sweep_grid import Grid
+from .sweep_store import CHUNKS
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# some tens of milliseconds of work: most kills fall into the middle of several chunks
+CHUNK_SIZE = 40
+# of the kills, those that come while a process is still starting or cleaning up
+_EARLY = 0.25
+# how long after its first chunk a process may live at most [s]
+_LONGEST_LIFE = 0.3
+# for a scheduler or a worker to come up on a busy machine [s]
+_PATIENCE = 120.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kills:
+    """A sweep that was killed again and again, and then left to finish.
+
+    Parameters
+    ----------
+    table : DataFrame
+        What the last process returned.
+    chunks : tuple of int
+        Chunks finished after each kill.
+    repeated : int
+        Chunks that a later process wrote again.
+    """
+
+    table: pd.DataFrame
+    chunks: tuple[int, ...]
+    repeated: int
+
+
+def trial_grid(sizes: int) -> Grid:
+    """Return a grid of 80 runs for each size, small enough to be swept many times."""
+    return Grid(
+        semidiagonals=np.linspace(0.5, 30.0, sizes),
+        tan_alphas=[0.1, 0.2],
+        scales=np.linspace(0.5, 6.0, 40),
+        motions=[el_centro_1940()],
+    )
+
+
+def killed_sweep(folder: Path, *, sizes: int, kills: int, seed: int, workers: int | None = None) -> Kills:
+    """Sweep into `folder` in processes that are killed with -9 at random moments, then to the end."""
+    random = np.random.default_rng(seed)
+    code = f"from rockwobble.compare.sweep_trial import swept; swept({str(folder)!r}, {sizes}, {workers})"
+    finished: dict[str, int] = {}
+    counts: list[int] = []
+    repeated = 0
+    while len(counts) < kills:
+        process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+        assert process.stdout is not None
+        if random.random() < _EARLY:
+            time.sleep(random.uniform(0.0, 1.0))
+        else:
+            process.stdout.readline()  # of the first chunk that this process finished
+            time.sleep(random.uniform(0.0, _LONGEST_LIFE))
+        process.kill()
+        process.wait()
+        process.stdout.close()
+        now = {path.name: path.stat().st_ino for path in (folder / CHUNKS).glob("*.parquet")}
+        repeated += sum(now.get(name) != inode for name, inode in finished.items())
+        finished = now
+        counts.append(len(finished))
+    table = sweep(trial_grid(sizes), out=folder, chunk_size=CHUNK_SIZE, workers=workers)
+    now = {path.name: path.stat().st_ino for path in (folder / CHUNKS).glob("*.parquet")}
+    repeated += sum(now.get(name) != inode for name, inode in finished.items())
+    return Kills(table=table, chunks=tuple(counts), repeated=repeated)
+
+
+def swept(folder: str, sizes: int, workers: int | None) -> None:
+    """Sweep the grid of a trial and say when the first chunk is finished; the body of a killed process."""
+
+    def tell(event: SweepProgress) -> None:
+        if event.done > event.found:
+            print(event.done, flush=True)
+
+    sweep(trial_grid(sizes), out=folder, chunk_size=CHUNK_SIZE, workers=workers, progress=tell)
+
+
+@contextlib.contextmanager
+def dask_cluster(workers: int) -> Iterator[tuple[str, list[subprocess.Popen[bytes]]]]:
+    """Start a Dask scheduler and workers of one thread here; yield its address and their processes."""
+    with tempfile.TemporaryDirectory(prefix="rockwobble-") as folder, contextlib.ExitStack() as stack:
+        scheduler_file = Path(folder) / "scheduler.json"
+
+        def start(what: str, *arguments: str) -> subprocess.Popen[bytes]:
+            command = [sys.executable, "-m", f"distributed.cli.dask_{what}", "--no-dashboard", *arguments]
+            process = subprocess.Popen(command, cwd=folder, stderr=subprocess.DEVNULL)
+            stack.callback(process.wait)
+            stack.callback(process.kill)
+            return process
+
+        start("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(scheduler_file))
+        address = _address(scheduler_file)
+        processes = [start("worker", address, "--nthreads", "1", "--no-nanny") for _ in range(workers)]
+        yield address, processes
+
+
+def _address(scheduler_file: Path) -> str:
+    deadline = time.monotonic() + _PATIENCE
+    while time.monotonic() < deadline:
+        with contextlib.suppress(OSError, ValueError):
+            return str(json.loads(scheduler_file.read_text())["address"])
+        time.sleep(0.05)
+    raise RuntimeError("the Dask scheduler did not start")
+
+
+def dask_sweep_with_a_death(folder: Path, *, sizes: int) -> tuple[pd.DataFrame, int]:
+    """Sweep on three Dask workers and kill one in the middle; return the table and the runs done by then."""
+    killed_at: list[int] = []
+    with dask_cluster(3) as (address, processes):
+
+        def tell(event: SweepProgress) -> None:
+            if not killed_at and 3 * event.done >= event.total:
+                processes[0].kill()
+                killed_at.append(event.done)
+
+        table = sweep(trial_grid(sizes), out=folder, chunk_size=CHUNK_SIZE, scheduler=address, progress=tell)
+        status = processes[0].wait()
+    if status != -9:
+        raise RuntimeError(f"the Dask worker must have been killed, it ended with {status}")
+    return table, killed_at[0]
+
+
+def overhead(rounds: int) -> None:
+    """Print how much longer 100,000 runs take in a sweep with a store than in `reduced.peak_tilts`."""
+    grid = "np.linspace(0.5, 30.0, 1000), 0.2, el_centro_1940(), np.linspace(0.5, 6.0, 100)"
+    head = f"import sys, numpy as np; from rockwobble.models import el_centro_1940; R, t, m, s = {grid};"
+    codes = {
+        "alone": head + "from rockwobble import reduced; reduced.peak_tilts(R, t, m, s)",
+        "sweep": head + "from rockwobble.compare import Grid, sweep; sweep("
+        "Grid(semidiagonals=R, tan_alphas=[t], scales=s, motions=[m]), out=sys.argv[1])",
+    }
+    ratios = []
+    for turn in range(rounds):
+        wall, used = {}, {}
+        for name in sorted(codes, reverse=turn % 2 == 1):
+            with tempfile.TemporaryDirectory() as folder:
+                before, begun = _cpu_time(), time.perf_counter()
+                subprocess.run([sys.executable, "-c", codes[name], folder], check=True)
+                wall[name], used[name] = time.perf_counter() - begun, _cpu_time() - before
+        ratios.append((wall["sweep"] / wall["alone"], used["sweep"] / used["alone"]))
+        print(
+            f"alone {wall['alone']:.1f} s (cores {used['alone']:.1f} s), sweep {wall['sweep']:.1f} s "
+            f"(cores {used['sweep']:.1f} s): ratio {ratios[-1][0]:.3f} (cores {ratios[-1][1]:.3f}), "
+            f"load of the machine {os.getloadavg()[0]:.1f}",
+            flush=True,
+        )
+    medians = [statistics.median(column) for column in zip(*ratios, strict=True)]
+    print(f"median ratio {medians[0]:.3f} of the time, {medians[1]:.3f} of the time on the cores")
+
+
+def _cpu_time() -> float:
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def main(arguments: list[str]) -> int:
+    """Run the trial that is asked for."""
+    what, number = (arguments[0] if arguments else "kills"), int(arguments[1]) if len(arguments) > 1 else 20
+    if what == "overhead":
+        overhead(number)
+        return 0
+    sizes = 100
+    with tempfile.TemporaryDirectory() as folder:
+        undisturbed = sweep(trial_grid(sizes), chunk_size=CHUNK_SIZE)
+        if what == "dask":
+            table, done = dask_sweep_with_a_death(Path(folder), sizes=sizes)
+            print(f"one of three Dask workers killed after {done} of {len(table)} runs")
+        else:
+            trial = killed_sweep(Path(folder), sizes=sizes, kills=number, seed=1)
+            table = trial.table
+            print(f"{number} kills; chunks finished after each: {', '.join(map(str, trial.chunks))}")
+            print(f"chunks written again: {trial.repeated}")
+    same = table.equals(undisturbed)
+    print(f"{len(table)} runs, {'the same table to the last bit' if same else 'A DIFFERENT TABLE'}")
+    return 0 if same else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

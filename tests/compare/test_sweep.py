@@ -1,0 +1,230 @@
+from __future__ import annotations
+
+import importlib.util
+import math
+import sys
+from contextlib import contextmanager
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare import CaseSweep, Grid, SweepIncompleteError, open_sweep_store, sweep
+from rockwobble.compare import sweep as sweep_function
+from rockwobble.compare.parquet_file import read_about
+from rockwobble.compare.process_pool import WorkerDiedError
+from rockwobble.compare.sweep_executor import InThisProcess, Workers, run_chunk
+from rockwobble.compare.sweep_store import CHUNKS
+from rockwobble.compare.sweep_trial import CHUNK_SIZE, dask_sweep_with_a_death, killed_sweep, trial_grid
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+SIZES, SCALES = [0.5, 2.0, 6.0, 20.0], [0.4, 1.0, 2.5, 6.0, 8.0]
+SHORT = GroundMotion(el_centro_1940().acceleration[:500], el_centro_1940().time_step, "short")
+
+
+def grid(**changes) -> Grid:
+    given = {"semidiagonals": SIZES, "tan_alphas": [0.1, 0.2], "scales": SCALES, "motions": [SHORT]}
+    return Grid(**(given | changes))
+
+
+def files(folder) -> dict[str, int]:
+    return {path.name: path.stat().st_ino for path in (folder / CHUNKS).glob("*.parquet")}
+
+
+def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
+    table = sweep(grid(models=["recess", "planar"]), workers=1)
+    assert len(table) == 2 * 2 * 4 * 5
+    cells = table.set_index(["model", "tan_alpha"])["peak_tilt"]
+    for model in ("recess", "planar"):
+        for tan_alpha in (0.1, 0.2):
+            peaks = reduced.peak_tilts(SIZES, tan_alpha, SHORT, SCALES, model=model)
+            assert np.array_equal(cells.loc[(model, tan_alpha)].to_numpy(), peaks.ravel())
+    one = table[(table.model == "recess") & (table.semidiagonal == 2.0) & (table.tan_alpha == 0.2)]
+    assert one["scale"].tolist() == SCALES
+    assert np.array_equal(one.peak_tilt_over_alpha, one.peak_tilt / math.atan(0.2))
+    expected = np.select(
+        [table.peak_tilt == 0.0, table.peak_tilt == 0.5 * math.pi], ["stood", "overturned"], "rocked"
+    )
+    assert table.outcome.tolist() == expected.tolist()
+    assert set(expected) == {"stood", "rocked", "overturned"}
+
+
+def test_no_cell_depends_on_chunks_workers_or_neighbours(tmp_path):
+    whole = sweep(grid(), workers=1)
+    for options in ({"chunk_size": 1}, {"chunk_size": 3}, {"chunk_size": 7, "out": tmp_path, "workers": 2}):
+        pd.testing.assert_frame_equal(sweep(grid(), **({"workers": 1} | options)), whole, check_exact=True)
+
+
+def test_a_second_sweep_repeats_nothing(tmp_path):
+    first = sweep(grid(), out=tmp_path, workers=1, chunk_size=5)
+    before = files(tmp_path)
+    events = []
+    second = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append)
+    assert [(event.done, event.found, event.total) for event in events] == [(40, 40, 40)]
+    assert files(tmp_path) == before
+    pd.testing.assert_frame_equal(first, second, check_exact=True)
+
+
+def test_a_grid_that_grows_keeps_what_is_there(tmp_path):
+    sweep(grid(tan_alphas=[0.2]), out=tmp_path, workers=1, chunk_size=5)
+    before = set(files(tmp_path).values())
+    events = []
+    table = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append)
+    assert events[0].found == 20
+    assert before < set(files(tmp_path).values())
+    pd.testing.assert_frame_equal(table, sweep(grid(), workers=1), check_exact=True)
+    pd.testing.assert_frame_equal(table, pd.read_parquet(tmp_path / CHUNKS), check_exact=True)
+
+
+def test_chunks_of_another_sweep_go_only_when_this_one_is_complete(tmp_path):
+    sweep(grid(tan_alphas=[0.1]), out=tmp_path, workers=1, chunk_size=5)
+    other = set(files(tmp_path))
+
+    def interrupt(event):
+        if event.done > event.found:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5, progress=interrupt)
+    assert len(files(tmp_path)) == len(other) + 1
+    assert len(open_sweep_store(tmp_path).read()) == 5
+    table = sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5)
+    assert not other & set(files(tmp_path))
+    pd.testing.assert_frame_equal(table, pd.read_parquet(tmp_path / CHUNKS), check_exact=True)
+
+
+def test_kills_at_random_moments_lose_and_repeat_nothing(tmp_path):
+    trial = killed_sweep(tmp_path, sizes=15, kills=3, seed=2, workers=1)
+    assert trial.repeated == 0
+    assert trial.chunks[-1] > 0
+    pd.testing.assert_frame_equal(trial.table, sweep(trial_grid(15), chunk_size=CHUNK_SIZE), check_exact=True)
+    assert [path.name for path in (tmp_path / CHUNKS).iterdir() if path.suffix != ".parquet"] == [".lock"]
+
+
+@pytest.mark.skipif(importlib.util.find_spec("distributed") is None, reason="Dask is not installed")
+def test_dask_gives_the_same_bits_though_a_worker_is_killed(tmp_path):
+    table, done = dask_sweep_with_a_death(tmp_path, sizes=8)
+    assert 0 < done < len(table)
+    pd.testing.assert_frame_equal(table, sweep(trial_grid(8), chunk_size=CHUNK_SIZE), check_exact=True)
+
+
+def test_a_scheduler_that_is_not_there(monkeypatch):
+    monkeypatch.setattr("rockwobble.compare.sweep_executor._PATIENCE", 0.5)
+    with pytest.raises(ValueError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"):
+        sweep(grid(), scheduler="tcp://127.0.0.1:9")
+
+
+def test_a_chunk_whose_process_dies_is_tried_again(tmp_path, monkeypatch):
+    class Dying(InThisProcess):
+        calls = 0
+
+        def submit(self, fn, /, *args, **kwargs):
+            Dying.calls += 1
+
+            def once(*inner):
+                if Dying.calls in deadly:
+                    raise WorkerDiedError("killed")
+                return fn(*inner)
+
+            return super().submit(once, *args, **kwargs)
+
+    @contextmanager
+    def dying(*_):
+        yield Workers(Dying(), lambda: 1, (WorkerDiedError,))
+
+    # the name of the module is also that of its function in the package
+    monkeypatch.setattr(sys.modules["rockwobble.compare.sweep"], "open_workers", dying)
+    deadly = {2, 3, 5}
+    table = sweep(grid(), chunk_size=5)
+    pd.testing.assert_frame_equal(table, sweep(grid()), check_exact=True)
+    Dying.calls, deadly = 0, {2, 3, 4}
+    with pytest.raises(SweepIncompleteError, match=r"1 of 8 chunks ended their processes 3 times.*killed"):
+        sweep(grid(), chunk_size=5, out=tmp_path)
+    assert len(files(tmp_path)) == 7
+
+
+def test_a_worker_with_another_version_is_refused():
+    chunk = next(grid().chunks())
+    with pytest.raises(ValueError, match=r"numba is .* there and 0\.1 here"):
+        run_chunk(chunk, chunk.makers | {"numba": "0.1"})
+
+
+def test_each_input_of_a_chunk_is_in_its_key():
+    base = next(grid().chunks()).key()
+    others = [
+        grid(semidiagonals=SIZES[1:]),
+        grid(tan_alphas=[0.15]),
+        grid(scales=SCALES[:4]),
+        grid(motions=[GroundMotion(SHORT.acceleration * 1.1, SHORT.time_step, "short")]),
+        grid(motions=[GroundMotion(SHORT.acceleration, 0.011, "short")]),
+        grid(motions=[GroundMotion(SHORT.acceleration, SHORT.time_step, "renamed")]),
+        grid(models=["rolling"]),
+        grid(rtol=1e-8),
+        grid(seating=1e-6),
+        grid(gravity=9.8),
+    ]
+    keys = [next(other.chunks()).key() for other in others]
+    assert len({base, *keys}) == 1 + len(others)
+    assert base == next(grid().chunks()).key()
+
+
+def test_cases_with_engines_and_models(tmp_path):
+    cases = [
+        Case(f"{tilt:g}", PIER, initial=InitialState(tilt * PIER.alpha, rolling_rate=0.5), duration=0.5)
+        for tilt in (0.3, 0.5)
+    ]
+    guided = Run("mujoco", "guided", 1e-3)
+    table = sweep(CaseSweep(cases, ["recess", guided]), out=tmp_path, workers=1)
+    assert table[["case", "run"]].to_numpy().tolist() == [
+        ["0.3", "recess"],
+        ["0.5", "recess"],
+        ["0.3", "mujoco guided"],
+        ["0.5", "mujoco guided"],
+    ]
+    assert table.peak_tilt_over_alpha.tolist() == pytest.approx([0.3, 0.5, 0.3, 0.5], rel=1e-3)
+    again = sweep(Suite(cases, [guided]), workers=1)
+    pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
+
+
+def test_every_chunk_says_what_made_it(tmp_path):
+    sweep(grid(), out=tmp_path, workers=1, seeds={"records": 7})
+    for path in (tmp_path / CHUNKS).glob("*.parquet"):
+        about = read_about(path)
+        assert path.stem.endswith(about["inputs"])
+        assert {"numba", "numpy", "python", "code of reduced"} <= set(about["versions"])
+        assert about["seeds"] == {"records": 7}
+    assert open_sweep_store(tmp_path).about["seeds"] == {"records": 7}
+
+
+def test_a_chunk_that_cannot_be_read_is_named(tmp_path):
+    sweep(grid(), out=tmp_path, workers=1)
+    path = next((tmp_path / CHUNKS).glob("*.parquet"))
+    path.write_bytes(path.read_bytes()[:100])
+    with pytest.raises(ValueError, match=rf"{path.name} cannot be read, remove it"):
+        open_sweep_store(tmp_path).read()
+
+
+@pytest.mark.parametrize(
+    ("make", "words"),
+    [
+        (lambda: grid(semidiagonals=[]), "semidiagonals must hold at least one"),
+        (lambda: grid(semidiagonals=[0.0]), "semidiagonals must be above zero"),
+        (lambda: grid(scales=[-1.0]), "scales must not be negative"),
+        (lambda: grid(scales=[1.0, 1.0]), "scales must differ, got 1.0 twice"),
+        (lambda: grid(tan_alphas=[math.nan]), "tan_alphas must be a sequence of finite numbers"),
+        (lambda: grid(motions=[SHORT, SHORT]), "motions must differ, got 'short' twice"),
+        (lambda: grid(models=["flat"]), "models must be of recess, rolling, planar, got 'flat'"),
+        (lambda: grid(rtol=1.0), "rtol must be from"),
+        (lambda: grid(speed=1.0), "the options of a grid are"),
+        (lambda: CaseSweep([], ["recess"]), "at least one case"),
+        (lambda: CaseSweep([Case("a", PIER, duration=1.0)], ["flat"]), "got 'flat'"),
+        (lambda: CaseSweep([Case("a", PIER, duration=1.0)] * 2, ["recess"]), "got 'a' twice"),
+        (lambda: sweep_function(grid(), chunk_size=0), "chunk_size must be at least 1"),
+        (lambda: open_sweep_store("/"), "must be the folder of a sweep"),
+    ],
+)
+def test_bad_input_gets_one_clear_line(make, words):
+    with pytest.raises(ValueError, match=words):
+        make()
