@@ -24,7 +24,7 @@ from .traces import FloatArray, make_pair
 
 CLEARANCES = (0.0, 1e-4, 1e-3, 3e-3, 1e-2, 5e-2)  # [b]
 INCLINATIONS = (0.1, 0.2, 0.3, 0.5, 0.8, 1.1)  # [rad]
-FACETS = (8, 16, 32, 64)
+FACETS = (8, 16, 32, 64, 128, 256)
 FRICTIONS = (0.0, 0.2, 0.5, 1.0)
 # azimuths by which each case is turned [deg]: the same problem, but for the walls and for chance
 TURNS = (0.0, 2.0, 5.0, 9.0)
