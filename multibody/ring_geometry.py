@@ -129,7 +129,7 @@ def rim_overhang(tilt: float) -> tuple[float, float]:
     --------
     >>> overhang, height = rim_overhang(0.2)
     >>> round(overhang / (0.2**2 / 8), 2), round(height, 3)
-    (1.01, 0.1)
+    (1.0, 0.1)
     """
     return 1.0 / math.cos(0.5 * tilt) - 1.0, math.tan(0.5 * tilt)
 
