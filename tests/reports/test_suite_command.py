@@ -1,0 +1,205 @@
+from __future__ import annotations
+
+import dataclasses
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+from plotly.offline import get_plotlyjs
+
+from rockwobble import reduced
+from rockwobble.compare import Comparison, compare, driver, execution
+from rockwobble.models import Case, Cylinder, InitialState, Run, read_suite
+from rockwobble.reports.main import main
+from rockwobble.reports.suite_choice import chosen_runs, group_of
+from rockwobble.reports.suite_page import suite_page
+
+PAGE_LIMIT = 8_000_000  # [bytes]
+CASES = 6
+SUITE = """
+[[runs]]
+engine = "mujoco"
+support = ["guided", "free"]
+
+[[cases]]
+name = "release"
+cylinder = { semidiagonal = 6, tan_alpha = [0.1, 0.2, 0.3, 0.4] }
+release = { tilt_over_alpha = 0.5, rolling_rate = 0.5 }
+duration = 2
+"""
+
+
+def call(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main(list(arguments))
+    assert isinstance(ended.value.code, int)
+    return ended.value.code
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine.suite.toml").write_text(SUITE)
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    start = InitialState(tilt=math.radians(5.0), rolling_rate=0.5)
+    response = reduced.simulate(pier, initial=start, duration=2.0)
+    table = {"time": response.time, "tilt": response.tilt, "azimuth": response.rolling_angle}
+    pd.DataFrame(table).to_csv(tmp_path / "table.csv", index=False)
+    return tmp_path
+
+
+RELEASE = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2"]
+BAD = {
+    "no such suite": (
+        ["mine"],
+        "cannot read the suite mine: No such file or directory; the suites that ship",
+    ),
+    "a problem beside a suite": (
+        ["mine.suite.toml", "--scale", "2"],
+        "--scale does not go with a suite, got mine.suite.toml: the file states the problems",
+    ),
+    "the default problem beside a suite": (
+        ["mine.suite.toml", "--semidiagonal", "6"],
+        "--semidiagonal does not go with a suite",
+    ),
+    "an unknown support beside a suite": (
+        ["mine.suite.toml", "--support", "glued"],
+        "support must be one of",
+    ),
+    "a trajectory beside a suite": (
+        ["mine.suite.toml", "--trajectory", "table.csv"],
+        "--trajectory belongs to one case, got a suite of 4",
+    ),
+    "a trajectory that is not there": (["--trajectory", "none.csv"], "cannot read the trajectory none.csv"),
+    "a trajectory without units": (
+        [*RELEASE, "--trajectory", "table.csv"],
+        "table.csv does not say the unit of tilt",
+    ),
+    "an option of a trajectory alone": (["--trajectory-offset", "1"], "need a --trajectory"),
+    "no engine and no trajectory": (["--engine", "none"], "engine must be one of"),
+}
+
+
+@pytest.mark.parametrize("kind", BAD)
+def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch, capsys, kind):
+    monkeypatch.setattr(execution, "simulate", lambda _: pytest.fail("it ran"))
+    monkeypatch.setattr(execution, "ProcessPool", lambda _: pytest.fail("it ran"))
+    before = sorted(path.name for path in folder.iterdir())
+    arguments, words = BAD[kind]
+    assert call("compare", *arguments) == 2
+    captured = capsys.readouterr()
+    assert re.fullmatch(r"rockwobble: [^\n]+\n", captured.err)
+    assert words in captured.err
+    assert sorted(path.name for path in folder.iterdir()) == before
+
+
+def test_a_suite_is_echoed_run_summed_up_and_written(folder, no_engines, capsys):
+    no_engines()
+    assert call("compare", "mine.suite.toml", "--out", "results") == 0
+    out = capsys.readouterr().out
+    assert "Suite mine.suite.toml: 4 cases x 2 runs = 8 runs of engines" in out
+    assert "Cases: release (4)" in out
+    assert re.search(r"release +mujoco guided +4 +4 +100", out)
+    assert "8 of 8 runs stay within 1 % of alpha of the model of their support to the end." in out
+    summary = pd.read_csv(folder / "results" / "summary.csv")
+    assert summary["case"].nunique() == 4
+    page = (folder / "results" / "report.html").read_text()
+    assert page.count("<section class=") == 4
+
+
+def test_runs_of_a_suite_that_part_are_named_the_worst_first(folder, no_engines, capsys):
+    # an engine that has lost the case from the beginning
+    no_engines(tilt=np.full(201, 0.3))
+    assert call("compare", "mine.suite.toml", "--engine", "mujoco", "--support", "guided") == 0
+    out = capsys.readouterr().out
+    assert re.search(r"release +mujoco guided +4 +0 +0", out)
+    assert "- release: tan_alpha 0.1: mujoco guided agrees with the recess model for 0.00 s of 2 s" in out
+
+
+@pytest.mark.parametrize(
+    ("options", "expected"),
+    [
+        ({}, ["mujoco guided", "mujoco free", "pybullet guided"]),
+        ({"engines": ["mujoco"]}, ["mujoco guided", "mujoco free"]),
+        ({"supports": ["free"]}, ["mujoco free"]),
+        ({"supports": ["ring"]}, ["mujoco ring", "pybullet ring"]),
+        ({"engines": ["exudyn"]}, ["exudyn guided", "exudyn free"]),
+        ({"engines": ["pybullet"], "supports": ["guided"]}, ["pybullet guided"]),
+    ],
+)
+def test_options_choose_among_the_runs_of_a_suite(write_suite, options, expected):
+    runs = '[[runs]]\nengine = "mujoco"\nsupport = ["guided", "free"]\nsettings = { iterations = 7 }\n'
+    suite = write_suite(runs + '[[runs]]\nengine = "pybullet"\n' + SUITE[SUITE.index("[[cases]]") :])
+    chosen = chosen_runs(suite, options.get("engines"), options.get("supports"), None)
+    assert [f"{run.engine} {run.support}" for run in chosen] == expected
+    for run in chosen_runs(suite, None, None, 2e-4):
+        assert run.time_step == 2e-4
+        assert dict(run.settings) == ({"iterations": 7} if run.engine == "mujoco" else {})
+
+
+@pytest.fixture
+def write_suite(tmp_path: Path):
+    def write(text: str):
+        path = tmp_path / "written.suite.toml"
+        path.write_text(text)
+        return read_suite(path)
+
+    return write
+
+
+def test_a_group_is_the_name_up_to_its_values():
+    assert group_of("release: tan_alpha 0.1, scale 2") == "release"
+    assert group_of("El Centro, slender: scale 2") == "El Centro"
+    assert group_of("pier") == "pier"
+
+
+def test_a_trajectory_is_one_more_run(folder, no_engines, capsys):
+    no_engines()
+    arguments = [*RELEASE, "--trajectory", "table.csv", "--trajectory-angles", "rad"]
+    assert call("compare", *arguments, "--engine", "none", "--out", "alone") == 0
+    assert re.search(r"table foreign +recess", capsys.readouterr().out)
+    alone = pd.read_csv(folder / "alone" / "summary.csv")
+    assert alone["run"].tolist() == ["table"]
+    assert alone["tilt_rms"].max() < 1e-12  # written with all digits
+    page = (folder / "alone" / "report.html").read_text()
+    assert "table" in page
+    assert call("compare", *arguments, "--engine", "mujoco", "--support", "guided", "--out", "both") == 0
+    both = pd.read_csv(folder / "both" / "summary.csv")
+    assert both["run"].tolist() == ["mujoco guided", "table"]
+
+
+def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, monkeypatch):
+    no_engines()
+    monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    one = Case("</script>", pier, initial=InitialState(tilt=0.1, rolling_rate=0.5), duration=60.0)
+    runs = [Run(engine, support) for engine in ("mujoco", "pybullet") for support in ("guided", "free")]
+    comparison = compare(one, runs=runs, workers=1)
+    many = _repeated(comparison, CASES)
+    page = suite_page(many)
+    assert len(page.encode()) < PAGE_LIMIT
+    assert page.count('<script type="application/json"') >= CASES * 4
+    # with as many points for six cases as 44 would get, all of them would fit
+    monkeypatch.setattr("rockwobble.reports.suite_page._ALL_POINTS", 190_000 * CASES // 44)
+    thinned = len(suite_page(many).encode())
+    of_a_case = (thinned - len(get_plotlyjs().encode())) / CASES
+    assert len(get_plotlyjs().encode()) + 44 * of_a_case < PAGE_LIMIT
+    assert page.count("</script>") == page.count("<script")
+    assert "&lt;/script&gt;" in page
+
+
+def _repeated(comparison: Comparison, count: int) -> Comparison:
+    names = [f"</script>: copy {index}" for index in range(count)]
+    (case,) = comparison.cases.values()
+    fields: dict[str, Any] = {
+        "cases": {name: dataclasses.replace(case, name=name) for name in names},
+        "summary": pd.concat([comparison.summary.assign(case=name) for name in names], ignore_index=True),
+    }
+    for kind in ("responses", "trajectories"):
+        traces = getattr(comparison, kind)
+        fields[kind] = {(name, label): trace for name in names for (_, label), trace in traces.items()}
+    return dataclasses.replace(comparison, **fields)
