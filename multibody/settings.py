@@ -13,6 +13,8 @@ from typing import Any, TypeVar
 
 S = TypeVar("S")
 
+_GUIDE = 0.2  # 2 h sqrt(stiffness of the guide): see `MujocoSettings.guide_stiffness`
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MujocoSettings:
@@ -35,12 +37,17 @@ class MujocoSettings:
         takes the error of a free response from 5e-6 to 7e-7 alpha. A cylinder that slides hops: friction
         of this kind lifts it, the more the stiffer it is.
     guide_stiffness : float
-        Of each half of the guide, over the axial inertia [1/s^2]. (0.05/h)^2/4: stiff enough to hold the
-        twist at 1e-6 rad, soft enough for 120 steps in a period.
+        Of each half of the guide, over the axial inertia [1/s^2]. (0.2/h)^2/4: the twist stays below 1e-6
+        rad, and a period has 40 steps. In free response the stiffness makes no difference. Under El Centro
+        (relative RMS on (10 m, 0.1) and (6 m, 0.2) doubled, at h = 2e-4 s) the error is 3.4e-4 and 8.3e-4 at
+        (0.05/h)^2/4, 1.6e-4 and 3.6e-4 at (0.1/h)^2/4, and 1.2e-4 and 3.0e-4 here: as small as with the
+        first at half the step, which is twice the cost.
     integrator : str
-        Under El Centro all agree (relative RMS 1.6e-4 and 3.1e-4); Euler costs least and has the smallest
-        error in free response together with implicitfast. RK4 takes four times as long, and "discrete"
-        damps the guide (0.16 alpha at tan alpha 1; it is sound on open ground).
+        Euler: under El Centro all but "discrete" agree (at h = 1e-4 s 1.7e-4 and 3.1e-4 by Euler, 1.6e-4
+        and 3.1e-4 by implicitfast, 1.6e-4 and 3.2e-4 by RK4), but a step takes 6.6, 7.8 and 25 us;
+        in free response Euler and implicitfast err least. "discrete" damps the guide (0.16 alpha at
+        tan alpha 1; it is sound on open ground). `python -m rockwobble.compare.engine_settings` compares
+        them at equal cost.
     cone : str
         The elliptic cone is Coulomb's; the friction damping above exists for it only.
     tolerance, iterations : float, int
@@ -74,7 +81,7 @@ class MujocoSettings:
             cls,
             "mujoco",
             given,
-            {"contact_time_constant": 2.0 * time_step, "guide_stiffness": (0.05 / time_step) ** 2 / 4.0},
+            {"contact_time_constant": 2.0 * time_step, "guide_stiffness": (_GUIDE / time_step) ** 2 / 4.0},
         )
         _in_range(settings, "contact_time_constant", 0.0)
         _in_range(settings, "contact_damping_ratio", 0.0)
@@ -131,7 +138,7 @@ class PybulletSettings:
         ValueError
             If a setting is unknown or out of range.
         """
-        settings = _build(cls, "pybullet", given, {"guide_stiffness": (0.05 / time_step) ** 2 / 4.0})
+        settings = _build(cls, "pybullet", given, {"guide_stiffness": (_GUIDE / time_step) ** 2 / 4.0})
         _in_range(settings, "guide_stiffness", 0.0)
         _in_range(settings, "friction_damping", 0.0, 2.0)
         _in_range(settings, "solver_residual", 0.0)
