@@ -1,0 +1,112 @@
+"""At the extremes of the engines a run agrees with its model, says what limits it, or fails in words."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from rockwobble import multibody
+from rockwobble.compare.engine_extremes import AGREES, Trial, run, trials
+from rockwobble.models import Cylinder, InitialState
+
+
+def at(engine: str, support: str, **given: Any) -> dict[str, Any]:
+    """Run a trial that has no name."""
+    return run(Trial(extreme="", value="", engine=engine, support=support, **given))
+
+
+@pytest.mark.parametrize("support", ["guided", "free"])
+@pytest.mark.parametrize(
+    "given",
+    [
+        # the truncation of the step is far below AGREES in all of these, and nothing limits them
+        {"arguments": {"time_step": 1e-6}, "length": 0.01},
+        {"arguments": {"time_step": 1e-3}, "length": 2.0},
+        {"tan_alpha": 0.05, "length": 0.5},
+        {"tan_alpha": 10.0, "length": 0.5},
+        {"rate": 3.0, "length": 0.5},
+        {"arguments": {"friction": 10.0}, "tan_alpha": 3.0, "length": 0.5},
+    ],
+)
+def test_sound_extremes_agree_and_say_nothing(engine: str, support: str, given: dict[str, Any]) -> None:
+    row = at(engine, support, **given)
+    assert (row["verdict"], row["message"]) == ("agrees", "")
+    assert row["error"] < AGREES
+
+
+@pytest.mark.parametrize(
+    ("engine", "given", "words"),
+    [
+        ("mujoco", {"arguments": {"contact_time_constant": 1e-5}}, "energy"),
+        ("mujoco", {"arguments": {"contact_time_constant": 1.0}}, "sank"),
+        ("mujoco", {"arguments": {"guide_stiffness": (3.0 / 1e-4) ** 2}, "tan_alpha": 3.0}, ""),
+        ("mujoco", {"arguments": {"guide_stiffness": 1.0}, "tan_alpha": 3.0}, "twist"),
+        ("pybullet", {"arguments": {"guide_stiffness": (1e3 / 1e-4) ** 2}}, ""),
+        ("pybullet", {"arguments": {"guide_stiffness": 1.0}, "tan_alpha": 3.0}, "twist"),
+    ],
+)
+def test_what_diverges_fails(engine: str, given: dict[str, Any], words: str) -> None:
+    if engine not in multibody.available_engines():
+        pytest.skip(f"no wheel of {engine} here")
+    row = at(engine, "guided", **given)
+    assert row["verdict"] == "failed"
+    assert words in row["message"]
+
+
+@pytest.mark.parametrize(
+    ("engine", "arguments", "words"),
+    [
+        ("mujoco", {"contact_time_constant": 0.1}, "of the energy"),
+        ("mujoco", {"iterations": 1}, "the solver had not converged in"),
+        ("pybullet", {"contact_slop": 0.01}, "of the energy"),
+        ("pybullet", {"iterations": 1}, "the solver had not converged in"),
+    ],
+)
+def test_what_is_doubtful_is_said(engine: str, arguments: dict[str, Any], words: str) -> None:
+    if engine not in multibody.available_engines():
+        pytest.skip(f"no wheel of {engine} here")
+    row = at(engine, "free", arguments=arguments, length=1.5)
+    assert row["verdict"] in ("agrees", "said")
+    assert words in row["message"]
+
+
+def test_a_step_that_contact_cannot_follow_is_refused(engine: str) -> None:
+    row = at(engine, "guided", arguments={"time_step": 1e-2})
+    assert row["verdict"] == "refused"
+    assert "\n" not in row["message"]
+    assert "time_step must be at most 0.001 s" in row["message"]
+
+
+def test_friction_that_does_not_suffice_is_said(engine: str) -> None:
+    row = at(engine, "guided", arguments={"friction": 0.05}, length=0.5)
+    assert "contact slipped from" in row["message"]
+    assert "contact took" in row["message"]
+
+
+def test_a_run_that_disagrees_in_silence_is_called_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+    import rockwobble.compare.engine_extremes as module
+
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    # the run of another release
+    other = multibody.simulate(
+        pier, initial=InitialState(0.45 * pier.alpha, rolling_rate=0.5), duration=0.5, time_step=5e-4
+    )
+    monkeypatch.setattr(module.multibody, "simulate", lambda *_, **__: other)
+    row = at("mujoco", "guided", length=0.5)
+    assert row["verdict"] == "wrong"
+    assert row["error"] == pytest.approx(0.05, rel=0.5)
+
+
+def test_every_extreme_of_the_design_is_in_the_scan() -> None:
+    found = {trial.extreme for trial in trials(["mujoco", "pybullet"])}
+    for extreme in (
+        "time step [s]",
+        "friction",
+        "tan alpha",
+        "spin [rad/s]",
+        "shaking [g]",
+        "guide, h sqrt(k)",
+    ):
+        assert extreme in found
+    assert {"contact time constant [h]", "contact damping ratio"} <= found
