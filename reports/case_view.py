@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from rockwobble.models import Case
@@ -13,7 +13,7 @@ from .palette import Style, model_style, run_styles
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockwobble.compare import Comparison
+    from rockwobble.compare import Comparison, ErrorBudget
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -31,6 +31,8 @@ class CaseView:
         Rows of the summary, with the label of the run as an additional column "run".
     styles : dict
         Style of each run, by label.
+    budgets : dict
+        Error budget for each label of a run and reduced model, where there is one.
     """
 
     case: Case
@@ -38,6 +40,7 @@ class CaseView:
     trajectories: Mapping[str, Any]
     rows: pd.DataFrame
     styles: Mapping[str, Style]
+    budgets: Mapping[tuple[str, str], ErrorBudget] = field(default_factory=dict)
 
     def lines(self) -> Iterator[tuple[str, Any, Style]]:
         """Yield label, trace and style of everything there is: the runs, then the models on top."""
@@ -65,6 +68,11 @@ def case_views(comparison: Comparison) -> list[CaseView]:
                 trajectories=trajectories,
                 rows=rows,
                 styles=run_styles(list(trajectories)),
+                budgets={
+                    (run, model): budget
+                    for (of, run, model), budget in comparison.budgets.items()
+                    if of == name
+                },
             )
         )
     return views

@@ -128,4 +128,13 @@ TrajectoryNoise = Annotated[
         rich_help_panel=_FOREIGN,
     ),
 ]
+Budget = Annotated[
+    bool,
+    typer.Option(
+        "--budget",
+        help="Split each difference into model form, numerics and what stays unexplained, by runs at finer "
+        "steps: takes some seven times as long.",
+        rich_help_panel=_METHOD,
+    ),
+]
 Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]

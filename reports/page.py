@@ -7,6 +7,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from . import charts
+from .budget_words import budget_lines, parting_lines
 from .case_view import CaseView, case_views
 from .findings import finding, headline
 from .playback import playback
@@ -49,6 +50,7 @@ def comparison_page(comparison: Comparison, command: str = "") -> str:
 def _case(view: CaseView, index: int) -> dict[str, Any]:
     length = view.case.length
     excitation = charts.excitation_chart(view)
+    bars = charts.budget_bars(view)
     return {
         "name": view.case.name,
         "lines": describe(view.case),
@@ -56,6 +58,10 @@ def _case(view: CaseView, index: int) -> dict[str, Any]:
         "findings": [finding(row, length) for _, row in view.rows.iterrows()],
         "rows": [{name: _cell(value) for name, value in row.items()} for _, row in view.rows.iterrows()],
         "playback": playback(view) if index < _PLAYED else None,
+        "parting": parting_lines(view.rows),
+        "budget_words": budget_lines(view.rows),
+        "budget": None if bars is None else _plot(bars, f"budget-{index}"),
+        "budget_parts": _plots(charts.budget_charts(view), f"budget-part-{index}"),
         "tilt": _plot(charts.tilt_chart(view), f"tilt-{index}"),
         "difference": _plot(charts.difference_chart(view), f"difference-{index}"),
         "orbits": _plots(charts.orbit_charts(view), f"orbit-{index}"),

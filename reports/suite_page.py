@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 from . import charts
+from .budget_figure import budget_figure
+from .budget_words import budget_lines, parting_lines
 from .case_view import CaseView, case_views
 from .findings import finding, headline
 from .problem import describe
@@ -59,6 +61,8 @@ def suite_page(comparison: Comparison, command: str = "") -> str:
         plot_template=_template(),
         plot_config=_json(_CONFIG),
         headline=suite_headline(comparison.summary),
+        budget=[*budget_lines(comparison.summary), *parting_lines(comparison.summary)],
+        budget_picture=_budget_picture(comparison),
         overview=overview,
         groups=_grouped(views),
         cases=[_case(view, index, figures[name], points) for index, (name, view) in enumerate(views.items())],
@@ -69,6 +73,14 @@ def suite_page(comparison: Comparison, command: str = "") -> str:
         ],
         versions=comparison.versions,
     )
+
+
+def _budget_picture(comparison: Comparison) -> str:
+    """SVG of all budgets to stand in the page; empty without budgets."""
+    if not comparison.budgets:
+        return ""
+    picture = budget_figure(comparison).decode()
+    return picture[picture.index("<svg") :]
 
 
 def _grouped(views: dict[str, CaseView]) -> dict[str, list[tuple[int, str]]]:
@@ -121,6 +133,15 @@ def _figures(view: CaseView) -> Iterator[tuple[str, str, go.Figure]]:
         "From one tilt maximum to the next; open symbols are closer to the apex than the contact resolves.",
         charts.turn_chart(view),
     )
+    bars = charts.budget_bars(view)
+    if bars is not None:
+        yield (
+            "What the difference is made of",
+            "RMS of model form, numerics and what nobody explains, until 80 % of the agreement.",
+            bars,
+        )
+    for title, figure in charts.budget_charts(view):
+        yield f"Parts of {title}", "Each as its largest value within the last second.", figure
     excitation = charts.excitation_chart(view)
     if excitation is not None:
         yield "Excitation", "Acceleration of the ground.", excitation

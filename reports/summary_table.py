@@ -79,7 +79,7 @@ _COLUMNS = (
 
 LEGEND = (
     "peak, model: largest tilt of the run and of the reduced model. RMS: tilt difference over tilt. "
-    "agrees: until the tilts differ by 1 % of alpha (+ they never do). foretold: first pass by the apex "
-    "that is too close for the contact. moved, twist: how the cylinder stands at the end. "
+    "agrees: until the tilts differ by 1 % of alpha (+ they never do). foretold: when the "
+    "reduced models say that they have to part. moved, twist: how the cylinder stands at the end. "
     "time: computing time of the engine. ratio: the same over that of the reduced model."
 )

@@ -1,5 +1,6 @@
 """Interactive figures of a comparison, one concept a module."""
 
+from .budget import budget_bars, budget_charts
 from .contact import azimuth_chart, drift_charts
 from .excitation import excitation_chart
 from .orbits import orbit_charts
@@ -9,6 +10,8 @@ from .turns import turn_chart
 
 __all__ = [
     "azimuth_chart",
+    "budget_bars",
+    "budget_charts",
     "difference_chart",
     "drift_charts",
     "excitation_chart",

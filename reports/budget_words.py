@@ -1,0 +1,51 @@
+"""What the error budgets of a comparison say, in sentences made from their numbers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, findings
+
+from .findings import small
+
+_LISTED = 10
+
+
+def budget_lines(summary: Any) -> list[str]:
+    """Return the sentences on the budgets: the findings first; empty where there are no budgets."""
+    known = summary[summary["whole_rms"].notna()]
+    if not len(known):
+        return []
+    worth = known[known["whole_rms"] > WORTH_EXPLAINING]
+    found = findings(known)
+    lines = [
+        f"{row.case}, {row.run} against {row.reference}: {100.0 * row.unexplained_share:.0f} % of the "
+        f"difference of {small(row.whole_rms)} alpha stay unexplained (the extrapolation itself is known "
+        f"to {small(row.limit_error)} alpha)."
+        for _, row in found.head(_LISTED).iterrows()
+    ]
+    if len(found) > _LISTED:
+        lines.append(f"So they do in {len(found) - _LISTED} more rows of the summary.")
+    explained = len(worth) - len(found)
+    share = f" ({100.0 * explained / len(worth):.0f} %)" if len(worth) else ""
+    lines.append(
+        f"Model form and numerics explain all but {100.0 * LARGEST_SHARE:.0f} % of the difference in "
+        f"{explained} of the {len(worth)} rows{share} that differ by more than {small(WORTH_EXPLAINING)} "
+        f"alpha; {len(known) - len(worth)} differ by less."
+    )
+    missing = len(summary) - len(known)
+    if missing:
+        lines.append(f"{missing} rows have no budget: their runs failed, never moved, or have no finer step.")
+    return lines
+
+
+def parting_lines(summary: Any) -> list[str]:
+    """Return whether traces parted when they had to, those that did so too early by name."""
+    counts = summary["parting"].value_counts()
+    words = ", ".join(f"{counts[word]} {word}" for word in counts.index if word)
+    lines = [
+        f"{row.case}, {row.run} against {row.reference}: they part after {row.agreement_horizon:.2f} s, "
+        f"{row.predicted_horizon:.2f} s were foretold. Earlier than they had to: a finding."
+        for _, row in summary[summary["parting"] == "earlier"].iterrows()
+    ]
+    return [*lines, f"Did traces part when they had to, within a factor of 2? {words}."] if words else lines
