@@ -1,0 +1,67 @@
+"""The commands that print the evidence for the engines: their functions on small problems."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from rockwobble.compare import convergence, engine_horizons, engine_settings
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+RELEASE = InitialState(0.8 * PIER.alpha, rolling_rate=0.5)
+# slopes of first and second order are told apart; a quarter of a second is too short for a sharper one
+SLOPE = 0.3
+
+
+def test_the_order_is_a_slope() -> None:
+    steps = np.array([4.0, 2.0, 1.0])
+    assert convergence.order(steps, 3.0 * steps**2) == pytest.approx(2.0)
+    assert convergence.order(steps, [1.0, np.nan, 0.25]) == pytest.approx(1.0)
+    assert np.isnan(convergence.order(steps, [np.nan, np.nan, 1.0]))
+
+
+def test_a_convergence_row() -> None:
+    case = Case("short", PIER, None, RELEASE, 1.0)
+    table = convergence.convergence([case], engines=["mujoco"], steps=(8e-4, 4e-4, 2e-4), workers=1)
+    assert list(table["support"]) == ["guided", "free"]
+    assert (table["error_3"] < table["error_1"]).all()
+    # 3e-6 alpha over 8 s at the default step, first order
+    assert (table["error_3"] < 1e-5).all()
+    assert table["order"].to_numpy() == pytest.approx(np.ones(2), abs=SLOPE)
+
+
+def test_a_release_that_flies_is_said() -> None:
+    spinning = Case("fast", PIER, None, InitialState(0.5 * PIER.alpha, rolling_rate=30.0), 0.2)
+    assert "loses contact" in convergence.loses_contact(spinning)
+    assert convergence.loses_contact(Case("slow", PIER, None, RELEASE, 0.2)) == ""
+
+
+def test_a_horizon_row() -> None:
+    time = np.arange(0.0, 1.0, 0.01)
+    push = np.column_stack([3.0 * np.sin(8.0 * time), 2.0 * np.cos(7.0 * time)])
+    table = engine_horizons.horizons([Case("push", PIER, GroundMotion(push, 0.01))], workers=1)
+    assert list(table["reference"]) == ["recess", "rolling", "recess"]
+    guided = table.iloc[0]
+    assert not guided["parted"]
+    assert guided["horizon"] == pytest.approx(guided["length"])
+    assert guided["agreed"] == "never, as foretold"
+
+
+def test_variants_differ_from_the_default_in_one_setting() -> None:
+    found = engine_settings.variants(["mujoco"])
+    assert found[0].run("free", 1e-4, 1.0).settings == {}
+    for variant in found[1:]:
+        assert 1 <= len(variant.run("guided", 1e-4, 1.0).settings) <= 2
+    names = [(variant.engine, variant.what) for variant in found]
+    assert len(set(names)) == len(names)
+
+
+@pytest.mark.parametrize("name", ["convergence", "engine_horizons", "engine_settings", "engine_extremes"])
+def test_help_answers(name: str) -> None:
+    command = [sys.executable, "-m", f"rockwobble.compare.{name}", "--help"]
+    answer = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert f"rockwobble.compare.{name}" in answer.stdout
