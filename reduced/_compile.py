@@ -20,6 +20,11 @@ def jit(function: F) -> F:
     return cast("F", numba.njit(**_OPTIONS)(function))
 
 
+def inlined(function: F) -> F:
+    """Compile a function into its callers without a call: for the innermost, where a call shows."""
+    return cast("F", numba.njit(forceinline=True, **_OPTIONS)(function))
+
+
 def kernel(function: F) -> F:
     """Compile an entry point without the interpreter lock, and keep the machine code on disk."""
     return cast("F", numba.njit(cache=True, nogil=True, **_OPTIONS)(function))
@@ -27,7 +32,7 @@ def kernel(function: F) -> F:
 
 def in_memory(entry: Callable[..., Any]) -> bool:
     """Return whether `entry` is loaded, so that a call runs at once."""
-    return bool(cast("Any", entry).signatures)
+    return bool(cast("Any", entry).overloads)
 
 
 def on_disk(entry: Callable[..., Any]) -> bool:

@@ -14,10 +14,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ._compile import jit
+from ._compile import inlined, jit
 from .body import Body
 from .endings import HALF_PI, may_sit_down, surely_falls
-from .stepping import make_stepper
+from .stepping import Stepper, make_events
 from .systems import System
 from .trigonometry import sin_cos
 from .tsit5 import State, Vector, ground
@@ -25,6 +25,7 @@ from .uplift import START, nearest_branch, start_length, started, uplift_in
 
 REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a march ends
 MAXIMUM, MINIMUM = 1.0, -1.0
+_LEAST_STEP = 1e-200  # a step that must be shorter fails whatever its length [s]
 
 
 class Options(NamedTuple):
@@ -80,21 +81,21 @@ def with_row(rows: NDArray[np.float64], count: int, row: State) -> NDArray[np.fl
     return rows
 
 
-@jit
+@inlined
 def piece_of_record(
     record: NDArray[np.float64], scale: float, time_step: float, index: int
 ) -> tuple[Vector, Vector, float]:
     """Return the acceleration at sample `index`, its rate from there on, and where that ends [s]."""
     if index >= len(record) - 1:  # the ground is still after the record
         return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), np.inf
-    first, second = record[index], record[index + 1]
-    a = (scale * first[0], scale * first[1], scale * first[2])
+    end = index + 1
+    a = (scale * record[index, 0], scale * record[index, 1], scale * record[index, 2])
     slope = (
-        (scale * second[0] - a[0]) / time_step,
-        (scale * second[1] - a[1]) / time_step,
-        (scale * second[2] - a[2]) / time_step,
+        (scale * record[end, 0] - a[0]) / time_step,
+        (scale * record[end, 1] - a[1]) / time_step,
+        (scale * record[end, 2] - a[2]) / time_step,
     )
-    return a, slope, (index + 1) * time_step
+    return a, slope, end * time_step
 
 
 @jit
@@ -105,11 +106,18 @@ def spin_momentum(body: Body, theta: float, phi_rate: float) -> float:
     return s * s * (body.J + (2.0 * body.E + body.C * t) * t) * phi_rate
 
 
-def make_driver(system: System) -> Driver:
-    """Return the compiled march of one model."""
-    advance, partial, turning_point, crossing, is_flat = make_stepper(system)
+def make_driver(system: System, stepper: Stepper) -> Driver:
+    """Return the compiled march of one model by one method."""
+    workspace, restarted, advance, partial = stepper
+    turning_point, crossing = make_events(partial)
     derivative, momenta = system.derivative, system.momenta
     placed: Callable[..., State] = system.placed
+
+    @jit
+    def is_flat(y: State) -> bool:
+        """Return whether a state has neither spin nor twist rate: exactly planar motion."""
+        L, S = momenta(y)
+        return bool(L == 0.0 and S == 0.0)
 
     @jit
     def lifted(body: Body, a: Vector, slope: Vector, at: float, time: float, last: State) -> State:
@@ -149,7 +157,7 @@ def make_driver(system: System) -> Driver:
             nothing can stop ends the march early; m = 0 marches on until the side is down.
         """
         size = len(initial)
-        y, k = initial, initial
+        y, k, work = initial, initial, workspace(initial)
         samples, moving = np.zeros((len(times), size)), np.zeros(len(times), dtype=np.bool_)
         sample = 0
         extrema, extremum_count = np.empty((64, 4)), 0
@@ -205,25 +213,30 @@ def make_driver(system: System) -> Driver:
 
                 a_now = ground(a, slope, elapsed)
                 if restart:
-                    k = derivative(body, y, a_now)
+                    k = restarted(body, y, a_now, work)
                     restart = False
                     if now == 0.0 and y[1] == 0.0:  # a release at rest is a turning point
-                        kind = MAXIMUM if k[1] < 0.0 else MINIMUM
+                        kind = MAXIMUM if derivative(body, y, a_now)[1] < 0.0 else MINIMUM
                         extrema = with_row(extrema, extremum_count, (0.0, y[0], y[2], kind))
                         extremum_count += 1
 
-                h, h_next, trials, y_new, k_new = advance(
-                    body, options.rtol, y, k, h_next, length - elapsed, a_now, slope
+                h, h_next, trials, y_new, k, path = advance(
+                    body, options.rtol, y, k, work, h_next, length - elapsed, a_now, slope
                 )
                 step_count += trials
-                if h == 0.0 or step_count > options.step_budget:
-                    status = STALLED if h == 0.0 else OVER_BUDGET
+                if step_count > options.step_budget:
+                    status = OVER_BUDGET
                     break
+                if h == 0.0:
+                    if h_next < _LEAST_STEP:
+                        status = STALLED
+                        break
+                    continue
 
                 turns = y[1] * y_new[1] < 0.0
                 turn = turned_tilt = turned_angle = 0.0
                 if turns:
-                    turn, turned_tilt, turned_angle = turning_point(body, y, k, h, y_new[1], a_now, slope)
+                    turn, turned_tilt, turned_angle = turning_point(body, work, path, y, h, y_new[1])
                     peak = max(peak, turned_tilt)
                 # with spin the tilt stays positive; without it the base meets the ground
                 lands = is_flat(y) and (y_new[0] <= 0.0 or (turns and turned_tilt <= 0.0))
@@ -239,7 +252,7 @@ def make_driver(system: System) -> Driver:
                     hops = lands and turns and turned_tilt > 0.0
                     first = turn if hops else 0.0
                     last = turn if lands and turns and not hops else h
-                    h, y_new = crossing(body, y, k, first, last, a_now, slope, level)
+                    h, y_new = crossing(body, work, path, y, first, last, level)
                     turns = hops
                 whole = elapsed + h >= length
                 after = finish if whole else begin + (elapsed + h)
@@ -248,7 +261,7 @@ def make_driver(system: System) -> Driver:
                     if times[sample] == after:
                         write(y_new, samples[sample])
                     else:
-                        y_at, _ = partial(body, y, k, times[sample] - now, a_now, slope)
+                        y_at, _ = partial(body, work, path, times[sample] - now)
                         write(y_at, samples[sample])
                     moving[sample] = True
                     sample += 1
@@ -258,7 +271,7 @@ def make_driver(system: System) -> Driver:
                     extrema = with_row(extrema, extremum_count, row)
                     extremum_count += 1
 
-                y, k = y_new, k_new
+                y = y_new
                 elapsed = length if whole else elapsed + h
                 now = after
                 peak = max(peak, y[0])

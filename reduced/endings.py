@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import cos, hypot, pi, sin
 
-from ._compile import jit
+from ._compile import inlined, jit
 from .body import Body
 from .equations import energy
 from .tsit5 import Vector
@@ -13,7 +13,7 @@ from .uplift import excess
 HALF_PI = 0.5 * pi  # the tilt at which the side lies on the ground
 
 
-@jit
+@inlined
 def may_sit_down(
     body: Body, seating: float, theta: float, omega: float, L: float, S: float, a: Vector
 ) -> bool:

@@ -10,12 +10,13 @@ from rockwobble.models import Cylinder
 from ._compile import kernel
 from .body import Body, body_of
 from .driver import March, Options, make_driver
-from .systems import PLANAR, RECESS, ROLLING
+from .stepping import runge_kutta, taylor_series
+from .systems import PLANAR, RECESS, ROLLING, planar_combine, planar_ratio, rolling_combine, rolling_ratio
 from .tsit5 import State
 
-_march_planar = make_driver(PLANAR)
-_march_recess = make_driver(RECESS)
-_march_rolling = make_driver(ROLLING)
+_march_planar = make_driver(PLANAR, runge_kutta(PLANAR, planar_combine, planar_ratio))
+_march_recess = make_driver(RECESS, taylor_series())
+_march_rolling = make_driver(ROLLING, runge_kutta(ROLLING, rolling_combine, rolling_ratio))
 
 
 @kernel

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -144,24 +144,19 @@ class Problem:
 
     def _plane(self, record: NDArray[np.float64]) -> Plane | None:
         """The vertical plane that the motion stays in, if there is one."""
-        x, y = record[:, 0], record[:, 1]
         if self.model == "planar":
             azimuth = self.plane
-        else:
-            squares = x * x + y * y
-            largest = int(squares.argmax()) if len(squares) else 0
-            peak = math.sqrt(squares[largest]) if len(squares) else 0.0
-            if self.initial is not None and self.initial.tilt > 0.0:
-                if abs(self.initial.rolling_rate) > _LEAST_SPIN * self.body.p:
-                    return None
-                azimuth = self.initial.rolling_angle
-            elif peak > 0.0:
-                azimuth = math.atan2(y[largest], x[largest])
-            else:
-                azimuth = 0.0
-            across = y * math.cos(azimuth) - x * math.sin(azimuth)
-            if float(np.abs(across).max(initial=0.0)) > _PLANE_TOLERANCE * peak:
+        elif self.initial is not None and self.initial.tilt > 0.0:
+            azimuth = self.initial.rolling_angle
+            spins = abs(self.initial.rolling_rate) > _LEAST_SPIN * self.body.p
+            if spins or not _stays_in_plane(record, azimuth):
                 return None
+        else:
+            shaken = _plane_of_shaking(self.motion)
+            if shaken is None:
+                return None
+            azimuth = shaken
+        x, y = record[:, 0], record[:, 1]
         along = x * math.cos(azimuth) + y * math.sin(azimuth)
         return Plane(azimuth, np.column_stack([along, np.zeros_like(along), record[:, 2]]))
 
@@ -244,6 +239,26 @@ def make_problem(
     )
 
 
+@lru_cache(maxsize=4)
+def _plane_of_shaking(motion: GroundMotion | None) -> float | None:
+    """The azimuth [rad] of the vertical plane that holds the whole motion, if there is one."""
+    if motion is None or motion.peak == 0.0:
+        return 0.0
+    record = _three_columns(motion)
+    largest = record[int(np.square(record[:, :2]).sum(axis=1).argmax())]
+    azimuth = math.atan2(largest[1], largest[0])
+    return azimuth if _stays_in_plane(record, azimuth) else None
+
+
+def _stays_in_plane(record: NDArray[np.float64], azimuth: float) -> bool:
+    x, y = record[:, 0], record[:, 1]
+    across = y * math.cos(azimuth) - x * math.sin(azimuth)
+    peak = math.sqrt(float((x * x + y * y).max(initial=0.0)))
+    return float(np.abs(across).max(initial=0.0)) <= _PLANE_TOLERANCE * peak
+
+
+# kept for the runs that follow with the same motion: it takes a tenth of the time of a short one
+@lru_cache(maxsize=4)
 def _three_columns(motion: GroundMotion | None) -> NDArray[np.float64]:
     if motion is None:
         return np.empty((0, 3))

@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ._compile import jit
+from ._compile import inlined, jit
 from .body import Body
 from .equations import planar_rhs, recess_rhs, rolling_rhs
 from .trigonometry import sin_cos
@@ -34,13 +34,11 @@ class System(NamedTuple):
     """The compiled functions of one model."""
 
     derivative: Callable[..., Any]  # (body, y, a) -> y'
-    combine: Callable[..., Any]  # (y, h, weights, slopes) -> y + h sum(weights slopes)
     momenta: Callable[..., Any]  # y -> (L or Lambda, S)
     placed: Callable[..., Any]  # (y, theta, omega, phi, L) -> y with these, and without twist rate
-    error_ratio: Callable[..., float]  # (body, rtol, y, error, flat) -> error over what is allowed
 
 
-@jit
+@inlined
 def scales(
     body: Body, rtol: float, tilt: float, rate: float, spin_rate: float, flat: bool
 ) -> tuple[float, float]:
@@ -68,7 +66,8 @@ def _planar_derivative(body: Body, y: State, a: Vector) -> State:
 
 
 @jit
-def _planar_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+def planar_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+    """Return y + h sum(weights slopes)."""
     a = b = c = 0.0
     for j in range(len(weights)):
         w, k = weights[j], slopes[j]
@@ -89,7 +88,8 @@ def _planar_placed(y: State, theta: float, omega: float, phi: float, L: float) -
 
 
 @jit
-def _planar_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
+def planar_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
+    """Return the largest error over what is allowed."""
     per_tilt, per_rate = scales(body, rtol, y[0], y[1], 0.0, True)
     return max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
 
@@ -97,18 +97,6 @@ def _planar_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -
 @jit
 def _recess_derivative(body: Body, y: State, a: Vector) -> State:
     return recess_rhs(body, y[0], y[1], y[2], y[3], a[0], a[1], a[2])
-
-
-@jit
-def _recess_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
-    a = b = c = d = 0.0
-    for j in range(len(weights)):
-        w, k = weights[j], slopes[j]
-        a += w * k[0]
-        b += w * k[1]
-        c += w * k[2]
-        d += w * k[3]
-    return y[0] + h * a, y[1] + h * b, y[2] + h * c, y[3] + h * d
 
 
 @jit
@@ -122,14 +110,6 @@ def _recess_placed(y: State, theta: float, omega: float, phi: float, L: float) -
 
 
 @jit
-def _recess_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
-    per_lever = 0.0 if flat else 1.0 / (body.J * y[0])
-    per_tilt, per_rate = scales(body, rtol, y[0], y[1], abs(y[3]) * per_lever, flat)
-    ratio = max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
-    return max(ratio, abs(error[2]) * (1.0 / rtol), abs(error[3]) * per_lever * per_rate)
-
-
-@jit
 def _rolling_derivative(body: Body, y: State, a: Vector) -> State:
     rates = rolling_rhs(body, y[0], y[1], y[2], y[3], y[4], y[5], a[0], a[1], a[2])
     sin_phi, cos_phi = sin_cos(y[2])
@@ -138,7 +118,8 @@ def _rolling_derivative(body: Body, y: State, a: Vector) -> State:
 
 
 @jit
-def _rolling_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+def rolling_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+    """Return y + h sum(weights slopes)."""
     a = b = c = d = e = f = x = z = 0.0
     for j in range(len(weights)):
         w, k = weights[j], slopes[j]
@@ -173,14 +154,17 @@ def _rolling_placed(y: State, theta: float, omega: float, phi: float, L: float) 
 
 
 @jit
-def _rolling_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
-    ratio = _recess_ratio(body, rtol, y[:4], error[:4], flat)
-    _, per_rate = scales(body, rtol, y[0], y[1], 0.0 if flat else abs(y[3]) / (body.J * y[0]), flat)
+def rolling_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
+    """Return the largest error over what is allowed."""
+    per_lever = 0.0 if flat else 1.0 / (body.J * y[0])
+    per_tilt, per_rate = scales(body, rtol, y[0], y[1], abs(y[3]) * per_lever, flat)
+    ratio = max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
+    ratio = max(ratio, abs(error[2]) * (1.0 / rtol), abs(error[3]) * per_lever * per_rate)
     M = body.C - body.E * body.E / body.J
     ratio = max(ratio, abs(error[4]) / rtol, abs(error[5]) * per_rate / sqrt(body.A * M))
     return max(ratio, max(abs(error[6]), abs(error[7])) / (rtol * body.b))
 
 
-PLANAR = System(_planar_derivative, _planar_combine, _planar_momenta, _planar_placed, _planar_ratio)
-RECESS = System(_recess_derivative, _recess_combine, _recess_momenta, _recess_placed, _recess_ratio)
-ROLLING = System(_rolling_derivative, _rolling_combine, _rolling_momenta, _rolling_placed, _rolling_ratio)
+PLANAR = System(_planar_derivative, _planar_momenta, _planar_placed)
+RECESS = System(_recess_derivative, _recess_momenta, _recess_placed)
+ROLLING = System(_rolling_derivative, _rolling_momenta, _rolling_placed)
