@@ -43,11 +43,13 @@ def show(table: pd.DataFrame, title: str, formats: Mapping[str, str], note: str 
 
     shown = Table(title=title, caption=note or None, title_justify="left", caption_justify="left")
     for name, form in formats.items():
-        shown.add_column(name.replace("_", " "), justify="right" if form else "left", overflow="fold")
+        fold = name == "message"
+        heading, side = name.replace("_", " "), "right" if form else "left"
+        shown.add_column(heading, justify=side, overflow="fold", no_wrap=not fold)  # type: ignore[arg-type]
     for row in table.to_dict("records"):
         shown.add_row(*(_text(row[name], form) for name, form in formats.items()))
     # a table that is read by a program or kept in a file is not folded to the width of no terminal
-    console = Console(width=None if sys.stdout.isatty() else 160)
+    console = Console(width=None if sys.stdout.isatty() else 200)
     console.print(shown)
 
 

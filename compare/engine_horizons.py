@@ -96,7 +96,7 @@ def horizons(
 
 def _row(case: Case, traces: dict[str, Any], support: str, model: str) -> dict[str, Any]:
     trial, own, reference = traces[support], traces[_OWN[support]], traces[model]
-    row = {"case": case.name, "support": support, "reference": model}
+    row = {"case": case.name, "support": support, "reference": model, "reason": ""}
     if not hasattr(trial, "tilt"):
         return row | {"outcome": "failed", "agreed": f"the process died: {trial.message}"}
     start = reference.uplift_time
