@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from rockwobble.compare import Comparison
 
 # points of all lines of a page together: ten bytes each, and the page stays below 8 MB
-_ALL_POINTS = 190_000
+_ALL_POINTS = 150_000
 # more are not to be seen, fewer are no curve
 _MOST_POINTS, _FEWEST_POINTS = 1500, 120
 _CONFIG = {"responsive": True, "displaylogo": False, "modeBarButtonsToRemove": ["select2d", "lasso2d"]}

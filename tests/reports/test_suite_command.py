@@ -184,7 +184,7 @@ def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, 
     assert len(page.encode()) < PAGE_LIMIT
     assert page.count('<script type="application/json"') >= CASES * 4
     # with as many points for six cases as 44 would get, all of them would fit
-    monkeypatch.setattr("rockwobble.reports.suite_page._ALL_POINTS", 190_000 * CASES // 44)
+    monkeypatch.setattr("rockwobble.reports.suite_page._ALL_POINTS", 150_000 * CASES // 44)
     thinned = len(suite_page(many).encode())
     of_a_case = (thinned - len(get_plotlyjs().encode())) / CASES
     assert len(get_plotlyjs().encode()) + 44 * of_a_case < PAGE_LIMIT
