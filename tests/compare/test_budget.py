@@ -1,0 +1,165 @@
+"""The parts of a difference, and controls that a part cannot pass for another."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import multibody, reduced
+from rockwobble.compare.error_budget import (
+    LARGEST_SHARE,
+    ErrorBudget,
+    Limit,
+    error_budget,
+    extrapolated,
+    findings,
+)
+from rockwobble.compare.horizon import Horizon
+from rockwobble.compare.refinement import Refined, finer_case, limits
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
+
+ROUNDING = 1e-12
+STEP = 4e-4  # coarse, so that four runs take a second
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.5)
+CASE = Case("release", PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=2.0)
+TIME = np.arange(201) * 0.01
+WHOLE_RUN = Horizon(length=2.0, end=2.0, parted=False)
+
+
+def run(case: Case, step: float):
+    return multibody.simulate(
+        case.cylinder, case.motion, initial=case.initial, duration=case.duration, time_step=step
+    )
+
+
+def simulate(jobs):
+    return [run(job.case, job.method.time_step) for job in jobs]
+
+
+@pytest.fixture(scope="module")
+def engine():
+    return run(CASE, STEP)
+
+
+@pytest.fixture(scope="module")
+def limit(engine) -> Limit:
+    refined = Refined(
+        case=CASE,
+        run=Run("mujoco", "guided", STEP),
+        label="x",
+        trajectory=engine,
+        end=2.0,
+        difference=np.zeros(1),
+    )
+    return limits([refined], simulate)["release", "x"]
+
+
+def budget(engine, limit: Limit, cylinder: Cylinder = PIER) -> ErrorBudget:
+    model = reduced.simulate(cylinder, initial=CASE.initial, duration=2.0, rtol=1e-11)
+    return error_budget(PIER, engine, model, model, limit, WHOLE_RUN)
+
+
+def test_the_parts_add_up_sample_by_sample(engine, limit):
+    found = budget(engine, limit)
+    total = found.model_form + found.numerics + found.unexplained
+    assert np.allclose(total, found.whole, rtol=0.0, atol=ROUNDING)
+
+
+def test_the_error_of_a_step_is_numerics_and_not_unexplained(engine, limit):
+    found = budget(engine, limit)
+    assert found.rms("numerics") > 1e-7  # far above the 1e-10 of the reduced model: there is something to explain
+    assert found.columns()["unexplained_share"] < 0.01  # third order in the step is left
+
+
+def test_a_coarser_step_adds_to_numerics_alone(engine, limit):
+    coarse = run(CASE, 4.0 * STEP)
+    found, coarser = budget(engine, limit), budget(coarse, limit)
+    assert coarser.rms("numerics") > 2.0 * found.rms("numerics")  # at least first order: four times
+    assert coarser.rms("unexplained") == found.rms("unexplained")
+
+
+def test_a_model_half_a_per_cent_off_in_size_is_unexplained(engine, limit):
+    wrong = Cylinder(semidiagonal=1.005 * 6.0, tan_alpha=0.5)
+    columns = budget(engine, limit, wrong).columns()
+    assert columns["whole_rms"] > 1e-4
+    assert columns["unexplained_share"] > 0.9
+    rows = findings(pd.DataFrame([columns]))
+    assert len(rows) == 1
+
+
+def test_the_difference_of_two_models_is_model_form(engine, limit):
+    models = [
+        reduced.simulate(PIER, initial=CASE.initial, duration=2.0, model=m, rtol=1e-11)
+        for m in ("rolling", "recess")
+    ]
+    found = error_budget(PIER, engine, *models, limit, WHOLE_RUN)
+    expected = (models[1].tilt - models[0].tilt) / PIER.alpha
+    assert np.allclose(found.model_form, expected, rtol=0.0, atol=ROUNDING)
+    assert found.rms("unexplained") == budget(engine, limit).rms("unexplained")
+
+
+def made_up_tilts(steps, first: float, second: float) -> list[np.ndarray]:
+    return [np.cos(TIME) + first * h * np.sin(TIME) + second * h**2 * TIME for h in steps]
+
+
+def test_first_and_second_order_vanish_from_three_smooth_runs():
+    steps = [1.0, 0.5, 0.25]
+    limit = extrapolated(TIME, made_up_tilts(steps, 0.3, 0.2), steps, smooth=True)
+    assert np.allclose(limit.tilt, np.cos(TIME), rtol=0.0, atol=ROUNDING)
+    assert limit.steps == (1.0, 0.5, 0.25)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_the_first_order_vanishes_whatever_the_number_of_runs(count):
+    steps = [0.5**k for k in range(count)]
+    limit = extrapolated(TIME, made_up_tilts(steps, 0.3, 0.0), steps, smooth=False)
+    assert np.allclose(limit.tilt, np.cos(TIME), rtol=0.0, atol=ROUNDING)
+
+
+@pytest.mark.parametrize(("first", "second", "order"), [(0.3, 0.0, 1.0), (0.0, 0.3, 2.0)])
+def test_the_order_is_measured(first, second, order):
+    steps = [1.0, 0.5, 0.25]
+    limit = extrapolated(TIME, made_up_tilts(steps, first, second), steps, smooth=True)
+    assert limit.order == pytest.approx(order, abs=1e-9)
+
+
+def test_one_run_has_no_limit():
+    with pytest.raises(ValueError, match="two steps or more, got 1"):
+        extrapolated(TIME, [TIME], [1.0], smooth=True)
+
+
+def test_the_end_of_the_agreement_is_left_out(make_trace, cylinder):
+    # all of the difference is in the last fifth
+    model = make_trace(TIME, np.full_like(TIME, 0.1))
+    late = make_trace(TIME, 0.1 + np.where(TIME > 1.6 + 1e-9, 1e-3, 0.0))
+    limit = Limit(time=TIME, tilt=late.tilt, error=np.zeros_like(TIME), steps=(1.0,), order=math.nan)
+    found = error_budget(cylinder, late, model, model, limit, WHOLE_RUN)
+    assert found.covered == pytest.approx(1.6)
+    assert found.rms("whole") == 0.0
+    assert found.whole[-1] > 0.0
+
+
+def test_from_rest_the_finer_runs_are_turned_over_a_corner(engine):
+    motion = GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.5)
+    case = Case("pulse", PIER, motion)
+    trajectory = dataclasses.replace(engine, uplift_direction=0.7)
+    refined = Refined(
+        case=case, run=Run("mujoco", "guided"), label="x", trajectory=trajectory, end=0.804, difference=0.0
+    )
+    finer = finer_case(refined)
+    assert np.allclose(finer.motion.acceleration, motion.rotated(-0.7).acceleration)
+    assert finer.length == pytest.approx(0.81)  # no longer than the traces agree, in whole samples
+
+
+def test_findings_are_the_rows_above_the_bound_the_worst_first():
+    summary = pd.DataFrame(
+        {
+            "whole_rms": [1e-3, 5e-5, 1e-3, 1e-3, math.nan],
+            "unexplained_share": [LARGEST_SHARE + 0.01, 0.9, 0.5, LARGEST_SHARE - 0.01, math.nan],
+        }
+    )
+    assert findings(summary).index.tolist() == [2, 0]
