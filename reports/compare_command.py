@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import shlex
-import sys
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,6 +11,8 @@ from typing import TYPE_CHECKING
 import typer
 
 from . import options
+from .comparison_pages import SINGLY, comparison_pages
+from .paper.provenance import command_line
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 from .terminal import complain, interruptible, user_input
 
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from rockwobble.models import Case, Run, Suite
 
     from .progress import Tell
-
-# up to so many cases each has a table of its own
-_SINGLY = 3
 
 
 def compare(
@@ -48,6 +45,7 @@ def compare(
     trajectory_angles: options.TrajectoryAngles = None,
     trajectory_offset: options.TrajectoryOffset = 0.0,
     trajectory_noise_deg: options.TrajectoryNoise = None,
+    budget: options.Budget = False,
     out: options.Out = Path("rockwobble-out"),
 ) -> None:
     """Run the reduced model and the engines on one problem, and report how long they agree.
@@ -101,10 +99,15 @@ def compare(
 
         with user_input(), shown_progress(many=len(cases) > 1) as tell:
             comparison = run_comparison(
-                cases, runs=runs, progress=tell, foreign=foreign, resume=None if suite is None else out
+                cases,
+                runs=runs,
+                progress=tell,
+                foreign=foreign,
+                resume=None if suite is None else out,
+                budget=budget,
             )
         print_comparison(comparison)
-        contents = _contents(comparison)
+        contents = {**comparison.files(), **comparison_pages(comparison, command_line())}
         with user_input():
             replace_files(out, contents)
     print(f"\nWritten to {out}: {', '.join(contents)}")
@@ -116,12 +119,15 @@ def run_comparison(
     progress: Tell,
     foreign: Sequence[Foreign] = (),
     resume: Path | None = None,
+    budget: bool = False,
 ) -> Comparison:
     """Run engines and models; imported here, because --help must not wait for it."""
     from rockwobble.compare import compare as run
     from rockwobble.models import Suite
 
-    return run(Suite(cases, runs), runs=runs, progress=progress, foreign=foreign, resume=resume)
+    return run(
+        Suite(cases, runs), runs=runs, progress=progress, foreign=foreign, resume=resume, budget=budget
+    )
 
 
 def _kept(out: Path) -> str:
@@ -189,14 +195,16 @@ def print_comparison(comparison: Comparison) -> None:
     """Print the main columns of the summary, and what they say."""
     from rich.console import Console
 
+    from .budget_words import budget_lines, parting_lines
     from .findings import finding, headline
     from .summary_table import LEGEND, MINIMUM_WIDTH, summary_table
 
     console = Console()
     if not console.is_terminal:
         console.width = max(console.width, MINIMUM_WIDTH)
-    if len(comparison.cases) > _SINGLY:
+    if len(comparison.cases) > SINGLY:
         _print_groups(comparison, console)
+        _print_lines([*budget_lines(comparison.summary), *parting_lines(comparison.summary)], console)
         return
     for name, case in comparison.cases.items():
         rows = comparison.summary[comparison.summary["case"] == name]
@@ -210,6 +218,13 @@ def print_comparison(comparison: Comparison) -> None:
                 finding(row, case.length), console.width, initial_indent="- ", subsequent_indent="  "
             )
             console.print(sentence, highlight=False, markup=False)
+        _print_lines([*budget_lines(rows), *parting_lines(rows)], console)
+
+
+def _print_lines(lines: Sequence[str], console: Console) -> None:
+    for line in lines:
+        words = textwrap.fill(line, console.width, initial_indent="- ", subsequent_indent="  ")
+        console.print(words, highlight=False, markup=False)
 
 
 def _print_groups(comparison: Comparison, console: Console) -> None:
@@ -225,18 +240,3 @@ def _print_groups(comparison: Comparison, console: Console) -> None:
     for line in worst_cases(comparison.summary, lengths):
         sentence = textwrap.fill(line, console.width, initial_indent="- ", subsequent_indent="  ")
         console.print(sentence, highlight=False, markup=False)
-
-
-def _contents(comparison: Comparison) -> dict[str, bytes]:
-    from .figure import comparison_figure
-    from .page import comparison_page
-    from .suite_page import suite_page
-
-    command = shlex.join(["rockwobble", *sys.argv[1:]])
-    many = len(comparison.cases) > _SINGLY
-    page = suite_page(comparison, command) if many else comparison_page(comparison, command)
-    return {
-        **comparison.files(),
-        "report.html": page.encode(),
-        "figure.svg": comparison_figure(comparison),
-    }

@@ -8,12 +8,15 @@ from typing import Annotated, Any
 import typer
 
 from .compare_command import compare
+from .ensemble_command import ensemble
 from .paper_command import figures
+from .report_command import report
 from .show_command import show
 from .simulate_command import simulate
 from .spectrum_command import spectrum
 from .sweep_command import sweep
 from .terminal import BAD_INPUT, INTERRUPTED, complain
+from .view_command import view
 
 app = typer.Typer(
     name="rockwobble",
@@ -29,6 +32,9 @@ app.command(epilog="Example: rockwobble simulate --release-tilt-deg 5 --rolling-
 app.command(epilog="Example: rockwobble spectrum --tan-alpha 0.2 --sizes 50 --intensities 50")(spectrum)
 app.command(epilog="Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid")(sweep)
 app.command(epilog="Example: rockwobble show rockwobble-sweep")(show)
+app.command(epilog="Example: rockwobble report rockwobble-out")(report)
+app.command(epilog="Example: rockwobble view --scale 2 --support free")(view)
+app.command(epilog="Example: rockwobble ensemble --synthetic 3 --members 40 --engine mujoco")(ensemble)
 app.command(epilog="Example: rockwobble figures --out paper")(figures)
 
 # typer brings its own click in some versions and imports click in others: one base class, two homes

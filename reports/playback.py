@@ -63,7 +63,7 @@ def _body(label: str, trace: Any, view: CaseView, colour: str, opacity: float) -
         "label": label,
         "colour": colour,
         "opacity": opacity,
-        "moves": bool(np.any(trace.tilt > 0.0)),
+        "moves": bool(np.any(pose["tilt"] > 0.0)),
         **{name: _encoded(values[keep]) for name, values in {"time": trace.time, **pose}.items()},
     }
 

@@ -1,0 +1,101 @@
+from __future__ import annotations
+
+import base64
+
+import numpy as np
+import pytest
+
+from rockwobble.compare import compare
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
+from rockwobble.reports.case_view import case_views
+from rockwobble.reports.main import main
+from rockwobble.reports.playback import playback
+from rockwobble.reports.view_command import view_page
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+# a page plays in float32: seven digits of some metres
+SINGLE = 1e-6
+
+
+def _numbers(text):
+    return np.frombuffer(base64.b64decode(text), dtype="<f4").astype(float)
+
+
+@pytest.fixture(scope="module")
+def comparison():
+    release = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5)
+    case = Case("release", PIER, initial=release, duration=1.0)
+    return compare(case, runs=[Run("mujoco", "free", 1e-3)], workers=1)
+
+
+def test_the_pose_of_the_page_puts_the_mass_centre_where_the_run_has_it(comparison):
+    spec = playback(case_views(comparison)[0])
+    b, h = spec["base_radius"], 0.5 * spec["height"]
+    for body, trace in zip(
+        [*spec["models"], *spec["runs"]],
+        [*comparison.responses.values(), *comparison.trajectories.values()],
+        strict=True,
+    ):
+        tilt, phi = _numbers(body["tilt"]), _numbers(body["rolling_angle"])
+        # as playback.js: the base stands on its rim at the contact point
+        radial = h * np.sin(tilt) - b * np.cos(tilt)
+        x = _numbers(body["contact_x"]) + radial * np.cos(phi)
+        y = _numbers(body["contact_y"]) + radial * np.sin(phi)
+        # an engine sinks in by 1e-6 m
+        np.testing.assert_allclose(x, trace.centre_of_mass[:, 0], atol=10.0 * SINGLE)
+        np.testing.assert_allclose(y, trace.centre_of_mass[:, 1], atol=10.0 * SINGLE)
+        np.testing.assert_allclose(_numbers(body["time"]), trace.time, atol=SINGLE)
+
+
+def test_each_run_is_shown_with_the_model_of_its_support(comparison):
+    spec = playback(case_views(comparison)[0])
+    assert spec["models"][spec["partners"][0]]["label"] == "rolling model"
+
+
+def test_nothing_is_played_where_nothing_moves():
+    still = GroundMotion(np.zeros((20, 2)), 0.01, "still")
+    comparison = compare(Case("still", PIER, still), runs=[Run("mujoco", "guided", 1e-3)], workers=1)
+    assert playback(case_views(comparison)[0]) is None
+    assert view_page(comparison, "still") is None
+
+
+def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp_path, monkeypatch, capsys):
+    stored = tmp_path / "stored"
+    comparison.save(stored)
+
+    def refuse(*_, **__):
+        raise AssertionError("something ran")
+
+    monkeypatch.setattr("rockwobble.reduced.simulate", refuse)
+    monkeypatch.setattr("rockwobble.multibody.simulate", refuse)
+    with pytest.raises(SystemExit) as ended:
+        main(["report", str(stored)])
+    assert ended.value.code == 0
+    assert "release" in (stored / "report.html").read_text()
+    assert (stored / "figure.svg").read_bytes().startswith(b"<?xml")
+    with pytest.raises(SystemExit) as ended:
+        main(["view", str(stored), "--no-open", "--out", str(tmp_path / "played")])
+    assert ended.value.code == 0
+    assert "rockwobblePlayback" in (tmp_path / "played" / "view.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["view", "{folder}", "--scale", "2"], "--scale states a run and does not go with a stored one"),
+        (["view", "--case", "x"], "--case chooses from a folder"),
+        (["view", "{folder}/missing"], "must be the folder of a comparison"),
+        (["report", "{folder}/missing"], "must be the folder of a comparison"),
+        (["view", "{folder}", "--case", "x"], "--case must be one of release, got 'x'"),
+    ],
+)
+def test_bad_input_is_one_line(comparison, tmp_path, capsys, arguments, message):
+    comparison.save(tmp_path / "stored")
+    given = [text.format(folder=tmp_path / "stored") for text in arguments]
+    with pytest.raises(SystemExit) as ended:
+        main([*given, *(["--out", str(tmp_path / "out")] if given[0] == "view" else [])])
+    assert ended.value.code == 2
+    said = capsys.readouterr().err
+    assert message in said
+    assert len(said.strip().splitlines()) == 1
+    assert not (tmp_path / "out").exists()
