@@ -92,7 +92,7 @@ def _comparison(path: Path) -> dict[str, Any]:
     import pandas as pd
 
     about = _json(path / "comparison.json")
-    summary = pd.read_csv(path / "summary.csv", float_precision="round_trip")
+    summary = pd.read_csv(path / "summary.csv")
     table = path / "summary.parquet"
     figures = [
         {
