@@ -37,7 +37,7 @@ class Ensemble:
         outcome, message, wall_time [s].
     methods : DataFrame
         One row for each method: runs, overturned, failed, failed_members (their names), and median and
-        quantiles of the peak tilt of what did not fail [alpha].
+        quantiles of the peak tilt of what did not fail [alpha], each that of a run, overturned ones at pi/2.
     contrasts : DataFrame
         One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high.
     about : dict
@@ -168,7 +168,9 @@ def _methods(members: pd.DataFrame) -> pd.DataFrame:
     for method, runs in members.groupby("method", sort=False):
         failed = runs[runs["outcome"] == "failed"]
         peaks = np.sort(runs["peak_tilt"].dropna().to_numpy(float))
-        low, median, high = np.quantile(peaks, [0.16, 0.5, 0.84]) if len(peaks) else [math.nan] * 3
+        low, median, high = (
+            np.quantile(peaks, [0.16, 0.5, 0.84], method="inverted_cdf") if len(peaks) else [math.nan] * 3
+        )
         rows.append(
             {
                 "method": method,

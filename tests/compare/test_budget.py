@@ -71,14 +71,14 @@ def test_the_parts_add_up_sample_by_sample(engine, limit):
 
 def test_the_error_of_a_step_is_numerics_and_not_unexplained(engine, limit):
     found = budget(engine, limit)
-    assert found.rms("numerics") > 1e-7  # far above the 1e-10 of the reduced model: there is something to explain
+    assert found.rms("numerics") > 1e-7  # far above the 1e-10 of the reduced model
     assert found.columns()["unexplained_share"] < 0.01  # third order in the step is left
 
 
 def test_a_coarser_step_adds_to_numerics_alone(engine, limit):
-    coarse = run(CASE, 4.0 * STEP)
+    coarse = run(CASE, 2.0 * STEP)
     found, coarser = budget(engine, limit), budget(coarse, limit)
-    assert coarser.rms("numerics") > 2.0 * found.rms("numerics")  # at least first order: four times
+    assert coarser.rms("numerics") > 1.8 * found.rms("numerics")  # first order doubles, less 10 %
     assert coarser.rms("unexplained") == found.rms("unexplained")
 
 
