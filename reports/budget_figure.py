@@ -46,8 +46,7 @@ def budget_figure(comparison: Comparison) -> bytes:
                     shares[part],
                     left=left,
                     height=0.78,
-                    color=style.colour,
-                    alpha=1.0 if row["worth"] else 0.45,
+                    color=style.colour if row["worth"] else _pale(style.colour),
                     hatch=_HATCHES[part],
                     edgecolor="white",
                     label=name if place == 0 else None,
@@ -72,3 +71,10 @@ def budget_figure(comparison: Comparison) -> bytes:
         buffer = io.BytesIO()
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "rockwobble"})
     return buffer.getvalue()
+
+
+def _pale(colour: str) -> tuple[float, ...]:
+    """Mix a colour with white: transparency and hatches together are drawn differently everywhere."""
+    from matplotlib.colors import to_rgb
+
+    return tuple(0.45 * part + 0.55 for part in to_rgb(colour))
