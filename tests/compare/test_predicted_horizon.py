@@ -1,0 +1,83 @@
+"""What ends an agreement, and whether it ended when it had to."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rockwobble.compare.predicted_horizon import estimated_error, predict_horizon, verdict
+from rockwobble.models import Case, InitialState
+
+TIME = np.arange(1001) * 0.01
+
+
+@pytest.fixture
+def case(cylinder):
+    return Case("made up", cylinder, initial=InitialState(0.3 * cylinder.alpha), duration=10.0)
+
+
+@pytest.fixture
+def predict(case, cylinder, make_trace):
+    """Predict with twins whose distance grows by the factor e in each second, from their disturbance."""
+
+    def call(error, *, passes=(), rolls_off=None):
+        level = np.full_like(TIME, 0.3 * cylinder.alpha)
+        own = make_trace(TIME, level, passes=passes)
+
+        def simulate(disturbed: Case, model: str):
+            relative = disturbed.gravity / case.gravity - 1.0
+            return make_trace(TIME, level + relative * cylinder.alpha * np.exp(TIME))
+
+        reference = own
+        if rolls_off is not None:
+            reference = make_trace(TIME, level + np.where(rolls_off <= TIME, 0.02 * cylinder.alpha, 0.0))
+        return predict_horizon(
+            case,
+            reference=reference,
+            own=own,
+            own_model="recess",
+            contact_resolution=1e-5,
+            error=error,
+            simulate=simulate,
+        )
+
+    return call
+
+
+def test_a_twin_as_far_off_as_the_engine_grows_to_one_per_cent(predict):
+    # RMS of exp(t) in the first second: sqrt((e^2 - 1)/2) = 1.787; 1e-5/1.787 exp(t) = 0.01
+    found = predict(1e-5)
+    assert found.reason == "growth"
+    assert found.length == pytest.approx(np.log(1e3 * 1.787), abs=0.02)  # two samples
+
+
+def test_the_first_of_the_three_counts(predict):
+    assert predict(1e-5, passes=[(4.0, 1e-6), (2.0, 1e-4)]).reason == "pass"
+    assert predict(1e-5, passes=[(4.0, 1e-6)]).length == 4.0
+    found = predict(1e-5, passes=[(4.0, 1e-6)], rolls_off=3.0)
+    assert (found.reason, found.length) == ("model form", pytest.approx(3.0))
+
+
+def test_a_small_error_and_no_close_pass_end_nothing(predict):
+    found = predict(1e-9)
+    assert (found.reason, found.length) == ("", 10.0)
+
+
+@pytest.mark.parametrize(
+    ("measured", "parted", "predicted", "reason", "expected"),
+    [
+        (10.0, False, 10.0, "", "never, as foretold"),
+        (5.0, True, 4.0, "growth", "in time"),
+        (1.9, True, 4.0, "growth", "earlier"),
+        (8.1, True, 4.0, "pass", "later"),
+        (10.0, False, 4.0, "pass", "later"),
+        (10.0, False, 6.0, "pass", "in time"),
+        (4.9, True, 10.0, "", "earlier"),
+    ],
+)
+def test_verdict(measured, parted, predicted, reason, expected):
+    assert verdict(measured, parted, predicted, reason) == expected
+
+
+def test_the_estimated_error_is_of_first_order_in_the_step(case):
+    assert estimated_error(case, "mujoco", 4e-4) == pytest.approx(4.0 * estimated_error(case, "mujoco", 1e-4))
