@@ -7,7 +7,7 @@ only: the four more variables of the rolling model would take as many products o
 single runs that take a millisecond, and planar motion has no spin whose passes take most steps.
 
 What that brought was measured on ten seconds of El Centro (`rockwobble.compare.speed`) at an error of
-1e-7 alpha, where LSODA takes 800 to 870 times as long as a whole run (396 with a Runge-Kutta pair).
+1e-7 alpha, where LSODA takes some 800 times as long as a whole run (396 with a Runge-Kutta pair).
 Taylor series take 1108 steps instead of 1744, 0.25 ms instead of 0.52 ms: one for each of
 the 1000 samples and a hundred more in the passes, of a cost that the tolerance sets (order 5 to 16).
 Of that gain 0.04 ms is that nothing on the way of a step is called or counts references
