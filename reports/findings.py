@@ -60,7 +60,8 @@ def _reason(row: Any, length: float) -> str:
             "and each touch takes energy, which neither model knows; this is a difference of support, not of "
             "accuracy"
         )
-    if foretold < length and row.agreement_horizon >= foretold:
+    by_pass = getattr(row, "predicted_by", "pass") == "pass"
+    if by_pass and foretold < length and row.agreement_horizon >= foretold:
         return (
             f"at {seconds(foretold)} a pass comes closer to the apex than the contact resolves "
             f"({small(row.contact_resolution)} rad); what is left to chance there grows from then on"
