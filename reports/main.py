@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from .check_command import check
 from .compare_command import compare
 from .ensemble_command import ensemble
 from .paper_command import figures
@@ -35,6 +36,7 @@ app.command(epilog="Example: rockwobble show rockwobble-sweep")(show)
 app.command(epilog="Example: rockwobble report rockwobble-out")(report)
 app.command(epilog="Example: rockwobble view --scale 2 --support free")(view)
 app.command(epilog="Example: rockwobble ensemble --synthetic 3 --members 40 --engine mujoco")(ensemble)
+app.command(epilog="Example: rockwobble check --only equations --only conserved")(check)
 app.command(epilog="Example: rockwobble figures --out paper")(figures)
 
 # typer brings its own click in some versions and imports click in others: one base class, two homes

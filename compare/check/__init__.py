@@ -1,0 +1,21 @@
+"""Whether the reduced model is still the same model, and still agrees with the engines.
+
+Layers of checks, tightest first; every check has a measured value, a bound, the reason for the bound,
+and the part that is suspect where it fails. `rockwobble check` runs them.
+"""
+
+from .bench import Bench
+from .finding import FAILED, LAYERS, NO_BASELINE, NOT_RUN, PASSED, Finding
+from .layers import first_failure, run_checks
+
+__all__ = [
+    "FAILED",
+    "LAYERS",
+    "NOT_RUN",
+    "NO_BASELINE",
+    "PASSED",
+    "Bench",
+    "Finding",
+    "first_failure",
+    "run_checks",
+]

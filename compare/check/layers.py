@@ -1,0 +1,75 @@
+"""The layers of checks, tightest first, and running them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+from . import (
+    agreement,
+    conserved,
+    engine_baseline,
+    engine_equations,
+    equations,
+    exact,
+    invariance,
+    order,
+    reduced_baseline,
+    residual,
+)
+from .bench import Bench
+from .finding import FAILED, LAYERS, Finding, at_most
+
+Check = Callable[[Bench], Iterator[Finding]]
+
+
+def parts_of(layer: str, bench: Bench) -> tuple[Check, ...]:
+    """Return the checks of a layer; engine baselines exist for the suite that ships only."""
+    parts: dict[str, tuple[Check, ...]] = {
+        "equations": (equations.check, engine_equations.check),
+        "conserved": (conserved.check,),
+        "exact": (exact.check,),
+        "invariance": (invariance.check,),
+        "order": (order.check,),
+        "residual": (residual.check,),
+        "agreement": (agreement.check,),
+        "baseline": (reduced_baseline.check, *((engine_baseline.check,) if bench.shipped else ())),
+    }
+    return parts[layer]
+
+
+def run_checks(bench: Bench, layers: Sequence[str] = LAYERS) -> Iterator[Finding]:
+    """Yield the findings of the layers, in their order whatever that of `layers`, as they are made.
+
+    An exception in a check is a failure of that check: the checks after it still run.
+
+    Raises
+    ------
+    ValueError
+        If a layer is unknown.
+    """
+    for layer in layers:
+        if layer not in LAYERS:
+            raise ValueError(f"a layer must be one of {', '.join(LAYERS)}, got {layer!r}")
+    for layer in (name for name in LAYERS if name in layers):
+        for part in parts_of(layer, bench):
+            yield from _guarded(layer, part, bench)
+
+
+def first_failure(bench: Bench, layers: Sequence[str] = LAYERS) -> Finding | None:
+    """Return the first finding that failed, without running what comes after it."""
+    return next((finding for finding in run_checks(bench, layers) if finding.outcome == FAILED), None)
+
+
+def _guarded(layer: str, part: Check, bench: Bench) -> Iterator[Finding]:
+    try:
+        yield from part(bench)
+    except Exception as error:  # whatever a broken model or engine raises is a failure, said in its place
+        yield at_most(
+            layer,
+            f"{part.__module__.rsplit('.', 1)[-1].replace('_', ' ')} could not be checked",
+            float("nan"),
+            0.0,
+            reason="a check must reach its end",
+            part=f"whatever raised {type(error).__name__}",
+            note=" ".join(str(error).split()),
+        )

@@ -1,0 +1,128 @@
+"""Short motions that together show every term of the equations: many tilts, spins and accelerations.
+
+Each is a run of a few samples of a made-up record, far from the apex, whose accelerations change from
+sample to sample. Positions alone are taken from it: rates and accelerations follow by differences, so
+that nothing a model says of itself is believed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Cylinder, GroundMotion, InitialState
+
+from . import differences
+from .lagrange import Shape, shape_of
+
+Array = NDArray[np.float64]
+
+GRAVITY = 9.81
+# a slender pier, a drum as wide as high, and a squat body with mass and inertias of its own
+CYLINDERS = {
+    "R = 6 m, tan alpha = 0.2": Cylinder(semidiagonal=6.0, tan_alpha=0.2),
+    "R = 2.5 m, tan alpha = 1": Cylinder(semidiagonal=2.5, tan_alpha=1.0),
+    "own inertias, tan alpha = 0.5": Cylinder(
+        semidiagonal=4.0, tan_alpha=0.5, height=5.0, transverse_inertia=3.1, axial_inertia=2.3
+    ),
+}
+# in 1/p: the fastest of these motions changes in about 1/(3 p), and 0.06^12 is below rounding
+_SAMPLE = 0.02
+_PIECE = 16  # samples of the run in one of the record
+_PIECES = 3
+_RUNS = 14
+_SEED = 18  # of the states: any other serves
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Sampled:
+    """States of computed motions, n in all.
+
+    Parameters
+    ----------
+    shape : Shape
+    p : float
+        Frequency parameter of the cylinder [1/s], the scale of rates.
+    theta, phi : ndarray, shape (n,)
+        [rad]
+    theta_rate, phi_rate, theta_curve, phi_curve : ndarray, shape (n,)
+        First and second derivatives, by differences of the angles.
+    ground : ndarray, shape (n, 3)
+        Acceleration of the ground [m/s^2].
+    stated_rate : ndarray, shape (n,)
+        theta' as the response states it [rad/s].
+    stated_force : ndarray, shape (n, 3)
+        Contact force as the response states it, in weights.
+    centre_curve : ndarray, shape (n, 3)
+        Acceleration of the mass centre relative to O, by differences [m/s^2].
+    """
+
+    shape: Shape
+    p: float
+    theta: Array
+    phi: Array
+    theta_rate: Array
+    phi_rate: Array
+    theta_curve: Array
+    phi_curve: Array
+    ground: Array
+    stated_rate: Array
+    stated_force: Array
+    centre_curve: Array
+
+
+def sample(reduced: Any, cylinder: Cylinder) -> Sampled:
+    """Run the recess model from many states, and return what its motions were."""
+    shape = shape_of(cylinder, GRAVITY)
+    p = math.sqrt(GRAVITY * cylinder.semidiagonal / (shape.I1 + shape.h**2 + shape.b**2))
+    step = _SAMPLE / p
+    reach = differences.REACH
+    rows: dict[str, list[Array]] = {}
+    for initial, motion in _starts(p, step):
+        found = reduced.simulate(
+            cylinder,
+            motion,
+            initial=initial,
+            sample_step=step,
+            gravity=GRAVITY,
+            rtol=1e-13,
+            seating=0.0,
+        )
+        for piece in range((len(found.time) - 1) // _PIECE):
+            cut = slice(piece * _PIECE, (piece + 1) * _PIECE + 1)
+            theta, phi = found.tilt[cut], found.rolling_angle[cut]
+            share = np.arange(_PIECE + 1)[:, None] / _PIECE
+            before, after = motion.acceleration[piece], motion.acceleration[piece + 1]
+            states = {
+                "theta": theta[reach:-reach],
+                "phi": phi[reach:-reach],
+                "theta_rate": differences.first(theta, step),
+                "phi_rate": differences.first(phi, step),
+                "theta_curve": differences.second(theta, step),
+                "phi_curve": differences.second(phi, step),
+                "ground": ((1.0 - share) * before + share * after)[reach:-reach],
+                "stated_rate": found.tilt_rate[cut][reach:-reach],
+                "stated_force": found.contact_force[cut][reach:-reach],
+                "centre_curve": differences.second(found.centre_of_mass[cut], step),
+            }
+            for name, values in states.items():
+                rows.setdefault(name, []).append(values)
+    return Sampled(shape=shape, p=p, **{name: np.concatenate(parts) for name, parts in rows.items()})
+
+
+def _starts(p: float, step: float) -> Iterator[tuple[InitialState, GroundMotion]]:
+    random = np.random.default_rng(_SEED)
+    for _ in range(_RUNS):
+        initial = InitialState(
+            tilt=random.uniform(0.15, 1.1),
+            tilt_rate=random.uniform(-0.3, 0.3) * p,
+            rolling_angle=random.uniform(-math.pi, math.pi),
+            rolling_rate=random.choice([-1.0, 1.0]) * random.uniform(0.8, 2.5) * p,
+        )
+        acceleration = GRAVITY * random.uniform(-0.4, 0.4, (_PIECES + 1, 3))
+        yield initial, GroundMotion(acceleration, _PIECE * step)
