@@ -7,6 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
+from .advise_command import advise
 from .check_command import check
 from .compare_command import compare
 from .ensemble_command import ensemble
@@ -27,6 +28,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command(epilog="Example: rockwobble compare --semidiagonal 10 --tan-alpha 0.1 --engine mujoco")(compare)
+app.command(epilog="Example: rockwobble advise --record-x EW.AT2 --record-y NS.AT2 --friction 0.5")(advise)
 app.command(epilog="Example: rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8")(
     simulate
 )

@@ -1,0 +1,299 @@
+"""What an advice says, in sentences made from its numbers: one for each topic, with the run behind it."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rockwobble.compare.advice.demands import Demands
+from rockwobble.compare.advice.grades import Trust
+from rockwobble.compare.advice.planar import NEIGHBOURS, PlanarView
+from rockwobble.compare.horizon import AGREEMENT
+
+from .findings import seconds, small
+
+if TYPE_CHECKING:
+    from rockwobble.compare.advice import Verification
+
+# a factor that planar analysis is off by is told only where the planar tilt is worth the name [alpha]
+_WORTH_A_RATIO = 1e-3
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Statement:
+    """One thing that an advice says.
+
+    Parameters
+    ----------
+    topic : str
+    grade : {"good", "care", "bad", ""}
+        Empty for what is neither good nor bad.
+    text : str
+    run : str
+        The run behind it.
+    """
+
+    topic: str
+    grade: str
+    text: str
+    run: str
+
+
+def friction_words(demands: Demands, tan_alpha: float) -> str:
+    """Say what friction it takes, and whether there is as much."""
+    given = f"{demands.friction:g}"
+    if demands.slides:
+        return (
+            f"A friction of {given} is below b/h = {tan_alpha:g}: at rest the cylinder slides where it would "
+            "have uplifted, and nothing below happens."
+        )
+    usual = f"{demands.friction_usual:.3g}"
+    need = f"{demands.friction_needed:.3g} at most, and {usual} in 99 % of the time in motion"
+    if not math.isfinite(demands.friction_needed):
+        need = f"{usual} in 99 % of the time in motion, and more than any where contact is lost"
+        if not math.isfinite(demands.friction_usual):
+            need = "more than any friction for over 1 % of the time in motion, because contact is lost"
+    if demands.slip_time > 0.0:
+        return (
+            f"A friction of {given} does not suffice: it takes {need}. The cylinder would slip from "
+            f"{seconds(demands.slip_from)} on, for {_brief(demands.slip_time)} in all "
+            f"({_percent(demands.slip_time, demands.moving_time)} of the time in motion)."
+        )
+    return f"A friction of {given} suffices: it takes {need}."
+
+
+def couple_words(demands: Demands, support: str) -> str:
+    """Say what couple holds the cylinder in its place."""
+    if support == "free":
+        return "Open ground supplies no couple: nothing keeps the cylinder from rolling out of its place."
+    return (
+        f"To keep the cylinder from rolling out, the recess must supply a couple of up to "
+        f"{demands.couple:.3g} kN m for each tonne of its mass ({demands.couple_in_radii:.3g} weight × b), "
+        f"and {demands.couple_usual:.3g} kN m per tonne in 99 % of the time in motion."
+    )
+
+
+def contact_words(demands: Demands) -> str:
+    """Say whether and when contact would be lost."""
+    if demands.lost_time > 0.0:
+        return (
+            f"Contact would be lost from {seconds(demands.lost_from)} on, for "
+            f"{_brief(demands.lost_time)} in all "
+            f"({_percent(demands.lost_time, demands.moving_time)} of the time in motion): the ground would "
+            f"have to pull with {-demands.least_normal_force:.2g} weights."
+        )
+    return (
+        f"Contact is never lost: the normal force stays between {demands.least_normal_force:.3g} and "
+        f"{demands.largest_normal_force:.3g} weights."
+    )
+
+
+def horizon_words(length: float, reason: str, uplift: float, run_length: float) -> str:
+    """Say when reduced model and engine have to part.
+
+    Parameters
+    ----------
+    length, reason
+        As in `Prediction`.
+    uplift : float
+        [s]
+    run_length : float
+        [s]
+    """
+    within = f"within {100.0 * AGREEMENT:g} % of α"
+    if not reason:
+        return f"Reduced model and engine should agree {within} to the end ({seconds(run_length)})."
+    why = {
+        "pass": "a pass then comes closer to the apex than contact resolves",
+        "growth": "by then near passes have multiplied the error of an engine's step to that size",
+        "model form": "by then the two supports make a difference",
+    }[reason]
+    return (
+        f"Reduced model and engine should agree {within} for {seconds(length)} from uplift or release, until "
+        f"{seconds(uplift + length)}: {why}."
+    )
+
+
+def engine_words(found: Verification, peak: float) -> str:
+    """Say what the run of the engine showed; `peak` is that of the reduced model [alpha]."""
+    if found.outcome == "failed":
+        return f"{found.label} could not verify that: {found.message}."
+    if found.parted:
+        foretold = {
+            "in time": "as foretold",
+            "later": "longer than foretold, which stays on the safe side",
+            "earlier": "less than half as long as foretold: do not rely on either before you know why",
+        }[found.parting]
+        said = f"{found.label} agreed for {seconds(found.agreement)}, {foretold}."
+    else:
+        said = f"{found.label} agreed to the end."
+    if found.outcome == "overturned":
+        return f"{said} It overturns."
+    return f"{said} Its largest tilt is {found.peak_tilt:.3g} α against {peak:.3g} α."
+
+
+def trust_words(trust: Trust, peak_time: float, count: int, percent: float) -> str:
+    """Say whether to trust the trace or only statistics.
+
+    Parameters
+    ----------
+    trust : Trust
+    peak_time : float
+        [s]
+    count : int
+        Perturbed members.
+    percent : float
+        By how much they differ.
+    """
+    if trust.kind == "trace":
+        return (
+            "Trust the trace to its end: neither the method nor "
+            f"a {percent:g} % change of the data ({count} starts) makes it another one."
+        )
+    why = {
+        "methods": "reduced model and engine part there",
+        "data": f"{count} starts that differ by {percent:g} % are spread over half of the largest tilt there",
+    }[trust.because]
+    if trust.kind == "peak":
+        return (
+            f"Trust the trace until {seconds(trust.until)}, its largest tilt ({seconds(peak_time)}) "
+            f"included; {why}. Of what follows trust statistics."
+        )
+    return (
+        f"Trust the trace until {seconds(trust.until)} and only statistics from then on, the largest tilt at "
+        f"{seconds(peak_time)} among them: {why}."
+    )
+
+
+def planar_words(view: PlanarView, alpha: float) -> str:
+    """Say whether planar analysis of each component would be unconservative."""
+    fell = [peak >= 0.5 * math.pi for peak in (view.spatial, view.planar)]
+    components = f"{_tilt(view.planar_x, alpha)} (x) and {_tilt(view.planar_y, alpha)} (y)"
+    space = _tilt(view.spatial, alpha)
+    if view.kind == "unknown":
+        here = "At this scale nothing uplifts, in 3D or in a plane."
+    elif fell[0] and not fell[1]:
+        here = f"Planar analysis is unconservative: 3D overturns, the components alone tilt to {components}."
+    elif fell[0]:
+        here = "At this scale 3D overturns, and so does planar analysis of a component."
+    elif fell[1]:
+        here = f"Planar analysis is conservative at this scale: a component overturns, 3D tilts to {space}."
+    elif view.kind == "equal":
+        here = f"At this scale planar analysis gives the same: {components}, {space} in 3D."
+    else:
+        factor = f", {view.ratio:.2g} times as much" if view.ratio > 1.0 else ""
+        if not view.planar > _WORTH_A_RATIO * alpha:
+            factor = ""
+        here = f"Planar analysis is {view.kind} at this scale: {components}, {space} in 3D{factor}."
+    if not view.neighbours:
+        return here
+    more, alone = (f"{100.0 * share:.0f} %" for share in (view.larger, view.missed))
+    near = (
+        f"Of {view.neighbours} scales from 1/{NEIGHBOURS:g} to {NEIGHBOURS:g} times this one, 3D tilts more "
+        f"than both planes at {more}, and overturns alone at {alone}."
+    )
+    return f"{here} {near}"
+
+
+def overturning_words(
+    *, overturned: bool, fall: float, lowest: float, planar: float, chance: float, highest: float
+) -> str:
+    """Say whether the cylinder overturns, and how far it is from it.
+
+    Parameters
+    ----------
+    overturned : bool
+    fall : float
+        When its side reaches the ground [s].
+    lowest : float
+        Lowest factor on the ground motion that overturns; NaN if none does.
+    planar : float
+        The same by planar analysis.
+    chance : float
+        Share of the perturbed members that overturn.
+    highest : float
+        Largest factor that was run; NaN without a ground motion.
+    """
+    of_members = "" if math.isnan(chance) else f"; {100.0 * chance:.0f} % of the perturbed starts overturn"
+    if overturned:
+        said = f"It overturns: its side reaches the ground at {seconds(fall)}{of_members}."
+    else:
+        said = f"It does not overturn{of_members}."
+    if math.isnan(highest):
+        return said
+    if math.isnan(lowest):
+        return f"{said} No scale up to {highest:g} times this shaking overturns it."
+    if lowest < 1.0 and not overturned:
+        said += (
+            f" But it stands in a gap: {lowest:.3g} times this shaking, which is weaker, overturns it, so "
+            "that this run proves no margin."
+        )
+    elif overturned:
+        said += f" The lowest scale that overturns it is {lowest:.3g} times this shaking."
+    else:
+        said += f" The lowest scale that does is {lowest:.3g} times this shaking."
+    if math.isfinite(planar):
+        said += f" Planar analysis would say {planar:.3g} times."
+    return said
+
+
+def error_words(data: float, form: float, low: float, high: float, percent: float, *, single: bool) -> str:
+    """Say what error in the largest tilt to expect, and where it comes from.
+
+    Parameters
+    ----------
+    data : float
+        Relative error from data that are off by `percent`; NaN if unknown.
+    form : float
+        Relative difference that the other support makes; NaN if unknown.
+    low, high : float
+        5 % and 95 % quantiles of the largest tilt [alpha].
+    percent : float
+        [%]
+    single : bool
+        Whether `form` is that of the single runs, not of the medians.
+    """
+    if math.isnan(data):
+        return ""
+    of = "in this run" if single else "in the median of the starts"
+    main = (
+        "the data"
+        if data >= abs(form) or math.isnan(form)
+        else "the support: know whether it holds like a recess"
+    )
+    said = (
+        f"Data {percent:g} % off give {low:.3g} to {high:.3g} α (90 % of the starts), an error of up to "
+        f"{_relative(data)}."
+    )
+    if math.isfinite(form):
+        said += (
+            f" The other support (recess or open ground) would make {_signed(form)} {of}. The "
+            f"larger of the two is due to {main}."
+        )
+    return said
+
+
+def _tilt(tilt: float, alpha: float) -> str:
+    if math.isnan(tilt):
+        return "unsolved"
+    if tilt >= 0.5 * math.pi:
+        return "overturned"
+    ratio = tilt / alpha
+    return f"{small(ratio)} α" if 0.0 < ratio < _WORTH_A_RATIO else f"{ratio:.3g} α"
+
+
+def _brief(value: float) -> str:
+    return f"{value:.2g} s"
+
+
+def _percent(part: float, whole: float) -> str:
+    return f"{100.0 * part / whole:.2g} %" if whole > 0.0 else "all"
+
+
+def _relative(value: float) -> str:
+    return f"{100.0 * value:.2g} %"
+
+
+def _signed(value: float) -> str:
+    return f"{100.0 * value:+.2g} %"
