@@ -9,6 +9,7 @@ from typing import Any
 from rockwobble.models import Case, Run, Suite
 
 from ..execution import Crash, Job, ProgressCallback, simulate_all
+from ..fingerprint import fingerprint
 from ..runs import run_labels
 
 
@@ -34,6 +35,8 @@ class Bench:
         Number of processes for engines. Default: one for each core.
     progress : callable, optional
         Told of the start and the end of each engine run.
+    kept : dict, optional
+        Engine runs that were made; may be shared by benches.
     """
 
     reduced: Any
@@ -42,22 +45,28 @@ class Bench:
     adjust: Callable[[Run], Run] = _as_given
     workers: int | None = None
     progress: ProgressCallback | None = None
-    _kept: dict[tuple[int, int], Any] = field(default_factory=dict)
+    kept: dict[str, Any] = field(default_factory=dict)
 
     def rows(self) -> Iterator[tuple[Case, Run, str, Any]]:
         """Yield case, run, label and trajectory (or Crash) of every run of the suite."""
         labels = run_labels(self.suite.runs)
-        pairs = [(i, j) for i in range(len(self.suite.cases)) for j in range(len(self.suite.runs))]
-        missing = [pair for pair in pairs if pair not in self._kept]
-        jobs = [(self.suite.cases[i], self.adjust(self.suite.runs[j]), labels[j]) for i, j in missing]
-        self._kept.update(zip(missing, self.engine_runs(jobs), strict=True))
-        for i, j in pairs:
-            yield self.suite.cases[i], self.suite.runs[j], labels[j], self._kept[i, j]
+        wanted = [
+            (case, run, label)
+            for case in self.suite.cases
+            for run, label in zip(self.suite.runs, labels, strict=True)
+        ]
+        found = self.engine_runs([(case, self.adjust(run), label) for case, run, label in wanted])
+        for (case, run, label), trajectory in zip(wanted, found, strict=True):
+            yield case, run, label, trajectory
 
     def engine_runs(self, wanted: Sequence[tuple[Case, Run, str]]) -> list[Any]:
         """Return the trajectory, or the Crash, of each case and run, labelled for the progress."""
-        jobs = [Job(case=case, method=run, label=label) for case, run, label in wanted]
-        return simulate_all(jobs, workers=self.workers, progress=self.progress)
+        keys = [fingerprint([case, run]) for case, run, _ in wanted]
+        missing = {key: each for key, each in zip(keys, wanted, strict=True) if key not in self.kept}
+        jobs = [Job(case=case, method=run, label=label) for case, run, label in missing.values()]
+        found = simulate_all(jobs, workers=self.workers, progress=self.progress)
+        self.kept.update(zip(missing, found, strict=True))
+        return [self.kept[key] for key in keys]
 
     def response(self, case: Case, model: str, **options: Any) -> Any:
         """Return the response of a reduced model to a case, with the samples of an engine run."""

@@ -17,7 +17,7 @@ from . import lagrange
 from .bench import Bench
 from .finding import Finding, at_most
 from .lagrange import Shape
-from .short_motions import CYLINDERS, Sampled, sample
+from .short_motions import CYLINDERS, FailedMotionError, Sampled, sample
 
 Array = NDArray[np.float64]
 Terms = Mapping[str, tuple[Array, float]]
@@ -31,9 +31,27 @@ COEFFICIENT = 1e-7  # the same through the fit, whose condition number is up to 
 
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this layer, each the worst over all cylinders."""
-    motions = {name: sample(bench.reduced, cylinder) for name, cylinder in CYLINDERS.items()}
-    yield from _coefficients("(18)", {name: _terms_18(motion) for name, motion in motions.items()})
-    yield from _coefficients("(19)", {name: _terms_19(motion) for name, motion in motions.items()})
+    try:
+        motions = {name: sample(bench.reduced, cylinder) for name, cylinder in CYLINDERS.items()}
+    except FailedMotionError as error:
+        yield at_most(
+            LAYER,
+            "short motions reach their end",
+            math.nan,
+            0.0,
+            reason="a third of a swing, far from the apex",
+            part="equation of motion (18) or (19), or step control",
+            note=str(error),
+        )
+        return
+    coefficients = [
+        *_coefficients("(18)", {name: _terms_18(motion) for name, motion in motions.items()}),
+        *_coefficients("(19)", {name: _terms_19(motion) for name, motion in motions.items()}),
+    ]
+    if any(finding.failed for finding in coefficients):
+        # one that is wrong makes others look a little wrong: the worst comes first
+        coefficients.sort(key=lambda finding: -finding.value if math.isfinite(finding.value) else -math.inf)
+    yield from coefficients
     for angle, part in enumerate(("tilt", "rolling angle")):
         yield _worst(
             f"Lagrange's equation for the {part}",

@@ -1,0 +1,144 @@
+"""Copies of the reduced models with one fault in them, run by the interpreter.
+
+A copy is imported from the sources of `rockwobble.reduced` under a name of its own, with one piece of
+text replaced. Compiling it would take ten seconds; the interpreter takes milliseconds for the short
+runs in which a fault shows. Nothing is written.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib.abc import InspectLoader, MetaPathFinder
+from importlib.machinery import ModuleSpec
+from importlib.util import find_spec, spec_from_loader
+from itertools import count
+from pathlib import Path
+from types import CodeType
+from typing import Any
+
+_NUMBERS = count(1)
+_MOST_STEPS = 4000  # what the longest run of a check takes, twice
+
+# in place of reduced/_compile.py: nothing is compiled
+_INTERPRETED = """
+def jit(function):
+    return function
+
+inlined = kernel = jit
+
+def in_memory(entry):
+    return True
+
+def on_disk(entry):
+    return True
+"""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Fault:
+    """A replacement in the sources of the reduced models.
+
+    Parameters
+    ----------
+    file : str
+        Path in the package, such as "taylor.py".
+    before, after : str
+        The text, which must occur exactly once, and what takes its place; "" for the whole file.
+    """
+
+    file: str
+    before: str
+    after: str
+
+    def applied(self, text: str) -> str:
+        """Return the text of the file with the fault in it.
+
+        Raises
+        ------
+        ValueError
+            If the text does not occur exactly once: the sources have changed, and the fault must follow.
+        """
+        if not self.before:
+            return self.after
+        if (times := text.count(self.before)) != 1:
+            raise ValueError(f"{self.before!r} must occur once in reduced/{self.file}, got {times} times")
+        return text.replace(self.before, self.after)
+
+
+def source_folder() -> Path:
+    """Return the folder of the sources of the reduced models."""
+    found = find_spec("rockwobble.reduced")
+    assert found is not None
+    assert found.origin is not None
+    return Path(found.origin).parent
+
+
+@contextmanager
+def mutated(*faults: Fault) -> Iterator[Any]:
+    """Yield a copy of the package `rockwobble.reduced` with these faults; without any, the model itself.
+
+    Raises
+    ------
+    ValueError
+        If a fault does not fit the sources.
+    """
+    sources = _Sources(f"rockwobble_mutant_{next(_NUMBERS)}", source_folder(), faults)
+    sources.require_faults()
+    sys.meta_path.insert(0, sources)
+    try:
+        package = importlib.import_module(sources.name)
+        # a motion that a fault has made endless must end while somebody waits
+        problem: Any = sys.modules[f"{sources.name}.problem"]
+        problem._BUDGET, problem._BUDGET_PER_SAMPLE, problem._BUDGET_PER_TIME = _MOST_STEPS, 0, 0
+        yield package
+    finally:
+        sys.meta_path.remove(sources)
+        for name in [name for name in sys.modules if name.split(".")[0] == sources.name]:
+            del sys.modules[name]
+
+
+class _Sources(MetaPathFinder, InspectLoader):
+    """Finds and loads the modules of one copy."""
+
+    def __init__(self, name: str, folder: Path, faults: tuple[Fault, ...]) -> None:
+        self.name, self._folder, self._faults = name, folder, faults
+
+    def require_faults(self) -> None:
+        for file in dict.fromkeys(fault.file for fault in self._faults):
+            self._text(self._folder / file)
+
+    def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
+        if fullname.split(".")[0] != self.name:
+            return None
+        place = self._place(fullname)
+        if not place.is_file():
+            return None
+        return spec_from_loader(fullname, self, origin=str(place), is_package=place.name == "__init__.py")
+
+    def is_package(self, fullname: str) -> bool:
+        return self._place(fullname).name == "__init__.py"
+
+    def get_source(self, fullname: str) -> str:
+        place = self._place(fullname)
+        if place.name == "_compile.py":
+            return _INTERPRETED
+        return self._text(place)
+
+    def get_code(self, fullname: str) -> CodeType:
+        return compile(self.get_source(fullname), str(self._place(fullname)), "exec", dont_inherit=True)
+
+    def _text(self, place: Path) -> str:
+        text = place.read_text(encoding="utf-8")
+        for fault in self._faults:
+            if self._folder / fault.file == place:
+                text = fault.applied(text)
+        return text
+
+    def _place(self, fullname: str) -> Path:
+        inside = self._folder.joinpath(*fullname.split(".")[1:])
+        package = inside / "__init__.py"
+        return package if package.is_file() else inside.with_suffix(".py")

@@ -1,0 +1,118 @@
+"""Faults in every term of the equations of the recess model, found in the source itself.
+
+`reduced/taylor.py` builds (18) and (19) from sums with names of their own. Each term of each of these
+sums, at the start of a step and in its series, is one place for a fault: a factor of 1.01, or of -1. A
+rewritten kernel keeps its faults, as long as it keeps these names.
+"""
+
+from __future__ import annotations
+
+import ast
+import copy
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from .mutant import Fault, source_folder
+
+FILE = "taylor.py"
+# name of a sum, and the equations that a wrong term shows in; B of (19) is the one whose B' stands in (18)
+SUMS: Mapping[str, tuple[str, ...]] = {
+    "Q0": ("(18)",),  # B'/2A
+    "Q_k": ("(18)",),
+    "X0": ("(18)",),  # cos(alpha - theta), of a_r
+    "X_k": ("(18)",),
+    "Y0": ("(18)",),  # sin(alpha - theta), of g + az
+    "Y_k": ("(18)",),
+    "r0": ("(18)",),  # a_r
+    "r_k": ("(18)",),
+    "per_B": ("(18)", "(19)"),  # B of L = B phi'
+    "B_k": ("(18)", "(19)"),
+    "D0": ("(19)",),  # of a_t
+    "D_k": ("(19)",),
+    "t0": ("(19)",),  # a_t
+    "t_k": ("(19)",),
+}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TermFault:
+    """One wrong term.
+
+    Parameters
+    ----------
+    name : str
+        The sum, and the term as the source has it.
+    equations : tuple of str
+        "(18)", "(19)" or both.
+    fault : Fault
+    """
+
+    name: str
+    equations: tuple[str, ...]
+    fault: Fault
+
+
+def term_faults(factor: float) -> Iterator[TermFault]:
+    """Yield a fault for each term of each sum, which is multiplied by `factor`.
+
+    Raises
+    ------
+    ValueError
+        If the source lacks one of the sums.
+    """
+    tree = ast.parse((source_folder() / FILE).read_text(encoding="utf-8"))
+    missing = set(SUMS)
+    for index, statement in enumerate(_assignments(tree)):
+        for target, value in statement:
+            if target in SUMS:
+                missing.discard(target)
+                for place, term in enumerate(_terms(value)):
+                    text = _with_factor(tree, index, target, place, factor)
+                    name = f"{ast.unparse(term)} of {target}, times {factor:g}"
+                    yield TermFault(
+                        name=name, equations=SUMS[target], fault=Fault(file=FILE, before="", after=text)
+                    )
+    if missing:
+        raise ValueError(
+            f"reduced/{FILE} must have the sums {', '.join(SUMS)}, got none of {sorted(missing)}"
+        )
+
+
+def _assignments(tree: ast.Module) -> list[list[tuple[str, ast.expr]]]:
+    """Names and values of every assignment; those of tuples one by one."""
+    found = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign) and len(node.targets) == 1:
+            target, value = node.targets[0], node.value
+            if isinstance(target, ast.Name):
+                found.append([(target.id, value)])
+            elif isinstance(target, ast.Tuple) and isinstance(value, ast.Tuple):
+                pairs = zip(target.elts, value.elts, strict=True)
+                found.append([(each.id, part) for each, part in pairs if isinstance(each, ast.Name)])
+    return found
+
+
+def _terms(value: ast.expr) -> list[ast.expr]:
+    """Operands of all sums and differences in an expression, those that are sums themselves left out."""
+    found = []
+    for node in ast.walk(value):
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+            found += [operand for operand in (node.left, node.right) if not _is_sum(operand)]
+    return found
+
+
+def _is_sum(node: ast.expr) -> bool:
+    return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
+
+
+def _with_factor(tree: ast.Module, index: int, target: str, place: int, factor: float) -> str:
+    """Return the source with one term of one sum multiplied by a factor."""
+    changed = copy.deepcopy(tree)
+    value = dict(_assignments(changed)[index])[target]
+    wanted = _terms(value)[place]
+    for node in ast.walk(value):
+        if isinstance(node, ast.BinOp):
+            for side in ("left", "right"):
+                if getattr(node, side) is wanted:
+                    setattr(node, side, ast.BinOp(ast.Constant(factor), ast.Mult(), wanted))
+    return ast.unparse(ast.fix_missing_locations(changed))
