@@ -54,8 +54,12 @@ class RingRow:
     rolled_out, at_end : float
         Distance from O of the place on which the cylinder would stand if it came to rest upright, largest
         and last [b].
+    residual : float
+        Displacement of the base centre at the end [b].
     twist : float
         At the end [rad].
+    peak, recess_peak : float
+        Peak tilt of the run and of the recess model [alpha].
     against_recess, against_rolling : float
         RMS of the tilt difference over that of the model's tilt.
     """
@@ -70,22 +74,33 @@ class RingRow:
     loss: float
     rolled_out: float
     at_end: float
+    residual: float
     twist: float
+    peak: float
+    recess_peak: float
     against_recess: float
     against_rolling: float
 
 
-def ring_cases(turn: float = 0.0) -> tuple[Case, ...]:
-    """Return the cases of the table, turned by an azimuth [rad]: free response and El Centro."""
+def ring_cases(
+    turn: float = 0.0,
+    *,
+    intensities: Sequence[tuple[float, float]] = _INTENSITIES,
+    length: float = _LENGTH,
+) -> tuple[Case, ...]:
+    """Return the cases of the table, turned by an azimuth [rad]: free response and El Centro.
+
+    For each slenderness and intensity, with `length` that of the free response [s].
+    """
     cases = []
     record = el_centro_1940()
-    for tan_alpha, intensity in _INTENSITIES:
+    for tan_alpha, intensity in intensities:
         cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
         release = InitialState(tilt=0.5 * cylinder.alpha, rolling_angle=turn, rolling_rate=0.5)
         scaled = record.scaled(intensity * tan_alpha * 9.81 / record.peak).rotated(turn)
         name = f"tan alpha {tan_alpha:g}"
         cases += [
-            Case(f"free response, {name}", cylinder, None, release, _LENGTH, friction=_FRICTION),
+            Case(f"free response, {name}", cylinder, None, release, length, friction=_FRICTION),
             Case(f"El Centro, {name}", cylinder, scaled, None, _RECORD, friction=_FRICTION),
         ]
     return tuple(cases)
@@ -142,7 +157,10 @@ def _row(case: Case, run: Run, trial: Any, recess: Any, rolling: Any) -> RingRow
         loss=-float(trial.energy_error[-1]) / largest if largest > 0.0 else math.nan,
         rolled_out=float(out.max(initial=0.0)),
         at_end=float(out[-1]) if len(out) else 0.0,
+        residual=trial.residual_displacement / case.cylinder.base_radius,
         twist=trial.residual_twist,
+        peak=trial.peak_tilt / case.cylinder.alpha,
+        recess_peak=recess.peak_tilt / case.cylinder.alpha,
         against_recess=tilt_rms_relative(make_pair(case.cylinder, recess, trial)),
         against_rolling=tilt_rms_relative(make_pair(case.cylinder, rolling, trial)),
     )

@@ -1,0 +1,87 @@
+"""Free response: how far recess and rolling differ, and whether an engine tells them apart."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .limit import Limit, Tables, column, first_failing, largest, percent, quantile, short, up_to
+
+SMALL = 0.01  # of period or angle of turn: below what a test on a shake table would see
+# an engine confirms a model if it is nearer to it than this share of the difference of the models
+_TEETH = 0.5
+
+
+def model_form(tables: Tables) -> Limit:
+    """Draw the limit from the maps of free response and the engine at some of their points."""
+    table = tables["free_response"]
+    tan_alpha = column(table, "tan_alpha")
+    turn, rolling_turn = column(table, "turn"), column(table, "rolling_turn")
+    turns = np.abs(rolling_turn / turn - 1.0)
+    periods = np.abs(column(table, "rolling_period") / column(table, "period") - 1.0)
+    gained = column(table, "rolling_peak") - 1.0
+    holds = (turns <= SMALL) & (periods <= SMALL)
+    alike, apart = up_to(tan_alpha, holds), first_failing(tan_alpha, holds)
+    worst = int(np.nanargmax(np.abs(rolling_turn - turn)))
+    point = table.iloc[worst]
+    confirmed, points = _confirmed(tables)
+    numbers = {
+        "alike_up_to": alike,
+        "apart_from": apart,
+        "turn_median": quantile(turns, 0.5),
+        "turn_largest": largest(turns),
+        "turn_largest_deg": math.degrees(largest(np.abs(rolling_turn - turn))),
+        "period_largest": largest(periods),
+        "peak_gain": largest(gained),
+        "confirmed": confirmed,
+        "points": points,
+    }
+    return Limit(
+        subject="Free response: rolling out",
+        use=_use(numbers),
+        error=f"Period off by at most {percent(numbers['period_largest'])}, angle of turn by "
+        f"{percent(numbers['turn_median'])} (median) and at most {percent(numbers['turn_largest'])}; peak "
+        f"tilt by at most {percent(max(numbers['peak_gain'], 0.0))} in ten periods. The engine, which "
+        "stands in "
+        f"an ideal recess or on open ground, tells the two models apart and confirms the right one at "
+        f"{confirmed:.0f} of {points:.0f} points.",
+        avoid=(
+            f"For directions after many passes: a pass turns up to {short(numbers['turn_largest_deg'])}° "
+            f"differently (tan α {point['tan_alpha']:g}, released at {point['release']:g} α with "
+            f"{point['spin']:g} of the steady rate)"
+            + (
+                f"; from tan α = {apart:g} on a pass can be off by more than {percent(SMALL)}."
+                if math.isfinite(apart)
+                else "."
+            )
+        ),
+        numbers=numbers,
+    )
+
+
+def _use(numbers: dict[str, float]) -> str:
+    if numbers["confirmed"] < numbers["points"]:
+        return (
+            f"Not established: the engine contradicts the reduced models at "
+            f"{numbers['points'] - numbers['confirmed']:.0f} of {numbers['points']:.0f} points."
+        )
+    if math.isnan(numbers["alike_up_to"]):
+        return "For no slenderness mapped are period and angle of turn of a single pass within "
+        f"{percent(SMALL)}."
+    return (
+        f"Up to tan α = {numbers['alike_up_to']:g}: period and angle of turn of a pass are those of a "
+        f"cylinder on open ground to {percent(SMALL)}, at every release and spin mapped."
+    )
+
+
+def _confirmed(tables: Tables) -> tuple[float, float]:
+    """Runs that are near their own model and far from the other one, and all whose pass is resolved."""
+    table = tables["verification"]
+    keys = ["tan_alpha", "release", "spin"]
+    models = table.pivot_table("turn", keys, "model", dropna=False)
+    apart = (models["recess"] - models["rolling"]).abs()
+    resolved = table[table["resolved"].astype(bool)]
+    error = (resolved["engine_turn"] - resolved["turn"]).abs()
+    limits = apart.reindex(resolved.set_index(keys).index).to_numpy(dtype=np.float64)
+    return float((error.to_numpy(dtype=np.float64) < _TEETH * limits).sum()), float(len(resolved))

@@ -1,0 +1,31 @@
+"""All parts of the report, in the order in which it shows them."""
+
+from __future__ import annotations
+
+from . import (
+    contact,
+    following,
+    free_response,
+    real_recess,
+    shaking,
+    slip,
+    statistics,
+    verification,
+)
+from .part import Part
+
+PARTS: tuple[Part, ...] = (
+    free_response.PART,
+    verification.PART,
+    shaking.PART,
+    slip.PART,
+    real_recess.PART,
+    contact.PART,
+    following.PART,
+    statistics.PART,
+)
+
+
+def part_named(name: str) -> Part:
+    """Return a part by its name."""
+    return next(part for part in PARTS if part.name == name)

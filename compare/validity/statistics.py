@@ -1,0 +1,64 @@
+"""Distributions of peak tilt over many records: reduced models and engine, member by member."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from rockwobble import multibody, reduced
+
+from .extent import Extent
+from .motions import have_records, shaken_case
+from .part import Inputs, Part, Row
+from .verification import ENGINE, OWN_MODEL
+
+TAN_ALPHA, SIZE = 0.2, 6.0
+
+
+def _tasks(extent: Extent) -> Sequence[Inputs]:
+    kind = "record" if have_records() else "synthetic"
+    return [
+        {
+            "motion": f"{kind} {number}",
+            "level": level,
+            "tan_alpha": TAN_ALPHA,
+            "semidiagonal": SIZE,
+            "time_step": extent.member_step,
+        }
+        for level in extent.levels
+        for number in range(1, extent.members + 1)
+    ]
+
+
+def measure(inputs: Inputs) -> list[Row]:
+    """Return a row for each method: motion, level, method, peak over alpha, outcome."""
+    case = shaken_case(inputs["motion"], inputs["tan_alpha"], inputs["semidiagonal"], inputs["level"])
+    found: dict[str, reduced.Response | multibody.Trajectory] = {
+        model: reduced.simulate(case.cylinder, case.motion, duration=case.duration, model=model)
+        for model in OWN_MODEL.values()
+    }
+    for support in OWN_MODEL:
+        found[f"engine, {support}"] = multibody.simulate(
+            case.cylinder,
+            case.motion,
+            duration=case.duration,
+            engine=ENGINE,
+            support=support,
+            time_step=inputs["time_step"],
+            friction=case.friction,
+        )
+    point = {name: inputs[name] for name in ("motion", "level", "tan_alpha", "semidiagonal")}
+    return [
+        {**point, "method": method, "peak": run.peak_tilt / case.cylinder.alpha, "outcome": run.outcome}
+        for method, run in found.items()
+    ]
+
+
+PART = Part(
+    name="statistics",
+    title="distributions of peak tilt in the engine",
+    tasks=_tasks,
+    measure=measure,
+    cost=lambda inputs: 6.0,
+    module=__name__,
+    engine=ENGINE,
+)
