@@ -1,5 +1,6 @@
 """The problem, with no mechanics: bodies, ground motions, initial states, cases and runs."""
 
+from .bounds import Bounds
 from .case import Case, Run, Suite, run_duration
 from .cylinder import Cylinder
 from .el_centro import el_centro_1940
@@ -11,6 +12,7 @@ from .record_files import read_record
 from .suite_file import read_suite, shipped_suites
 
 __all__ = [
+    "Bounds",
     "Case",
     "Cylinder",
     "GroundMotion",

@@ -8,6 +8,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from ._validation import require_finite, require_positive
+from .bounds import Bounds
 from .cylinder import Cylinder
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
@@ -137,6 +138,8 @@ class Suite:
     ----------
     cases : iterable of Case
     runs : iterable of Run
+    bounds : Bounds, optional
+        What tests ask of every run.
 
     Raises
     ------
@@ -146,8 +149,10 @@ class Suite:
 
     cases: tuple[Case, ...]
     runs: tuple[Run, ...]
+    bounds: Bounds | None = None
 
-    def __init__(self, cases: Iterable[Case], runs: Iterable[Run]) -> None:
+    def __init__(self, cases: Iterable[Case], runs: Iterable[Run], bounds: Bounds | None = None) -> None:
+        object.__setattr__(self, "bounds", bounds)
         object.__setattr__(self, "cases", tuple(cases))
         object.__setattr__(self, "runs", tuple(runs))
         names = [case.name for case in self.cases]

@@ -7,13 +7,14 @@ import math
 from collections.abc import Iterator
 from pathlib import Path
 
+from .bounds import Bounds
 from .case import Case, Run, Suite
 from .cylinder import Cylinder
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
 from .suite_file_errors import located
 from .suite_file_motion import build_motion
-from .suite_file_tables import CaseTable, CylinderTable, ReleaseTable, RunTable, SuiteTable
+from .suite_file_tables import BoundsTable, CaseTable, CylinderTable, ReleaseTable, RunTable, SuiteTable
 
 # a slip in three ranges must not fill the memory
 _MOST_CASES = 10_000
@@ -42,7 +43,12 @@ def build_suite(table: SuiteTable, folder: Path) -> Suite:
         first[entry.name] = index
         cases += _cases(entry, f"cases[{index}]", folder)
     runs = [run for index, entry in enumerate(table.runs) for run in _runs(entry, f"runs[{index}]")]
-    return Suite(cases, runs)
+    return Suite(cases, runs, None if table.bounds is None else _bounds(table.bounds))
+
+
+def _bounds(table: BoundsTable) -> Bounds:
+    with located("bounds"):
+        return Bounds(**{name: value for name, value in table if value is not None})
 
 
 def _runs(table: RunTable, path: str) -> Iterator[Run]:

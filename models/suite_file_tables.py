@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
+from .bounds import REFERENCES
 from .pulses import PULSES
 from .record_units import UNITS
 from .suite_file_errors import KeyedError, shown
@@ -172,6 +173,13 @@ def _steps(given: Any) -> Any:
     return expanded(given, positive)
 
 
+def _one_positive(given: Any) -> float:
+    if isinstance(given, list | dict):
+        raise ValueError(f"must be one number, got {shown(given)}")  # noqa: TRY004 (bad input)
+    return expanded(given, positive)[0]
+
+
+Positive = Annotated[float, BeforeValidator(_one_positive)]
 Texts = Annotated[list[str], BeforeValidator(_texts), Field(min_length=1)]
 
 
@@ -184,11 +192,34 @@ class RunTable(_Table):
     settings: dict[str, Any] = Field(default_factory=dict)
 
 
+class BoundsTable(_Table):
+    """What tests ask of every run: bounds on columns of the summary."""
+
+    tilt_rms: Positive | None = None
+    tilt_rms_relative: Positive | None = None
+    peak_tilt_difference: Positive | None = None
+    contact_rms: Positive | None = None
+    turn_difference: Positive | None = None
+    uplift_time_difference: Positive | None = None
+    residual_displacement: Positive | None = None
+    residual_twist: Positive | None = None
+    energy_loss: Positive | None = None
+    agreement_horizon: Positive | None = None
+    reference: str | None = None
+
+    @model_validator(mode="after")
+    def _known_reference(self) -> BoundsTable:
+        if self.reference is not None:
+            _require_known("reference", self.reference, REFERENCES)
+        return self
+
+
 class SuiteTable(_Table):
     """The whole file."""
 
     cases: list[CaseTable] = Field(min_length=1)
     runs: list[RunTable] = Field(default_factory=list)
+    bounds: BoundsTable | None = None
 
 
 def _require_known(key: str, value: str | None, allowed: tuple[str, ...]) -> None:
@@ -205,5 +236,6 @@ TABLES: Mapping[str, type[BaseModel]] = MappingProxyType(
         "motion": MotionTable,
         "release": ReleaseTable,
         "runs": RunTable,
+        "bounds": BoundsTable,
     }
 )

@@ -1,0 +1,65 @@
+"""How far engine runs of a suite may be from the reduced models."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+
+from ._validation import require_positive
+
+REFERENCES = ("own", "recess", "rolling")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bounds:
+    """Bounds on columns of the summary of a comparison; None asks nothing.
+
+    Parameters
+    ----------
+    tilt_rms, peak_tilt_difference : float, optional
+        At most, in alpha.
+    tilt_rms_relative, energy_loss : float, optional
+        At most [-].
+    contact_rms, residual_displacement : float, optional
+        At most, in b.
+    turn_difference, residual_twist : float, optional
+        At most [deg].
+    uplift_time_difference : float, optional
+        At most [s].
+    agreement_horizon : float, optional
+        At least [s], unless the traces agree to the end of the run.
+    reference : {"own", "recess", "rolling"}
+        Reduced model that each run is held against; "own": that of its support.
+
+    Raises
+    ------
+    ValueError
+        If a bound is not positive, or the reference is unknown.
+
+    Examples
+    --------
+    >>> Bounds(tilt_rms=1e-3).given()
+    {'tilt_rms': 0.001}
+    """
+
+    tilt_rms: float | None = None
+    tilt_rms_relative: float | None = None
+    peak_tilt_difference: float | None = None
+    contact_rms: float | None = None
+    turn_difference: float | None = None
+    uplift_time_difference: float | None = None
+    residual_displacement: float | None = None
+    residual_twist: float | None = None
+    energy_loss: float | None = None
+    agreement_horizon: float | None = None
+    reference: str = "own"
+
+    def __post_init__(self) -> None:
+        for name, value in self.given().items():
+            object.__setattr__(self, name, require_positive(name, value, ""))
+        if self.reference not in REFERENCES:
+            raise ValueError(f"reference must be one of {', '.join(REFERENCES)}, got {self.reference!r}")
+
+    def given(self) -> dict[str, float]:
+        """Return the bounds that ask something, by column."""
+        names = (field.name for field in fields(self) if field.name != "reference")
+        return {name: value for name in names if (value := getattr(self, name)) is not None}
