@@ -15,7 +15,7 @@ from . import kernels
 from ._compile import in_memory, on_disk
 from .driver import COMPLETED, OVER_BUDGET, OVERTURNED, REST, March
 from .problem import SEATING, Problem, make_problem
-from .response import Response, six_columns
+from .response import Response
 
 _OUTCOMES = {REST: "rest", COMPLETED: "completed", OVERTURNED: "overturned"}
 
@@ -122,7 +122,10 @@ def sample_times(duration: float, sample_step: float) -> NDArray[np.float64]:
     """Return the multiples of `sample_step` before `duration`, and `duration` itself (n,) [s]."""
     # a multiple within rounding of the end is the end
     count = math.ceil(duration / sample_step * (1.0 - 1e-12))
-    return np.append(np.arange(count) * sample_step, duration)
+    times = np.arange(count + 1, dtype=float)
+    times *= sample_step
+    times[-1] = duration
+    return times
 
 
 def _response(
@@ -139,19 +142,22 @@ def _response(
         times = np.append(times, march.end)
         states = np.vstack([states, march.final])
         moving = np.append(moving, True)
-    full = six_columns(states, azimuth)
     overturned = march.status == OVERTURNED
     if overturned:
-        full[-1, 0] = 0.5 * math.pi  # the last of a Newton iteration
+        states[-1, 0] = 0.5 * math.pi  # the last of a Newton iteration
+    none = np.zeros(len(states))
+    # planar motion has neither spin nor twist, and only the rolling model has the latter
+    momentum = states[:, 3] if states.shape[1] > 3 else none
+    twist, twist_momentum = (states[:, 4], states[:, 5]) if states.shape[1] > 4 else (none, none)
     outcome = _OUTCOMES.get(march.status, "failed")
-    extrema = march.extrema.copy()
+    extrema = march.extrema
     extrema[:, 2] += azimuth
     return Response(
         time=times,
-        tilt=full[:, 0],
-        tilt_rate=full[:, 1],
-        rolling_angle=np.where(moving, full[:, 2], math.nan),
-        twist=full[:, 4],
+        tilt=states[:, 0],
+        tilt_rate=states[:, 1],
+        rolling_angle=np.where(moving, states[:, 2] + azimuth, math.nan),
+        twist=twist,
         peak_tilt=math.nan if outcome == "failed" else 0.5 * math.pi if overturned else march.peak,
         outcome=outcome,
         message=_message(problem, march),
@@ -161,8 +167,8 @@ def _response(
         wall_time=wall_time,
         step_count=march.step_count,
         problem=problem,
-        momentum=full[:, 3],
-        twist_momentum=full[:, 5],
+        momentum=momentum,
+        twist_momentum=twist_momentum,
         roll_out=states[:, 6:8] if states.shape[1] == 8 else np.zeros((len(states), 2)),
         extrema=extrema,
     )

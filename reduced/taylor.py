@@ -24,7 +24,7 @@ means of high-order Taylor methods", Experimental Mathematics 14 (2005) 99-117.
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -36,7 +36,7 @@ from .trigonometry import sin_cos
 from .tsit5 import State, Vector
 
 _ORDER = 16  # the highest; from 12 to 16 the cost is the same at 1e-8, and a high one serves 1e-12
-_LEAST_ORDER = 3  # below it two terms in a row may be small by accident
+_LEAST_ORDER = 4  # below it two terms in a row may be small by accident
 # A step aims at a remainder of this share of the tolerance, as a geometric series with the ratio of
 # the last two terms has it: in a close pass the remainders of a hundred steps have one sign.
 _AIM = 0.1
@@ -71,6 +71,43 @@ def restarted(body: Body, y: State, a: Vector, work: NDArray[np.float64]) -> Sta
     return y
 
 
+class Origin(NamedTuple):
+    """What every order of a series needs from its start: coefficients of order 0, ground and scales."""
+
+    s: float
+    v: float
+    cos: float
+    sin: float
+    rate: float
+    w: float
+    ww: float
+    Q: float
+    X: float
+    D: float
+    radial: float
+    across: float
+    per_B: float  # 1/B, 0 for planar motion
+    per_A: float  # 1/A
+    factor: float  # p^2/g
+    ground: Vector  # ax, ay, g + az [m/s^2]
+    change: Vector  # of these in the unit of time
+    per_allowed: State  # inverse of the error allowed of tilt, rate, rolling angle, momentum
+
+
+class Sums(NamedTuple):
+    """A series summed up to some order at the unit of time, and the last term of Y."""
+
+    tilt: float
+    rate: float
+    angle: float
+    momentum: float
+    s: float
+    v: float
+    cos: float
+    sin: float
+    Y: float  # last coefficient of sin(alpha - theta)
+
+
 @inlined
 def expand(
     body: Body, rtol: float, y: State, h: float, a: Vector, slope: Vector, c: NDArray[np.float64]
@@ -97,7 +134,7 @@ def expand(
     sv, vv = s0 * v0, v0 * v0
     Q0 = (J * s0 + (C - J) * sv + (3.0 * v0 - 2.0 * vv) * E) * per_A
     X0 = body.cos_alpha * (1.0 - v0) + body.sin_alpha * s0
-    Y = body.sin_alpha * (1.0 - v0) - body.cos_alpha * s0
+    Y0 = body.sin_alpha * (1.0 - v0) - body.cos_alpha * s0
     D0 = body.h * s0 + body.b * v0
     r0, t0 = ax * cos0 + ay * sin0, ay * cos0 - ax * sin0
     # without spin, now and later, the motion is planar and may reach theta = 0, where L/B is 0/0
@@ -105,85 +142,126 @@ def expand(
     per_B = 0.0 if flat else 1.0 / (J * s0 * s0 + 2.0 * E * sv + C * vv)
     w0 = L * per_B
     ww0 = w0 * w0
-    c[_S], c[_V], c[_COS], c[_SIN] = s0, v0, cos0, sin0
-    c[_TILT], c[_RATE], c[_ANGLE], c[_MOMENTUM], c[_W] = theta, omega, phi, L, w0
 
     per_lever = 0.0 if flat else 1.0 / (J * theta)
     per_tilt, per_rate = scales(body, rtol, theta, omega, abs(L) * per_lever, flat)
-    per_angle, per_momentum = 1.0 / rtol, per_lever * per_rate
+    per_allowed = (per_tilt, per_rate, 1.0 / rtol, per_lever * per_rate)
+    ground, change = (ax, ay, gravity), (dax, day, daz)
+    zero = Origin(
+        s0,
+        v0,
+        cos0,
+        sin0,
+        omega,
+        w0,
+        ww0,
+        Q0,
+        X0,
+        D0,
+        r0,
+        t0,
+        per_B,
+        per_A,
+        factor,
+        ground,
+        change,
+        per_allowed,
+    )
 
     tilt_1, angle_1 = h * omega, h * w0
-    rate_1 = h * (Q0 * ww0 - factor * (gravity * Y + X0 * r0))
+    rate_1 = h * (Q0 * ww0 - factor * (gravity * Y0 + X0 * r0))
     momentum_1 = -h * D0 * t0
     s_1, v_1 = tilt_1 * (1.0 - v0), tilt_1 * s0
     cos_1, sin_1 = -angle_1 * sin0, angle_1 * cos0
+    c[_S], c[_V], c[_COS], c[_SIN] = s0, v0, cos0, sin0
+    c[_TILT], c[_RATE], c[_ANGLE], c[_MOMENTUM], c[_W] = theta, omega, phi, L, w0
     c[_TILT + 1], c[_RATE + 1], c[_ANGLE + 1], c[_MOMENTUM + 1] = tilt_1, rate_1, angle_1, momentum_1
     c[_S + 1], c[_V + 1], c[_COS + 1], c[_SIN + 1] = s_1, v_1, cos_1, sin_1
-    # the sums are the state at the time h
     tilt, rate, angle, momentum = theta + tilt_1, omega + rate_1, phi + angle_1, L + momentum_1
-    s, v, cos, sin = s0 + s_1, v0 + v_1, cos0 + cos_1, sin0 + sin_1
+    sums = Sums(tilt, rate, angle, momentum, s0 + s_1, v0 + v_1, cos0 + cos_1, sin0 + sin_1, Y0)
 
-    order, last, before = 1, np.inf, np.inf
-    for k in range(1, _ORDER):
-        # the parts of the products of order k from orders below k: one loop, sums side by side
-        sv = vv = v_rate = s_rate = cos_w = sin_w = B_w = ww = Q_ww = X_r = D_t = 0.0
-        for j in range(1, k):
-            i = k - j
-            sv += c[_S + j] * c[_V + i]
-            vv += c[_V + j] * c[_V + i]
-            v_rate += c[_V + j] * c[_RATE + i]
-            s_rate += c[_S + j] * c[_RATE + i]
-            cos_w += c[_COS + j] * c[_W + i]
-            sin_w += c[_SIN + j] * c[_W + i]
-            B_w += c[_B + j] * c[_W + i]
-            ww += c[_W + j] * c[_W + i]
-            Q_ww += c[_Q + j] * c[_WW + i]
-            X_r += c[_X + j] * c[_RADIAL + i]
-            D_t += c[_D + j] * c[_ACROSS + i]
-        s_k, v_k, rate_k, cos_k, sin_k = c[_S + k], c[_V + k], c[_RATE + k], c[_COS + k], c[_SIN + k]
-        sv += s0 * v_k + v0 * s_k
-        vv += 2.0 * v0 * v_k
-        B_k = 2.0 * J * v_k + (C - J) * vv + 2.0 * E * sv
-        Q_k = (J * s_k + (C - J) * sv + (3.0 * v_k - 2.0 * vv) * E) * per_A
-        w_k = (c[_MOMENTUM + k] - B_w - B_k * w0) * per_B
-        ww += 2.0 * w0 * w_k
-        X_k = body.sin_alpha * s_k - body.cos_alpha * v_k
-        Y_before, Y = Y, -body.sin_alpha * v_k - body.cos_alpha * s_k
-        D_k = body.h * s_k + body.b * v_k
-        cos_before, sin_before = c[_COS + k - 1], c[_SIN + k - 1]
-        r_k = ax * cos_k + ay * sin_k + dax * cos_before + day * sin_before
-        t_k = ay * cos_k - ax * sin_k + day * cos_before - dax * sin_before
-        c[_B + k], c[_Q + k], c[_W + k], c[_WW + k] = B_k, Q_k, w_k, ww
-        c[_X + k], c[_D + k], c[_RADIAL + k], c[_ACROSS + k] = X_k, D_k, r_k, t_k
+    # the orders that every step takes, one by one: as constants they compile to straight code
+    sums, _ = extend(body, zero, sums, h, 2, c)
+    sums, before = extend(body, zero, sums, h, 3, c)
+    sums, last = extend(body, zero, sums, h, 4, c)
+    order = _LEAST_ORDER
+    while order < _ORDER and not fits(last, before):
+        order, before = order + 1, last
+        sums, last = extend(body, zero, sums, h, order, c)
+    c[_TRIG], c[_TRIG + 1], c[_TRIG + 2], c[_TRIG + 3] = sums.s, sums.v, sums.cos, sums.sin
+    return order, last, before, (sums.tilt, sums.rate, sums.angle, sums.momentum)
 
-        order = k + 1
-        step = h / order
-        centrifugal = Q_ww + Q0 * ww + Q_k * ww0
-        weight = gravity * Y + daz * Y_before
-        tilt_k = step * rate_k
-        rate_k1 = step * (centrifugal - factor * (weight + X_r + X0 * r_k + X_k * r0))
-        angle_k = step * w_k
-        momentum_k = -step * (D_t + D0 * t_k + D_k * t0)
-        s_k1 = step * (rate_k - v_rate - v0 * rate_k - v_k * omega)
-        v_k1 = step * (s_rate + s0 * rate_k + s_k * omega)
-        cos_k1 = -step * (sin_w + w0 * sin_k + w_k * sin0)
-        sin_k1 = step * (cos_w + w0 * cos_k + w_k * cos0)
-        c[_TILT + order], c[_RATE + order], c[_ANGLE + order] = tilt_k, rate_k1, angle_k
-        c[_MOMENTUM + order] = momentum_k
-        c[_S + order], c[_V + order], c[_COS + order], c[_SIN + order] = s_k1, v_k1, cos_k1, sin_k1
-        tilt, rate, angle, momentum = tilt + tilt_k, rate + rate_k1, angle + angle_k, momentum + momentum_k
-        s, v, cos, sin = s + s_k1, v + v_k1, cos + cos_k1, sin + sin_k1
-        if order < _LEAST_ORDER:
-            continue
-        before = last
-        # sums, because a maximum would be branches
-        last = (abs(tilt_k) * per_tilt + abs(rate_k1) * per_rate) + (
-            abs(angle_k) * per_angle + abs(momentum_k) * per_momentum
-        )
-        if fits(last, before):
-            break
-    c[_TRIG], c[_TRIG + 1], c[_TRIG + 2], c[_TRIG + 3] = s, v, cos, sin
-    return order, last, before, (tilt, rate, angle, momentum)
+
+@inlined
+def extend(
+    body: Body, zero: Origin, sums: Sums, h: float, order: int, c: NDArray[np.float64]
+) -> tuple[Sums, float]:
+    """Add the term of `order` to the series in `c`; return the sums and its size in tolerances."""
+    J, C, E = body.J, body.C, body.E
+    ax, ay, gravity = zero.ground
+    dax, day, daz = zero.change
+    k = order - 1
+    # the parts of the products of order k from orders below k: one loop, sums side by side
+    sv = vv = v_rate = s_rate = cos_w = sin_w = B_w = ww = Q_ww = X_r = D_t = 0.0
+    for j in range(1, k):
+        i = k - j
+        sv += c[_S + j] * c[_V + i]
+        vv += c[_V + j] * c[_V + i]
+        v_rate += c[_V + j] * c[_RATE + i]
+        s_rate += c[_S + j] * c[_RATE + i]
+        cos_w += c[_COS + j] * c[_W + i]
+        sin_w += c[_SIN + j] * c[_W + i]
+        B_w += c[_B + j] * c[_W + i]
+        ww += c[_W + j] * c[_W + i]
+        Q_ww += c[_Q + j] * c[_WW + i]
+        X_r += c[_X + j] * c[_RADIAL + i]
+        D_t += c[_D + j] * c[_ACROSS + i]
+    s_k, v_k, rate_k, cos_k, sin_k = c[_S + k], c[_V + k], c[_RATE + k], c[_COS + k], c[_SIN + k]
+    sv += zero.s * v_k + zero.v * s_k
+    vv += 2.0 * zero.v * v_k
+    B_k = 2.0 * J * v_k + (C - J) * vv + 2.0 * E * sv
+    Q_k = (J * s_k + (C - J) * sv + (3.0 * v_k - 2.0 * vv) * E) * zero.per_A
+    w_k = (c[_MOMENTUM + k] - B_w - B_k * zero.w) * zero.per_B
+    ww += 2.0 * zero.w * w_k
+    X_k = body.sin_alpha * s_k - body.cos_alpha * v_k
+    Y_k = -body.sin_alpha * v_k - body.cos_alpha * s_k
+    D_k = body.h * s_k + body.b * v_k
+    cos_before, sin_before = c[_COS + k - 1], c[_SIN + k - 1]
+    r_k = ax * cos_k + ay * sin_k + dax * cos_before + day * sin_before
+    t_k = ay * cos_k - ax * sin_k + day * cos_before - dax * sin_before
+    c[_B + k], c[_Q + k], c[_W + k], c[_WW + k] = B_k, Q_k, w_k, ww
+    c[_X + k], c[_D + k], c[_RADIAL + k], c[_ACROSS + k] = X_k, D_k, r_k, t_k
+
+    step = h / order
+    centrifugal = Q_ww + zero.Q * ww + Q_k * zero.ww
+    weight = gravity * Y_k + daz * sums.Y
+    tilt = step * rate_k
+    rate = step * (centrifugal - zero.factor * (weight + X_r + zero.X * r_k + X_k * zero.radial))
+    angle = step * w_k
+    momentum = -step * (D_t + zero.D * t_k + D_k * zero.across)
+    s = step * (rate_k - v_rate - zero.v * rate_k - v_k * zero.rate)
+    v = step * (s_rate + zero.s * rate_k + s_k * zero.rate)
+    cos = -step * (sin_w + zero.w * sin_k + w_k * zero.sin)
+    sin = step * (cos_w + zero.w * cos_k + w_k * zero.cos)
+    c[_TILT + order], c[_RATE + order], c[_ANGLE + order] = tilt, rate, angle
+    c[_MOMENTUM + order] = momentum
+    c[_S + order], c[_V + order], c[_COS + order], c[_SIN + order] = s, v, cos, sin
+    per_tilt, per_rate, per_angle, per_momentum = zero.per_allowed
+    # a sum, because a maximum would be branches
+    size = (abs(tilt) * per_tilt + abs(rate) * per_rate) + (
+        abs(angle) * per_angle + abs(momentum) * per_momentum
+    )
+    return Sums(
+        sums.tilt + tilt,
+        sums.rate + rate,
+        sums.angle + angle,
+        sums.momentum + momentum,
+        sums.s + s,
+        sums.v + v,
+        sums.cos + cos,
+        sums.sin + sin,
+        Y_k,
+    ), size
 
 
 @inlined

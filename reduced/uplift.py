@@ -9,7 +9,7 @@ sign change tells all.
 
 from __future__ import annotations
 
-from math import atan2, hypot, pi
+from math import atan2, hypot, pi, sqrt
 
 import numpy as np
 
@@ -31,7 +31,7 @@ WEAK = 1e-12
 @jit
 def excess(body: Body, a: Vector) -> float:
     """Return f = |a| - (g + az) tan(alpha) [m/s^2]; the cylinder cannot stand where it is positive."""
-    return hypot(a[0], a[1]) - (body.g + a[2]) * body.sin_alpha / body.cos_alpha
+    return sqrt(a[0] * a[0] + a[1] * a[1]) - (body.g + a[2]) * body.sin_alpha / body.cos_alpha
 
 
 @jit
