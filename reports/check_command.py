@@ -133,7 +133,9 @@ def _bench(suite: str, workers: int | None, make: type[Bench]) -> Bench:
     for case in read.cases:
         for run in runs:
             require_runnable(case, run)
-    return make(reduced=reduced, suite=Cases(read.cases, runs), shipped=suite == "quick", workers=workers)
+    return make(
+        reduced=reduced, suite=Cases(read.cases, runs, read.bounds), shipped=suite == "quick", workers=workers
+    )
 
 
 def _run(bench: Bench, only: list[str] | None) -> tuple[list[Finding], float]:

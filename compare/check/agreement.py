@@ -14,11 +14,11 @@ from typing import Any
 from rockwobble.models import Case, Run
 
 from ..horizon import agreement_horizon
-from ..predicted_horizon import estimated_error, predict_horizon, time_scale, verdict
+from ..predicted_horizon import Prediction, estimated_error, predict_horizon, time_scale, verdict
 from ..runs import own_model
 from ..tilt import tilt_rms
 from ..traces import make_pair
-from . import engine_settings
+from . import engine_settings, stated_bounds
 from .bench import Bench, crashed
 from .finding import Finding, at_most, not_run
 
@@ -38,60 +38,84 @@ def check(bench: Bench) -> Iterator[Finding]:
         yield from engine_settings.check(bench)
     responses: dict[tuple[str, str], Any] = {}
     for case, run, label, trajectory in bench.rows():
-        model = "rolling" if run.support == "ring" else own_model(run.support)
+        model = model_of(bench, run)
         key = case.name, model
         if key not in responses:
             responses[key] = bench.response(case, model)
-        yield from row(bench, case, run, label, trajectory, model, responses[key])
+        yield from check_run(bench, case, run, label, trajectory, responses[key])
 
 
-def row(
-    bench: Bench, case: Case, run: Run, label: str, trajectory: Any, model: str, response: Any
+def model_of(bench: Bench, run: Run) -> str:
+    """Return the reduced model that a run is held against."""
+    if bench.suite.bounds is not None:
+        return stated_bounds.reference_of(bench.suite.bounds, run)
+    # before the first touch of a wall
+    return "rolling" if run.support == "ring" else own_model(run.support)
+
+
+def check_run(
+    bench: Bench, case: Case, run: Run, label: str, trajectory: Any, response: Any
 ) -> Iterator[Finding]:
-    """Yield the findings on one engine run."""
+    """Yield the findings on one engine run; `response` is that of `model_of`."""
+    model = model_of(bench, run)
     name = f"{case.name}, {label} against {model}"
-    part = f"{run.engine} ({run.support}), its contact and step, or the {model} model"
     if crashed(trajectory):
         yield at_most(
             LAYER,
             name,
             math.nan,
-            tilt_bound(case, run, None),
+            tilt_bound(case, None),
             unit="alpha",
             reason="the run must reach its end",
             part=f"contact of {run.engine} ({run.support}): the run failed",
             note=trajectory.message,
         )
         return
-    until = None
-    if run.support == "ring":
-        yield from _ring(case, label, trajectory)
-        if math.isfinite(trajectory.first_wall_contact):
-            until = trajectory.first_wall_contact
-    pair = make_pair(case.cylinder, response, trajectory, until=until)
-    horizon = agreement_horizon(pair)
-    error = estimated_error(case, run.engine, trajectory.time_step)
     prediction = predict_horizon(
         case,
         reference=response,
         own=response,
         own_model=model,
         contact_resolution=trajectory.contact_resolution,
-        error=error,
-        simulate=lambda twin, of: bench.response(twin, of),
+        error=estimated_error(case, run.engine, trajectory.time_step),
+        simulate=bench.response,
     )
-    foretold = prediction.reason != ""
-    end = min(pair.end, pair.start + 0.5 * prediction.length) if foretold else pair.end
-    if end <= pair.start or not math.isfinite(response.uplift_time):
-        yield not_run(LAYER, name, part=part, note="nothing moves before the traces have to part")
+    if bench.suite.bounds is not None:
+        yield from stated_bounds.check(bench.suite.bounds, case, run, label, trajectory, response, prediction)
         return
-    window = make_pair(case.cylinder, response, trajectory, until=end)
+    until = None
+    if run.support == "ring":
+        yield from _ring(case, label, trajectory)
+        if math.isfinite(trajectory.first_wall_contact):
+            until = trajectory.first_wall_contact
+    yield _by_rule(case, run, name, response, trajectory, prediction, until)
+
+
+def _by_rule(
+    case: Case,
+    run: Run,
+    name: str,
+    response: Any,
+    trajectory: Any,
+    prediction: Prediction,
+    until: float | None,
+) -> Finding:
+    """Return the finding where the suite states no bounds."""
+    pair = make_pair(case.cylinder, response, trajectory, until=until)
+    horizon = agreement_horizon(pair)
+    # what near passes have magnified says nothing: half of the way to where the traces have to part
+    end = min(pair.end, pair.start + 0.5 * prediction.length) if prediction.reason else pair.end
+    part = f"{run.engine} ({run.support}), its contact and step, or the reduced model"
+    lifted = [math.isfinite(trace.uplift_time) for trace in (response, trajectory)]
+    if not any(lifted) or end <= pair.start:
+        why = "neither uplifts" if not any(lifted) else "traces have to part at once"
+        return not_run(LAYER, name, part=part, note=f"{why}: there is nothing to compare")
     words = verdict(horizon.length, horizon.parted, prediction.length, prediction.reason)
-    yield at_most(
+    return at_most(
         LAYER,
         name,
-        tilt_rms(window),
-        tilt_bound(case, run, trajectory.time_step),
+        tilt_rms(make_pair(case.cylinder, response, trajectory, until=end)),
+        tilt_bound(case, trajectory.time_step),
         unit="alpha",
         reason="error of contact at this step, first order in it",
         part=part,
@@ -99,7 +123,7 @@ def row(
     )
 
 
-def tilt_bound(case: Case, run: Run, time_step: float | None) -> float:
+def tilt_bound(case: Case, time_step: float | None) -> float:
     """Return the largest RMS difference of tilts that the step and its contact explain [alpha]."""
     step = 1.0 if time_step is None else max(1.0, time_step / (1e-4 * time_scale(case)))
     if case.initial is not None and case.initial.tilt > 0.0 and case.motion is None:

@@ -59,7 +59,7 @@ def _finding(kept: Baseline, case: Case, run: Run, label: str, trajectory: Any) 
     group = version_of(trajectory)
     known = _known(kept, trajectory.engine, group)
     name = f"{case.name}, {label}"
-    bound = RING if run.support == "ring" else SHARE * tilt_bound(case, run, trajectory.time_step)
+    bound = RING if run.support == "ring" else SHARE * tilt_bound(case, trajectory.time_step)
     if known != group:
         bound *= LOOSE
     before: Values = kept.values.get(known, {})

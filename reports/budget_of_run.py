@@ -1,0 +1,48 @@
+"""What the difference of one engine run is made of, in lines for a terminal."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from .findings import small
+
+if TYPE_CHECKING:
+    from rockwobble.models import Case, Run
+
+_PARTS = {
+    "model_form": ("model form", "the model of the support minus the one asked about"),
+    "numerics": ("numerics", "the engine minus the engine at a time step of zero"),
+    "unexplained": ("unexplained", "the engine at a time step of zero minus the model of its support"),
+}
+_ADVICE = {
+    "model_form": "Most of it is model form: the support moves by another model, which no step changes.",
+    "numerics": "Most of it is numerics: a smaller time step removes it.",
+    "unexplained": "Most of it is unexplained: contact, settings or support of the engine, or the model.",
+}
+
+
+def budget_of_run(case: Case, run: Run, model: str) -> list[str]:
+    """Return the lines; they rest on runs at finer time steps, made here."""
+    from rockwobble.compare import compare
+
+    comparison = compare(case, runs=[run], budget=True)
+    found = [budget for key, budget in comparison.budgets.items() if key[2] == model]
+    if not found:
+        return ["There is no budget of the difference: the traces part at once, or there is no finer step."]
+    budget = found[0]
+    rms = {part: budget.rms(part) for part in _PARTS}
+    lines = [
+        f"What the difference is made of (RMS in alpha until {budget.covered:.3g} s, 80 % of the agreement):",
+        f"  {'whole':12} {small(budget.rms('whole')):>8}  engine minus {model}",
+    ]
+    lines += [f"  {name:12} {small(rms[part]):>8}  {meaning}" for part, (name, meaning) in _PARTS.items()]
+    steps = ", ".join(f"{step:g}" for step in budget.limit.steps)
+    order = "" if math.isnan(budget.limit.order) else f"; measured order {budget.limit.order:.1f}"
+    lines.append(f"  known to {small(budget.rms('limit_error'))}, from time steps of {steps} s{order}")
+    row = comparison.summary[comparison.summary["reference"] == model].iloc[0]
+    if row["parted"]:
+        lines.append(
+            f"  traces part after {row['agreement_horizon']:.3g} s: {row['parting']} of the prediction"
+        )
+    return [*lines, _ADVICE[max(rms, key=lambda part: rms[part])]]

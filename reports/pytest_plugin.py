@@ -1,0 +1,150 @@
+"""Suites of cases as tests: pytest collects every NAME.suite.toml, each case and run as one item.
+
+It works wherever rockwobble is installed; `pytest -p no:rockwobble` leaves it out. A repository that holds
+its model of a structure, its records and its suites may look like this:
+
+    my-bridge/
+      pyproject.toml            # [project.optional-dependencies] test = ["pytest", "rockwobble"]
+      tests/
+        pier.suite.toml
+        records/EW.AT2, NS.AT2
+      .github/workflows/ci.yml  # pip install '.[test]', then pytest
+
+with a suite (what it may hold is said in the docstring of `rockwobble.models.suite_file`):
+
+    [bounds]                     # without this table: what contact at this time step explains
+    tilt_rms = 2e-3              # alpha
+    agreement_horizon = 10       # s, at least
+
+    [[runs]]
+    engine = ["mujoco", "pybullet"]
+
+    [[cases]]
+    name = "pier"
+    cylinder = { base_radius = 1.2, height = 11.8 }
+    motion = { x = "records/EW.AT2", y = "records/NS.AT2", scale = [1, 1.5] }
+    duration = 20
+
+`pytest tests/pier.suite.toml -k "scale 1.5"` runs a part. An item fails where a bound is exceeded, and then
+says what the difference is made of: model form, numerics, and what stays unexplained. That repeats the run
+at finer steps; `--no-rockwobble-budget` leaves it out. An engine that is not installed is skipped.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+if TYPE_CHECKING:
+    from rockwobble.compare.check import Finding
+    from rockwobble.models import Case, Run, Suite
+
+# of models.suite_file, which would be imported with every run of pytest
+ENDING = ".suite.toml"
+_OPTION = "--no-rockwobble-budget"
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Add the option of this plugin."""
+    parser.getgroup("rockwobble").addoption(
+        _OPTION,
+        action="store_true",
+        default=False,
+        help="do not repeat a failed run of a suite at finer time steps to explain its difference",
+    )
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> SuiteFile | None:
+    """Collect suite files."""
+    if file_path.name.endswith(ENDING):
+        found: SuiteFile = SuiteFile.from_parent(parent, path=file_path)
+        return found
+    return None
+
+
+class SuiteFile(pytest.File):
+    """A suite: one item for each case and run."""
+
+    def collect(self) -> Iterator[SuiteItem]:
+        """Yield the items."""
+        from rockwobble.compare import default_runs, missing_engines
+        from rockwobble.compare.runs import run_labels
+        from rockwobble.models import read_suite
+
+        try:
+            suite = read_suite(self.path)
+        except ValueError as error:
+            raise self.CollectError(str(error)) from None
+        runs = suite.runs or default_runs()
+        absent = missing_engines()
+        for case in suite.cases:
+            for run, label in zip(runs, run_labels(runs), strict=True):
+                item: SuiteItem = SuiteItem.from_parent(
+                    self, name=f"{case.name}, {label}", suite=suite, case=case, run=run, label=label
+                )
+                if run.engine in absent:
+                    item.add_marker(pytest.mark.skip(reason=f"{run.engine} is not installed here"))
+                yield item
+
+
+class SuiteItem(pytest.Item):
+    """One engine run of one case, held against the reduced model."""
+
+    def __init__(self, *, suite: Suite, case: Case, run: Run, label: str, **common: Any) -> None:
+        super().__init__(**common)
+        self.suite, self.case, self.run, self.label = suite, case, run, label
+
+    def runtest(self) -> None:
+        """Run engine and model, and raise what is beyond a bound."""
+        from rockwobble import reduced
+        from rockwobble.compare.check import Bench
+        from rockwobble.compare.check.agreement import check_run, model_of
+
+        bench = Bench(reduced=reduced, suite=self.suite, shipped=False, workers=1)
+        (trajectory,) = bench.engine_runs([(self.case, self.run, self.label)])
+        model = model_of(bench, self.run)
+        response = bench.response(self.case, model)
+        found = list(check_run(bench, self.case, self.run, self.label, trajectory, response))
+        failed = [finding for finding in found if finding.failed]
+        if failed:
+            budget = [] if self.config.getoption(_OPTION) else self._budget(model, trajectory)
+            raise DisagreementError(failed, budget)
+
+    def _budget(self, model: str, trajectory: Any) -> list[str]:
+        from rockwobble.compare.check.bench import crashed
+
+        from .budget_of_run import budget_of_run
+
+        return [] if crashed(trajectory) else budget_of_run(self.case, self.run, model)
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """Return the bounds that do not hold, and the budget; anything else as pytest has it."""
+        if isinstance(excinfo.value, DisagreementError):
+            return str(excinfo.value)
+        if isinstance(excinfo.value, ValueError):
+            return f"{self.path.name}: {excinfo.value}"
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, None, str]:
+        """Return what the head of a failure shows."""
+        return self.path, None, self.name
+
+
+class DisagreementError(Exception):
+    """An engine run that is further from the reduced model than its bounds allow.
+
+    Parameters
+    ----------
+    failed : list of Finding
+    budget : list of str
+        Lines that say what the difference is made of.
+    """
+
+    def __init__(self, failed: list[Finding], budget: list[str]) -> None:
+        from .check_output import in_words
+
+        super().__init__("\n".join([*(in_words(finding) for finding in failed), *budget]))
+        self.failed = failed
