@@ -9,7 +9,14 @@ from .error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
 from .execution import Crash, Job, Progress, simulate_all
 from .foreign import Foreign, ForeignTrajectory, read_trajectory
 from .horizon import AGREEMENT
-from .runs import default_runs, installed_engines, missing_engines, require_runnable, reserved_engines
+from .runs import (
+    default_runs,
+    installed_engines,
+    missing_engines,
+    require_runnable,
+    reserved_engines,
+    with_settings,
+)
 from .store import replace_files, require_writable
 from .summary import SUMMARY_COLUMNS
 from .sweep import SweepIncompleteError, SweepProgress, sweep
@@ -60,4 +67,5 @@ __all__ = [
     "sweep",
     "synthetic_motions",
     "with_motions",
+    "with_settings",
 ]

@@ -197,10 +197,14 @@ def describe_run(trace: Any) -> dict[str, Any]:
         "contact_resolution",
         "residual_displacement",
         "residual_twist",
+        "first_wall_contact",
+        "error_estimate",
+        "settled_until",
         "wall_time",
     )
     found = {name: getattr(trace, name) for name in names if hasattr(trace, name)}
-    return {name: _number(value) if isinstance(value, float) else value for name, value in found.items()}
+    plain = {name: _number(value) if isinstance(value, float) else value for name, value in found.items()}
+    return plain | ({"settings": dict(trace.settings)} if hasattr(trace, "settings") else {})
 
 
 def _described(traces: Mapping[tuple[str, str], Any]) -> dict[str, Any]:

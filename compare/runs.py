@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
-from rockwobble.models import Case, Run
+from rockwobble.models import Case, InitialState, Run
 from rockwobble.multibody import BrokenEngineError, available_engines
-from rockwobble.multibody.ability import require_able
 from rockwobble.multibody.froude import froude_scale
 from rockwobble.multibody.guard import check_time_step
 from rockwobble.multibody.registry import find_engine, standard_engines
+from rockwobble.multibody.scene_of_case import resolved_settings
 
 SUPPORTS = ("guided", "free")
+_LEAN = 1e-3  # of alpha: a tilt that fits into any ring
 
 # a cylinder on open ground is free to roll out: the rolling model is its own reduced model, as it is in a
 # ring until the first touch of a wall
@@ -50,17 +52,52 @@ def _reservation(name: str) -> str:
 
 
 def require_runnable(case: Case, run: Run) -> None:
-    """Check engine, support and time step of a run, so that no other run starts in vain.
+    """Check engine, support, time step and settings of a run, so that no other run starts in vain.
 
     Raises
     ------
     ValueError
         If the engine is unknown or not installed, does not have the support or cannot start the case,
-        or the time step is too large for contact.
+        the time step is too large for contact, or a setting is unknown or out of range.
     """
-    require_able(find_engine(run.engine), run.engine, case, run.support)
-    if run.time_step is not None and run.time_step != "auto":
-        check_time_step(run.time_step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
+    step = None if isinstance(run.time_step, str) else run.time_step
+    if step is not None:
+        check_time_step(step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
+    settings = dict(run.settings)
+    if run.time_step == "auto":
+        settings.pop("step_tolerance", None)
+    resolved_settings(case, run.engine, run.support, settings, step)
+
+
+def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, Any]) -> tuple[Run, ...]:
+    """Return the runs with more settings, each where the run has one of that name.
+
+    Raises
+    ------
+    ValueError
+        If no run has a setting of that name, with those that there are.
+    """
+    known = [_setting_names(case, run) for run in runs]
+    for name in settings:
+        if not any(name in names for names in known):
+            allowed = dict.fromkeys(each for names in known for each in names)
+            raise ValueError(f"no run has a setting {name!r}; there are {', '.join(allowed)}")
+    return tuple(
+        Run(
+            run.engine,
+            run.support,
+            run.time_step,
+            **{**run.settings, **{name: value for name, value in settings.items() if name in names}},
+        )
+        for run, names in zip(runs, known, strict=True)
+    )
+
+
+def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
+    # from a release that every engine and every ring can start: what is to be set may be what the case needs
+    start = Case(case.name, case.cylinder, None, InitialState(_LEAN * case.cylinder.alpha), 1.0)
+    steps = ("step_tolerance",) if run.time_step == "auto" else ()
+    return (*resolved_settings(start, run.engine, run.support, {}), *steps)
 
 
 def default_runs(

@@ -10,7 +10,7 @@ from rockwobble.models import Case
 
 from .ability import require_able
 from .body import scaled_body
-from .engine import Scene
+from .engine import Engine, Scene
 from .froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, Scale, froude_scale
 from .registry import find_engine
 from .start import starting_state
@@ -32,6 +32,20 @@ def make_scene(case: Case, support: str, step: float, scale: Scale) -> Scene:
     )
 
 
+def resolved_settings(
+    case: Case, engine: str, support: str, settings: Mapping[str, Any], time_step: float | None = None
+) -> dict[str, Any]:
+    """Return every setting with which `simulate` would run a case, without running it.
+
+    Raises
+    ------
+    ValueError
+        If the engine is unknown, cannot run the case, or a setting is unknown or out of range.
+    """
+    backend, scene = _stated(case, engine, support, time_step)
+    return backend.settings(settings, scene)
+
+
 @contextlib.contextmanager
 def open_scene(
     case: Case, engine: str, support: str, settings: Mapping[str, Any], time_step: float | None = None
@@ -48,10 +62,14 @@ def open_scene(
     ValueError
         As `simulate` does.
     """
+    backend, scene = _stated(case, engine, support, time_step)
+    with backend.open(scene, backend.settings(settings, scene)) as stepper:
+        yield stepper
+
+
+def _stated(case: Case, engine: str, support: str, time_step: float | None) -> tuple[Engine, Scene]:
     backend = find_engine(engine)
     require_able(backend, engine, case, support)
     scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
     step = REFERENCE_TIME_STEP * scale.time if time_step is None else time_step
-    scene = make_scene(case, support, step, scale)
-    with backend.open(scene, backend.settings(settings, scene)) as stepper:
-        yield stepper
+    return backend, make_scene(case, support, step, scale)

@@ -6,12 +6,13 @@ import math
 import textwrap
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from . import options
 from .comparison_pages import SINGLY, comparison_pages
+from .method_values import settings
 from .paper.provenance import command_line
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 from .terminal import complain, interruptible, user_input
@@ -41,6 +42,7 @@ def compare(
     engine: options.Engines = None,
     support: options.Supports = None,
     time_step: options.TimeStep = None,
+    setting: options.Settings = None,
     trajectory: options.Trajectories = None,
     trajectory_angles: options.TrajectoryAngles = None,
     trajectory_offset: options.TrajectoryOffset = 0.0,
@@ -65,7 +67,7 @@ def compare(
 
     with interruptible(_kept(out) if suite else "nothing was written"):
         with user_input():
-            from rockwobble.compare import replace_files, require_runnable, require_writable
+            from rockwobble.compare import replace_files, require_runnable, require_writable, with_settings
 
             if suite is not None:
                 refuse_problem_options(context, suite)
@@ -85,6 +87,8 @@ def compare(
                     duration=duration,
                 )
                 cases, runs = [case], _runs(engine, support, time_step, alone=bool(trajectory))
+            if setting:
+                runs = list(with_settings(cases[0], runs, settings(setting)))
             require_writable(out)
             for each in cases:
                 for run in runs:
@@ -135,7 +139,7 @@ def _kept(out: Path) -> str:
 
 
 def _suite(
-    name: str, engines: list[str] | None, supports: list[str] | None, time_step: float | None
+    name: str, engines: list[str] | None, supports: list[str] | None, time_step: Any
 ) -> tuple[Suite, list[Run]]:
     from rockwobble.models import read_suite
 
@@ -146,9 +150,7 @@ def _suite(
     return suite, runs
 
 
-def _runs(
-    engines: list[str] | None, supports: list[str] | None, time_step: float | None, *, alone: bool
-) -> list[Run]:
+def _runs(engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool) -> list[Run]:
     from rockwobble.compare import default_runs
     from rockwobble.models import Run
 
@@ -197,6 +199,7 @@ def print_comparison(comparison: Comparison) -> None:
 
     from .budget_words import budget_lines, parting_lines
     from .findings import finding, headline
+    from .run_remarks import counted_remarks, remark_lines
     from .summary_table import LEGEND, MINIMUM_WIDTH, summary_table
 
     console = Console()
@@ -204,7 +207,8 @@ def print_comparison(comparison: Comparison) -> None:
         console.width = max(console.width, MINIMUM_WIDTH)
     if len(comparison.cases) > SINGLY:
         _print_groups(comparison, console)
-        _print_lines([*budget_lines(comparison.summary), *parting_lines(comparison.summary)], console)
+        lines = [*budget_lines(comparison.summary), *parting_lines(comparison.summary)]
+        _print_lines([*lines, *counted_remarks(comparison.summary)], console)
         return
     for name, case in comparison.cases.items():
         rows = comparison.summary[comparison.summary["case"] == name]
@@ -218,7 +222,7 @@ def print_comparison(comparison: Comparison) -> None:
                 finding(row, case.length), console.width, initial_indent="- ", subsequent_indent="  "
             )
             console.print(sentence, highlight=False, markup=False)
-        _print_lines([*budget_lines(rows), *parting_lines(rows)], console)
+        _print_lines([*remark_lines(rows), *budget_lines(rows), *parting_lines(rows)], console)
 
 
 def _print_lines(lines: Sequence[str], console: Console) -> None:

@@ -6,9 +6,11 @@ Units stand in words: square brackets are markup in a help text.
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
+
+from .method_values import time_step
 
 _BODY, _GROUND, _RELEASE, _METHOD = "Cylinder", "Ground motion", "Release", "Method"
 _FOREIGN = "Trajectory of a shake table or another code"
@@ -80,10 +82,23 @@ Supports = Annotated[
     ),
 ]
 TimeStep = Annotated[
-    float | None,
+    Any,  # a number, "auto" or None: typer knows no type for that, `time_step` makes it
     typer.Option(
         "--time-step",
-        help="Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size.",
+        parser=time_step,
+        metavar="FLOAT|auto",
+        help="Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size. auto "
+        "halves it until the tilt has settled, and says what error is left.",
+        rich_help_panel=_METHOD,
+    ),
+]
+Settings = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="NAME=VALUE",
+        help="Setting of the engines or of the ring, such as ring_clearance=0.01 or integrator=discrete, "
+        "for each run that has one of that name; may be repeated.",
         rich_help_panel=_METHOD,
     ),
 ]

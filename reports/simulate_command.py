@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import options
+from .method_values import settings
 from .terminal import FAILED, complain, interruptible, user_input
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ def simulate(
     engine: Engine = None,
     support: Support = "guided",
     time_step: options.TimeStep = None,
+    setting: options.Settings = None,
     out: options.Out = Path("rockwobble-out"),
 ) -> None:
     """Run one reduced model, or one engine, on one problem.
@@ -63,7 +65,13 @@ def simulate(
 
     with interruptible():
         with user_input():
-            from rockwobble.compare import Job, replace_files, require_runnable, require_writable
+            from rockwobble.compare import (
+                Job,
+                replace_files,
+                require_runnable,
+                require_writable,
+                with_settings,
+            )
             from rockwobble.models import Run
 
             case = case_from_options(
@@ -79,11 +87,12 @@ def simulate(
                 duration=duration,
             )
             require_writable(out)
-            if engine is None and time_step is not None:
-                raise ValueError("--time-step belongs to an engine, give --engine as well")
+            if engine is None and (time_step is not None or setting):
+                given = "--time-step" if time_step is not None else "--set"
+                raise ValueError(f"{given} belongs to an engine, give --engine as well")
             job = Job(case=case, method=model, label=model)
             if engine is not None:
-                run = Run(engine, support, time_step)
+                (run,) = with_settings(case, [Run(engine, support, time_step)], settings(setting))
                 require_runnable(case, run)
                 job = Job(case=case, method=run, label=f"{engine} {support}")
         for line in describe(case):

@@ -48,7 +48,7 @@ def refuse_problem_options(context: Any, suite: str) -> None:
 
 
 def chosen_runs(
-    suite: Suite, engines: Sequence[str] | None, supports: Sequence[str] | None, time_step: float | None
+    suite: Suite, engines: Sequence[str] | None, supports: Sequence[str] | None, time_step: Any
 ) -> list[Run]:
     """Return the runs of a suite, with those of the options in their place.
 

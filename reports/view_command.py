@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from . import options
+from .method_values import settings
 from .paper.provenance import command_line
 from .terminal import complain, interruptible, user_input
 
@@ -59,6 +60,7 @@ def view(
     engine: Engine = "mujoco",
     support: Support = "guided",
     time_step: options.TimeStep = None,
+    setting: options.Settings = None,
     out: options.Out = Path("rockwobble-out"),
     opened: Open = None,
 ) -> None:
@@ -72,7 +74,13 @@ def view(
 
     with interruptible():
         with user_input():
-            from rockwobble.compare import Comparison, replace_files, require_runnable, require_writable
+            from rockwobble.compare import (
+                Comparison,
+                replace_files,
+                require_runnable,
+                require_writable,
+                with_settings,
+            )
             from rockwobble.models import Run
 
             if folder is not None:
@@ -94,7 +102,7 @@ def view(
                     rolling_rate=rolling_rate,
                     duration=duration,
                 )
-                run = Run(engine, support, time_step)
+                (run,) = with_settings(case, [Run(engine, support, time_step)], settings(setting))
                 require_runnable(case, run)
                 name = case.name
             require_writable(out)
@@ -124,6 +132,7 @@ def view_page(comparison: Comparison, name: str) -> str | None:
     from .findings import finding
     from .playback import playback
     from .problem import describe
+    from .run_remarks import remark_lines
     from .template import render
 
     chosen = next(each for each in case_views(comparison) if each.case.name == name)
@@ -135,7 +144,10 @@ def view_page(comparison: Comparison, name: str) -> str | None:
         name=name,
         spec=spec,
         lines=describe(chosen.case),
-        findings=[finding(row, chosen.case.length) for _, row in chosen.rows.iterrows()],
+        findings=[
+            *(finding(row, chosen.case.length) for _, row in chosen.rows.iterrows()),
+            *remark_lines(chosen.rows),
+        ],
         command=command_line(),
         versions=comparison.versions,
     )

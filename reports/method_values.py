@@ -1,0 +1,59 @@
+"""Values of the options that state a method: from text to numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import typer
+
+AUTO: Literal["auto"] = "auto"
+
+
+def time_step(text: str) -> float | Literal["auto"]:
+    """Return a time step [s], or "auto".
+
+    Raises
+    ------
+    BadParameter
+        If the text is neither; whether the number is one that an engine can use is said later.
+    """
+    if text == AUTO:
+        return AUTO
+    try:
+        return float(text)
+    except ValueError:
+        raise typer.BadParameter(f'must be a number [s] or "auto", got {text!r}') from None
+
+
+def settings(given: Sequence[str] | None) -> dict[str, Any]:
+    """Return settings from texts of the form name=value: a whole number, a number, or the text itself.
+
+    Raises
+    ------
+    ValueError
+        If a text has another form, or a name comes twice.
+
+    Examples
+    --------
+    >>> settings(["ring_facets=64", "ring_clearance=1e-2", "cone=pyramidal"])
+    {'ring_facets': 64, 'ring_clearance': 0.01, 'cone': 'pyramidal'}
+    """
+    found: dict[str, Any] = {}
+    for text in given or ():
+        name, sign, value = (part.strip() for part in text.partition("="))
+        if not (name and sign and value):
+            raise ValueError(f"--set must be NAME=VALUE, got {text!r}")
+        if name in found:
+            raise ValueError(f"--set {name} is given twice")
+        found[name] = _value(value)
+    return found
+
+
+def _value(text: str) -> int | float | str:
+    for kind in (int, float):
+        try:
+            return kind(text)
+        except ValueError:
+            continue
+    return text

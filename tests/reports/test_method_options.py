@@ -1,0 +1,105 @@
+"""Time step and settings from the command line, and what a run says of itself where it is shown."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from rockwobble.reports.main import main
+from rockwobble.reports.method_values import settings
+from rockwobble.reports.run_remarks import counted_remarks, remark_lines
+
+RELEASE = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "0.2"]
+
+
+def call(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main(list(arguments))
+    assert isinstance(ended.value.code, int)
+    return ended.value.code
+
+
+def test_settings_are_whole_numbers_numbers_or_words() -> None:
+    found = settings(["ring_facets=64", " ring_clearance = 1e-2", "cone=pyramidal"])
+    assert found == {"ring_facets": 64, "ring_clearance": 0.01, "cone": "pyramidal"}
+    assert [type(value) for value in found.values()] == [int, float, str]
+    assert settings(None) == {}
+
+
+@pytest.mark.parametrize(
+    ("given", "complaint"),
+    [
+        (
+            ["--time-step", "fast"],
+            "Invalid value for '--time-step': must be a number [s] or \"auto\", got 'fast'",
+        ),
+        (["--time-step", "0.5"], "time_step must be at most 0.001 s for contact at this size"),
+        (["--set", "ring_facets"], "--set must be NAME=VALUE, got 'ring_facets'"),
+        (["--set", "=3"], "--set must be NAME=VALUE, got '=3'"),
+        (["--set", "cone=a", "--set", "cone=b"], "--set cone is given twice"),
+        (["--set", "ring_facets=64"], "no run has a setting 'ring_facets'; there are contact_time_constant,"),
+        (["--set", "impedance=2"], "impedance must be above 0 and at most 0.9999, got 2"),
+        # which goes with --time-step auto alone
+        (["--set", "step_tolerance=1e-4"], "no run has a setting 'step_tolerance'; there are "),
+    ],
+)
+@pytest.mark.parametrize("command", ["compare", "simulate", "view"])
+def test_bad_methods_are_one_line(
+    command: str, given: list[str], complaint: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    place = ["--out", str(tmp_path / "out"), "--engine", "mujoco", "--support", "guided"]
+    assert call(command, *RELEASE, *place, *given) == 2
+    said = capsys.readouterr().err.strip()
+    assert said.startswith(f"rockwobble: {complaint}")
+    assert "\n" not in said
+    assert not (tmp_path / "out").exists()
+
+
+def test_settings_of_an_engine_need_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert call("simulate", *RELEASE, "--out", str(tmp_path), "--set", "cone=pyramidal") == 2
+    assert "--set belongs to an engine, give --engine as well" in capsys.readouterr().err
+
+
+def test_auto_says_what_error_is_left(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    method = ["--engine", "mujoco", "--time-step", "auto", "--set", "step_tolerance=1e-4"]
+    assert call("simulate", *RELEASE, *method, "--out", str(tmp_path)) == 0
+    assert "time step 0.0002 s: the tilt is within" in " ".join(capsys.readouterr().out.split())
+    assert json.loads((tmp_path / "run.json").read_text())["result"]["error_estimate"] > 0.0
+
+
+def _summary(message: str, outcome: str = "completed") -> pd.DataFrame:
+    row = {"case": "a", "run": "mujoco free", "outcome": outcome, "reference_outcome": "completed"}
+    return pd.DataFrame([row | {"message": message}, row | {"message": message}])
+
+
+def test_a_remark_is_said_once_for_each_run() -> None:
+    slipped = "contact slipped from 2 s on; the cylinder left the ground at 3 s"
+    rows = _summary(f"compared up to 4 s; {slipped}; not defined here: turn_difference, wall_time")
+    assert remark_lines(rows) == [f"mujoco free, by its own account: {slipped}."]
+    assert counted_remarks(rows)[0].startswith(
+        "By their own account, of the runs 1 slipped, 1 left the ground; see"
+    )
+    for nothing in (_summary(""), _summary("both overturned"), _summary(slipped, "failed")):
+        assert remark_lines(nothing) == []
+        assert counted_remarks(nothing) == []
+
+
+def test_a_setting_goes_to_the_runs_that_know_it_and_a_flight_is_said_everywhere(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    # it spins so fast that it flies; and by default a ring would stand where it leans
+    spin = ["--tan-alpha", "1", "--release-tilt-deg", "20", "--rolling-rate", "8", "--duration", "0.3"]
+    given = ["--set", "ring_clearance=3", "--set", "ring_inclination=0.05", "--set", "ring_facets=16"]
+    supports = ["--support", "ring", "--support", "free", "--engine", "mujoco"]
+    assert call("compare", *spin, *supports, *given, "--out", str(tmp_path)) == 0
+    runs = json.loads((tmp_path / "comparison.json").read_text())["trajectories"]
+    ring, free = (runs[f"free response / mujoco {support}"]["settings"] for support in ("ring", "free"))
+    assert (ring["ring_clearance"], ring["ring_inclination"], ring["ring_facets"]) == (3, 0.05, 16)
+    assert "ring_clearance" not in free
+    remark = "mujoco free, by its own account: the cylinder left the ground at 0.2043 s"
+    assert remark in " ".join(capsys.readouterr().out.split())
+    assert remark in (tmp_path / "report.html").read_text()
+    assert "the cylinder left the ground at 0.2043 s" in (tmp_path / "summary.csv").read_text()
