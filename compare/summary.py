@@ -14,7 +14,7 @@ from rockwobble.models import Case, Run
 from .contact import contact_rms
 from .energy import energy_loss
 from .error_budget import BUDGET_COLUMNS, ErrorBudget
-from .horizon import agreed_passes, agreement_horizon, closest_pass
+from .horizon import Horizon, agreed_passes, agreement_horizon, closest_pass
 from .predicted_horizon import Prediction, close_pass, verdict
 from .tilt import tilt_rms, tilt_rms_relative
 from .traces import EngineTrace, Trace, make_pair
@@ -55,7 +55,10 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "engine_version": ("", "version of the engine"),
         "run": ("", "label of the run, as in the files of samples and in the figures"),
         "predicted_by": ("", "what ends the agreement there: a pass, growth or model form; empty: nothing"),
-        "parting": ("", "in time: within a factor of 2 of the prediction; else later, or earlier"),
+        "parting": (
+            "",
+            "in time: within a factor of 2 of the prediction; later, earlier, or after it touched a wall",
+        ),
         "estimated_error": ("alpha", "RMS error of the engine in its first second, on which growth rests"),
         "whole_rms": ("alpha", "RMS of the tilt difference until 80 % of the agreement; with a budget only"),
         "model_form_rms": ("alpha", "of it: reduced model of the support minus the reference"),
@@ -149,10 +152,17 @@ def summary_row(
     row["message"] = _message(model, reference, trial, whole.end, case.length, _undefined(row))
     row |= {
         "predicted_by": prediction.reason,
-        "parting": verdict(horizon.length, horizon.parted, prediction.length, prediction.reason),
+        "parting": _parting(trial, horizon, prediction),
         "estimated_error": estimated_error,
     }
     return row | (dict.fromkeys(BUDGET_COLUMNS, math.nan) if budget is None else budget.columns())
+
+
+def _parting(trial: EngineTrace, horizon: Horizon, prediction: Prediction) -> str:
+    found = verdict(horizon.length, horizon.parted, prediction.length, prediction.reason)
+    # no reduced model knows of walls, so none foretells what they do
+    touched = getattr(trial, "first_wall_contact", math.inf) <= horizon.end
+    return "after it touched a wall" if found == "earlier" and touched else found
 
 
 def foreign_row(

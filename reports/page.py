@@ -12,6 +12,7 @@ from .case_view import CaseView, case_views
 from .findings import finding, headline
 from .playback import playback
 from .problem import describe
+from .run_remarks import remark_lines
 from .template import PLOT_CONFIG, render
 
 if TYPE_CHECKING:
@@ -55,7 +56,7 @@ def _case(view: CaseView, index: int) -> dict[str, Any]:
         "name": view.case.name,
         "lines": describe(view.case),
         "headline": headline(view.rows, length),
-        "findings": [finding(row, length) for _, row in view.rows.iterrows()],
+        "findings": [*(finding(row, length) for _, row in view.rows.iterrows()), *remark_lines(view.rows)],
         "rows": [{name: _cell(value) for name, value in row.items()} for _, row in view.rows.iterrows()],
         "playback": playback(view) if index < _PLAYED else None,
         "parting": parting_lines(view.rows),

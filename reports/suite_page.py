@@ -13,6 +13,7 @@ from .budget_words import budget_lines, parting_lines
 from .case_view import CaseView, case_views
 from .findings import finding, headline
 from .problem import describe
+from .run_remarks import counted_remarks, remark_lines
 from .suite_choice import group_of
 from .suite_table import suite_headline, worst_first
 from .thinning import kept_samples
@@ -61,7 +62,11 @@ def suite_page(comparison: Comparison, command: str = "") -> str:
         plot_template=_template(),
         plot_config=_json(_CONFIG),
         headline=suite_headline(comparison.summary),
-        budget=[*budget_lines(comparison.summary), *parting_lines(comparison.summary)],
+        budget=[
+            *budget_lines(comparison.summary),
+            *parting_lines(comparison.summary),
+            *counted_remarks(comparison.summary),
+        ],
         budget_picture=_budget_picture(comparison),
         overview=overview,
         groups=_grouped(views),
@@ -100,7 +105,7 @@ def _case(
         "index": index,
         "lines": describe(view.case),
         "headline": headline(view.rows, length),
-        "findings": [finding(row, length) for _, row in view.rows.iterrows()],
+        "findings": [*(finding(row, length) for _, row in view.rows.iterrows()), *remark_lines(view.rows)],
         "rows": [{name: _cell(value) for name, value in row.items()} for _, row in view.rows.iterrows()],
         "figures": [
             {
