@@ -147,7 +147,8 @@ class Recorder:
             self._sample(time[:stop], rows)
             force = force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity)
             self.forces.add(force[:, :stop])
-            if math.isnan(self.pull_time):
+            # a wall may well push the cylinder down, by its friction or where the rim is below it
+            if math.isnan(self.pull_time) and steps.wall is None:
                 self.pull_time = first_pull(time, force[2, :stop])
         self._angle, self._count = float(angle[-1]), self._count + count
 
