@@ -21,7 +21,7 @@ import numpy as np
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, InitialState, Run
 
-from .console import parse_plain, show, tell
+from .console import show, tell
 from .execution import Job, ProgressCallback, simulate_all
 from .traces import make_pair
 
@@ -34,6 +34,7 @@ RELEASES = (0.3, 0.5, 0.8)  # of alpha
 STEPS = (2e-4, 1e-4, 5e-5, 2.5e-5)  # [s] at 6 m; the second is the default
 TURN_STEPS = (4e-4, 2e-4, 1e-4, 5e-5)
 SIZES = (0.01, 6.0, 100.0)  # [m]
+TABLES = ("free", "turn", "size")
 _LENGTH = 8.0  # [s] at 6 m
 _RATE = 0.5  # [rad/s] at 6 m
 _MODEL_TOLERANCE = 1e-11  # of the reduced models: their error is nothing against that of an engine
@@ -200,25 +201,56 @@ def angle_of_turn(
 
 def main() -> None:
     """Print the tables."""
-    parse_plain("convergence", "How the engines converge to the reduced models.")
-    cases = [release_case(tan_alpha, part) for tan_alpha in SLENDERNESS for part in RELEASES]
+    import argparse
+
+    parser = argparse.ArgumentParser(
+        prog="python -m rockwobble.compare.convergence",
+        description="How the engines converge to the reduced models. "
+        "Example: --table free --engine mujoco --tan-alpha 3",
+    )
+    parser.add_argument("--table", action="append", choices=TABLES, help="may be repeated (default: all)")
+    parser.add_argument("--engine", action="append", choices=engines_here(), help="may be repeated")
+    parser.add_argument(
+        "--tan-alpha", action="append", type=float, help="of the first table; may be repeated"
+    )
+    given = parser.parse_args()
+    engines = given.engine or engines_here()
+    for table in given.table or TABLES:
+        if table == "free":
+            _print_free(given.tan_alpha or SLENDERNESS, engines)
+        elif table == "turn":
+            _print_turn(engines)
+        else:
+            cases = [release_case(tan_alpha, 0.5, size) for tan_alpha in (0.2, 1.0) for size in SIZES]
+            errors = convergence(cases, engines=engines, progress=tell)
+            show(errors, "The same at every size", _FORM, f"{_STEPS_IN_WORDS} at 6 m")
+
+
+_FORM = (
+    {"case": "", "support": "", "engine": ""}
+    | {f"error_{number + 1}": ".1e" for number in range(len(STEPS))}
+    | {"order": ".2f"}
+)
+_STEPS_IN_WORDS = "largest tilt difference in alpha, at steps of " + ", ".join(f"{h:g} s" for h in STEPS)
+
+
+def _print_free(slenderness: Sequence[float], engines: Sequence[str]) -> None:
+    cases = [release_case(tan_alpha, part) for tan_alpha in slenderness for part in RELEASES]
     lost = {case.name: loses_contact(case) for case in cases}
     kept = [case for case in cases if not lost[case.name]]
-    errors = {f"error_{number + 1}": ".1e" for number in range(len(STEPS))}
-    names = {"case": "", "support": "", "engine": ""}
-    steps = "largest tilt difference in alpha, at steps of " + ", ".join(f"{step:g} s" for step in STEPS)
-    left_out = "\n".join(f"left out: {line}" for line in lost.values() if line)
-    form = names | errors | {"order": ".2f"}
-    show(convergence(kept, progress=tell), "Free response over 8 s", form, f"{steps}\n{left_out}")
-    turns = {f"error_{number + 1}": ".1e" for number in range(len(TURN_STEPS))}
+    left_out = "".join(f"\nleft out: {line}" for line in lost.values() if line)
+    errors = convergence(kept, engines=engines, progress=tell)
+    show(errors, "Free response over 8 s", _FORM, _STEPS_IN_WORDS + left_out)
+
+
+def _print_turn(engines: Sequence[str]) -> None:
+    errors = {f"error_{number + 1}": ".1e" for number in range(len(TURN_STEPS))}
     show(
-        angle_of_turn(progress=tell),
+        angle_of_turn(engines=engines, progress=tell),
         "Angle of turn, b = 1 m, h = 2 b, alpha/2, 0.1 rad/s",
-        {"support": "", "engine": "", "exact": ".4f"} | turns,
+        {"support": "", "engine": "", "exact": ".4f"} | errors,
         "in degrees; differences at steps of " + ", ".join(f"{step:g} s" for step in TURN_STEPS) + " at 6 m",
     )
-    sizes = [release_case(tan_alpha, 0.5, size) for tan_alpha in (0.2, 1.0) for size in SIZES]
-    show(convergence(sizes, progress=tell), "The same at every size", form, steps + " at 6 m")
 
 
 if __name__ == "__main__":
