@@ -32,6 +32,9 @@ CYLINDERS = ((6.0, 0.2), (10.0, 0.1), (2.0, 0.3))  # semidiagonal [m], tan alpha
 SCALES = (1.0, 1.5, 2.0)
 PAIRS = (("guided", "recess"), ("free", "rolling"), ("free", "recess"))
 _OWN = {"guided": "recess", "free": "rolling"}
+CARRIED = 0.3  # weights
+_BETWEEN = 0.1  # of alpha; closer to the apex the force changes by weights from one sample to the next
+_AFTER = 0.1  # [s]
 
 
 def cases() -> tuple[Case, ...]:
@@ -74,8 +77,8 @@ def horizons(
         resolution (smallest tilt of a pass that the engine resolves) [rad], close_pass [s from uplift] and
         close_tilt [rad] (the first pass of the engine's own model below it; NaN without one), passes
         (those before the horizon), closest (smallest tilt of them) [rad], foretold [s] and reason (what
-        has to end the agreement, and when), and agreed ("in time", "later", "earlier" or "never, as
-        foretold").
+        has to end the agreement, and when), agreed ("in time", "later", "earlier" or "never, as
+        foretold"), and force: see `force_error`.
     """
     import pandas as pd
 
@@ -134,7 +137,29 @@ def _row(case: Case, traces: dict[str, Any], support: str, model: str) -> dict[s
         "foretold": prediction.length,
         "reason": prediction.reason,
         "agreed": verdict(horizon.end - start, horizon.parted, prediction.length, prediction.reason),
+        "force": force_error(case, reference, trial, horizon.end),
     }
+
+
+def force_error(case: Case, model: Any, trial: Any, end: float) -> float:
+    """Return the largest difference of the contact force until `end` [s], over the force of the model.
+
+    Of the normal force over the normal force, and of the horizontal one over the whole. Counted are samples
+    between passes (tilt above a tenth of alpha, a tenth of a second after the uplift) as long as the
+    ground of the model carries `CARRIED` of the weight: where a cylinder falls it goes to zero, and soon
+    needs more friction than there is.
+    """
+    count = min(len(model.time), len(trial.time)) - 1  # the last sample of a fall stands at its own time
+    time, expected = model.time[:count], model.contact_force[:count]
+    normal = expected[:, 2]
+    loose = time[(normal < CARRIED) & (time > model.uplift_time)]
+    fall = loose[0] if len(loose) and model.outcome == "overturned" else math.inf
+    between = (model.tilt[:count] > _BETWEEN * case.cylinder.alpha) & (normal > CARRIED)
+    between &= (time > model.uplift_time + _AFTER) & (time <= min(end, fall))
+    difference = (trial.contact_force[:count] - expected)[between]
+    size = np.linalg.norm(expected[between], axis=1)
+    parts = (np.abs(difference[:, 2]) / normal[between], np.hypot(*difference[:, :2].T) / size)
+    return float(np.max(parts, initial=0.0))
 
 
 def main() -> None:
@@ -143,14 +168,15 @@ def main() -> None:
     formats = {
         "case": "", "support": "", "reference": "", "length": ".2f", "horizon": ".2f", "rms": ".1e",
         "passes": ".0f", "closest": ".1e", "resolution": ".1e", "close_pass": ".2f", "close_tilt": ".1e",
-        "foretold": ".2f", "reason": "", "agreed": "",
+        "foretold": ".2f", "reason": "", "agreed": "", "force": ".1e",
     }  # fmt: skip
     show(
         horizons(progress=tell),
         "MuJoCo and its reduced models, El Centro 1940 from rest",
         formats,
         "times in s from uplift, tilts of passes in rad, rms up to the horizon in alpha; close pass: the "
-        "first of the engine's own model below the contact resolution",
+        "first of the engine's own model below the contact resolution; force: largest difference of the "
+        "contact force between passes up to the horizon, over the force",
     )
 
 
