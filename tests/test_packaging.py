@@ -17,7 +17,8 @@ CHECKOUT = Path(__file__).parents[1]
 FOLDERS = ["models", "reduced", "multibody", "compare", "reports"]
 # more than twice what a loaded machine needs; an engine or pandas at import takes longer than this
 HELP_SECONDS = 1.0
-HEAVY = ["mujoco", "pybullet", "pandas", "pyarrow", "plotly", "matplotlib", "jinja2", "scipy", "sympy"]
+ENGINES = ["mujoco", "pybullet", "exudyn"]
+HEAVY = [*ENGINES, "pandas", "pyarrow", "plotly", "matplotlib", "jinja2", "scipy", "sympy"]
 
 
 def run(*command: str) -> str:
