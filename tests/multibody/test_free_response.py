@@ -51,7 +51,7 @@ def test_free_response_follows_the_model_of_its_support(
     assert np.abs(run.tilt - other.tilt).max() > 8e-4 * cylinder.alpha
 
 
-@pytest.mark.parametrize("semidiagonal", [0.06, 60.0])
+@pytest.mark.parametrize("semidiagonal", [0.01, 100.0])
 def test_accuracy_does_not_depend_on_size(engine: str, semidiagonal: float) -> None:
     reference = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=0.2)
@@ -129,8 +129,8 @@ def test_angle_of_turn(engine: str, support: str, turn: float) -> None:
     )
     assert len(run.passes) == 2
     assert run.passes["resolved"].all()
-    # second order in the step over the length of the pass: 1.3e-3 and 1.5e-3 deg at 1e-4 s
-    assert np.degrees(run.passes["angle_of_turn"][0]) == pytest.approx(turn, abs=3e-3)
+    # second order in the step over the length of the pass: 4.8e-4 deg in MuJoCo, 6.1e-4 in Bullet
+    assert np.degrees(run.passes["angle_of_turn"][0]) == pytest.approx(turn, abs=1e-3)
 
 
 def test_energy_is_kept(engine: str, pier: Cylinder) -> None:
