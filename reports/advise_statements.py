@@ -28,12 +28,11 @@ def verdict(advice: Advice) -> str:
         return f"No advice: the {advice.model} model failed, {advice.response.message}."
     if not advice.moves:
         return _stays(advice.uplift_factor)
-    parts = [_LEADS[advice.model_grade].format(model=advice.model)]
+    lead = _LEADS[advice.model_grade].format(model=advice.model)
     reasons = _reasons(advice)
-    if reasons:
-        parts[0] += f" ({', '.join(reasons)})"
-    parts[0] += f": {_how_far(advice)}"
-    parts.append(_what_happens(advice))
+    if advice.model_grade == "bad":
+        return f"{lead}: {'; '.join(reasons)}."
+    parts = [f"{lead}{_how_far(advice)}", _what_happens(advice), *reasons]
     if advice.planar is not None and advice.planar.kind == "unconservative":
         parts.append("a planar analysis would be unconservative")
     return "; ".join(parts) + "."
@@ -55,29 +54,35 @@ def statements(advice: Advice) -> list[Statement]:
 def _stays(factor: float) -> str:
     if not math.isfinite(factor):
         return "The cylinder stays at rest: this ground motion uplifts it at no scale."
-    return (
-        f"The cylinder stays at rest and every method agrees: it takes {factor:.3g} times this shaking to "
-        "uplift it."
-    )
+    return f"The cylinder stays at rest: it takes {factor:.3g} times this shaking to uplift it."
 
 
 def _reasons(advice: Advice) -> list[str]:
-    named = {
-        "friction": "the friction does not suffice",
-        "contact": "contact is lost",
-        "engine": "the engine disagrees",
+    """What rules the model out or, where nothing does, wants care."""
+    demands, grade = advice.demands, advice.model_grade
+    said = {
+        "friction": f"a friction of {demands.friction:g} does not suffice, it takes "
+        f"{max(demands.friction_usual, advice.case.cylinder.tan_alpha):.3g} and more",
+        "contact": "contact would be lost for "
+        f"{100.0 * demands.lost_time / max(demands.moving_time, 1e-300):.2g} % of the time in motion",
+        "engine": "the engine leaves it earlier than foretold"
+        if grade == "bad"
+        else "the engine comes to another end",
     }
-    grade = advice.model_grade
-    return [text for topic, text in named.items() if grade != "good" and advice.grades.get(topic) == grade]
+    return [text for topic, text in said.items() if grade != "good" and advice.grades.get(topic) == grade]
 
 
 def _how_far(advice: Advice) -> str:
     trust = advice.trust
     if trust.kind == "trace":
-        return "the trace holds to its end"
+        return ": its trace holds to the end"
     if trust.kind == "peak":
-        return f"the trace holds until {seconds(trust.until)}, the largest tilt included"
-    return f"the trace holds until {seconds(trust.until)}, trust statistics of the largest tilt"
+        return f": its trace holds until {seconds(trust.until)}, the {_event(advice)} included"
+    return f", for statistics and not for its trace, which holds until {seconds(trust.until)} only"
+
+
+def _event(advice: Advice) -> str:
+    return "fall" if advice.overturned else "largest tilt"
 
 
 def _what_happens(advice: Advice) -> str:
@@ -88,10 +93,11 @@ def _what_happens(advice: Advice) -> str:
         )
     tilt = f"the largest tilt is {advice.peak:.3g} α"
     if spread is not None:
-        tilt += f", {_range(advice)} with data known to {100.0 * spread.perturbation:g} %"
+        percent = 100.0 * spread.perturbation
+        tilt += f" as given, and {_range(advice)} with data known to {percent:g} %"
     lowest = advice.lowest_overturning
     if math.isfinite(lowest) and advice.grades["overturning"] != "good":
-        tilt += f"; {lowest:.3g} times this shaking overturns it"
+        tilt += f"; {'already ' if lowest < 1.0 else ''}{lowest:.3g} times this shaking overturns it"
     return tilt
 
 
@@ -116,7 +122,15 @@ def _of_motion(advice: Advice) -> list[Statement]:
         Statement(
             topic="Trust",
             grade=grades["trust"],
-            text=words.trust_words(advice.trust, advice.peak_time, spread.count, percent),
+            text=words.trust_words(
+                advice.trust,
+                advice.peak_time,
+                spread.count,
+                percent,
+                what=_event(advice),
+                verified=advice.verification is not None,
+                in_one_plane=advice.in_one_plane,
+            ),
             run=starts,
         ),
         Statement(
@@ -149,13 +163,14 @@ def _of_motion(advice: Advice) -> list[Statement]:
         percent,
         single=advice.trust.kind != "statistics",
     )
+    when = seconds(advice.peak_time) if advice.peak_time > 0.0 else "the release"
     if error:
         found.append(
             Statement(
                 topic="Largest tilt",
                 grade="",
-                text=f"{advice.peak:.3g} α = {math.degrees(advice.response.peak_tilt):.3g}° at "
-                f"{seconds(advice.peak_time)}. {error}",
+                text=f"{advice.peak:.3g} α = {math.degrees(advice.response.peak_tilt):.3g}° at {when}. "
+                f"{error}",
                 run=f"{starts}, and the same by the {advice.other} model",
             )
         )
@@ -175,6 +190,16 @@ def _of_motion(advice: Advice) -> list[Statement]:
 def _of_scales(advice: Advice) -> list[Statement]:
     found = []
     scan = advice.scan
+    released = advice.case.initial is not None and advice.case.initial.tilt > 0.0
+    if math.isfinite(advice.uplift_factor) and not released:
+        found.append(
+            Statement(
+                topic="Uplift",
+                grade="",
+                text=words.uplift_words(advice.uplift_factor),
+                run="none: the condition of uplift at every sample of the record",
+            )
+        )
     if advice.moves or scan is not None:
         runs = "the run itself" if scan is None else _scan_run(advice)
         found.append(

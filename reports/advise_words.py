@@ -18,6 +18,10 @@ if TYPE_CHECKING:
 
 # a factor that planar analysis is off by is told only where the planar tilt is worth the name [alpha]
 _WORTH_A_RATIO = 1e-3
+# a difference in the largest tilt that is none
+_TINY = 1e-3
+# a couple that is rounding [weight x b]
+_NO_COUPLE = 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -46,7 +50,7 @@ def friction_words(demands: Demands, tan_alpha: float) -> str:
     if demands.slides:
         return (
             f"A friction of {given} is below b/h = {tan_alpha:g}: at rest the cylinder slides where it would "
-            "have uplifted, and nothing below happens."
+            "have uplifted, and none of what follows happens."
         )
     usual = f"{demands.friction_usual:.3g}"
     need = f"{demands.friction_needed:.3g} at most, and {usual} in 99 % of the time in motion"
@@ -67,6 +71,8 @@ def couple_words(demands: Demands, support: str) -> str:
     """Say what couple holds the cylinder in its place."""
     if support == "free":
         return "Open ground supplies no couple: nothing keeps the cylinder from rolling out of its place."
+    if demands.couple_in_radii < _NO_COUPLE:
+        return "In a motion without spin nothing rolls out, and the recess supplies no couple."
     return (
         f"To keep the cylinder from rolling out, the recess must supply a couple of up to "
         f"{demands.couple:.3g} kN m for each tonne of its mass ({demands.couple_in_radii:.3g} weight × b), "
@@ -133,7 +139,16 @@ def engine_words(found: Verification, peak: float) -> str:
     return f"{said} Its largest tilt is {found.peak_tilt:.3g} α against {peak:.3g} α."
 
 
-def trust_words(trust: Trust, peak_time: float, count: int, percent: float) -> str:
+def trust_words(
+    trust: Trust,
+    peak_time: float,
+    count: int,
+    percent: float,
+    *,
+    what: str = "largest tilt",
+    verified: bool = True,
+    in_one_plane: bool = False,
+) -> str:
     """Say whether to trust the trace or only statistics.
 
     Parameters
@@ -145,24 +160,40 @@ def trust_words(trust: Trust, peak_time: float, count: int, percent: float) -> s
         Perturbed members.
     percent : float
         By how much they differ.
+    what : str, optional
+        What happens at `peak_time`.
+    verified : bool, optional
+        Whether an engine has shown when the methods part.
+    in_one_plane : bool, optional
+        Whether the motion never leaves its plane.
     """
+    plane = (
+        " This motion stays in one plane and goes straight through upright; the slightest motion across it "
+        "goes round to the left or to the right instead, which no start here has tried."
+        if in_one_plane
+        else ""
+    )
+    return _trust(trust, peak_time, count, percent, what, verified) + plane
+
+
+def _trust(trust: Trust, peak_time: float, count: int, percent: float, what: str, verified: bool) -> str:
     if trust.kind == "trace":
         return (
             "Trust the trace to its end: neither the method nor "
             f"a {percent:g} % change of the data ({count} starts) makes it another one."
         )
     why = {
-        "methods": "reduced model and engine part there",
-        "data": f"{count} starts that differ by {percent:g} % are spread over half of the largest tilt there",
+        "methods": "reduced model and engine part there" + ("" if verified else ", as foretold"),
+        "data": f"{count} starts {percent:g} % off are spread over half of the largest tilt there",
     }[trust.because]
     if trust.kind == "peak":
         return (
-            f"Trust the trace until {seconds(trust.until)}, its largest tilt ({seconds(peak_time)}) "
+            f"Trust the trace until {seconds(trust.until)}, the {what} ({seconds(peak_time)}) "
             f"included; {why}. Of what follows trust statistics."
         )
     return (
-        f"Trust the trace until {seconds(trust.until)} and only statistics from then on, the largest tilt at "
-        f"{seconds(peak_time)} among them: {why}."
+        f"Trust the trace until {seconds(trust.until)} and only statistics from then on, those of the {what} "
+        f"(here at {seconds(peak_time)}) included: {why}."
     )
 
 
@@ -194,6 +225,13 @@ def planar_words(view: PlanarView, alpha: float) -> str:
         f"than both planes at {more}, and overturns alone at {alone}."
     )
     return f"{here} {near}"
+
+
+def uplift_words(factor: float) -> str:
+    """Say how far the shaking is from the uplift of a cylinder at rest; `factor` on it reaches that."""
+    if factor <= 1.0:
+        return f"{factor:.3g} times this shaking is enough to uplift the cylinder from rest."
+    return f"It takes {factor:.3g} times this shaking to uplift the cylinder from rest."
 
 
 def overturning_words(
@@ -262,10 +300,13 @@ def error_words(data: float, form: float, low: float, high: float, percent: floa
         if data >= abs(form) or math.isnan(form)
         else "the support: know whether it holds like a recess"
     )
-    said = (
-        f"Data {percent:g} % off give {low:.3g} to {high:.3g} α (90 % of the starts), an error of up to "
-        f"{_relative(data)}."
-    )
+    if math.isinf(data):
+        said = f"Data {percent:g} % off give {low:.3g} α to overturning (90 % of the starts)."
+    else:
+        said = (
+            f"Data {percent:g} % off give {low:.3g} to {high:.3g} α (90 % of the starts), an error of up to "
+            f"{_relative(data)}."
+        )
     if math.isfinite(form):
         said += (
             f" The other support (recess or open ground) would make {_signed(form)} {of}. The "
@@ -292,8 +333,12 @@ def _percent(part: float, whole: float) -> str:
 
 
 def _relative(value: float) -> str:
-    return f"{100.0 * value:.2g} %"
+    if abs(value) < _TINY:
+        return f"less than {100.0 * _TINY:g} %"
+    return f"{100.0 * value:.1f} %" if abs(value) < 0.1 else f"{100.0 * value:.0f} %"
 
 
 def _signed(value: float) -> str:
-    return f"{100.0 * value:+.2g} %"
+    if abs(value) < _TINY:
+        return "no difference"
+    return f"{100.0 * value:+.1f} %" if abs(value) < 0.1 else f"{100.0 * value:+.0f} %"

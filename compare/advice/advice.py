@@ -23,7 +23,7 @@ from .grades import (
     overall,
 )
 from .planar import PlanarView
-from .scales import ScaleScan
+from .scales import FELL, ScaleScan
 from .spread import HIGH, LOW, Spread
 from .verification import Verification
 
@@ -85,6 +85,11 @@ class Advice:
         return math.isfinite(self.response.uplift_time) and self.response.outcome != "failed"
 
     @property
+    def in_one_plane(self) -> bool:
+        """Whether the motion goes straight through the apex, as none out of its plane does."""
+        return self.moves and bool(self.response.problem.is_planar())
+
+    @property
     def overturned(self) -> bool:
         """Whether it overturns."""
         return bool(self.response.outcome == "overturned")
@@ -106,10 +111,16 @@ class Advice:
 
     @property
     def data_error(self) -> float:
-        """Relative distance of the 5 % or 95 % quantile of the members from the peak; NaN if unknown."""
+        """Relative distance of the 5 % or 95 % quantile of the members from the peak.
+
+        NaN if unknown, inf where more than 5 % of them overturn and the case does not.
+        """
         if self.spread is None or self.overturned or not self.peak > 0.0:
             return math.nan
-        return max(abs(self.spread.quantile(share) / self.peak - 1.0) for share in (LOW, HIGH))
+        low, high = (self.spread.quantile(share) for share in (LOW, HIGH))
+        if high >= FELL / self.case.cylinder.alpha:
+            return math.inf
+        return max(abs(low / self.peak - 1.0), abs(high / self.peak - 1.0))
 
     @property
     def form_error(self) -> float:
@@ -121,8 +132,12 @@ class Advice:
         if self.spread is None or self.overturned or not self.peak > 0.0:
             return math.nan
         if self.trust.kind != "statistics":
+            if self.other_response.outcome in ("failed", "overturned"):
+                return math.nan
             return float(self.other_response.peak_tilt / self.case.cylinder.alpha / self.peak - 1.0)
-        return self.spread.quantile(0.5, other=True) / self.spread.quantile(0.5) - 1.0
+        fell = FELL / self.case.cylinder.alpha
+        medians = [self.spread.quantile(0.5, other=other) for other in (True, False)]
+        return medians[0] / medians[1] - 1.0 if max(medians) < fell else math.nan
 
     @property
     def grades(self) -> dict[str, str]:
@@ -196,6 +211,7 @@ class Advice:
             },
             "data_error": self.data_error,
             "form_error": self.form_error,
+            "in_one_plane": self.in_one_plane,
             "planar": self.planar,
             "planar_kind": None if self.planar is None else self.planar.kind,
             "lowest_overturning": self.lowest_overturning,
