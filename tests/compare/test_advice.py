@@ -1,0 +1,229 @@
+"""What an advice rests on: demands, spread, scales, and the grades at their thresholds."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare.advice import Demands, advise, demands_of, planar_view, scan_scales, spread_of_starts
+from rockwobble.compare.advice.grades import (
+    BROKEN,
+    CHANCE,
+    NEAR,
+    grade_contact,
+    grade_engine,
+    grade_friction,
+    grade_overturning,
+    overall,
+    trust_of,
+)
+from rockwobble.compare.advice.planar import PlanarView
+from rockwobble.compare.advice.scales import uplift_factor
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+UPLIFT = 1e-6  # relative: either side of the exact threshold, far above rounding
+EDGE = 2.0 ** (1.0 / 12.0 / 32.0)  # five halvings of a twelfth of an octave
+
+STILL = Demands(
+    moving_time=10.0,
+    friction=0.5,
+    friction_needed=0.3,
+    friction_usual=0.2,
+    slip_from=math.nan,
+    slip_time=0.0,
+    slides=False,
+    couple=1.0,
+    couple_usual=0.5,
+    couple_in_radii=0.1,
+    least_normal_force=0.9,
+    largest_normal_force=2.0,
+    lost_from=math.nan,
+    lost_time=0.0,
+)
+
+
+def case(scale: float = 1.0, **fields) -> Case:
+    return Case("El Centro", PIER, el_centro_1940().scaled(scale), **fields)
+
+
+@pytest.fixture(scope="module")
+def advice():
+    return advise(case(), count=20)
+
+
+def test_demands_are_those_of_the_solution():
+    response = reduced.simulate(PIER, el_centro_1940(), friction=0.15)
+    found = demands_of(response)
+    assert found.slides
+    assert found.friction_needed == response.assumptions.largest_friction_needed > found.friction_usual > 0.1
+    assert found.slip_time == response.assumptions.breaches[0].duration > 0.0
+    assert found.couple == pytest.approx(9.81 * found.couple_in_radii * PIER.base_radius, rel=1e-12)
+    assert found.couple >= found.couple_usual > 0.0
+    assert found.moving_time == pytest.approx(53.45 - response.uplift_time, abs=0.02)
+    enough = demands_of(reduced.simulate(PIER, el_centro_1940(), friction=0.3))
+    assert (enough.slides, enough.slip_time) == (False, 0.0)
+
+
+def test_a_release_needs_no_friction_to_uplift():
+    start = InitialState(tilt=0.1, rolling_rate=0.5)
+    assert not demands_of(reduced.simulate(PIER, initial=start, duration=1.0, friction=0.1)).slides
+
+
+@pytest.mark.parametrize(
+    ("missing", "grade"), [(0.0, "good"), (10.0 * BROKEN * 0.99, "care"), (10.0 * BROKEN * 1.01, "bad")]
+)
+def test_short_lacks_want_care_and_long_ones_rule_the_model_out(missing, grade):
+    assert grade_friction(dataclasses.replace(STILL, slip_time=missing)) == grade
+    assert grade_contact(dataclasses.replace(STILL, lost_time=missing)) == grade
+    assert grade_friction(dataclasses.replace(STILL, slip_time=missing, slides=True)) == "bad"
+
+
+@pytest.mark.parametrize(
+    ("methods", "data", "peak", "expected"),
+    [
+        (math.inf, math.inf, 5.0, ("trace", 10.0, "")),
+        (10.0, 12.0, 5.0, ("trace", 10.0, "")),
+        (8.0, 9.0, 8.0, ("peak", 8.0, "methods")),
+        (9.0, 8.0, 8.01, ("statistics", 8.0, "data")),
+    ],
+)
+def test_trust_turns_on_what_comes_before_the_largest_tilt(methods, data, peak, expected):
+    trust = trust_of(methods, data, peak, 10.0)
+    assert (trust.kind, trust.until, trust.because) == expected
+
+
+@pytest.mark.parametrize(
+    ("fell", "lowest", "chance", "grade"),
+    [
+        (True, 1.0, 0.0, "bad"),
+        (False, NEAR * 0.99, 0.0, "care"),
+        (False, NEAR, CHANCE * 0.99, "good"),
+        (False, math.nan, CHANCE, "care"),
+        (False, math.nan, math.nan, "good"),
+    ],
+)
+def test_overturning_is_near_or_far(fell, lowest, chance, grade):
+    assert grade_overturning(fell, lowest, chance) == grade
+
+
+def test_an_engine_that_parts_early_rules_out_and_the_worst_grade_counts():
+    assert grade_engine("earlier", False) == "bad"
+    assert grade_engine("later", True) == "care"
+    assert grade_engine("in time", False) == "good"
+    assert overall(["good", "bad", "care"]) == "bad"
+    assert overall([]) == "good"
+
+
+@pytest.mark.parametrize("vertical", [False, True])
+def test_the_uplift_factor_is_the_threshold(vertical):
+    motion = el_centro_1940(vertical=vertical)
+    factor = uplift_factor(Case("x", PIER, motion))
+    assert math.isnan(reduced.simulate(PIER, motion.scaled(factor * (1.0 - UPLIFT))).uplift_time)
+    assert math.isfinite(reduced.simulate(PIER, motion.scaled(factor * (1.0 + UPLIFT))).uplift_time)
+    assert uplift_factor(Case("x", PIER, duration=1.0)) == math.inf
+
+
+def test_scales_hold_what_single_runs_give():
+    motion = GroundMotion(el_centro_1940().acceleration[:1000], 0.01)
+    scan = scan_scales(Case("x", PIER, motion))
+    assert scan.factors[scan.here] == 1.0
+    assert scan.peaks["3d"][scan.here] == reduced.simulate(PIER, motion).peak_tilt
+    in_y = reduced.simulate(PIER, motion, model="planar", plane=0.5 * math.pi).peak_tilt
+    assert scan.peaks["planar_y"][scan.here] == in_y
+    for lowest, options in (
+        (scan.lowest["3d"], {}),
+        (scan.lowest["planar_x"], {"model": "planar", "plane": 0.0}),
+    ):
+        assert reduced.simulate(PIER, motion.scaled(lowest), **options).outcome == "overturned"
+        assert reduced.simulate(PIER, motion.scaled(lowest / EDGE), **options).outcome != "overturned"
+    assert scan_scales(Case("x", PIER, GroundMotion(np.zeros((9, 2)), 0.1))) is None
+
+
+def test_a_release_has_no_planar_analysis():
+    motion = GroundMotion(el_centro_1940().acceleration[:500], 0.01)
+    scan = scan_scales(Case("x", PIER, motion, InitialState(tilt=0.05, rolling_rate=0.3)))
+    assert list(scan.peaks) == ["3d"]
+    assert planar_view(scan) is None
+    assert planar_view(None) is None
+
+
+@pytest.mark.parametrize(
+    ("spatial", "x", "y", "kind"),
+    [
+        (0.1, 0.05, 0.099, "unconservative"),
+        (0.1, 0.05, 0.0999, "equal"),
+        (0.1, 0.102, 0.0, "conservative"),
+        (0.1, 0.0, 0.0, "unconservative"),
+        (0.0, 0.0, 0.0, "unknown"),
+        (math.nan, 0.1, 0.0, "unknown"),
+    ],
+)
+def test_the_kind_of_planar_analysis(spatial, x, y, kind):
+    view = PlanarView(
+        spatial=spatial,
+        planar_x=x,
+        planar_y=y,
+        neighbours=0,
+        larger=math.nan,
+        missed=math.nan,
+        lowest_spatial=math.nan,
+        lowest_planar=math.nan,
+    )
+    assert view.kind == kind
+
+
+def test_the_same_seed_gives_the_same_starts(advice):
+    def again(seed: int) -> np.ndarray:
+        models = (advice.model, advice.other)
+        runs = (advice.response, advice.other_response)
+        return spread_of_starts(advice.case, *runs, models=models, count=20, seed=seed).peaks
+
+    assert np.array_equal(advice.spread.peaks, again(1))
+    assert not np.array_equal(advice.spread.peaks, again(2))
+
+
+def test_the_error_of_the_largest_tilt_is_that_of_the_members(advice):
+    low, high = (np.quantile(advice.spread.peaks, share, method="inverted_cdf") for share in (0.05, 0.95))
+    assert advice.data_error == pytest.approx(max(high / advice.peak - 1.0, 1.0 - low / advice.peak))
+    assert advice.trust.kind == "statistics"
+    ratio = advice.spread.quantile(0.5, other=True) / advice.spread.quantile(0.5)
+    assert advice.form_error == pytest.approx(ratio - 1.0)
+
+
+def test_a_cylinder_at_rest_needs_nothing():
+    found = advise(case(0.5), count=20)
+    assert not found.moves
+    assert found.grades == {}
+    assert found.spread is None
+    assert found.uplift_factor == pytest.approx(2.0 * uplift_factor(case()))
+    assert found.lowest_overturning > found.uplift_factor
+
+
+def test_what_a_falling_cylinder_asks_is_no_demand():
+    found = advise(case(4.0), count=20)
+    assert found.overturned
+    assert math.isinf(found.response.assumptions.largest_friction_needed)
+    assert found.demands.friction_needed < 0.5
+    assert math.isnan(found.data_error)
+    assert found.grades["overturning"] == "bad"
+    assert found.model_grade != "bad"
+
+
+def test_open_ground_asks_for_the_rolling_model():
+    found = advise(
+        Case("x", PIER, initial=InitialState(0.05, rolling_rate=0.5), duration=2.0), support="free"
+    )
+    assert (found.model, found.other) == ("rolling", "recess")
+    assert found.demands.couple == 0.0
+    assert found.trust.kind == "trace"
+
+
+def test_bad_numbers_are_refused():
+    for options in ({"count": 5}, {"support": "glued"}, {"count": 10**6}):
+        with pytest.raises(ValueError, match="must be"):
+            advise(case(), **options)
