@@ -207,3 +207,31 @@ def test_sinking_into_a_wall_is_a_breach() -> None:
     assert breach is not None
     assert (breach.index, breach.reason) == (3, "the cylinder sank into a wall")
     assert first_breach(state, np.zeros(5), body, 9.81, guided=False) is None
+
+
+def test_a_wall_that_pushes_the_cylinder_down_is_no_joint() -> None:
+    run = ring(PIER, rolling_rate=3.0, duration=1.0, friction=3.0, sample_step=1e-3)
+    # ground and walls together push it down by its weight for some milliseconds
+    assert run.contact_force[:, 2].min() < -0.5
+    assert "the cylinder touched a wall" in run.message
+    assert "joint" not in run.message
+
+
+@pytest.mark.parametrize(
+    ("extreme", "outcome", "said"),
+    [
+        # contact so stiff, or so elastic, that it gains energy
+        ({"contact_time_constant": 1e-4}, "failed", "the engine gained energy"),
+        ({"contact_damping_ratio": 0.01}, "failed", "the engine gained energy"),
+        # no friction of the ground: the walls alone hold it
+        ({"friction": 0.0}, "completed", "the cylinder touched a wall from"),
+        ({"rolling_rate": 30.0}, "completed", "the cylinder left the ground at"),
+        ({"ring_friction": 10.0, "rolling_rate": 3.0}, "completed", "the cylinder touched a wall from"),
+        # the coarsest step that is let through
+        ({"time_step": 1e-3}, "completed", "contact took"),
+    ],
+)
+def test_a_ring_at_an_extreme_says_what_happened(extreme: dict[str, Any], outcome: str, said: str) -> None:
+    run = ring(SQUAT, duration=1.2, **{"friction": 3.0, **extreme})
+    assert run.outcome == outcome
+    assert said in run.message
