@@ -225,15 +225,39 @@ def _median(values: Iterable[float]) -> float:
 
 def main() -> None:
     """Print the table."""
+    import argparse
     import sys
 
+    parser = argparse.ArgumentParser(
+        prog="python -m rockwobble.compare.ring_losses",
+        description="What a real recess costs, against clearance, inclination, facets and friction. "
+        "Example: --turns 1 --tan-alpha 1",
+    )
+    parser.add_argument(
+        "--turns",
+        type=int,
+        choices=range(1, len(TURNS) + 1),
+        default=len(TURNS),
+        help="azimuths by which each case is turned, two to three minutes on two cores each (%(default)s)",
+    )
+    parser.add_argument(
+        "--tan-alpha",
+        type=float,
+        action="append",
+        choices=[tan_alpha for tan_alpha, _ in _INTENSITIES],
+        help="slenderness, may be repeated (default: all)",
+    )
+    given = parser.parse_args()
+    chosen = [each for each in _INTENSITIES if each[0] in (given.tan_alpha or [each[0]])]
+    turns = TURNS[: given.turns]
     rows: list[RingRow] = []
-    for turn in TURNS:
+    for turn in turns:
         print(f"turned by {turn:g} deg", file=sys.stderr)
-        rows += measure(ring_cases(math.radians(turn)), ring_runs())
+        rows += measure(ring_cases(math.radians(turn), intensities=chosen), ring_runs())
+    azimuths = ", ".join(f"{turn:g}" for turn in turns)
     print(
         "MuJoCo, R = 6 m, friction of the ground 3. A ring has its default settings but for the one named.\n"
-        f"Medians of {len(TURNS)} runs, turned about the vertical. lost: of the largest energy reached.\n"
+        f"Medians of runs turned by {azimuths} deg about the vertical. lost: of the largest energy reached.\n"
         "rolled: how far from its place the cylinder would come down, largest and at the end.\n"
         "recess, rolling: RMS of the tilt difference over that of the model's tilt."
     )
