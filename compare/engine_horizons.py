@@ -23,7 +23,7 @@ from .console import parse_plain, show, tell
 from .execution import Job, ProgressCallback, simulate, simulate_all
 from .horizon import agreement_horizon
 from .predicted_horizon import estimated_error, predict_horizon, verdict
-from .traces import make_pair
+from .traces import Pair, make_pair
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -35,6 +35,7 @@ _OWN = {"guided": "recess", "free": "rolling"}
 CARRIED = 0.3  # weights
 _BETWEEN = 0.1  # of alpha; closer to the apex the force changes by weights from one sample to the next
 _AFTER = 0.1  # [s]
+_SAME = 1e-3  # of alpha: forces are those of the same motion, which traces about to part no longer are
 
 
 def cases() -> tuple[Case, ...]:
@@ -137,8 +138,13 @@ def _row(case: Case, traces: dict[str, Any], support: str, model: str) -> dict[s
         "foretold": prediction.length,
         "reason": prediction.reason,
         "agreed": verdict(horizon.end - start, horizon.parted, prediction.length, prediction.reason),
-        "force": force_error(case, reference, trial, horizon.end),
+        "force": force_error(case, reference, trial, _same_until(pair)),
     }
+
+
+def _same_until(pair: Pair) -> float:
+    beyond = np.flatnonzero(np.abs(pair.tilt_difference) > _SAME)
+    return float(pair.time[beyond[0]]) if len(beyond) else math.inf
 
 
 def force_error(case: Case, model: Any, trial: Any, end: float) -> float:
@@ -176,7 +182,7 @@ def main() -> None:
         formats,
         "times in s from uplift, tilts of passes in rad, rms up to the horizon in alpha; close pass: the "
         "first of the engine's own model below the contact resolution; force: largest difference of the "
-        "contact force between passes up to the horizon, over the force",
+        "contact force between passes over the force, until the tilts differ by 0.1 % of alpha",
     )
 
 
