@@ -6,7 +6,7 @@ from typing import Any
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, findings
 
-from .findings import small
+from .findings import FOREIGN, small
 
 _LISTED = 10
 
@@ -40,7 +40,11 @@ def budget_lines(summary: Any) -> list[str]:
 
 
 def parting_lines(summary: Any) -> list[str]:
-    """Return whether traces parted when they had to, those that did so too early by name."""
+    """Return whether traces parted when they had to, those that did so too early by name.
+
+    Of trajectories from elsewhere nobody can foretell that: the prediction rests on the errors of an engine.
+    """
+    summary = summary[summary["support"] != FOREIGN]
     counts = summary["parting"].value_counts()
     words = ", ".join(f"{counts[word]} {word}" for word in counts.index if word)
     lines = [

@@ -10,7 +10,9 @@ PLACES = {
     "guided": "In an ideal recess (guided)",
     "free": "On open ground (free)",
     "ring": "In a recess of walls (ring)",
+    "foreign": "Brought from elsewhere (foreign)",
 }
+FOREIGN = "foreign"  # support of what was not run here: nothing is known of its contact and its errors
 TOUCHED = "touched a wall"  # in the message of a run
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -60,6 +62,8 @@ def _reason(row: Any, length: float) -> str:
             "and each touch takes energy, which neither model knows; this is a difference of support, not of "
             "accuracy"
         )
+    if row.support == FOREIGN:
+        return _foreign_reason(row)
     by_pass = getattr(row, "predicted_by", "pass") == "pass"
     if by_pass and foretold < length and row.agreement_horizon >= foretold:
         return (
@@ -72,6 +76,16 @@ def _reason(row: Any, length: float) -> str:
             f"{small(row.closest_pass)} alpha of the apex; near passes amplify what small difference there is"
         )
     return "without a pass by the apex, so that it is an error of the method and not of chance"
+
+
+def _foreign_reason(row: Any) -> str:
+    differs = "the body, its start, the ground motion or the method"
+    if math.isfinite(row.closest_pass):
+        return (
+            f"the closest pass until then comes within {small(row.closest_pass)} alpha of the apex; near "
+            f"passes amplify what small difference there is in {differs}"
+        )
+    return f"without a pass by the apex, so that not chance but {differs} differs"
 
 
 def _peaks(row: Any) -> str:

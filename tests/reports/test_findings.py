@@ -6,6 +6,7 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
+from rockwobble.reports.budget_words import parting_lines
 from rockwobble.reports.findings import finding, headline, small
 
 LENGTH = 50.0
@@ -59,6 +60,25 @@ def test_a_parting_and_its_reason_follow_from_the_numbers(values, words):
     text = finding(row(**values), LENGTH)
     assert "for 20.0 s from uplift or release (7 passes by the apex), then they part" in text
     assert words in text
+
+
+def test_of_a_trajectory_from_elsewhere_nothing_is_said_about_contact():
+    unknown = {"support": "foreign", "engine": "table", "contact_resolution": math.nan}
+    text = finding(row(**unknown, predicted_by=""), LENGTH)
+    assert "table foreign stays within 1 % of alpha of the recess model for 20.0 s" in text
+    assert "closest pass until then comes within 0.003 alpha of the apex" in text
+    none = finding(row(**unknown, predicted_by="", closest_pass=math.nan), LENGTH)
+    assert "not chance but the body, its start, the ground motion or the method differs" in none
+    assert "resolve" not in text + none
+    assert headline(table(row(**unknown)), LENGTH).startswith(
+        "Brought from elsewhere (foreign), table follows"
+    )
+
+
+def test_a_trajectory_from_elsewhere_cannot_part_too_early():
+    early = {"case": "El Centro", "run": "table foreign", "parting": "earlier"}
+    assert parting_lines(table(row(**early, support="foreign"))) == []
+    assert "a finding" in parting_lines(table(row(**early)))[0]
 
 
 def test_peaks_are_told_apart_only_where_they_differ():
