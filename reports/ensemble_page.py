@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .ensemble_figure import ensemble_figure
+from .template import render
 
 if TYPE_CHECKING:
     from rockwobble.compare import Ensemble
@@ -12,17 +13,9 @@ if TYPE_CHECKING:
 
 def ensemble_page(found: Ensemble) -> str:
     """Return the page as HTML."""
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("rockwobble.reports", "templates"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     picture = ensemble_figure(found).decode()
-    return environment.get_template("ensemble.html.j2").render(
+    return render(
+        "ensemble.html.j2",
         picture=picture[picture.index("<svg") :],
         about=found.about,
         tables=[

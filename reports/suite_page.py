@@ -16,6 +16,7 @@ from .problem import describe
 from .run_remarks import counted_remarks, remark_lines
 from .suite_choice import group_of
 from .suite_table import suite_headline, worst_first
+from .template import PLOT_CONFIG, render
 from .thinning import kept_samples
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 _ALL_POINTS = 150_000
 # more are not to be seen, fewer are no curve
 _MOST_POINTS, _FEWEST_POINTS = 1500, 120
-_CONFIG = {"responsive": True, "displaylogo": False, "modeBarButtonsToRemove": ["select2d", "lasso2d"]}
 
 
 def suite_page(comparison: Comparison, command: str = "") -> str:
@@ -39,28 +39,18 @@ def suite_page(comparison: Comparison, command: str = "") -> str:
     command : str, optional
         What made it, for the reader who wants to make it again.
     """
-    import jinja2
-    from plotly.offline import get_plotlyjs
-
     from rockwobble.compare import SUMMARY_COLUMNS
 
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("rockwobble.reports", "templates"),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
     views = {view.case.name: view for view in case_views(comparison)}
     lengths = {name: view.case.length for name, view in views.items()}
     overview = worst_first(comparison.summary, lengths)
     figures = {name: list(_figures(view)) for name, view in views.items()}
     points = _points_of_a_line(figures)
-    return environment.get_template("suite.html.j2").render(
+    return render(
+        "suite.html.j2",
         command=command,
-        plotly_js=get_plotlyjs(),
         plot_template=_template(),
-        plot_config=_json(_CONFIG),
+        plot_config=_json(PLOT_CONFIG),
         headline=suite_headline(comparison.summary),
         budget=[
             *budget_lines(comparison.summary),
