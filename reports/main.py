@@ -18,6 +18,8 @@ from .simulate_command import simulate
 from .spectrum_command import spectrum
 from .sweep_command import sweep
 from .terminal import BAD_INPUT, INTERRUPTED, complain
+from .tradeoff_command import tradeoff
+from .validity_command import validity
 from .view_command import view
 
 app = typer.Typer(
@@ -39,7 +41,9 @@ app.command(epilog="Example: rockwobble report rockwobble-out")(report)
 app.command(epilog="Example: rockwobble view --scale 2 --support free")(view)
 app.command(epilog="Example: rockwobble ensemble --synthetic 3 --members 40 --engine mujoco")(ensemble)
 app.command(epilog="Example: rockwobble check --only equations --only conserved")(check)
+app.command(epilog="Example: rockwobble validity --quick --out validity")(validity)
 app.command(epilog="Example: rockwobble figures --out paper")(figures)
+app.command(epilog="Example: rockwobble tradeoff --quick --out tradeoff")(tradeoff)
 
 # typer brings its own click in some versions and imports click in others: one base class, two homes
 _USAGE_ERROR: Any = next(base for base in typer.BadParameter.__mro__ if base.__name__ == "ClickException")

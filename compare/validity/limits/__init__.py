@@ -39,4 +39,20 @@ def limits_of(tables: Tables) -> list[Limit]:
     return [limit(tables) for limit in LIMITS]
 
 
-__all__ = ["LIMITS", "Limit", "Tables", "contrasts", "limits_of"]
+__all__ = [
+    "LIMITS",
+    "Limit",
+    "Tables",
+    "contrasts",
+    "couple",
+    "distribution",
+    "friction",
+    "horizon",
+    "limits_of",
+    "loss_of_contact",
+    "model_form",
+    "peak_tilt",
+    "real_recess",
+    "soft_contact",
+    "vertical",
+]

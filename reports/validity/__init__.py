@@ -1,0 +1,1 @@
+"""The report on the limits of the two-degree-of-freedom model."""

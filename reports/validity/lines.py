@@ -1,0 +1,210 @@
+"""The pictures of what the engine did: verification, slip, rings, contact, horizons, distributions."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .picture import Array, LinePicture, Series
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_SMALLEST = 1e-9  # what a logarithmic axis shows of nothing
+
+
+def verification_picture(table: pd.DataFrame) -> LinePicture:
+    """Return how well the engine tells the models apart."""
+    models = table.pivot_table("turn", ["tan_alpha", "release", "spin"], "model", dropna=False)
+    apart = (models["recess"] - models["rolling"]).abs()
+    series = []
+    for support, rows in table.groupby("support", sort=False):
+        keys = rows.set_index(["tan_alpha", "release", "spin"]).index
+        x = np.degrees(apart.reindex(keys).to_numpy(dtype=np.float64))
+        y = np.degrees(np.abs((rows["engine_turn"] - rows["turn"]).to_numpy(dtype=np.float64)))
+        model = rows["model"].iloc[0]
+        series.append(Series(name=f"{support} against {model}", x=x, y=np.maximum(y, _SMALLEST), marks=True))
+    return LinePicture(
+        name="verification",
+        title="The engine tells the models apart",
+        caption="Each mark is a release: how far the engine's angle of turn is off that of its own model, "
+        "over how "
+        "far the two models are apart. Below the line the engine decides between them.",
+        x_label="|recess − rolling| [deg]",
+        y_label="|engine − its model| [deg]",
+        series=series,
+        log_x=True,
+        log_y=True,
+        diagonal="no telling apart",
+    )
+
+
+def slip_picture(table: pd.DataFrame) -> LinePicture:
+    """Return slip over friction."""
+    series = [
+        Series(
+            name=f"tan α = {tan_alpha:g} (needs {rows['needed'].iloc[0]:.3f})",
+            x=_of(rows, "share"),
+            y=np.maximum(_of(rows, "slip"), _SMALLEST),
+        )
+        for tan_alpha, rows in table.sort_values("share").groupby("tan_alpha")
+    ]
+    return LinePicture(
+        name="slip",
+        title="Slip of the engine where friction is short",
+        caption="Distance over which the contact slips in one period of free response, over the friction "
+        "as a share "
+        "of what the recess model says is needed.",
+        x_label="friction / friction needed [-]",
+        y_label="slip / b [-]",
+        series=series,
+        log_y=True,
+    )
+
+
+def ring_pictures(table: pd.DataFrame) -> list[LinePicture]:
+    """Return peak tilt and displacement over slenderness, a line for each recess."""
+    shaken = table[table["motion"] != "free response"]
+    peak = (shaken["peak"] / shaken["recess_peak"] - 1.0).abs()
+    shaken = shaken.assign(off=100.0 * peak, displaced=shaken["rolled_out"])
+    return [
+        LinePicture(
+            name="ring-peak",
+            title="Peak tilt in a real recess",
+            caption="How far the peak tilt in a ring of walls is off that of the ideal recess, under El "
+            "Centro at 1.5 "
+            "g tan α, largest of the runs.",
+            x_label="tan α [-]",
+            y_label="difference [%]",
+            series=_rings(shaken, "off"),
+            log_y=True,
+        ),
+        LinePicture(
+            name="ring-place",
+            title="Leaving its place",
+            caption="How far from its place the cylinder would come down, at most, in the same runs.",
+            x_label="tan α [-]",
+            y_label="rolled out / b [-]",
+            series=_rings(shaken, "displaced"),
+            log_y=True,
+        ),
+    ]
+
+
+def _rings(table: pd.DataFrame, name: str) -> list[Series]:
+    series = []
+    for _, rows in table.groupby(["clearance", "inclination"]):
+        worst = rows.groupby("tan_alpha")[name].max()
+        clearance, inclination = float(rows["clearance"].iloc[0]), float(rows["inclination"].iloc[0])
+        label = {0.0: "ideal recess", np.inf: "open ground"}.get(clearance, f"{clearance:g} b")
+        if inclination:
+            label += f", {inclination:g} rad"
+        series.append(
+            Series(
+                name=label,
+                x=worst.index.to_numpy(dtype=np.float64),
+                y=np.maximum(worst.to_numpy(dtype=np.float64), 1e-6),
+            )
+        )
+    return series
+
+
+def contact_pictures(table: pd.DataFrame) -> list[LinePicture]:
+    """Return peak tilt and energy lost over the time constant of contact."""
+    off = 100.0 * (table["peak"] / table["recess_peak"] - 1.0).abs()
+    table = table.assign(off=off, lost=100.0 * table["loss"].abs(), ms=1e3 * table["time_constant"])
+    groups = [
+        (f"tan α = {tan_alpha:g}, damping {damping:g}", rows.sort_values("ms"))
+        for (tan_alpha, damping), rows in table.groupby(["tan_alpha", "damping"])
+    ]
+    return [
+        LinePicture(
+            name=f"contact-{name}",
+            title=title,
+            caption=caption,
+            x_label="time in which contact takes up a blow, at R = 6 m [ms]",
+            y_label=label,
+            series=[
+                Series(name=words, x=_of(rows, "ms"), y=np.maximum(_of(rows, column), 1e-6))
+                for words, rows in groups
+            ],
+            log_x=True,
+            log_y=True,
+        )
+        for name, title, caption, label, column in (
+            (
+                "peak",
+                "Peak tilt with contact that gives",
+                "How far the peak tilt under El Centro at 2 g tan α is off that of the recess model.",
+                "difference [%]",
+                "off",
+            ),
+            (
+                "loss",
+                "Energy that contact takes",
+                "Energy lost in a pass of free response, over the energy of the release.",
+                "lost per pass [%]",
+                "lost",
+            ),
+        )
+    ]
+
+
+def horizon_picture(table: pd.DataFrame) -> LinePicture:
+    """Return agreement measured over agreement foretold."""
+    series = [
+        Series(
+            name=f"{support} against {reference}",
+            x=_of(rows, "predicted_horizon"),
+            y=_of(rows, "agreement_horizon"),
+            marks=True,
+        )
+        for (support, reference), rows in table.groupby(["support", "reference"])
+    ]
+    return LinePicture(
+        name="horizon",
+        title="How long traces agree",
+        caption="Time from uplift until the tilts differ by more than 1 % of α, over the time that the "
+        "reduced models "
+        "foretell. Runs that agree to their end are at the end.",
+        x_label="foretold [s]",
+        y_label="measured [s]",
+        series=series,
+        diagonal="as foretold",
+    )
+
+
+def distribution_pictures(table: pd.DataFrame) -> list[LinePicture]:
+    """Return the distributions of peak tilt, one picture for each level."""
+    pictures = []
+    for level, members in table.groupby("level"):
+        series = []
+        for method, rows in members.groupby("method", sort=False):
+            known = rows[rows["peak"].notna()]
+            standing = np.sort(_of(known[known["outcome"] != "overturned"], "peak"))
+            series.append(
+                Series(
+                    name=str(method),
+                    x=np.concatenate([[0.0], standing]),
+                    y=np.arange(len(standing) + 1) / max(len(known), 1),
+                    steps=True,
+                )
+            )
+        pictures.append(
+            LinePicture(
+                name=f"distribution-{level:g}",
+                title=f"Peak tilt of {members['motion'].nunique()} records at {level:g} g tan α",
+                caption="Share of the records whose peak tilt is at most that of the axis; what a curve "
+                "lacks to 1 "
+                "overturns.",
+                x_label="peak tilt / α [-]",
+                y_label="share of the records [-]",
+                series=series,
+            )
+        )
+    return pictures
+
+
+def _of(table: pd.DataFrame, name: str) -> Array:
+    return table[name].to_numpy(dtype=np.float64)

@@ -1,0 +1,162 @@
+"""The maps of the report: over release and spin, and over size and intensity."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from .picture import Array, MapPanel, MapPicture
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+_PANELS = 4
+_SPIN, _RELEASE = "rolling rate / that of steady wobble [-]", "tilt of release / α [-]"
+_SIZE, _INTENSITY = "R [m]", "peak resultant / (g tan α) [-]"
+
+
+def free_maps(table: pd.DataFrame) -> dict[str, MapPicture]:
+    """Return the maps of free response by name."""
+    turn = 100.0 * np.abs(table["rolling_turn"] / table["turn"] - 1.0)
+    period = 100.0 * np.abs(table["rolling_period"] / table["period"] - 1.0)
+    need = table["friction"] / table["tan_alpha"]
+    return {
+        "turn": MapPicture(
+            name="free-turn",
+            title="Angle of turn from tilt maximum to next maximum",
+            caption="How far the angle of turn of the rolling model (open ground) is off that of the "
+            "recess model, "
+            "in per cent.",
+            value_label="difference [%]",
+            log=True,
+            **_free(table, turn),
+        ),
+        "period": MapPicture(
+            name="free-period",
+            title="Period from tilt maximum to next maximum",
+            caption="How far the period of the rolling model is off that of the recess model, in per cent.",
+            value_label="difference [%]",
+            log=True,
+            **_free(table, period),
+        ),
+        "friction": MapPicture(
+            name="free-friction",
+            title="Friction needed in free response",
+            caption="Largest horizontal over normal force within one period, over tan α.",
+            value_label="friction / tan α [-]",
+            **_free(table, need.replace(np.inf, np.nan)),
+        ),
+    }
+
+
+def shaken_maps(table: pd.DataFrame) -> dict[str, MapPicture]:
+    """Return the maps under shaking by name."""
+    stands = (table["recess"] < table["overturning"] * (1.0 - 1e-9)) & (table["recess"] > 0.0)
+
+    def off(name: str) -> pd.Series[float]:
+        both = stands & (table[name] < table["overturning"] * (1.0 - 1e-9))
+        difference: pd.Series[float] = 100.0 * (table[name] / table["recess"] - 1.0).abs()
+        return difference.where(both)
+
+    grey = "Grey: no uplift, or it falls in one of the two."
+    several = len(table["motion"].unique()) > 1
+    records, worst = ("Median of the records. ", "Largest of the records. ") if several else ("", "")
+    need = (table["friction"] / table["tan_alpha"]).replace(np.inf, np.nan)
+    return {
+        "rolling": MapPicture(
+            name="shaken-rolling",
+            title="Peak tilt, recess against open ground",
+            caption="How far the peak tilt of the rolling model is off that of the recess model. "
+            f"{records}{grey}",
+            value_label="difference [%]",
+            log=True,
+            smallest=0.1,
+            **_shaken(table, off("rolling"), "median"),
+        ),
+        "twin": MapPicture(
+            name="shaken-twin",
+            title="Peak tilt, the model against itself",
+            caption="How far the peak tilt of the recess model moves if the record is 0.1 % stronger: no "
+            "model can be "
+            f"asked for more. {records}{grey}",
+            value_label="difference [%]",
+            log=True,
+            smallest=0.1,
+            **_shaken(table, off("twin"), "median"),
+        ),
+        "vertical": MapPicture(
+            name="shaken-vertical",
+            title="Peak tilt with and without the vertical component",
+            caption="How far the vertical component of El Centro moves the peak tilt of the recess model. "
+            f"{grey}",
+            value_label="difference [%]",
+            log=True,
+            smallest=0.1,
+            **_shaken(table[table["vertical"].notna()], off("vertical"), "median"),
+        ),
+        "friction": MapPicture(
+            name="shaken-friction",
+            title="Friction needed under shaking",
+            caption=f"Largest horizontal over normal force, over tan α. {worst}Grey: no uplift, it falls, "
+            "or no "
+            "friction is enough because contact is lost.",
+            value_label="friction / tan α [-]",
+            log=True,
+            smallest=0.1,
+            **_shaken(table, need, "max"),
+        ),
+        "normal": MapPicture(
+            name="shaken-normal",
+            title="Least normal force under shaking",
+            caption="Below zero the ground would have to pull: contact is lost. "
+            + worst.replace("Largest", "Smallest")
+            + "Grey: no uplift, or it falls.",
+            value_label="least normal force [weights]",
+            **_shaken(table, table["least_normal"], "min"),
+        ),
+        "couple": MapPicture(
+            name="shaken-couple",
+            title="Couple that the recess must supply under shaking",
+            caption=f"Largest couple that keeps the cylinder from rolling out. {worst}Grey: no uplift, or "
+            "it falls.",
+            value_label="couple / (weight × b) [-]",
+            **_shaken(table, table["couple"], "max"),
+        ),
+    }
+
+
+def _free(table: pd.DataFrame, values: pd.Series[float]) -> dict[str, Any]:
+    return {
+        "x_label": _SPIN,
+        "y_label": _RELEASE,
+        "panels": _panels(table.assign(shown=values), "spin", "release", "max"),
+    }
+
+
+def _shaken(
+    table: pd.DataFrame, values: pd.Series[float], over: Literal["median", "max", "min"]
+) -> dict[str, Any]:
+    return {
+        "x_label": _SIZE,
+        "y_label": _INTENSITY,
+        "panels": _panels(table.assign(shown=values), "semidiagonal", "intensity", over),
+    }
+
+
+def _panels(
+    table: pd.DataFrame, x: str, y: str, over: Literal["median", "max", "min"]
+) -> tuple[MapPanel, ...]:
+    """Return the maps of some slendernesses, the first and the last among them."""
+    every = np.unique(table["tan_alpha"])
+    chosen = every[np.unique(np.linspace(0, len(every) - 1, _PANELS).round().astype(int))]
+    panels = []
+    for tan_alpha in chosen:
+        cells = table[table["tan_alpha"] == tan_alpha].pivot_table("shown", y, x, aggfunc=over, dropna=False)
+        values: Array = cells.to_numpy(dtype=np.float64)
+        panels.append(
+            MapPanel(
+                title=f"tan α = {tan_alpha:g}", x=list(cells.columns), y=list(cells.index), values=values
+            )
+        )
+    return tuple(panels)
