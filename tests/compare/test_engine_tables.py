@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from rockwobble import multibody
 from rockwobble.compare import convergence, engine_horizons, engine_settings
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
@@ -65,3 +67,23 @@ def test_help_answers(name: str) -> None:
     command = [sys.executable, "-m", f"rockwobble.compare.{name}", "--help"]
     answer = subprocess.run(command, capture_output=True, text=True, check=True)
     assert f"rockwobble.compare.{name}" in answer.stdout
+
+
+def test_settings_are_measured_on_a_record_that_is_turned() -> None:
+    one, three = engine_settings.cases(), engine_settings.cases(3)
+    assert [case.motion is None for case in one] == [False] * 2 + [True] * 3
+    assert [case.motion is None for case in three] == [False] * 6 + [True] * 3
+    assert {case.name for case in one} < {case.name for case in three}
+    peaks = [case.motion.acceleration[:, 0].max() for case in three[:3] if case.motion is not None]
+    assert len(set(peaks)) == 3
+
+
+def test_forces_are_compared_between_passes_while_the_motion_is_the_same() -> None:
+    case = Case("release", PIER, None, RELEASE, 0.5)
+    model = convergence.reference(case, "guided")
+    run = multibody.simulate(PIER, initial=RELEASE, duration=0.5)
+    # 0.4 % in free response at worst; a force that is 2 % off is seen
+    assert engine_horizons.force_error(case, model, run, np.inf) < 4e-3
+    wrong = replace(run, contact_force=1.02 * run.contact_force)
+    assert engine_horizons.force_error(case, model, wrong, np.inf) == pytest.approx(0.02, abs=4e-3)
+    assert engine_horizons.force_error(case, model, wrong, 0.05) == 0.0
