@@ -153,7 +153,7 @@ def force_error(case: Case, model: Any, trial: Any, end: float) -> float:
     Of the normal force over the normal force, and of the horizontal one over the whole. Counted are samples
     between passes (tilt above a tenth of alpha, a tenth of a second after the uplift) as long as the
     ground of the model carries `CARRIED` of the weight: where a cylinder falls it goes to zero, and soon
-    needs more friction than there is.
+    needs more friction than there is. NaN if no sample counts.
     """
     count = min(len(model.time), len(trial.time)) - 1  # the last sample of a fall stands at its own time
     time, expected = model.time[:count], model.contact_force[:count]
@@ -165,7 +165,7 @@ def force_error(case: Case, model: Any, trial: Any, end: float) -> float:
     difference = (trial.contact_force[:count] - expected)[between]
     size = np.linalg.norm(expected[between], axis=1)
     parts = (np.abs(difference[:, 2]) / normal[between], np.hypot(*difference[:, :2].T) / size)
-    return float(np.max(parts, initial=0.0))
+    return float(np.max(parts)) if between.any() else math.nan
 
 
 def main() -> None:

@@ -261,7 +261,7 @@ def main() -> None:
         measure(variants(given.engine), turns=given.turns, progress=tell),
         "Error of the tilt at equal cost",
         formats | dict.fromkeys(errors, ".1e"),
-        "time step at 6 m in s; shaken: mean RMS over that of the model; released: largest, in alpha; - failed",
+        "time step at 6 m in s; shaken: RMS over that of the model; released: largest, in alpha; - failed",
     )
 
 
