@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from .findings import small
-
 if TYPE_CHECKING:
     from rockwobble.models import Case, Run
 
@@ -34,12 +32,12 @@ def budget_of_run(case: Case, run: Run, model: str) -> list[str]:
     rms = {part: budget.rms(part) for part in _PARTS}
     lines = [
         f"What the difference is made of (RMS in alpha until {budget.covered:.3g} s, 80 % of the agreement):",
-        f"  {'whole':12} {small(budget.rms('whole')):>8}  engine minus {model}",
+        f"  {'whole':12} {budget.rms('whole'):8.1e}  engine minus {model}",
     ]
-    lines += [f"  {name:12} {small(rms[part]):>8}  {meaning}" for part, (name, meaning) in _PARTS.items()]
+    lines += [f"  {name:12} {rms[part]:8.1e}  {meaning}" for part, (name, meaning) in _PARTS.items()]
     steps = ", ".join(f"{step:g}" for step in budget.limit.steps)
     order = "" if math.isnan(budget.limit.order) else f"; measured order {budget.limit.order:.1f}"
-    lines.append(f"  known to {small(budget.rms('limit_error'))}, from time steps of {steps} s{order}")
+    lines.append(f"  known to {budget.rms('limit_error'):.1e}, from time steps of {steps} s{order}")
     row = comparison.summary[comparison.summary["reference"] == model].iloc[0]
     if row["parted"]:
         lines.append(

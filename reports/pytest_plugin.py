@@ -128,9 +128,10 @@ class SuiteItem(pytest.Item):
             return f"{self.path.name}: {excinfo.value}"
         return super().repr_failure(excinfo, style)
 
-    def reportinfo(self) -> tuple[Path, None, str]:
+    def reportinfo(self) -> tuple[Path, int, str]:
         """Return what the head of a failure shows."""
-        return self.path, None, self.name
+        # not the end of the item's name, in which pytest would replace the dots of numbers
+        return self.path, 0, f"{self.path.name}: {self.name}"
 
 
 class DisagreementError(Exception):

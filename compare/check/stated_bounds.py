@@ -52,5 +52,5 @@ def check(
             unit=unit,
             reason=f"stated by the suite: {meaning}",
             part=f"{run.engine} ({run.support}) or the {model} model",
-            note=str(row["message"]),
+            note="; ".join(part for part in str(row["message"]).split("; ") if "not defined" not in part),
         )
