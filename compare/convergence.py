@@ -6,8 +6,12 @@
    0.8 alpha with 0.5 rad/s at 6 m, for tan(alpha) from 0.1 to 3: error at each step, and the order. A release
    in which the model itself loses contact with the ground is left out, and said below the table.
 2. The angle of turn from tilt maximum to tilt maximum, b = 1 m, h = 2 b, released at alpha/2 with 0.1 rad/s,
-   against exact quadrature (recess) and against the rolling model.
+   against exact quadrature (recess) and against the rolling model; Exudyn, which has no recess, as well.
 3. The first table's release at 0.5 alpha for cylinders of 1 cm, 6 m and 100 m.
+
+With 2.5e-5 s both engines stay within 5.3e-5 alpha of their models in all releases, at the default step
+within 1e-4 but for tan(alpha) 3 from 0.8 alpha on open ground, 2.1e-4; of first order. The angle of turn at
+the default step is 5e-4 deg off in MuJoCo, 6e-4 in Bullet and 2e-5 in Exudyn; sizes make no difference.
 """
 
 from __future__ import annotations
@@ -20,6 +24,7 @@ import numpy as np
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, InitialState, Run
+from rockwobble.multibody.registry import find_engine
 
 from .console import show, tell
 from .execution import Job, ProgressCallback, simulate_all
@@ -174,12 +179,17 @@ def angle_of_turn(
     """
     import pandas as pd
 
-    engines = engines_here() if engines is None else engines
+    engines = multibody.available_engines() if engines is None else engines
     cylinder = Cylinder.from_dimensions(base_radius=1.0, height=4.0)
     release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.1)
     case = Case("b 1 m, h 2 b", cylinder, None, release, 2.0, friction=5.0)
     unit_time = math.sqrt(cylinder.semidiagonal / 6.0)
-    keys = [(support, engine) for support in MODELS for engine in engines]
+    keys = [
+        (support, engine)
+        for support in MODELS
+        for engine in engines
+        if support in find_engine(engine).supports
+    ]
     jobs = [
         Job(case=case, method=Run(engine, support, step * unit_time), label=f"{engine} {support} {step:g} s")
         for support, engine in keys
@@ -209,17 +219,19 @@ def main() -> None:
         "Example: --table free --engine mujoco --tan-alpha 3",
     )
     parser.add_argument("--table", action="append", choices=TABLES, help="may be repeated (default: all)")
-    parser.add_argument("--engine", action="append", choices=engines_here(), help="may be repeated")
+    parser.add_argument(
+        "--engine", action="append", choices=multibody.available_engines(), help="may be repeated"
+    )
     parser.add_argument(
         "--tan-alpha", action="append", type=float, help="of the first table; may be repeated"
     )
     given = parser.parse_args()
-    engines = given.engine or engines_here()
+    engines = [name for name in given.engine or engines_here() if name in engines_here()]
     for table in given.table or TABLES:
         if table == "free":
             _print_free(given.tan_alpha or SLENDERNESS, engines)
         elif table == "turn":
-            _print_turn(engines)
+            _print_turn(given.engine)
         else:
             cases = [release_case(tan_alpha, 0.5, size) for tan_alpha in (0.2, 1.0) for size in SIZES]
             errors = convergence(cases, engines=engines, progress=tell)
@@ -243,7 +255,7 @@ def _print_free(slenderness: Sequence[float], engines: Sequence[str]) -> None:
     show(errors, "Free response over 8 s", _FORM, _STEPS_IN_WORDS + left_out)
 
 
-def _print_turn(engines: Sequence[str]) -> None:
+def _print_turn(engines: Sequence[str] | None) -> None:
     errors = {f"error_{number + 1}": ".1e" for number in range(len(TURN_STEPS))}
     show(
         angle_of_turn(engines=engines, progress=tell),
