@@ -1,0 +1,24 @@
+"""What accuracy costs: error against computing time of the reduced models, other solvers and the engines."""
+
+from .conclusions import Fastest, Plateau, fastest, plateaus, seating_price
+from .measure import STAGES, Tradeoff, measure_tradeoff
+from .methods import Method, methods_for
+from .problems import Problem, problems
+from .store import read_tradeoff, tradeoff_tables
+
+__all__ = [
+    "STAGES",
+    "Fastest",
+    "Method",
+    "Plateau",
+    "Problem",
+    "Tradeoff",
+    "fastest",
+    "measure_tradeoff",
+    "methods_for",
+    "plateaus",
+    "problems",
+    "read_tradeoff",
+    "seating_price",
+    "tradeoff_tables",
+]

@@ -1,0 +1,1 @@
+"""The page on speed against accuracy: figures, conclusions, tables."""

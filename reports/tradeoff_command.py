@@ -1,0 +1,102 @@
+"""`rockwobble tradeoff`: error against computing time of reduced models, other solvers and engines."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from . import options
+from .terminal import interruptible, user_input
+
+if TYPE_CHECKING:
+    from rockwobble.compare.tradeoff import Tradeoff
+
+Quick = Annotated[
+    bool, typer.Option("--quick", help="Fewer points and fewer members: under two minutes on two idle cores.")
+]
+Stored = Annotated[
+    Path | None,
+    typer.Option(
+        "--stored", help="Draw the pages again from the tables in this folder, and measure nothing."
+    ),
+]
+
+
+def tradeoff(
+    quick: Quick = False,
+    stored: Stored = None,
+    out: options.Out = Path("rockwobble-out"),
+) -> None:
+    """Measure what accuracy costs: the reduced models, scipy's solvers and the engines on three problems.
+
+    The angle of turn in free response, two times El Centro until ten seconds
+    after uplift, and the distribution of peak tilt over synthetic motions;
+    then the cost of each part of an engine's scene.
+
+    Writes tradeoff.html (open it in a browser), tradeoff.md and tradeoff.svg,
+    and the tables as points, problems and scenes (Parquet) and about.json.
+    """
+    with interruptible():
+        with user_input():
+            from rockwobble.compare import replace_files, require_writable
+            from rockwobble.compare.tradeoff import read_tradeoff, tradeoff_tables
+
+            if quick and stored is not None:
+                raise ValueError("--quick goes without --stored: nothing is measured again, got both")
+            require_writable(out)
+            found = None if stored is None else read_tradeoff(stored)
+        if found is None:
+            found = _measured(quick)
+        from .tradeoff.charts import tradeoff_figure
+        from .tradeoff.page import tradeoff_markdown, tradeoff_page
+
+        _show(found)
+        contents = {
+            "tradeoff.html": tradeoff_page(found).encode(),
+            "tradeoff.md": tradeoff_markdown(found).encode(),
+            "tradeoff.svg": tradeoff_figure(found),
+            **tradeoff_tables(found),
+        }
+        with user_input():
+            replace_files(out, contents)
+    print(f"\nWritten to {out}: {', '.join(contents)}")
+
+
+def _measured(quick: bool) -> Tradeoff:
+    from rockwobble.compare.tradeoff import STAGES, measure_tradeoff
+    from rockwobble.compare.tradeoff.problems import PIER
+    from rockwobble.models import Case
+
+    from .paper.provenance import command_line
+    from .problem import describe
+    from .spectrum_progress import shown_fraction
+
+    print(describe(Case("", PIER, duration=1.0))[0])
+    with shown_fraction(STAGES) as tell:
+        return measure_tradeoff(quick=quick, command=command_line(), tell=tell)
+
+
+def _show(found: Tradeoff) -> None:
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    from .summary_table import MINIMUM_WIDTH
+    from .tradeoff.words import COST_HEADINGS, cost_rows, headline, statements
+
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    for heading in COST_HEADINGS:
+        table.add_column(heading, overflow="fold")
+    rows = cost_rows(found)
+    for place, cells in enumerate(rows):
+        same = place > 0 and rows[place - 1][0] == cells[0]
+        table.add_row("" if same else cells[0], *cells[1:], end_section=False)
+    console = Console()
+    if not console.is_terminal:
+        console.width = max(console.width, MINIMUM_WIDTH, 140)
+    console.print(headline(found), style="bold", highlight=False)
+    console.print(table)
+    for line in statements(found):
+        console.print(f"- {line}", highlight=False, markup=False)
