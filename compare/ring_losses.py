@@ -237,8 +237,8 @@ def main() -> None:
         "--turns",
         type=int,
         choices=range(1, len(TURNS) + 1),
-        default=len(TURNS),
-        help="azimuths by which each case is turned, two to three minutes on two cores each (%(default)s)",
+        default=2,
+        help="azimuths by which each case is turned, up to five minutes on two cores each (%(default)s)",
     )
     parser.add_argument(
         "--tan-alpha",
