@@ -1,0 +1,138 @@
+"""Suites as tests: what is collected, what fails, and what a failure says."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+pytest_plugins = ["pytester"]
+
+
+@pytest.fixture(scope="module", autouse=True)
+def modules_of_inner_runs() -> None:
+    """Import once what each run of pytest inside a test would import, and forget, again."""
+    import mujoco  # noqa: F401
+    import pandas as pd
+
+    import rockwobble.compare.check
+    from rockwobble import reduced
+    from rockwobble.models import Cylinder, InitialState
+    from rockwobble.reports import budget_of_run  # noqa: F401
+
+    assert rockwobble.compare.check.LAYERS
+    body = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    for model in ("recess", "rolling"):
+        reduced.simulate(body, initial=InitialState(0.1), duration=0.1, model=model)
+    pd.DataFrame({"text": ["some"]}).astype(str)  # with what pandas imports when it is used
+
+
+SUITE = """
+[[runs]]
+engine = "mujoco"
+support = ["guided", "free"]
+
+[[cases]]
+name = "release"
+cylinder = { semidiagonal = 6, tan_alpha = [0.2, 1] }
+release = { tilt_over_alpha = 0.5, rolling_rate = 0.5 }
+duration = 0.8
+"""
+
+
+def bounded(bounds: str) -> str:
+    return f"[bounds]\n{bounds}\n{SUITE}"
+
+
+@pytest.fixture
+def suite(pytester: pytest.Pytester):
+    def write(text: str = SUITE) -> pytest.Pytester:
+        pytester.path.joinpath("pier.suite.toml").write_text(text)
+        return pytester
+
+    return write
+
+
+def test_each_case_and_run_is_an_item(suite) -> None:
+    result = suite().runpytest("--collect-only", "-q")
+    result.stdout.fnmatch_lines(
+        [
+            "*pier.suite.toml::release: tan_alpha 0.2, mujoco guided",
+            "*pier.suite.toml::release: tan_alpha 0.2, mujoco free",
+            "*pier.suite.toml::release: tan_alpha 1, mujoco guided",
+            "*pier.suite.toml::release: tan_alpha 1, mujoco free",
+        ]
+    )
+
+
+def test_engines_that_follow_the_models_pass(suite) -> None:
+    suite().runpytest("-W", "error").assert_outcomes(passed=4)
+
+
+def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite) -> None:
+    # open ground moves by another model, which shows on a squat cylinder at once
+    pytester = suite(bounded('tilt_rms = 1e-5\nagreement_horizon = 0.8\nreference = "recess"'))
+    result = pytester.runpytest("-k", "alpha and not 0.2", "-W", "error")
+    result.assert_outcomes(passed=1, failed=1)
+    result.stdout.fnmatch_lines(
+        [
+            "*pier.suite.toml: release: tan_alpha 1, mujoco free*",
+            "release: tan_alpha 1, mujoco free against recess: tilt_rms: measured *, at most 1e-05 *",
+            "What the difference is made of (RMS in alpha until *",
+            "  whole *engine minus recess",
+            "  model form *",
+            "  numerics *",
+            "  unexplained *",
+            "Most of it is model form: *",
+        ]
+    )
+
+
+def test_the_budget_can_be_left_out(suite) -> None:
+    pytester = suite(bounded("tilt_rms = 1e-12"))
+    result = pytester.runpytest("-k", "0.2 and guided", "--no-rockwobble-budget")
+    result.assert_outcomes(failed=1)
+    assert "What the difference" not in result.stdout.str()
+    result.stdout.fnmatch_lines(["*tilt_rms: measured *at most 1e-12*"])
+
+
+def test_a_run_that_fails_says_why(suite) -> None:
+    text = SUITE.replace('support = ["guided", "free"]', "settings = { contact_damping_ratio = 0.01 }")
+    result = suite(text).runpytest("-k", "0.2")
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*the engine gained energy*contact of mujoco*"])
+
+
+def test_a_wrong_file_is_an_error_of_its_own(suite) -> None:
+    result = suite("[[cases]]\nname = 'x'\n").runpytest()
+    result.assert_outcomes(errors=1)
+    result.stdout.fnmatch_lines(["pier.suite.toml: cases[[]0].cylinder: must be given"])
+    assert "Traceback" not in result.stdout.str()
+
+
+def test_a_setting_that_an_engine_has_not_is_one_line(suite) -> None:
+    text = SUITE.replace('support = ["guided", "free"]', "settings = { softness = 1 }")
+    result = suite(text).runpytest("-k", "0.2")
+    result.stdout.fnmatch_lines(["pier.suite.toml: 'softness' is not a setting of mujoco*"])
+
+
+def test_an_engine_that_is_missing_is_skipped(suite, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rockwobble.compare.missing_engines", lambda: ("mujoco",))
+    suite().runpytest().assert_outcomes(skipped=4)
+
+
+def test_other_files_are_left_alone_and_the_plugin_can_be(suite) -> None:
+    pytester = suite()
+    pytester.path.joinpath("other.toml").write_text("a = 1")
+    assert pytester.runpytest("-p", "no:rockwobble").ret == pytest.ExitCode.NO_TESTS_COLLECTED
+    assert pytester.runpytest("other.toml").ret == pytest.ExitCode.USAGE_ERROR
+
+
+def test_the_plugin_imports_nothing_heavy() -> None:
+    code = (
+        "import sys, rockwobble.reports.pytest_plugin as p; "
+        "print(*sorted({'numpy', 'numba', 'pydantic', 'rich', 'typer', 'mujoco'} & set(sys.modules)))"
+    )
+    run = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, timeout=60)
+    assert run.stdout.split() == []
