@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from rockwobble import multibody
-from rockwobble.compare.engine_extremes import AGREES, Trial, run, trials
+from rockwobble.compare.engine_extremes import AGREES, run
+from rockwobble.compare.engine_trials import Trial, trials
 from rockwobble.models import Cylinder, InitialState
 
 
