@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from rockwobble.compare.validity import Extent, source_of_records
+from rockwobble.compare.validity.motions import motion_named
 from rockwobble.compare.validity.statistics import SIZE, TAN_ALPHA
 from rockwobble.models import Cylinder
 
@@ -20,15 +21,16 @@ def about(extent: Extent) -> list[str]:
         f"{extent.releases[0]:g} to {extent.releases[-1]:g} α with {extent.spins[0]:g} to "
         f"{extent.spins[-1]:g} of "
         "the rolling rate of steady wobble. It does not depend on size (Froude).",
-        f"Shaking: {', '.join(extent.motions)}; tan α from {extent.shaken_tan_alphas[0]:g} to "
+        f"Shaking: {', '.join(motion_named(name).name or name for name in extent.motions)}; tan α from "
+        f"{extent.shaken_tan_alphas[0]:g} to "
         f"{extent.shaken_tan_alphas[-1]:g}, R from {extent.sizes[0]:g} to {extent.sizes[-1]:g} m (at tan α = "
         f"{extent.shaken_tan_alphas[0]:g} b = {small.base_radius:.3g} to {large.base_radius:.3g} m, 2h = "
         f"{2.0 * small.half_height:.3g} to {2.0 * large.half_height:.3g} m), peaks from "
         f"{extent.intensities[0]:g} to "
         f"{extent.intensities[-1]:g} g tan α.",
         f"Distributions: {extent.members} {source_of_records()}; {_body(TAN_ALPHA, SIZE)}.",
-        "Rings, contact and slip: R = 6 m, tan α "
-        f"{_list(extent.ring_tan_alphas)}, {_list(extent.contact_tan_alphas)} and "
+        f"At R = 6 m: rings at tan α {_list(extent.ring_tan_alphas)}, soft contact at "
+        f"{_list(extent.contact_tan_alphas)}, slip at "
         f"{_list(sorted({point[0] for point in extent.slip_points}))}.",
         f"Traces: {len(extent.trace_points)} problems under El Centro, {extent.trace_length:g} s.",
     ]

@@ -6,9 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..palette import run_styles
 from ..paper.drawing import drawn, with_grid
-from .picture import LinePicture, MapPanel, MapPicture, Picture
+from .picture import LinePicture, MapPanel, MapPicture, Picture, series_styles
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -84,7 +83,7 @@ def _map(axes: Axes, picture: MapPicture, panel: MapPanel) -> Any:
 
 def _lines(figure: Figure, picture: LinePicture) -> None:
     axes = figure.subplots()
-    styles = run_styles([line.name for line in picture.series])
+    styles = series_styles(picture.series)
     for index, line in enumerate(picture.series):
         style = styles[line.name]
         axes.plot(
@@ -101,6 +100,8 @@ def _lines(figure: Figure, picture: LinePicture) -> None:
     if picture.diagonal:
         ends = picture.diagonal_ends()
         axes.plot(ends, ends, color="black", linewidth=0.8, label=picture.diagonal)
+    if max((float(line.x.max(initial=0.0)) for line in picture.series), default=0.0) > picture.x_end:
+        axes.set_xlim(0.0, picture.x_end)
     if picture.log_x:
         axes.set_xscale("log")
     if picture.log_y:

@@ -19,12 +19,13 @@ def headline(limits: Sequence[Limit]) -> str:
     form, traces = numbers["Free response: rolling out"], numbers["Single traces"]
     doubts = []
     if not peaks["engine"] <= _SAME_PEAK:
-        doubts.append(f"the engine's peak tilt is off by {percent(peaks['engine'])}")
+        doubts.append(f"the engine's peak tilt is off by {percent(peaks['engine'])} (median)")
     if not members["guided_p"] >= _TOLD_APART:
         doubts.append(f"its distribution of peak tilt is another (p = {short(members['guided_p'])})")
-    if form["confirmed"] < form["points"]:
-        missed = form["points"] - form["confirmed"]
-        doubts.append(f"it contradicts the models at {missed:.0f} of {form['points']:.0f} releases")
+    if form["contradicted"] > 0.0:
+        doubts.append(
+            f"it contradicts the models at {form['contradicted']:.0f} of {form['points']:.0f} releases"
+        )
     if doubts:
         return f"The reduced model is not established even in an ideal recess: {'; '.join(doubts)}."
     statistics = (
@@ -34,7 +35,8 @@ def headline(limits: Sequence[Limit]) -> str:
     )
     return (
         f"In an ideal recess the reduced model is right: the engine has the same peak tilt to "
-        f"{percent(peaks['engine'])} and the same distribution. A cylinder on open ground leaves its trace "
+        f"{percent(peaks['engine'])} (median) and the same distribution. A cylinder on open ground leaves "
+        "its trace "
         "after "
         f"{short(traces['open'])} s, and nine in ten single peaks are within "
         f"{percent(peaks['nine_in_ten'])}; "

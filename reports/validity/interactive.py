@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ..charts.layout import new_figure, reserve_legend
-from ..palette import run_styles
 from ..template import PLOT_CONFIG
-from .picture import Array, LinePicture, MapPanel, MapPicture, Picture
+from .picture import Array, LinePicture, MapPanel, MapPicture, Picture, series_styles
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -33,8 +32,10 @@ def plots(picture: Picture) -> list[dict[str, str]]:
 
 
 def _element(figure: go.Figure, name: str) -> str:
+    # on a small map the tool bar would hide the cells
+    config = PLOT_CONFIG | ({"displayModeBar": False} if figure.data[0].type == "heatmap" else {})
     return str(
-        figure.to_html(full_html=False, include_plotlyjs=False, div_id=html.escape(name), config=PLOT_CONFIG)
+        figure.to_html(full_html=False, include_plotlyjs=False, div_id=html.escape(name), config=config)
     )
 
 
@@ -83,7 +84,7 @@ def _lines(picture: LinePicture) -> go.Figure:
     import plotly.graph_objects as go
 
     figure = new_figure(picture.x_label, picture.y_label, height=380)
-    styles = run_styles([line.name for line in picture.series])
+    styles = series_styles(picture.series)
     for index, line in enumerate(picture.series):
         style = styles[line.name]
         figure.add_trace(
@@ -109,6 +110,9 @@ def _lines(picture: LinePicture) -> go.Figure:
             )
         )
     exponents = {"exponentformat": "power", "dtick": 1}
+    farthest = max((float(line.x.max(initial=0.0)) for line in picture.series), default=0.0)
+    if farthest > picture.x_end:
+        figure.update_xaxes(range=[0.0, picture.x_end])
     if picture.log_x:
         figure.update_xaxes(type="log", **exponents)
     if picture.log_y:

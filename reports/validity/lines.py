@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 _SMALLEST = 1e-9  # what a logarithmic axis shows of nothing
 
 
+_WIDEST = 1.2  # [alpha] beyond, single cylinders come back from a tilt that should have been their fall
+
+
 def verification_picture(table: pd.DataFrame) -> LinePicture:
     """Return how well the engine tells the models apart."""
     models = table.pivot_table("turn", ["tan_alpha", "release", "spin"], "model", dropna=False)
@@ -201,6 +204,7 @@ def distribution_pictures(table: pd.DataFrame) -> list[LinePicture]:
                 x_label="peak tilt / α [-]",
                 y_label="share of the records [-]",
                 series=series,
+                x_end=_WIDEST,
             )
         )
     return pictures

@@ -59,7 +59,7 @@ def shaken_maps(table: pd.DataFrame) -> dict[str, MapPicture]:
         difference: pd.Series[float] = 100.0 * (table[name] / table["recess"] - 1.0).abs()
         return difference.where(both)
 
-    grey = "Grey: no uplift, or it falls in one of the two."
+    grey = "Darkest: 100 % and more; grey: no uplift, or it falls in one of the two."
     several = len(table["motion"].unique()) > 1
     records, worst = ("Median of the records. ", "Largest of the records. ") if several else ("", "")
     need = (table["friction"] / table["tan_alpha"]).replace(np.inf, np.nan)
@@ -72,6 +72,7 @@ def shaken_maps(table: pd.DataFrame) -> dict[str, MapPicture]:
             value_label="difference [%]",
             log=True,
             smallest=0.1,
+            largest=100.0,
             **_shaken(table, off("rolling"), "median"),
         ),
         "twin": MapPicture(
@@ -83,6 +84,7 @@ def shaken_maps(table: pd.DataFrame) -> dict[str, MapPicture]:
             value_label="difference [%]",
             log=True,
             smallest=0.1,
+            largest=100.0,
             **_shaken(table, off("twin"), "median"),
         ),
         "vertical": MapPicture(
@@ -93,17 +95,20 @@ def shaken_maps(table: pd.DataFrame) -> dict[str, MapPicture]:
             value_label="difference [%]",
             log=True,
             smallest=0.1,
+            largest=100.0,
             **_shaken(table[table["vertical"].notna()], off("vertical"), "median"),
         ),
         "friction": MapPicture(
             name="shaken-friction",
             title="Friction needed under shaking",
-            caption=f"Largest horizontal over normal force, over tan α. {worst}Grey: no uplift, it falls, "
+            caption=f"Largest horizontal over normal force, over tan α. {worst}Darkest: 10 and more; grey: "
+            "no uplift, it falls, "
             "or no "
             "friction is enough because contact is lost.",
             value_label="friction / tan α [-]",
             log=True,
             smallest=0.1,
+            largest=10.0,
             **_shaken(table, need, "max"),
         ),
         "normal": MapPicture(

@@ -8,7 +8,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ..palette import Style, model_style, run_styles
+
 Array = NDArray[np.float64]
+
+_MODELS = ("recess", "rolling")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,6 +48,8 @@ class MapPicture:
         Whether colours go by the logarithm.
     smallest : float
         Of a logarithmic scale: what is below is drawn as this.
+    largest : float
+        What is above is drawn as this.
     """
 
     name: str
@@ -55,10 +61,12 @@ class MapPicture:
     panels: Sequence[MapPanel]
     log: bool = False
     smallest: float = 1e-3
+    largest: float = np.inf
 
     def shades(self, values: Array) -> Array:
         """Return what colours go by."""
-        return np.log10(np.maximum(values, self.smallest)) if self.log else values
+        capped = np.minimum(values, self.largest)
+        return np.log10(np.maximum(capped, self.smallest)) if self.log else capped
 
     def bounds(self) -> tuple[float, float]:
         """Return the ends of the scale of colours."""
@@ -78,7 +86,7 @@ class MapPicture:
         decades = np.arange(np.ceil(low), np.floor(high) + 1.0)
         if len(decades) < 2:
             decades = np.array([low, high])
-        return [float(value) for value in decades], [f"{10.0**value:.2g}" for value in decades]
+        return [float(value) for value in decades], [f"{10.0**value:g}" for value in decades]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -115,6 +123,8 @@ class LinePicture:
     log_x, log_y : bool
     diagonal : str
         What the line y = x stands for; empty where there is none.
+    x_end : float
+        Where the axis ends at the latest.
     """
 
     name: str
@@ -126,6 +136,7 @@ class LinePicture:
     log_x: bool = False
     log_y: bool = False
     diagonal: str = ""
+    x_end: float = np.inf
 
     def diagonal_ends(self) -> tuple[float, float]:
         """Return the ends of the diagonal: those of all values."""
@@ -135,3 +146,9 @@ class LinePicture:
 
 
 Picture = MapPicture | LinePicture
+
+
+def series_styles(series: Sequence[Series]) -> dict[str, Style]:
+    """Return the style of each line: that of the model where it is one."""
+    others = run_styles([line.name for line in series if line.name not in _MODELS])
+    return others | {line.name: model_style(line.name) for line in series if line.name in _MODELS}

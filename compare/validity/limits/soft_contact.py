@@ -8,12 +8,13 @@ import numpy as np
 
 from .limit import Limit, Tables, column, first_failing, largest, percent, short, up_to
 
-SMALL = 0.01  # of the peak tilt
+SMALL = 0.05  # of the peak tilt: less cannot be told from chance
 
 
 def soft_contact(tables: Tables) -> Limit:
     """Draw the limit from the engine with softer contact."""
     table = tables["contact"]
+    table = table[table["free_outcome"] != "failed"]
     softness, loss = column(table, "softness"), column(table, "loss")
     off = np.abs(column(table, "peak") / column(table, "recess_peak") - 1.0)
     off = np.where(np.isfinite(off), off, math.inf)
