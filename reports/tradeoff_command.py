@@ -69,13 +69,12 @@ def _measured(quick: bool) -> Tradeoff:
     from rockwobble.compare.tradeoff.problems import PIER
     from rockwobble.models import Case
 
-    from .paper.provenance import command_line
     from .problem import describe
     from .spectrum_progress import shown_fraction
 
     print(describe(Case("", PIER, duration=1.0))[0])
     with shown_fraction(STAGES) as tell:
-        return measure_tradeoff(quick=quick, command=command_line(), tell=tell)
+        return measure_tradeoff(quick=quick, command=f"rockwobble tradeoff{' --quick' * quick}", tell=tell)
 
 
 def _show(found: Tradeoff) -> None:
