@@ -16,7 +16,8 @@ def body_friction(pair: float, convention: str) -> tuple[float, float]:
         Coulomb coefficient between cylinder and ground.
     convention : {"pair", "maximum", "product"}
         How the engine combines two bodies: not at all, because it takes that of the pair (MuJoCo's
-        explicit pairs); by the larger (MuJoCo's geoms); by the product (Bullet).
+        explicit pairs); by the larger (MuJoCo's geoms); by the product (Bullet). A rim that slides in
+        Bullet feels 2 to 5 % less friction than that; one that holds is not concerned.
 
     Raises
     ------

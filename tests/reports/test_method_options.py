@@ -8,6 +8,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from rockwobble.compare import with_settings
+from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.reports.main import main
 from rockwobble.reports.method_values import settings
 from rockwobble.reports.run_remarks import counted_remarks, remark_lines
@@ -87,19 +89,27 @@ def test_a_remark_is_said_once_for_each_run() -> None:
         assert counted_remarks(nothing) == []
 
 
-def test_a_setting_goes_to_the_runs_that_know_it_and_a_flight_is_said_everywhere(
+def test_a_setting_goes_to_the_runs_that_know_it() -> None:
+    # the release leans into the walls that a ring has by default
+    squat = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
+    case = Case("release", squat, None, InitialState(0.3), 1.0)
+    runs = [Run("mujoco", "ring", ring_facets=8), Run("mujoco", "free", "auto")]
+    given = {"ring_clearance": 3, "ring_facets": 16, "cone": "pyramidal", "step_tolerance": 1e-4}
+    ring, free = with_settings(case, runs, given)
+    assert dict(ring.settings) == {"ring_clearance": 3, "ring_facets": 16, "cone": "pyramidal"}
+    assert dict(free.settings) == {"cone": "pyramidal", "step_tolerance": 1e-4}
+    assert (ring.time_step, free.time_step) == (None, "auto")
+
+
+def test_a_run_that_flies_in_a_ring_of_its_own_says_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    # it spins so fast that it flies; and by default a ring would stand where it leans
     spin = ["--tan-alpha", "1", "--release-tilt-deg", "20", "--rolling-rate", "8", "--duration", "0.3"]
     given = ["--set", "ring_clearance=3", "--set", "ring_inclination=0.05", "--set", "ring_facets=16"]
-    supports = ["--support", "ring", "--support", "free", "--engine", "mujoco"]
-    assert call("compare", *spin, *supports, *given, "--out", str(tmp_path)) == 0
-    runs = json.loads((tmp_path / "comparison.json").read_text())["trajectories"]
-    ring, free = (runs[f"free response / mujoco {support}"]["settings"] for support in ("ring", "free"))
-    assert (ring["ring_clearance"], ring["ring_inclination"], ring["ring_facets"]) == (3, 0.05, 16)
-    assert "ring_clearance" not in free
-    remark = "mujoco free, by its own account: the cylinder left the ground at 0.2043 s"
-    assert remark in " ".join(capsys.readouterr().out.split())
-    assert remark in (tmp_path / "report.html").read_text()
-    assert "the cylinder left the ground at 0.2043 s" in (tmp_path / "summary.csv").read_text()
+    place = ["--engine", "mujoco", "--support", "ring", "--out", str(tmp_path)]
+    assert call("simulate", *spin, *place, *given) == 0
+    result = json.loads((tmp_path / "run.json").read_text())["result"]
+    walls = (result["settings"][f"ring_{name}"] for name in ("clearance", "inclination", "facets"))
+    assert tuple(walls) == (3, 0.05, 16)
+    assert "the cylinder left the ground at 0.2043 s" in " ".join(capsys.readouterr().out.split())
+    assert "the cylinder left the ground at 0.2043 s" in result["message"]
