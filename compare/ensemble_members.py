@@ -90,7 +90,9 @@ def synthetic_motions(count: int, *, peak: float, seed: int, duration: float = 2
     size = round(duration / _TIME_STEP) + 1
     noise = np.random.default_rng(seed).standard_normal((count, size, 2))
     frequency = 2.0 * math.pi * np.fft.rfftfreq(2 * size, _TIME_STEP)
-    spectrum = _transfer(np.asarray(frequency, dtype=np.float64))[None, :, None] * np.fft.rfft(noise, 2 * size, axis=1)
+    spectrum = _transfer(np.asarray(frequency, dtype=np.float64))[None, :, None] * np.fft.rfft(
+        noise, 2 * size, axis=1
+    )
     filtered = np.fft.irfft(spectrum, axis=1)[:, :size]
     share = np.arange(size) / (size - 1)
     envelope = np.minimum(share / _RISE, 1.0) * np.exp(-_DECAY * np.maximum(share - _RISE - _STRONG, 0.0))
