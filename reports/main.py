@@ -11,6 +11,7 @@ from .advise_command import advise
 from .check_command import check
 from .compare_command import compare
 from .ensemble_command import ensemble
+from .extremes_command import extremes
 from .paper_command import figures
 from .report_command import report
 from .show_command import show
@@ -44,6 +45,7 @@ app.command(epilog="Example: rockwobble check --only equations --only conserved"
 app.command(epilog="Example: rockwobble validity --quick --out validity")(validity)
 app.command(epilog="Example: rockwobble figures --out paper")(figures)
 app.command(epilog="Example: rockwobble tradeoff --quick --out tradeoff")(tradeoff)
+app.command(epilog="Example: rockwobble extremes --quick --out extremes")(extremes)
 
 # typer brings its own click in some versions and imports click in others: one base class, two homes
 _USAGE_ERROR: Any = next(base for base in typer.BadParameter.__mro__ if base.__name__ == "ClickException")

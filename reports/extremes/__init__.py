@@ -1,0 +1,1 @@
+"""The page on extremes: one table of verdicts, and what backs them."""
