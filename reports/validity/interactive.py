@@ -71,7 +71,7 @@ def _map(picture: MapPicture, panel: MapPanel) -> go.Figure:
     )
     figure.update_layout(plot_bgcolor=_NOTHING)
     # the numbers are names of cells, and stand at even distances
-    figure.update_xaxes(type="category", showgrid=False, tickangle=0)
+    figure.update_xaxes(type="category", showgrid=False, tickangle=0, tickfont_size=10)
     figure.update_yaxes(type="category", showgrid=False)
     return figure
 

@@ -85,7 +85,7 @@ class MapPicture:
             return places, [f"{value:.2g}" for value in places]
         decades = np.arange(np.ceil(low), np.floor(high) + 1.0)
         if len(decades) < 2:
-            decades = np.array([low, high])
+            return [low, high], [f"{10.0**low:.2g}", f"{10.0**high:.2g}"]
         return [float(value) for value in decades], [f"{10.0**value:g}" for value in decades]
 
 

@@ -17,6 +17,10 @@ Tables = Mapping[str, "pd.DataFrame"]
 Array = NDArray[np.float64]
 
 
+# what is below says nothing to a reader
+_LEAST_PERCENT = 1e-3
+
+
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Limit:
     """One row of the table of limits; every number in it is computed from the tables.
@@ -42,6 +46,8 @@ def percent(share: float) -> str:
     if not math.isfinite(share):
         return "an unknown share"
     number = 100.0 * share
+    if 0.0 < abs(number) < _LEAST_PERCENT:
+        return f"less than {_LEAST_PERCENT:g} %"
     digits = f"{number:.2g}" if 0.0 < abs(number) < 10.0 else f"{number:.0f}"
     return f"{float(digits):g} %"
 

@@ -11,7 +11,7 @@ from .limit import Limit, Tables, column, first_failing, largest, percent, quant
 SMALL = 0.01  # of period or angle of turn: below what a test on a shake table would see
 # an engine confirms a model if it is nearer to it than this share of the difference of the models
 _TEETH = 0.5
-# and contradicts it where it is off by more than this share of the turn; the step of an engine is in between
+# and contradicts it where turn or period is off by more than this; the step of an engine errs by less
 _CONTRADICTS = 1e-3
 
 
@@ -44,11 +44,12 @@ def model_form(tables: Tables) -> Limit:
         subject="Free response: rolling out",
         use=_use(numbers),
         error=f"Period off by at most {percent(numbers['period_largest'])}, angle of turn by "
-        f"{percent(numbers['turn_median'])} (median) and at most {percent(numbers['turn_largest'])}; peak "
-        f"tilt by at most {percent(max(numbers['peak_gain'], 0.0))} in ten periods. The engine, which "
-        "stands in "
-        f"an ideal recess or on open ground, tells the two models apart and confirms the right one at "
-        f"{confirmed:.0f} of {points:.0f} points.",
+        f"{percent(numbers['turn_median'])} (median) and at most {percent(numbers['turn_largest'])}, peak "
+        "tilt in "
+        f"ten periods by {percent(max(numbers['peak_gain'], 0.0))}. The engine, in an ideal recess and on "
+        "open "
+        f"ground, tells the two models apart and confirms the right one at {confirmed:.0f} of {points:.0f} "
+        "points.",
         avoid=(
             f"For directions after many passes: a pass turns up to {short(numbers['turn_largest_deg'])}° "
             f"differently (tan α {point['tan_alpha']:g}, released at {point['release']:g} α with "
@@ -87,6 +88,8 @@ def _confirmed(tables: Tables) -> tuple[float, float, float]:
     resolved = table[table["resolved"].astype(bool)]
     error = np.abs(column(resolved, "engine_turn") - column(resolved, "turn"))
     limits = apart.reindex(resolved.set_index(keys).index).to_numpy(dtype=np.float64)
-    confirms = error < _TEETH * limits
-    contradicts = ~confirms & ~(error <= _CONTRADICTS * np.abs(column(resolved, "turn")))
+    turn_off = error / np.abs(column(resolved, "turn"))
+    period_off = np.abs(column(resolved, "engine_half_period") / column(resolved, "half_period") - 1.0)
+    contradicts = ~((turn_off <= _CONTRADICTS) & (period_off <= _CONTRADICTS))
+    confirms = ~contradicts & (error < _TEETH * limits)
     return float(confirms.sum()), float(contradicts.sum()), float(len(resolved))

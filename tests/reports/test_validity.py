@@ -1,0 +1,179 @@
+"""The report on the limits: what is published is what its tables say, drawn, complete and small enough."""
+
+from __future__ import annotations
+
+import dataclasses
+import html
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from typer.testing import CliRunner
+
+from rockwobble.compare.validity import FULL, PARTS, QUICK
+from rockwobble.reports.main import app
+from rockwobble.reports.validity.drawing import svg
+from rockwobble.reports.validity.page import validity_document, validity_page
+from rockwobble.reports.validity.picture import LinePicture, MapPanel, MapPicture
+from rockwobble.reports.validity.sections import sections_of
+
+PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "validity"
+LARGEST = 8_000_000  # bytes of a page
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+_LOOK = """
+<script>
+window.addEventListener("load", () => setTimeout(() => {
+  const plots = Array.from(document.querySelectorAll(".plotly-graph-div"));
+  window.parent.postMessage([
+    plots.length, "plots, drawn", plots.filter((plot) => plot.querySelector(".main-svg")).length,
+    "too wide by", document.documentElement.scrollWidth - document.documentElement.clientWidth,
+  ].join(" "), "*");
+}, 1500));
+</script>
+"""
+_OUTER = """<!doctype html><body><iframe src="page.html" width="{width}" style="border:0"></iframe>
+<script>window.addEventListener("message", (event) => document.body.dataset.inner = event.data);</script>"""
+
+
+@pytest.fixture(scope="module")
+def tables():
+    return {part.name: pd.read_parquet(PUBLISHED / f"{part.name}.parquet") for part in PARTS}
+
+
+@pytest.fixture(scope="module")
+def page(tables):
+    return validity_page(sections_of(tables), FULL, "rockwobble validity")
+
+
+def test_published_limits_are_those_of_the_published_tables(tables):
+    published = pd.read_parquet(PUBLISHED / "limits.parquet").set_index(["limit", "number"])
+    document = (PUBLISHED / "validity.md").read_text()
+    for section in sections_of(tables):
+        limit = section.limit
+        for words in (limit.use, limit.error, limit.avoid):
+            assert words in document
+        for name, value in limit.numbers.items():
+            np.testing.assert_equal(published.loc[(limit.subject, name), "value"], value)
+
+
+def test_other_numbers_say_something_else(tables):
+    limit = next(s.limit for s in sections_of(tables) if s.limit.subject == "Loss of contact")
+    shaking = tables["shaking"].assign(least_normal=tables["shaking"]["least_normal"] - 1.0)
+    lost = next(
+        s.limit for s in sections_of(tables | {"shaking": shaking}) if s.limit.subject == "Loss of contact"
+    )
+    assert limit.use != lost.use == "At no slenderness mapped is contact kept everywhere."
+
+
+def test_page_holds_every_limit_and_is_small_enough(page, tables):
+    assert len(page) < LARGEST
+    assert page.index('id="section-1"') < page.index('id="limits"')
+    for section in sections_of(tables):
+        assert html.escape(section.limit.subject) in page
+        for picture in section.pictures:
+            assert picture.title in page
+    assert not re.search(r'<(script|link|img)[^>]*(src|href)="https?:', page)
+
+
+def test_document_shows_every_picture_and_its_table_is_whole(tables):
+    sections = sections_of(tables)
+    document = validity_document(sections, FULL, "rockwobble validity")
+    shown = re.findall(r"\]\((.*?)\.svg\)", document)
+    assert shown == [picture.name for section in sections for picture in section.pictures]
+    assert len(set(shown)) == len(shown)
+    assert all((PUBLISHED / f"{name}.svg").is_file() for name in shown)
+    rows = [line for line in document.splitlines() if line.startswith("| ")]
+    assert {row.count("|") for row in rows} == {5}
+
+
+@pytest.mark.parametrize("kind", [MapPicture, LinePicture])
+def test_pictures_are_drawn_to_the_same_bytes(tables, kind):
+    pictures = [picture for section in sections_of(tables) for picture in section.pictures]
+    picture = next(picture for picture in pictures if isinstance(picture, kind))
+    drawn = svg(picture)
+    assert drawn == svg(picture)
+    assert b"<svg" in drawn[:400]
+
+
+def test_map_draws_what_is_beyond_its_scale_as_its_ends():
+    panel = MapPanel(title="", x=[1.0, 2.0], y=[1.0], values=np.array([[1e-9, 1e9]]))
+    picture = MapPicture(
+        name="",
+        title="",
+        caption="",
+        x_label="",
+        y_label="",
+        value_label="",
+        panels=[panel],
+        log=True,
+        smallest=0.1,
+        largest=100.0,
+    )
+    assert picture.bounds() == (-1.0, 2.0)
+    assert picture.ticks() == ([-1.0, 0.0, 1.0, 2.0], ["0.1", "1", "10", "100"])
+    nothing = dataclasses.replace(
+        picture, panels=[dataclasses.replace(panel, values=np.full((1, 2), np.nan))]
+    )
+    assert nothing.bounds() == (0.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("options", "says"),
+    [
+        (["--workers", "0"], "--workers must be at least 1, got 0"),
+        (["--out", "{file}"], "the output folder must be a folder"),
+    ],
+)
+def test_bad_input_is_one_line(tmp_path, options, says):
+    file = tmp_path / "file"
+    file.touch()
+    given = [option.format(file=file) for option in options]
+    out = [] if "--out" in given else ["--out", str(tmp_path / "out")]
+    done = CliRunner().invoke(app, ["validity", "--quick", *given, *out])
+    assert done.exit_code == 2
+    assert says in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_quick_is_a_part_of_the_full_report_in_every_respect():
+    for part in PARTS:
+        assert 0 < len(part.tasks(QUICK)) <= len(part.tasks(FULL))
+        quick, full = (sum(part.cost(inputs) for inputs in part.tasks(extent)) for extent in (QUICK, FULL))
+        assert quick < full
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+@pytest.mark.parametrize("width", [1280, 390])
+def test_page_is_drawn_and_no_wider_than_the_window(page, tmp_path, width):
+    page = page.replace("</body>", f"{_LOOK}</body>")
+    (tmp_path / "page.html").write_text(page)
+    (tmp_path / "outer.html").write_text(_OUTER.format(width=width))
+    command = [
+        str(CHROMIUM),
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--disable-quic",
+        "--no-first-run",
+        "--disable-background-networking",
+        "--disable-component-update",
+        "--disable-sync",
+        "--enable-logging=stderr",
+        f"--user-data-dir={tmp_path / 'profile'}",
+        "--window-size=1400,1000",
+        "--virtual-time-budget=15000",
+        "--dump-dom",
+        (tmp_path / "outer.html").as_uri(),
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
+    said = re.search(r'data-inner="([^"]*)"', done.stdout)
+    assert said, done.stdout[-500:]
+    plots = len(re.findall(r'class="plotly-graph-div"', page))
+    assert plots > 30
+    assert said.group(1) == f"{plots} plots, drawn {plots} too wide by 0"
+    assert [line for line in done.stderr.splitlines() if "CONSOLE" in line] == []
