@@ -51,7 +51,7 @@ def extremes_page(table: pd.DataFrame, made_by: str) -> str:
     return render(
         "study.html.j2",
         title=_TITLE,
-        css=css,
+        css=f".study td {{ min-width: 0; }}\n.study thead th {{ white-space: normal; min-width: 0; }}\n{css}",
         lead=_LEAD,
         headline=headline(table),
         statements=statements(table),

@@ -18,11 +18,11 @@ WORDS = {
     "n/a": "",
 }
 LEGEND = (
-    "fine: the largest error, in α (or relative, of the angle of turn), is at most 0.01. said: it is more, or "
-    "the model leaves its own assumptions, and the run says so in words; the number is the error as far as the "
-    "reference holds. refused: bad input, one line before anything runs. caught: the run ended as failed, "
-    "with its reason. WRONG: an answer that is wrong and says nothing; the command then ends with exit code 1. "
-    "Empty: the method has nothing of the kind."
+    "fine: the largest error, in α (or relative, of the angle of turn), is at most 0.01. said: it is more, "
+    "or the model leaves its own assumptions, and the run says so in words; the number is the error as far "
+    "as the reference holds. refused: bad input, one line before anything runs. caught: the run ended as "
+    "failed, with its reason. WRONG: an answer that is wrong and says nothing; the command then ends with "
+    "exit code 1. Empty: the method has nothing of the kind. The planar model starts without spin."
 )
 
 
@@ -52,8 +52,8 @@ def statements(table: pd.DataFrame) -> list[str]:
     """Return what breaks first: by method, and each run that is silently wrong."""
     rows = rows_of(table.loc[table["verdict"] != "n/a"])
     lines = [
-        f"Silently wrong: {row['method']}, {row['extreme']} {row['value']}: an error of {_error(row)} and no "
-        f"word about it (backed by {row['backed_by'] or row['message']})."
+        f"Silently wrong: {row['method']}, {row['extreme']} {row['value']}: an error of {_error(row)} while "
+        f"the reference holds, and no word about it (backed by {row['backed_by'] or row['message']})."
         for row in rows
         if row["verdict"] == "silent"
     ]

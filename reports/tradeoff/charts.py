@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from rockwobble.compare.tradeoff import Tradeoff
 
-TIME_TITLE = "computing time, in multiples of the reduced model's [-]"
+TIME_TITLE = "time / that of the reduced model [-]"
 WHERE = {"recess": "in a recess", "rolling": "on open ground"}
 _BASE_COLOUR = "#888888"
 
@@ -141,5 +141,5 @@ def _panel(
     if row["model"] == "recess":
         axes.set_ylabel(row["error_title"], fontsize=8)
     if bottom:
-        axes.set_xlabel("time / that of the reduced model [-]", fontsize=8)
+        axes.set_xlabel(TIME_TITLE, fontsize=8)
     axes.tick_params(labelsize=8)
