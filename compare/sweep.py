@@ -108,9 +108,9 @@ def sweep(
     Examples
     --------
     >>> from rockwobble.models import el_centro_1940
-    >>> grid = Grid(semidiagonals=[2.0, 6.0], tan_alphas=[0.1], scales=[1.0, 2.0], motions=[el_centro_1940()])
+    >>> grid = Grid(semidiagonals=[2.0, 6.0], tan_alphas=[0.2], scales=[1.0, 3.0], motions=[el_centro_1940()])
     >>> sweep(grid, workers=1)[["semidiagonal", "scale", "outcome"]].values.tolist()
-    [[2.0, 1.0, 'rocked'], [2.0, 2.0, 'overturned'], [6.0, 1.0, 'rocked'], [6.0, 2.0, 'rocked']]
+    [[2.0, 1.0, 'rocked'], [2.0, 3.0, 'overturned'], [6.0, 1.0, 'rocked'], [6.0, 3.0, 'overturned']]
     """
     whole = _plan(plan)
     if chunk_size is not None and chunk_size < 1:
