@@ -76,7 +76,8 @@ def ring_pictures(table: pd.DataFrame) -> list[LinePicture]:
         LinePicture(
             name="ring-peak",
             title="Peak tilt in a real recess",
-            caption="How far the peak tilt in a ring of walls is off that of the ideal recess, under El "
+            caption="How far the peak tilt in a ring of walls that lean by α is off that of the ideal "
+            "recess, under El "
             "Centro at 1.5 "
             "g tan α, largest of the runs.",
             x_label="tan α [-]",
@@ -116,10 +117,12 @@ def contact_pictures(table: pd.DataFrame) -> list[LinePicture]:
     """Return peak tilt and energy lost over the time constant of contact."""
     off = 100.0 * (table["peak"] / table["recess_peak"] - 1.0).abs()
     table = table.assign(off=off, lost=100.0 * table["loss"].abs(), ms=1e3 * table["time_constant"])
+    critical, bouncing = table[table["damping"] == 1.0], table[table["damping"] != 1.0]
     groups = [
-        (f"tan α = {tan_alpha:g}, damping {damping:g}", rows.sort_values("ms"))
-        for (tan_alpha, damping), rows in table.groupby(["tan_alpha", "damping"])
+        (f"tan α = {tan_alpha:g}", rows.sort_values("ms"), False)
+        for tan_alpha, rows in critical.groupby("tan_alpha")
     ]
+    groups += [(f"damping {damping:g}, all", rows, True) for damping, rows in bouncing.groupby("damping")]
     return [
         LinePicture(
             name=f"contact-{name}",
@@ -128,8 +131,8 @@ def contact_pictures(table: pd.DataFrame) -> list[LinePicture]:
             x_label="time in which contact takes up a blow, at R = 6 m [ms]",
             y_label=label,
             series=[
-                Series(name=words, x=_of(rows, "ms"), y=np.maximum(_of(rows, column), 1e-6))
-                for words, rows in groups
+                Series(name=words, x=_of(rows, "ms"), y=np.maximum(_of(rows, column), 1e-6), marks=marks)
+                for words, rows, marks in groups
             ],
             log_x=True,
             log_y=True,
@@ -138,14 +141,16 @@ def contact_pictures(table: pd.DataFrame) -> list[LinePicture]:
             (
                 "peak",
                 "Peak tilt with contact that gives",
-                "How far the peak tilt under El Centro at 2 g tan α is off that of the recess model.",
+                "How far the peak tilt under El Centro at 2 g tan α is off that of the recess model. Lines: "
+                "critical damping.",
                 "difference [%]",
                 "off",
             ),
             (
                 "loss",
                 "Energy that contact takes",
-                "Energy lost in a pass of free response, over the energy of the release.",
+                "Energy lost in a pass of free response, over the energy of the release. Lines: critical "
+                "damping.",
                 "lost per pass [%]",
                 "lost",
             ),
