@@ -21,6 +21,7 @@ Array = NDArray[np.float64]
 # Steps on each side of a sample. Under El Centro a quarter of MuJoCo's single steps are more than 1 % off the
 # reduced model's normal force, windows of 16 still 4 %, these none; longer ones blur the kinks of a record.
 HALF_WINDOW = 32
+_GRIP = 0.02  # share of the friction, and weights, that rounding and the window leave in doubt
 _PULL = 1e-3  # weights; far above rounding
 _WEIGHTS: Array = np.hanning(2 * HALF_WINDOW + 3)[1:-1] / (HALF_WINDOW + 1.0)  # of a Hann window; sum 1
 
@@ -47,6 +48,24 @@ def first_pull(time: Array, normal: Array) -> float:
     mean = np.convolve(normal, np.full(HALF_WINDOW, 1.0 / HALF_WINDOW), mode="same")
     pulled = np.flatnonzero(mean < -_PULL)
     return float(time[pulled[0]]) if len(pulled) else float("nan")
+
+
+def first_grip(time: Array, force: Array, friction: float) -> float:
+    """Return when more than friction first held the rim [s], from `force` (3, n) [weights]; NaN if never.
+
+    Contact slides there, but a joint in its place does not.
+    """
+
+    def exceeds(part: Array) -> Array:
+        held: Array = np.hypot(part[0], part[1]) - (1.0 + _GRIP) * friction * np.maximum(part[2], 0.0)
+        return held > _GRIP
+
+    if not exceeds(force).any():
+        return float("nan")
+    kernel = np.full(HALF_WINDOW, 1.0 / HALF_WINDOW)
+    mean = np.array([np.convolve(component, kernel, mode="same") for component in force])
+    held = np.flatnonzero(exceeds(mean))
+    return float(time[held[0]]) if len(held) else float("nan")
 
 
 class ForceSamples:

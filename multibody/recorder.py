@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .engine import Scene, Steps, Wall
-from .forces import ForceSamples, first_pull, force_of_steps
+from .forces import ForceSamples, first_grip, first_pull, force_of_steps
 from .guard import energy_scale, first_breach
 from .kinematics import Kinematics, axis_of, kinematics, mean_velocity, rim, rolling_momentum, unwrap
 from .passes import TurningPoint, turning_points
@@ -68,6 +68,7 @@ class Recorder:
         self.drift = 0.0  # largest energy error, with its sign, over the energy scale
         self.looks = 0  # at the solver, and how often it had not converged
         self.unsolved = 0
+        self.grip_time = math.nan  # when more than friction held the rim, which only a joint does [s]
         self.pull_time = math.nan  # when the ground held the rim down, which only a joint does [s]
         # a standing cylinder leans by less, in no direction
         sure = sure_tilt(body)
@@ -150,6 +151,8 @@ class Recorder:
             # a wall may well push the cylinder down, by its friction or where the rim is below it
             if math.isnan(self.pull_time) and steps.wall is None:
                 self.pull_time = first_pull(time, force[2, :stop])
+            if math.isnan(self.grip_time) and steps.wall is None:
+                self.grip_time = first_grip(time, force[:, :stop], self._scene.friction)
         self._angle, self._count = float(angle[-1]), self._count + count
 
     def fail(self, reason: str) -> None:

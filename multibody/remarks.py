@@ -25,6 +25,11 @@ def remarks(recorder: Recorder, passes: pd.DataFrame, resolution: float, scale: 
         found.append(
             f"a joint holds the rim down at {recorder.pull_time * scale.time:.4g} s: contact is lost"
         )
+    if not math.isnan(recorder.grip_time):
+        found.append(
+            f"a joint holds the rim at {recorder.grip_time * scale.time:.4g} s, where the friction of the "
+            "case would let it slip"
+        )
     if not math.isnan(recorder.flight_time):
         found.append(f"the cylinder left the ground at {recorder.flight_time * scale.time:.4g} s")
     if not math.isnan(recorder.walls.first):

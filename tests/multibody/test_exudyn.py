@@ -97,6 +97,14 @@ def test_rolling_through_the_apex_ends_the_run(
     assert capfd.readouterr() == ("", "")
 
 
+@pytest.mark.parametrize("friction", [0.0, 0.01, 0.3])
+def test_a_rim_that_would_slip_is_said(pier: Cylinder, friction: float) -> None:
+    # the release needs a friction of about 0.13
+    run = free(pier, InitialState(pier.alpha / 2, rolling_rate=0.5), duration=0.5, friction=friction)
+    words = "where the friction of the case would let it slip"
+    assert (words in run.message) == (friction < 0.1)
+
+
 def test_contact_that_would_be_lost_is_said(pier: Cylinder) -> None:
     squat = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
     run = free(squat, InitialState(squat.alpha / 2, rolling_rate=10.0), duration=1.0)
