@@ -132,11 +132,13 @@ def test_compare_prints_and_writes(folder, no_engines, capsys):
     assert names == {
         "mine.txt",
         "summary.csv",
+        "summary.parquet",
         "responses.parquet",
         "trajectories.parquet",
         "passes.parquet",
         "excitation.parquet",
         "comparison.json",
+        "restore.json",
         "report.html",
         "figure.svg",
     }
