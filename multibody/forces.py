@@ -56,9 +56,10 @@ def first_grip(time: Array, force: Array, friction: float) -> float:
     Contact slides there, but a joint in its place does not.
     """
 
-    def exceeds(part: Array) -> Array:
-        held: Array = np.hypot(part[0], part[1]) - (1.0 + _GRIP) * friction * np.maximum(part[2], 0.0)
-        return held > _GRIP
+    def exceeds(part: Array) -> NDArray[np.bool_]:
+        available = (1.0 + _GRIP) * friction * np.maximum(part[2], 0.0)
+        over: NDArray[np.bool_] = np.hypot(part[0], part[1]) > available + _GRIP
+        return over
 
     if not exceeds(force).any():
         return float("nan")
