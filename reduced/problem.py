@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple
 
@@ -63,6 +63,10 @@ class Problem:
     seating: float
     plane: float
     restitution: float
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # what is derived stays behind: a compiled march that travels is compiled again where it arrives
+        return _restored, ({field.name: getattr(self, field.name) for field in fields(self)},)
 
     @cached_property
     def body(self) -> Body:
@@ -159,6 +163,10 @@ class Problem:
         x, y = record[:, 0], record[:, 1]
         along = x * math.cos(azimuth) + y * math.sin(azimuth)
         return Plane(azimuth, np.column_stack([along, np.zeros_like(along), record[:, 2]]))
+
+
+def _restored(given: dict[str, Any]) -> Problem:
+    return Problem(**given)
 
 
 def ground_at(motion: GroundMotion | None, times: NDArray[np.float64]) -> NDArray[np.float64]:
