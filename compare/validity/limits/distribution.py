@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ...distributions import Contrast, contrast
-from ..motions import source_of_records
+from ..motions import source_of
 from .limit import Limit, Tables, percent, short
 
 _DRAWS = 400
@@ -41,6 +41,7 @@ def distribution(tables: Tables) -> Limit:
     guided = [item for (_, method), item in found.items() if method == "engine, guided"]
     opened = [item for (_, method), item in found.items() if method == "engine, free"]
     members = max((item.count for item in found.values()), default=0)
+    records = f"{members} {source_of(tables['statistics']['motion'])}"
     numbers = {
         "members": float(members),
         "guided_p": min((item.ks_p for item in guided), default=np.nan),
@@ -56,7 +57,7 @@ def distribution(tables: Tables) -> Limit:
     apart = numbers["open_p"] < TOLD_APART
     return Limit(
         subject="Distributions of peak tilt",
-        use=f"For statistics over records ({members} {source_of_records()}): the distribution of the engine "
+        use=f"For statistics over records ({records}): the distribution of the engine "
         f"in an ideal recess cannot be told from the model's (p ≥ {short(numbers['guided_p'])})"
         + (
             f", but that on open ground can (p = {short(numbers['open_p'])})."
@@ -64,8 +65,8 @@ def distribution(tables: Tables) -> Limit:
             else f", nor that on open ground (p ≥ {short(numbers['open_p'])})."
         )
         if numbers["guided_p"] >= TOLD_APART
-        else f"Not for statistics: already in an ideal recess the engine's distribution over {members} "
-        f"{source_of_records()} is another (p = {short(numbers['guided_p'])}).",
+        else f"Not for statistics: already in an ideal recess the engine's distribution over {records} "
+        f"is another (p = {short(numbers['guided_p'])}).",
         error=f"Median peak off by up to {percent(numbers['guided_median'])} in an ideal recess and "
         f"{percent(numbers['open_median'])} on open ground (95 % of the bootstrap: a ratio from "
         f"{short(numbers['open_low'])} to {short(numbers['open_high'])}).",
