@@ -8,9 +8,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .describe_studies import (
+    describe_extremes,
+    describe_tradeoff,
+    describe_unfinished_validity,
+    describe_validity,
+)
 from .parquet_file import read_about
 from .run_store import RUNS
 from .sweep_store import ABOUT, open_sweep_store
+from .validity.campaign import KEPT
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,13 +29,18 @@ _KINDS = {
     "run.json": "a single run",
     RUNS: "a comparison that is not finished",
 }
+_STUDIES = {
+    "validity.json": describe_validity,
+    "tradeoff.json": describe_tradeoff,
+    "extremes.json": describe_extremes,
+}
 
 
 def describe_store(folder: str | Path) -> list[dict[str, Any]]:
     """Return what there is in a folder of results, one description for each kind of result.
 
-    Each has "kind", "complete", "runs" and, where the files tell, "inputs" (what was run, and its hash),
-    "versions", "outcomes" (how many of each) and "figures" (the main numbers).
+    Each has "kind", "complete", "runs", "inputs" (what was run, and its hash), "versions", "figures" (the
+    main numbers) and, but for studies without them, "outcomes" (how many of each).
 
     Raises
     ------
@@ -49,10 +61,12 @@ def describe_store(folder: str | Path) -> list[dict[str, Any]]:
         found.append(_spectrum(path))
     if (path / "run.json").exists():
         found.append(_run(path))
+    found += [describe(path) for file, describe in _STUDIES.items() if (path / file).exists()]
+    if (path / KEPT).is_dir() and not (path / "validity.json").exists():
+        found.append(describe_unfinished_validity(path))
     if not found:
-        raise ValueError(
-            f"{path} holds no results of rockwobble: a store has one of {', '.join(_KINDS)} in it"
-        )
+        files = ", ".join([*_KINDS, *_STUDIES])
+        raise ValueError(f"{path} holds no results of rockwobble: a store has one of {files} in it")
     return found
 
 

@@ -33,33 +33,29 @@ def extremes(
     step, contact stiffness, friction. Each verdict is backed by an exact answer,
     an invariant or a converged reference.
 
-    Writes extremes.html (open it in a browser), extremes.md, extremes.svg and
-    extremes.parquet. Exit code 1 if anything is wrong and does not say so.
+    Writes extremes.html (open it in a browser), extremes.md, extremes.svg, the
+    table as extremes.parquet, and extremes.json, which says what made it.
+    `rockwobble report` draws the pages again. Exit code 1 if anything is wrong
+    and does not say so.
     """
     with interruptible():
         with user_input():
             from rockwobble.compare import replace_files, require_writable
 
             require_writable(out)
-        from rockwobble.compare.extremes import STAGES, measure_extremes
-        from rockwobble.compare.provenance import package_versions
+        from rockwobble.compare.extremes import STAGES, Extremes, extremes_tables, measure_extremes
+        from rockwobble.compare.origin import origin_now
 
-        from .extremes.page import extremes_figure, extremes_markdown, extremes_page
-        from .paper.provenance import parquet
+        from .extremes.page import extremes_pages
+        from .paper.provenance import command_line
         from .spectrum_progress import shown_fraction
 
         print("Cylinder: R = 6 m, tan alpha = 0.2, one thing at a time at its extreme")
         with shown_fraction(STAGES) as tell:
             table = measure_extremes(quick=quick, workers=workers, tell=tell)
         _show(table)
-        versions = ", ".join(f"{name} {version}" for name, version in package_versions().items())
-        made_by = f"Made by `rockwobble extremes{' --quick' * quick}` with {versions}."
-        contents = {
-            "extremes.html": extremes_page(table, made_by).encode(),
-            "extremes.md": extremes_markdown(table, made_by).encode(),
-            "extremes.svg": extremes_figure(table),
-            "extremes.parquet": parquet(table),
-        }
+        found = Extremes(table=table, origin=origin_now(command_line()))
+        contents = extremes_pages(found) | extremes_tables(found)
         with user_input():
             replace_files(out, contents)
     print(f"\nWritten to {out}: {', '.join(contents)}")

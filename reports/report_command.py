@@ -1,4 +1,4 @@
-"""`rockwobble report`: the page of a comparison again, from its stored results."""
+"""`rockwobble report`: the pages of a study again, from its stored results."""
 
 from __future__ import annotations
 
@@ -7,27 +7,39 @@ from typing import Annotated
 
 import typer
 
-from .comparison_pages import comparison_pages
-from .paper.provenance import command_line
 from .terminal import interruptible, user_input
 
 Folder = Annotated[
-    Path, typer.Argument(help="Folder that `rockwobble compare` has written.", show_default=False)
+    Path,
+    typer.Argument(
+        help="Folder that `rockwobble compare`, `validity`, `tradeoff` or `extremes` has written.",
+        show_default=False,
+    ),
+]
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        "--out", help="Where the pages go. Default: into the folder of the results.", show_default=False
+    ),
 ]
 
 
-def report(folder: Folder) -> None:
-    """Rebuild the page and the picture of a comparison from its stored results. Nothing runs again.
+def report(folder: Folder, out: Out = None) -> None:
+    """Draw the pages and pictures of a study again from its stored results. Nothing runs again.
 
-    Replaces report.html and figure.svg in the folder; the results stay as they are.
+    They say what they said: which engines and records are installed here has no part in it. The results
+    stay as they are.
     """
+    place = folder if out is None else out
     with interruptible():
         with user_input():
-            from rockwobble.compare import Comparison, replace_files, require_writable
+            from rockwobble.compare import replace_files, require_writable
 
-            comparison = Comparison.load(folder)
-            require_writable(folder)
-        pages = comparison_pages(comparison, command_line())
+            from .studies import read_studies
+
+            studies = read_studies(folder)
+            require_writable(place)
+        pages = {name: content for draw in studies for name, content in draw().items()}
         with user_input():
-            replace_files(folder, pages)
-    print(f"Written to {folder}: {', '.join(pages)}")
+            replace_files(place, pages)
+    print(f"Written to {place}: {', '.join(pages)}")

@@ -12,7 +12,10 @@ from .terminal import user_input
 
 Store = Annotated[
     Path,
-    typer.Argument(help="Folder of results: a sweep, a comparison, a spectrum or a run.", show_default=False),
+    typer.Argument(
+        help="Folder of results: a sweep, a comparison, a spectrum, a run, or a study such as validity.",
+        show_default=False,
+    ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print all there is to know as JSON.")]
 
@@ -81,7 +84,8 @@ def _lines(result: dict[str, Any]) -> dict[str, str]:
     if result.get("seeds"):
         lines["seeds"] = _text(result["seeds"])
     lines["versions"] = ", ".join(f"{name} {version}" for name, version in result["versions"].items())
-    lines["outcomes"] = ", ".join(f"{count:,} {name}" for name, count in result["outcomes"].items())
+    if "outcomes" in result:
+        lines["outcomes"] = ", ".join(f"{count:,} {name}" for name, count in result["outcomes"].items())
     return {name: text or "not known" for name, text in lines.items()}
 
 

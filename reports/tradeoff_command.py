@@ -16,17 +16,10 @@ if TYPE_CHECKING:
 Quick = Annotated[
     bool, typer.Option("--quick", help="Fewer points and fewer members: under two minutes on two idle cores.")
 ]
-Stored = Annotated[
-    Path | None,
-    typer.Option(
-        "--stored", help="Draw the pages again from the tables in this folder, and measure nothing."
-    ),
-]
 
 
 def tradeoff(
     quick: Quick = False,
-    stored: Stored = None,
     out: options.Out = Path("rockwobble-out"),
 ) -> None:
     """Measure what accuracy costs: the reduced models, scipy's solvers and the engines on three problems.
@@ -36,29 +29,21 @@ def tradeoff(
     then the cost of each part of an engine's scene.
 
     Writes tradeoff.html (open it in a browser), tradeoff.md and tradeoff.svg,
-    and the tables as points, problems and scenes (Parquet) and about.json.
+    the tables as points, problems and scenes (Parquet), and tradeoff.json, which
+    says what they were measured with. `rockwobble report` draws the pages again.
     """
     with interruptible():
         with user_input():
             from rockwobble.compare import replace_files, require_writable
-            from rockwobble.compare.tradeoff import read_tradeoff, tradeoff_tables
 
-            if quick and stored is not None:
-                raise ValueError("--quick goes without --stored: nothing is measured again, got both")
             require_writable(out)
-            found = None if stored is None else read_tradeoff(stored)
-        if found is None:
-            found = _measured(quick)
-        from .tradeoff.charts import tradeoff_figure
-        from .tradeoff.page import tradeoff_markdown, tradeoff_page
+        from rockwobble.compare.tradeoff import tradeoff_tables
 
+        from .tradeoff.page import tradeoff_pages
+
+        found = _measured(quick)
         _show(found)
-        contents = {
-            "tradeoff.html": tradeoff_page(found).encode(),
-            "tradeoff.md": tradeoff_markdown(found).encode(),
-            "tradeoff.svg": tradeoff_figure(found),
-            **tradeoff_tables(found),
-        }
+        contents = tradeoff_pages(found) | tradeoff_tables(found)
         with user_input():
             replace_files(out, contents)
     print(f"\nWritten to {out}: {', '.join(contents)}")
@@ -69,12 +54,13 @@ def _measured(quick: bool) -> Tradeoff:
     from rockwobble.compare.tradeoff.problems import PIER
     from rockwobble.models import Case
 
+    from .paper.provenance import command_line
     from .problem import describe
     from .spectrum_progress import shown_fraction
 
     print(describe(Case("", PIER, duration=1.0))[0])
     with shown_fraction(STAGES) as tell:
-        return measure_tradeoff(quick=quick, command=f"rockwobble tradeoff{' --quick' * quick}", tell=tell)
+        return measure_tradeoff(quick=quick, command=command_line(), tell=tell)
 
 
 def _show(found: Tradeoff) -> None:

@@ -31,8 +31,9 @@ def validity(
     with softer contact, and over many records. Takes under half an hour on two
     cores. What is measured is kept in the folder: a second run repeats nothing.
 
-    Writes validity.html, validity.md with its pictures as SVG, and as Parquet
-    the tables of all parts and the limits (limits).
+    Writes validity.html, validity.md with its pictures as SVG, as Parquet the
+    tables of all parts and the limits (limits), and validity.json, which says
+    what they were measured from. `rockwobble report` draws the pages again.
     """
     with interruptible("what was measured so far is kept, and the next run goes on from there"):
         with user_input():
@@ -41,22 +42,28 @@ def validity(
             if workers is not None and workers < 1:
                 raise ValueError(f"--workers must be at least 1, got {workers}")
             require_writable(out)
-        from rockwobble.compare.validity import FULL, QUICK, measure_all
+        from rockwobble.compare.validity import (
+            FULL,
+            QUICK,
+            measure_all,
+            planned,
+            validity_now,
+            validity_tables,
+        )
 
         from .paper.provenance import command_line
         from .validity.about import about
-        from .validity.output import print_limits, validity_files
+        from .validity.output import print_limits, validity_pages
         from .validity.progress import shown_campaign
-        from .validity.sections import sections_of
 
         extent = QUICK if quick else FULL
-        for line in about(extent):
+        for line in about(**planned(extent)):
             print(line, flush=True)
         with user_input(), shown_campaign() as tell:
             tables = measure_all(extent, out, workers=workers, progress=tell)
-        sections = sections_of(tables)
-        print_limits(sections)
-        contents = validity_files(tables, sections, extent, command_line())
+        found = validity_now(tables, extent, command_line())
+        print_limits(found)
+        contents = validity_pages(found) | validity_tables(found)
         with user_input():
             replace_files(out, contents)
     print(f"\nWritten to {out}: {', '.join(contents)}")

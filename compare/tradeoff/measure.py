@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -10,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..provenance import package_versions
+from ..origin import Origin, origin_now
 from .methods import Answer, Method, methods_for
 from .problems import Problem, problems, sampling_distance
 
@@ -42,14 +43,20 @@ class Tradeoff:
         One row for each problem and model: problem, title, error_title, model, source (what the reference
         is), doubt (its own error), members, chance (what two ensembles of as many members differ by
         chance [alpha]; NaN for a single case).
-    about : dict
-        Command, processor, versions, rounds.
+    rounds : int
+        In which all methods ran in turn.
+    load : tuple of float
+        Of the machine before and after: how many processes wanted to run, ours included, over a minute;
+        NaN where the system does not tell.
+    origin : Origin
     """
 
     points: pd.DataFrame
     scenes: pd.DataFrame
     problems: pd.DataFrame
-    about: dict[str, Any]
+    rounds: int
+    load: tuple[float, float]
+    origin: Origin
 
 
 def measure_tradeoff(*, quick: bool = False, command: str = "", tell: Tell | None = None) -> Tradeoff:
@@ -70,6 +77,7 @@ def measure_tradeoff(*, quick: bool = False, command: str = "", tell: Tell | Non
 
     say = tell or (lambda stage, fraction: None)
     say(STAGES[0], 0.0)
+    load = _load()
     found = problems(quick=quick)
     tables = []
     for problem in found:
@@ -89,13 +97,9 @@ def measure_tradeoff(*, quick: bool = False, command: str = "", tell: Tell | Non
         points=pd.concat(tables, ignore_index=True),
         scenes=scenes,
         problems=pd.DataFrame([row for problem in found for row in _described(problem)]),
-        about={
-            "command": command,
-            "processor": processor(),
-            "versions": package_versions(),
-            "rounds": _ROUNDS,
-            "quick": quick,
-        },
+        rounds=_ROUNDS,
+        load=(load, _load()),
+        origin=origin_now(command),
     )
 
 
@@ -189,21 +193,9 @@ def _timed(method: Method, case: Any) -> tuple[float, Answer]:
     return min(again), answer
 
 
+def _load() -> float:
+    return os.getloadavg()[0] if hasattr(os, "getloadavg") else math.nan
+
+
 def _first(messages: Iterable[str]) -> str:
     return next((message for message in messages if message), "")
-
-
-def processor() -> str:
-    """Return the name of the processor and the number of its cores that are ours."""
-    import os
-    import platform
-    from pathlib import Path
-
-    name = platform.processor() or platform.machine()
-    information = Path("/proc/cpuinfo")
-    if information.exists():
-        for line in information.read_text().splitlines():
-            if line.startswith("model name"):
-                name = line.split(":", 1)[1].strip()
-                break
-    return f"{name}, {os.cpu_count()} cores"

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-import io
-import json
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from ..origin import pack_study, read_study, read_table
+from ..parquet_file import pack
 from .measure import Tradeoff
 
-if TYPE_CHECKING:
-    import pandas as pd
-
+KIND = "rockwobble tradeoff"
+FILE = "tradeoff.json"
 _TABLES = ("points", "scenes", "problems")
 
 
 def tradeoff_tables(found: Tradeoff) -> dict[str, bytes]:
     """Return the files by name: points, scenes and problems as Parquet, the rest as JSON."""
-    files = {f"{name}.parquet": _parquet(getattr(found, name)) for name in _TABLES}
-    return files | {"about.json": (json.dumps(found.about, indent=2) + "\n").encode()}
+    files = {f"{name}.parquet": pack(getattr(found, name), {"kind": KIND}) for name in _TABLES}
+    return files | {FILE: pack_study(KIND, found.origin, {"rounds": found.rounds, "load": found.load})}
 
 
 def read_tradeoff(folder: str | Path) -> Tradeoff:
@@ -29,22 +27,11 @@ def read_tradeoff(folder: str | Path) -> Tradeoff:
     ValueError
         If a file is missing or is not what was stored.
     """
-    import pandas as pd
-
     place = Path(folder)
-    names = [f"{name}.parquet" for name in _TABLES] + ["about.json"]
-    missing = [name for name in names if not (place / name).is_file()]
-    if missing:
-        raise ValueError(f"{place} holds no measurement of rockwobble tradeoff: {missing[0]} is missing")
+    origin, facts = read_study(place / FILE, KIND)
+    tables = {name: read_table(place / f"{name}.parquet") for name in _TABLES}
     try:
-        tables = {name: pd.read_parquet(place / f"{name}.parquet") for name in _TABLES}
-        about = json.loads((place / "about.json").read_text())
-    except (OSError, ValueError) as error:
-        raise ValueError(f"{place} cannot be read: {error}") from None
-    return Tradeoff(**tables, about=about)
-
-
-def _parquet(table: pd.DataFrame) -> bytes:
-    buffer = io.BytesIO()
-    table.to_parquet(buffer, index=False)
-    return buffer.getvalue()
+        before, after = facts["load"]
+        return Tradeoff(**tables, rounds=facts["rounds"], load=(before, after), origin=origin)
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"{place / FILE} cannot be read: {error}") from None

@@ -1,10 +1,10 @@
 """Where the two-degree-of-freedom model may be trusted: measured maps, and limits drawn from them."""
 
-from .campaign import CampaignProgress, measure_all, packed
+from .campaign import CampaignProgress, measure_all
 from .extent import FULL, QUICK, Extent
 from .limits import Limit, limits_of
-from .motions import ensemble_names, source_of
 from .parts import PARTS
+from .store import Validity, planned, read_validity, validity_now, validity_tables
 
 __all__ = [
     "FULL",
@@ -13,9 +13,11 @@ __all__ = [
     "CampaignProgress",
     "Extent",
     "Limit",
-    "ensemble_names",
+    "Validity",
     "limits_of",
     "measure_all",
-    "packed",
-    "source_of",
+    "planned",
+    "read_validity",
+    "validity_now",
+    "validity_tables",
 ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from ..origin_words import made_by
 from ..paper.drawing import drawn
 from ..spectrum_page import markdown_table
 from ..template import render
@@ -12,6 +13,8 @@ from .words import LEGEND, cell, headline, matrix, rows_of, statements
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.figure import Figure
+
+    from rockwobble.compare.extremes import Extremes
 
 _TITLE = "What breaks first"
 _LEAD = (
@@ -30,8 +33,18 @@ _COLOURS = {
 _DETAIL_HEADINGS = ("extreme", "value", "method", "verdict", "error", "backed by", "what the run says")
 
 
-def extremes_page(table: pd.DataFrame, made_by: str) -> str:
+def extremes_pages(found: Extremes) -> dict[str, bytes]:
+    """Return the files by name: page, document and picture."""
+    return {
+        "extremes.html": extremes_page(found).encode(),
+        "extremes.md": extremes_markdown(found).encode(),
+        "extremes.svg": extremes_figure(found.table),
+    }
+
+
+def extremes_page(found: Extremes) -> str:
     """Return the page as HTML; it needs no script."""
+    table = found.table
     methods, conditions = matrix(table)
     cells = [
         (
@@ -72,12 +85,14 @@ def extremes_page(table: pd.DataFrame, made_by: str) -> str:
                 "rows": _details(table),
             },
         ],
-        made_by=made_by,
+        origin=found.origin,
+        closing="",
     )
 
 
-def extremes_markdown(table: pd.DataFrame, made_by: str) -> str:
+def extremes_markdown(found: Extremes) -> str:
     """Return the page as Markdown; the picture is extremes.svg beside it."""
+    table = found.table
     methods, conditions = matrix(table)
     rows = [(name, *(cell(row) or "–" for row in found)) for name, found in conditions]
     return "\n\n".join(
@@ -89,7 +104,8 @@ def extremes_markdown(table: pd.DataFrame, made_by: str) -> str:
             LEGEND,
             "\n".join(f"- {line}" for line in statements(table)),
             markdown_table(("extreme", *methods), rows),
-            f"Each run with what backs its verdict and what it says is in extremes.parquet. {made_by}",
+            "Each run with what backs its verdict and what it says is in extremes.parquet. "
+            + made_by(found.origin),
             "",
         )
     )

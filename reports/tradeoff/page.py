@@ -4,16 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ..origin_words import made_by
 from ..spectrum_page import markdown_table
 from ..template import PLOT_CONFIG, render
-from .charts import tradeoff_charts
+from .charts import tradeoff_charts, tradeoff_figure
 from .words import (
     COST_HEADINGS,
     PLATEAU_HEADINGS,
     SCENE_HEADINGS,
+    closing,
     cost_rows,
     headline,
-    made_by,
     plateau_rows,
     scene_rows,
     statements,
@@ -48,6 +49,15 @@ _SCENES = (
 )
 
 
+def tradeoff_pages(found: Tradeoff) -> dict[str, bytes]:
+    """Return the files by name: page, document and picture."""
+    return {
+        "tradeoff.html": tradeoff_page(found).encode(),
+        "tradeoff.md": tradeoff_markdown(found).encode(),
+        "tradeoff.svg": tradeoff_figure(found),
+    }
+
+
 def tradeoff_page(found: Tradeoff) -> str:
     """Return the page as HTML, plotly.js inside."""
     figures = [
@@ -74,7 +84,8 @@ def tradeoff_page(found: Tradeoff) -> str:
             {"title": title, "words": words, "headings": headings, "rows": rows}
             for (title, words), headings, rows in _tables(found)
         ],
-        made_by=made_by(found),
+        origin=found.origin,
+        closing=closing(found),
     )
 
 
@@ -96,7 +107,7 @@ def tradeoff_markdown(found: Tradeoff) -> str:
             "\n".join(f"- {line}" for line in statements(found)),
             *tables,
             "All points are in points.parquet, the references in problems.parquet, the scenes in "
-            "scenes.parquet. " + made_by(found),
+            f"scenes.parquet. {made_by(found.origin)} {closing(found)}",
             "",
         )
     )

@@ -226,12 +226,15 @@ def scene_rows(found: Tradeoff) -> list[tuple[str, ...]]:
     ]
 
 
-def made_by(found: Tradeoff) -> str:
-    """Return command, processor and versions."""
-    versions = ", ".join(f"{name} {version}" for name, version in found.about["versions"].items())
+def closing(found: Tradeoff) -> str:
+    """Return how times were taken, and beside what else the machine did."""
+    load = (
+        f" The load of the machine was {found.load[0]:.1f} before and {found.load[1]:.1f} after."
+        if all(math.isfinite(each) for each in found.load)
+        else ""
+    )
     return (
-        f"Made by `{found.about['command'] or 'rockwobble tradeoff'}` on {found.about['processor']}, with "
-        f"{versions}. Times are processor times, medians of {found.about['rounds']} rounds in which all "
-        "methods run in turn (in the ensemble: of its members); ratios are taken inside a round. A run "
-        "includes all that its method does by default: sampling, passes, guards."
+        f"Times are processor times, medians of {found.rounds} rounds in which all methods run in turn (in "
+        "the ensemble: of its members); ratios are taken inside a round." + load + " A run includes all "
+        "that its method does by default: sampling, passes, guards."
     )

@@ -3,26 +3,37 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
-from rockwobble.compare.validity import Extent, ensemble_names, source_of
-from rockwobble.compare.validity.motions import motion_named
 from rockwobble.compare.validity.statistics import SIZE, TAN_ALPHA
 from rockwobble.models import Cylinder
 
+if TYPE_CHECKING:
+    from rockwobble.compare.validity import Extent
 
-def about(extent: Extent) -> list[str]:
-    """Return what is mapped, and the cylinders where one was chosen."""
+
+def about(extent: Extent, motions: Mapping[str, str], records: str) -> list[str]:
+    """Return what is mapped, and the cylinders where one was chosen.
+
+    Parameters
+    ----------
+    extent : Extent
+    motions : mapping
+        Titles of the motions of the maps, by name.
+    records : str
+        What the motions of the ensemble are.
+    """
     small, large = (
         Cylinder(semidiagonal=size, tan_alpha=extent.shaken_tan_alphas[0])
         for size in extent.sizes[:: len(extent.sizes) - 1]
     )
-    records = source_of(ensemble_names(extent.members))
     return [
         f"Free response: tan α from {extent.tan_alphas[0]:g} to {extent.tan_alphas[-1]:g}, released at "
         f"{extent.releases[0]:g} to {extent.releases[-1]:g} α with {extent.spins[0]:g} to "
         f"{extent.spins[-1]:g} of "
         "the rolling rate of steady wobble. It does not depend on size (Froude).",
-        f"Shaking: {', '.join(motion_named(name).name or name for name in extent.motions)}; tan α from "
+        f"Shaking: {'; '.join(motions.values())}. Tan α from "
         f"{extent.shaken_tan_alphas[0]:g} to "
         f"{extent.shaken_tan_alphas[-1]:g}, R from {extent.sizes[0]:g} to {extent.sizes[-1]:g} m (at tan α = "
         f"{extent.shaken_tan_alphas[0]:g} b = {small.base_radius:.3g} to {large.base_radius:.3g} m, 2h = "

@@ -4,26 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rockwobble.compare.validity import Extent, packed
-from rockwobble.compare.validity.limits import Tables
+from rockwobble.compare.validity import Validity
 
 from .drawing import svg
 from .headline import headline
 from .page import HEADINGS, validity_document, validity_page
-from .sections import Section
+from .sections import Section, sections_of
 
 
-def validity_files(
-    tables: Tables, sections: Sequence[Section], extent: Extent, command: str
-) -> dict[str, bytes]:
-    """Return the files by name: page, document, pictures, tables, and the limits as a table."""
-    about = {"command": command, "extent": extent.name}
+def validity_pages(found: Validity) -> dict[str, bytes]:
+    """Return the files by name: page, document, pictures, and the limits as a table."""
+    sections = sections_of(dict(found.tables))
     pictures = [picture for section in sections for picture in section.pictures]
+    about = {"command": found.origin.command, "extent": found.extent.name}
     return {
-        "validity.html": validity_page(sections, extent, command).encode(),
-        "validity.md": validity_document(sections, extent, command).encode(),
+        "validity.html": validity_page(sections, found).encode(),
+        "validity.md": validity_document(sections, found).encode(),
         **{f"{picture.name}.svg": svg(picture) for picture in pictures},
-        **{f"{name}.parquet": packed(name, table, about) for name, table in tables.items()},
         "limits.parquet": limits_file(sections, about),
     }
 
@@ -49,10 +46,11 @@ def limits_file(sections: Sequence[Section], about: dict[str, str]) -> bytes:
     return pack(pd.DataFrame(rows), {"kind": "validity: limits", **about})
 
 
-def print_limits(sections: Sequence[Section]) -> None:
+def print_limits(found: Validity) -> None:
     """Print the headline, and each limit with its three sentences."""
     from rich.console import Console
 
+    sections = sections_of(dict(found.tables))
     console = Console()
     console.print()
     console.print(headline([section.limit for section in sections]), style="bold", highlight=False)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from rockwobble.compare.provenance import package_versions
-from rockwobble.compare.validity import Extent
+from rockwobble.compare.validity import Validity
 
+from ..origin_words import made_by
 from ..template import render
 from .about import about
 from .headline import headline
@@ -24,15 +24,14 @@ _LEAD = (
 )
 
 
-def validity_page(sections: Sequence[Section], extent: Extent, command: str) -> str:
+def validity_page(sections: Sequence[Section], found: Validity) -> str:
     """Return the page as HTML that needs nothing else."""
     return render(
         "validity.html.j2",
-        command=command,
         lead=_LEAD,
         headline=headline([section.limit for section in sections]),
-        about=about(extent),
-        extent=extent.name,
+        about=about(found.extent, found.motions, found.records),
+        extent=found.extent.name,
         headings=HEADINGS,
         sections=[
             {
@@ -44,18 +43,18 @@ def validity_page(sections: Sequence[Section], extent: Extent, command: str) -> 
             }
             for section in sections
         ],
-        versions=package_versions(),
+        origin=found.origin,
     )
 
 
-def validity_document(sections: Sequence[Section], extent: Extent, command: str) -> str:
+def validity_document(sections: Sequence[Section], found: Validity) -> str:
     """Return the report in Markdown; the pictures are SVG files beside it."""
     limits = [section.limit for section in sections]
     parts = [
         "# Where the reduced model may be trusted",
         f"**{headline(limits)}**",
         _LEAD,
-        "\n".join(f"- {line}" for line in about(extent)),
+        "\n".join(f"- {line}" for line in about(found.extent, found.motions, found.records)),
     ]
     for section in sections:
         limit = section.limit
@@ -67,8 +66,8 @@ def validity_document(sections: Sequence[Section], extent: Extent, command: str)
             f"- Error to expect: {limit.error}",
             f"- Do not use it: {limit.avoid}",
         ]
-    versions = ", ".join(f"{name} {version}" for name, version in package_versions().items())
-    parts += ["## Limits", limits_table(sections), "---", f"Made by `{command}` with {versions}.", ""]
+    parts += ["## Limits", limits_table(sections), "---"]
+    parts += [f"{made_by(found.origin)} Extent: {found.extent.name}.", ""]
     return _joined(parts)
 
 

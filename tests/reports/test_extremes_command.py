@@ -41,7 +41,7 @@ def test_the_exit_code_tells_whether_anything_is_silently_wrong(
     assert ("Nothing is silently wrong: of 2 runs 1 are fine" in printed) == (code == 0)
     assert ("Silently wrong: b, spin 0: an error of 3e-01" in printed) == (code == 1)
     assert {path.name for path in tmp_path.iterdir()} == {
-        f"extremes.{ending}" for ending in ("html", "md", "svg", "parquet")
+        f"extremes.{ending}" for ending in ("html", "md", "svg", "parquet", "json")
     }
     page = (tmp_path / "extremes.html").read_text()
     assert "&lt;b&gt;said&lt;/b&gt;" in page

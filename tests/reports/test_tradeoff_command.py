@@ -1,31 +1,32 @@
-"""`rockwobble tradeoff` from the outside, on tables that were stored: a measurement takes minutes."""
+"""`rockwobble tradeoff` from the outside, on points that are given: a measurement takes minutes."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from rockwobble.compare.tradeoff import Tradeoff, tradeoff_tables
+from rockwobble.compare import tradeoff
+from rockwobble.compare.origin import Origin
+from rockwobble.compare.tradeoff import Tradeoff, read_tradeoff, tradeoff_tables
 from rockwobble.reports.main import main
 
 FILES = {
     "tradeoff.html", "tradeoff.md", "tradeoff.svg", "points.parquet", "problems.parquet", "scenes.parquet",
-    "about.json",
+    "tradeoff.json",
 }  # fmt: skip
 
 
 def call(*arguments: str) -> int:
     with pytest.raises(SystemExit) as ended:
-        main(["tradeoff", *arguments])
+        main(list(arguments))
     assert isinstance(ended.value.code, int)
     return ended.value.code
 
 
 @pytest.fixture
-def stored(tmp_path: Path) -> Path:
+def found() -> Tradeoff:
     rows = []
     for family, line, knob, cost in (
         ("reduced", "reduced, recess", "tolerance", 1.0),
@@ -47,7 +48,7 @@ def stored(tmp_path: Path) -> Path:
         "source": "tight solution", "doubt": 1e-12, "members": 1, "chance": float("nan"),
     }  # fmt: skip
     scene = {"engine": "mujoco", "degrees_of_freedom": 6, "contacts": 1, "constraint_rows": 3}
-    found = Tradeoff(
+    return Tradeoff(
         points=pd.DataFrame(rows),
         problems=pd.DataFrame([problem]),
         scenes=pd.DataFrame(
@@ -56,8 +57,16 @@ def stored(tmp_path: Path) -> Path:
                 scene | {"support": "ring", "option": "128 walls", "microseconds": 10.0, "ratio": 2.5},
             ]
         ),
-        about={"command": "rockwobble tradeoff", "processor": "a", "versions": {"numpy": "2"}, "rounds": 3},
+        rounds=3,
+        load=(0.1, 1.2),
+        origin=Origin(
+            command="rockwobble tradeoff", date="2026-01-02", processor="an abacus", versions={"numpy": "2"}
+        ),
     )
+
+
+@pytest.fixture
+def stored(found: Tradeoff, tmp_path: Path) -> Path:
     folder = tmp_path / "stored"
     folder.mkdir()
     for name, content in tradeoff_tables(found).items():
@@ -65,9 +74,10 @@ def stored(tmp_path: Path) -> Path:
     return folder
 
 
-def test_pages_are_drawn_from_stored_tables_and_conclude_from_them(stored: Path, tmp_path: Path, capsys):
+def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(found, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(tradeoff, "measure_tradeoff", lambda **_: found)
     out = tmp_path / "out"
-    assert call("--stored", str(stored), "--out", str(out)) == 0
+    assert call("tradeoff", "--quick", "--out", str(out)) == 0
     assert {path.name for path in out.iterdir()} == FILES
     printed = " ".join(capsys.readouterr().out.split())
     assert "takes 700 times the time of the reduced model" in printed
@@ -75,30 +85,30 @@ def test_pages_are_drawn_from_stored_tables_and_conclude_from_them(stored: Path,
     page = (out / "tradeoff.html").read_text()
     assert page.count("plotly-graph-div") >= 1
     assert "takes 2.5 times its time a step" in page
+    assert "The load of the machine was 0.1 before and 1.2 after." in page
     assert len(page) < 8e6
     assert "(tradeoff.svg)" in (out / "tradeoff.md").read_text()
-    assert json.loads((out / "about.json").read_text())["rounds"] == 3
+    stored = read_tradeoff(out)
+    assert (stored.origin, stored.rounds, stored.load) == (found.origin, found.rounds, found.load)
+    for name in ("points", "problems", "scenes"):
+        pd.testing.assert_frame_equal(getattr(stored, name), getattr(found, name))
 
-    # other numbers, other conclusions
+
+def test_other_stored_numbers_have_other_conclusions(stored: Path, capsys):
     points = pd.read_parquet(stored / "points.parquet")
     points.loc[points["family"] == "mujoco", "ratio"] *= 2.0
     points.to_parquet(stored / "points.parquet")
-    assert call("--stored", str(stored), "--out", str(out)) == 0
-    assert "takes 1,400 times the time of the reduced model" in " ".join(capsys.readouterr().out.split())
+    assert call("report", str(stored)) == 0
+    for name in ("tradeoff.html", "tradeoff.md"):
+        text = (stored / name).read_text()
+        assert "takes 1,400 times the time of the reduced model" in text
+        assert "on 2026-01-02, on an abacus, with numpy 2." in text
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--stored", "nowhere"], "holds no measurement of rockwobble tradeoff: points.parquet is missing"),
-        (["--stored", "nowhere", "--quick"], "--quick goes without --stored"),
-        (["--out", "taken"], "the output folder must be a folder"),
-    ],
-)
-def test_bad_input_is_one_line(arguments, words, tmp_path, monkeypatch, capsys):
+def test_bad_input_is_one_line(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "taken").write_text("")
-    assert call(*arguments) == 2
+    assert call("tradeoff", "--out", "taken") == 2
     captured = capsys.readouterr()
-    assert words in captured.err
+    assert "the output folder must be a folder" in captured.err
     assert captured.err.count("\n") == 1
