@@ -28,12 +28,12 @@ from rockwobble.multibody.registry import find_engine
 
 from .console import show, tell
 from .execution import Job, ProgressCallback, simulate_all
+from .runs import SUPPORTS, own_model
 from .traces import make_pair
 
 if TYPE_CHECKING:
     import pandas as pd
 
-MODELS = {"guided": "recess", "free": "rolling"}
 SLENDERNESS = (0.1, 0.2, 0.5, 1.0, 3.0)
 RELEASES = (0.3, 0.5, 0.8)  # of alpha
 STEPS = (2e-4, 1e-4, 5e-5, 2.5e-5)  # [s] at 6 m; the second is the default
@@ -65,7 +65,7 @@ def reference(case: Case, support: str) -> reduced.Response:
         case.cylinder,
         initial=case.initial,
         duration=case.duration,
-        model=MODELS[support],
+        model=own_model(support),
         rtol=_MODEL_TOLERANCE,
         friction=case.friction,
     )
@@ -73,10 +73,12 @@ def reference(case: Case, support: str) -> reduced.Response:
 
 def loses_contact(case: Case) -> str:
     """Return which reduced model says that the cylinder leaves the ground, and when; empty if none does."""
-    for support, model in MODELS.items():
+    for support in SUPPORTS:
         for breach in reference(case, support).assumptions.breaches:
             if breach.assumption == "contact":
-                return f"{case.name}: the {model} model loses contact at {breach.first_time:.3g} s"
+                return (
+                    f"{case.name}: the {own_model(support)} model loses contact at {breach.first_time:.3g} s"
+                )
     return ""
 
 
@@ -111,7 +113,7 @@ def convergence(
     import pandas as pd
 
     engines = engines_here() if engines is None else engines
-    keys = [(case, support, engine) for case in cases for support in MODELS for engine in engines]
+    keys = [(case, support, engine) for case in cases for support in SUPPORTS for engine in engines]
     jobs = [
         Job(
             case=_frictional(case),
@@ -122,7 +124,7 @@ def convergence(
         for step in steps
     ]
     trials = simulate_all(jobs, workers=workers, progress=progress)
-    references = {(case.name, support): reference(case, support) for case in cases for support in MODELS}
+    references = {(case.name, support): reference(case, support) for case in cases for support in SUPPORTS}
     rows = []
     for index, (case, support, engine) in enumerate(keys):
         mine = trials[len(steps) * index : len(steps) * (index + 1)]
@@ -186,7 +188,7 @@ def angle_of_turn(
     unit_time = math.sqrt(cylinder.semidiagonal / 6.0)
     keys = [
         (support, engine)
-        for support in MODELS
+        for support in SUPPORTS
         for engine in engines
         if support in find_engine(engine).supports
     ]

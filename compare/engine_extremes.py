@@ -27,14 +27,13 @@ from rockwobble.models import Cylinder, InitialState
 
 from .console import parse_plain, show
 from .engine_trials import Trial, trials
+from .runs import own_model
 from .traces import make_pair
 
 if TYPE_CHECKING:
     import pandas as pd
 
 AGREES = 0.01  # of alpha: what ends an agreement everywhere else
-# a ring follows its model until the first touch of a wall
-_MODELS = {"guided": "recess", "free": "rolling", "ring": "rolling"}
 
 
 def run(trial: Trial) -> dict[str, Any]:
@@ -75,7 +74,7 @@ def run(trial: Trial) -> dict[str, Any]:
         trial.motion,
         initial=release,
         duration=trial.length,
-        model=_MODELS[trial.support],
+        model=own_model(trial.support),
         rtol=1e-10,
         friction=trial.arguments.get("friction", 1.0),
     )

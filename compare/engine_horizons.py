@@ -23,6 +23,7 @@ from .console import parse_plain, show, tell
 from .execution import Job, ProgressCallback, simulate, simulate_all
 from .horizon import agreement_horizon
 from .predicted_horizon import estimated_error, predict_horizon, verdict
+from .runs import SUPPORTS, own_model
 from .traces import Pair, make_pair
 
 if TYPE_CHECKING:
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 CYLINDERS = ((6.0, 0.2), (10.0, 0.1), (2.0, 0.3))  # semidiagonal [m], tan alpha
 SCALES = (1.0, 1.5, 2.0)
 PAIRS = (("guided", "recess"), ("free", "rolling"), ("free", "recess"))
-_OWN = {"guided": "recess", "free": "rolling"}
 CARRIED = 0.3  # weights
 _BETWEEN = 0.1  # of alpha; closer to the apex the force changes by weights from one sample to the next
 _AFTER = 0.1  # [s]
@@ -86,7 +86,7 @@ def horizons(
     chosen = cases() if chosen is None else chosen
     methods: list[tuple[str, Run | str]] = [
         *((model, model) for model in ("recess", "rolling")),
-        *((support, Run(engine, support)) for support in _OWN),
+        *((support, Run(engine, support)) for support in SUPPORTS),
     ]
     jobs = [Job(case=case, method=method, label=label) for case in chosen for label, method in methods]
     results = simulate_all(jobs, workers=workers, progress=progress)
@@ -99,7 +99,7 @@ def horizons(
 
 
 def _row(case: Case, traces: dict[str, Any], support: str, model: str) -> dict[str, Any]:
-    trial, own, reference = traces[support], traces[_OWN[support]], traces[model]
+    trial, own, reference = traces[support], traces[own_model(support)], traces[model]
     row = {"case": case.name, "support": support, "reference": model, "reason": ""}
     if not hasattr(trial, "tilt"):
         return row | {"outcome": "failed", "agreed": f"the process died: {trial.message}"}
@@ -113,7 +113,7 @@ def _row(case: Case, traces: dict[str, Any], support: str, model: str) -> dict[s
         case,
         reference=reference,
         own=own,
-        own_model=_OWN[support],
+        own_model=own_model(support),
         contact_resolution=trial.contact_resolution,
         error=estimated_error(case, trial.engine, trial.time_step),
         simulate=lambda twin, name: simulate(Job(case=twin, method=name, label=name)),

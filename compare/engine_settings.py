@@ -26,6 +26,7 @@ from rockwobble.models import Case, Cylinder, InitialState, Run, el_centro_1940
 
 from .console import show, tell
 from .execution import Job, ProgressCallback, simulate_all
+from .runs import SUPPORTS, own_model
 from .tilt import tilt_rms_relative
 from .traces import make_pair
 
@@ -36,7 +37,6 @@ STEP = 1e-4  # [s] of the default at the reference size
 TURNS = (0.0, 0.4, 0.9)  # azimuths of the record [rad]
 _PILOT = 0.5  # [s] of motion timed in each turn
 _TURNS = 5
-_MODELS = {"guided": "recess", "free": "rolling"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -191,7 +191,9 @@ def measure(
     ratio = [value / base[variant.engine] for variant, value in zip(chosen, cost, strict=True)]
     steps = [STEP * (1.0 if abs(each - 1.0) < 0.1 else each) for each in ratio]
     problems = cases(turns)
-    jobs = [Job(case=case, method=model, label=model) for case in problems for model in _MODELS.values()]
+    jobs = [
+        Job(case=case, method=model, label=model) for case in problems for model in map(own_model, SUPPORTS)
+    ]
     for variant, step in zip(chosen, steps, strict=True):
         for case in problems:
             unit_time = math.sqrt(case.cylinder.semidiagonal / 6.0)
@@ -201,7 +203,7 @@ def measure(
                     method=variant.run(support, step, unit_time),
                     label=f"{variant.engine} {variant.what}",
                 )
-                for support in _MODELS
+                for support in SUPPORTS
             ]
     results = simulate_all(jobs, workers=workers, progress=progress)
     count = 2 * len(problems)

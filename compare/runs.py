@@ -15,9 +15,9 @@ from rockwobble.multibody.scene_of_case import resolved_settings
 SUPPORTS = ("guided", "free")
 _LEAN = 1e-3  # of alpha: a tilt that fits into any ring
 
-# a cylinder on open ground is free to roll out: the rolling model is its own reduced model, as it is in a
-# ring until the first touch of a wall
-SUPPORT_REFERENCES = {"free": ("rolling",), "ring": ("rolling",)}
+# What an exact engine would follow. A ring holds only what has rolled out as far as its clearance: until the
+# first touch of a wall the cylinder rolls as on open ground, and after it no reduced model knows the walls.
+_OWN_MODELS = {"guided": "recess", "free": "rolling", "ring": "rolling"}
 
 
 def installed_engines() -> tuple[str, ...]:
@@ -132,8 +132,8 @@ def unsupported(supports: Sequence[str]) -> tuple[str, ...]:
 
 def references_of(run: Run, reference: str) -> tuple[str, ...]:
     """Return the reduced models that a run is held against: `reference`, and that of its support."""
-    more = (model for model in SUPPORT_REFERENCES.get(run.support, ()) if model != reference)
-    return (reference, *more)
+    own = own_model(run.support)
+    return (reference,) if own in (reference, "recess") else (reference, own)
 
 
 def _step_label(time_step: float | str) -> str:
@@ -141,8 +141,8 @@ def _step_label(time_step: float | str) -> str:
 
 
 def own_model(support: str) -> str:
-    """Return the reduced model that describes a support: what an exact engine would follow."""
-    return "rolling" if support == "free" else "recess"
+    """Return the reduced model of a support: what an exact engine would follow, until it touches a wall."""
+    return _OWN_MODELS.get(support, "recess")
 
 
 def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:

@@ -7,11 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.compare import AGREEMENT, make_pair
+from rockwobble.compare import AGREEMENT, make_pair, own_model
 
 from .case_view import CaseView, case_views
 from .charts.tilt import SMALLEST, WINDOW
-from .findings import own_model
 from .palette import Style
 from .thinning import envelope, kept_samples
 

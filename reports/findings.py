@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from rockwobble.compare import own_model
+
 PEAK_WORTH_A_WORD = 0.01  # difference of peak tilts, relative
 PLACES = {
     "guided": "In an ideal recess (guided)",
@@ -145,8 +147,3 @@ def _span(rows: Any, length: float) -> str:
     shortest, longest = rows["agreement_horizon"].min(), rows["agreement_horizon"].max()
     span = seconds(longest) if shortest == longest else f"{seconds(shortest)} to {seconds(longest)}"
     return f"for {span} from uplift or release"
-
-
-def own_model(support: str) -> str:
-    """Return the reduced model that describes a support."""
-    return "rolling" if support == "free" else "recess"

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.compare import own_model
+
 from .case_view import CaseView
-from .findings import own_model
 
 # a screen shows 60 pictures a second; a slower clock repeats some
 _PICTURES = 100.0

@@ -6,7 +6,8 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from .findings import own_model
+from rockwobble.compare import own_model
+
 from .suite_choice import group_of
 
 if TYPE_CHECKING:

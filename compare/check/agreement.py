@@ -49,8 +49,7 @@ def model_of(bench: Bench, run: Run) -> str:
     """Return the reduced model that a run is held against."""
     if bench.suite.bounds is not None:
         return stated_bounds.reference_of(bench.suite.bounds, run)
-    # before the first touch of a wall
-    return "rolling" if run.support == "ring" else own_model(run.support)
+    return own_model(run.support)
 
 
 def check_run(

@@ -28,6 +28,7 @@ import numpy as np
 from rockwobble import multibody, reduced
 
 from ..process_pool import ProcessPool, WorkerDiedError
+from ..runs import own_model
 from ..traces import make_pair
 from .table import Condition, conditions, planar_twin, unit_time
 
@@ -52,7 +53,6 @@ METHODS = (
     ("Exudyn free", "exudyn", "free"),
 )
 STAGES = ("extremes",)
-_MODELS = {"guided": "recess", "ring": "recess", "free": "rolling"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -217,7 +217,7 @@ def _engine(condition: Condition, engine: str, support: str) -> _Verdict:
     )
     if result.outcome == "failed":
         return _Verdict(verdict="caught" if result.message else "silent", message=result.message)
-    model = _solve(condition, _MODELS[support], 1e-10)
+    model = _solve(condition, own_model(support), 1e-10)
     if model.outcome == "failed":
         return _Verdict(
             verdict="inaccurate" if result.message else "silent",
@@ -227,7 +227,7 @@ def _engine(condition: Condition, engine: str, support: str) -> _Verdict:
     breaches = [breach.first_time for breach in model.assumptions.breaches]
     until = min(breaches, default=math.inf)
     error = _tilt_error(condition, model, result, until)
-    backing = f"the {_MODELS[support]} model at a tolerance of 1e-10"
+    backing = f"the {own_model(support)} model at a tolerance of 1e-10"
     whole = math.isinf(until)
     if not whole:
         backing += f", which holds until {until:.3g} s"

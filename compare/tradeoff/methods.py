@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rockwobble import multibody, reduced
 from rockwobble.models import Case
 
+from ..runs import own_model
 from .problems import FINE_SEATING, Problem
 from .scipy_methods import METHODS, Rates, compiled, plain, scipy_answer
 
@@ -222,7 +223,7 @@ def _engine(
     return Method(
         line=name,
         family=engine,
-        model="rolling" if support == "free" else "recess",
+        model=own_model(support),
         knob="time step",
         value=step,
         solve=solve,

@@ -7,10 +7,11 @@ from collections.abc import Sequence
 from rockwobble.models import Run
 
 from ..driver import compare
+from ..runs import SUPPORTS
 from .extent import Extent
 from .motions import EL_CENTRO, shaken_case
 from .part import Inputs, Part, Row
-from .verification import ENGINE, OWN_MODEL
+from .verification import ENGINE
 
 _COLUMNS = (
     "support",
@@ -40,7 +41,7 @@ def _tasks(extent: Extent) -> Sequence[Inputs]:
             "duration": extent.trace_length,
         }
         for tan_alpha, size, intensity in extent.trace_points
-        for support in OWN_MODEL
+        for support in SUPPORTS
     ]
 
 

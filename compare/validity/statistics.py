@@ -6,10 +6,11 @@ from collections.abc import Sequence
 
 from rockwobble import multibody, reduced
 
+from ..runs import SUPPORTS, own_model
 from .extent import Extent
 from .motions import ensemble_names, shaken_case
 from .part import Inputs, Part, Row
-from .verification import ENGINE, OWN_MODEL
+from .verification import ENGINE
 
 TAN_ALPHA, SIZE = 0.2, 6.0
 
@@ -33,9 +34,9 @@ def measure(inputs: Inputs) -> list[Row]:
     case = shaken_case(inputs["motion"], inputs["tan_alpha"], inputs["semidiagonal"], inputs["level"])
     found: dict[str, reduced.Response | multibody.Trajectory] = {
         model: reduced.simulate(case.cylinder, case.motion, duration=case.duration, model=model)
-        for model in OWN_MODEL.values()
+        for model in map(own_model, SUPPORTS)
     }
-    for support in OWN_MODEL:
+    for support in SUPPORTS:
         found[f"engine, {support}"] = multibody.simulate(
             case.cylinder,
             case.motion,

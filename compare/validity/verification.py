@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 from rockwobble import multibody, reduced
 
+from ..runs import SUPPORTS, own_model
 from ..tilt import tilt_rms
 from ..traces import make_pair
 from .extent import Extent
@@ -15,8 +16,6 @@ from .part import Inputs, Part, Row
 from .releases import released
 
 ENGINE = "mujoco"
-# guided is the recess made flesh, free is open ground
-OWN_MODEL = {"guided": "recess", "free": "rolling"}
 _PERIODS = 2.2  # the second maximum, and a little more, so that it is seen to be one
 _FRICTION = 10.0  # whatever the motion needs: friction is another limit
 
@@ -38,7 +37,8 @@ def measure(inputs: Inputs) -> list[Row]:
     cylinder, initial = released(inputs["tan_alpha"], inputs["release"], inputs["spin"])
     duration = _PERIODS * reduced.free_response(cylinder, initial).period
     rows = []
-    for support, model in OWN_MODEL.items():
+    for support in SUPPORTS:
+        model = own_model(support)
         own = reduced.simulate(cylinder, initial=initial, duration=duration, model=model, rtol=1e-10)
         run = multibody.simulate(
             cylinder, initial=initial, duration=duration, engine=ENGINE, support=support, friction=_FRICTION

@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.compare import own_model
+
 from ..case_view import CaseView
-from ..findings import own_model
 from ..palette import Style, model_style
 from ..thinning import kept_samples
 from .layout import new_figure, small

@@ -6,10 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare import AGREEMENT, make_pair
+from rockwobble.compare import AGREEMENT, make_pair, own_model
 
 from ..case_view import CaseView
-from ..findings import own_model
 from ..palette import model_style
 from ..thinning import envelope
 from .layout import TIME_TITLE, add_line, new_figure, reserve_legend
