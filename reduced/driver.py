@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import pi
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._compile import inlined, jit
+from ._compile import borrowed, inlined, jit
 from .body import Body
 from .endings import HALF_PI, may_sit_down, surely_falls
 from .stepping import Stepper, make_events
@@ -69,16 +69,12 @@ def write(source: State, target: NDArray[np.float64]) -> None:
 
 
 @jit
-def with_row(rows: NDArray[np.float64], count: int, row: State) -> NDArray[np.float64]:
-    """Write `row` as row `count` of a table, and return the table, doubled if it was full."""
-    if count == len(rows):
-        doubled = np.empty((2 * count, rows.shape[1]))
-        for i in range(count):
-            for j in range(rows.shape[1]):
-                doubled[i, j] = rows[i, j]
-        rows = doubled
-    write(row, rows[count])
-    return rows
+def as_table(rows: Any, width: int) -> NDArray[np.float64]:
+    """Return a list of tuples as an array (n, width)."""
+    table = np.empty((len(rows), width))
+    for i in range(len(rows)):
+        write(rows[i], table[i])
+    return table
 
 
 @inlined
@@ -157,11 +153,15 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             nothing can stop ends the march early; m = 0 marches on until the side is down.
         """
         size = len(initial)
-        y, k, work = initial, initial, workspace(initial)
+        y, k = initial, initial
+        owned = workspace(initial)  # until its last use, at the end
+        work = borrowed(owned)
         samples, moving = np.zeros((len(times), size)), np.zeros(len(times), dtype=np.bool_)
         sample = 0
-        extrema, extremum_count = np.empty((64, 4)), 0
-        steps, recorded = np.empty((64, 1 + size)), 0
+        # lists, typed by a row and emptied: a growing array would have its references counted in each step
+        extrema, steps = [(0.0, 0.0, 0.0, 0.0)], [(0.0, *initial)]
+        extrema.clear()
+        steps.clear()
         step_count = 0
         first_start = START / body.p
 
@@ -184,9 +184,10 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
 
             while now < finish and status == COMPLETED:
                 if resting:
-                    lift = uplift_in(body, a, slope, elapsed, length)
+                    wait = uplift_in(body, ground(a, slope, elapsed), slope, length - elapsed)
+                    lift = elapsed + wait
                     # one within a hair of the next sample is taken up there, already above the threshold
-                    stays = lift < 0.0 or length - lift < 1e-3 * first_start
+                    stays = wait < 0.0 or length - lift < 1e-3 * first_start
                     now = finish if stays else begin + lift
                     while sample < len(times) and times[sample] <= now:
                         write(y, samples[sample])
@@ -217,8 +218,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     restart = False
                     if now == 0.0 and y[1] == 0.0:  # a release at rest is a turning point
                         kind = MAXIMUM if derivative(body, y, a_now)[1] < 0.0 else MINIMUM
-                        extrema = with_row(extrema, extremum_count, (0.0, y[0], y[2], kind))
-                        extremum_count += 1
+                        extrema.append((0.0, y[0], y[2], kind))
 
                 h, h_next, trials, y_new, k, path = advance(
                     body, options.rtol, y, k, work, h_next, length - elapsed, a_now, slope
@@ -267,9 +267,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     sample += 1
                 if turns:
                     kind = MAXIMUM if y[1] > 0.0 else MINIMUM
-                    row = (now + turn, turned_tilt, turned_angle, kind)
-                    extrema = with_row(extrema, extremum_count, row)
-                    extremum_count += 1
+                    extrema.append((now + turn, turned_tilt, turned_angle, kind))
 
                 y = y_new
                 elapsed = length if whole else elapsed + h
@@ -278,14 +276,12 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                 if falls:
                     status = OVERTURNED
                 elif lands:
-                    extrema = with_row(extrema, extremum_count, (now, 0.0, y[2], MINIMUM))
-                    extremum_count += 1
+                    extrema.append((now, 0.0, y[2], MINIMUM))
                     opposite = y[2] + (-pi if y[2] > 0.0 else pi)  # the other end of the diameter
                     y = placed(y, 0.0, options.restitution * abs(y[1]), opposite, 0.0)
                     restart = True
                 if options.record_steps:
-                    steps = with_row(steps, recorded, (now, *y))
-                    recorded += 1
+                    steps.append((now, *y))
                 if options.seating > 0.0 and not falls:
                     L, S = momenta(y)
                     a_now = ground(a, slope, elapsed)
@@ -298,6 +294,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             status = REST
         final = np.empty(size)
         write(y, final)
+        owned[0] = 0.0
         return March(
             status,
             now,
@@ -308,8 +305,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             moving,
             sample,
             final,
-            extrema[:extremum_count],
-            steps[:recorded],
+            as_table(extrema, 4),
+            as_table(steps, 1 + size),
             step_count,
         )
 

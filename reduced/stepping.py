@@ -7,13 +7,15 @@ only: the four more variables of the rolling model would take as many products o
 single runs that take a millisecond, and planar motion has no spin whose passes take most steps.
 
 What that brought was measured on ten seconds of El Centro (`rockwobble.compare.speed`) at an error of
-1e-7 alpha, where LSODA takes some 800 times as long as a whole run (396 with a Runge-Kutta pair).
-Taylor series take 1108 steps instead of 1744, 0.25 ms instead of 0.52 ms: one for each of
-the 1000 samples and a hundred more in the passes, of a cost that the tolerance sets (order 5 to 16).
-Of that gain 0.04 ms is that nothing on the way of a step is called or counts references
-(`_compile.inlined`), and 0.02 ms that sine and cosine are taken over from the last step. Keeping what
-depends on the motion alone (`problem`) took 0.05 ms off every run. Not kept, because they brought
-nothing: other safety factors and a highest order of 12.
+1e-7 alpha, where LSODA takes more than a thousand times as long as a whole run (396 with a Runge-Kutta
+pair). Taylor series take 1108 steps instead of 1744, 0.21 ms instead of 0.52 ms: one for each of the 1000
+samples and a hundred more in the passes, of a cost that the tolerance sets (order 5 to 16). Of that
+gain 0.08 ms is that nothing on the way of a step is called or counts references (`_compile.inlined`,
+`_compile.borrowed`, lists in place of arrays that grow), and 0.02 ms that sine and cosine are taken over
+from the last step. Keeping what depends on the motion alone (`problem`) took 0.05 ms off every run. Not
+kept, because they brought nothing: other safety factors, a highest order of 12, 5 and 6 among the orders
+that are spelt out, shorter chains of operations that wait for each other (slower), fewer Newton
+iterations at turning points.
 """
 
 from __future__ import annotations
@@ -54,7 +56,7 @@ class Stepper(NamedTuple):
 
 @jit
 def _no_workspace(y: State) -> NDArray[np.float64]:
-    return np.empty(0)
+    return np.empty(1)
 
 
 def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callable[..., float]) -> Stepper:

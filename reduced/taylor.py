@@ -108,6 +108,19 @@ class Sums(NamedTuple):
     Y: float  # last coefficient of sin(alpha - theta)
 
 
+class Last(NamedTuple):
+    """The coefficients of highest order, kept out of memory: the next order waits for them."""
+
+    rate: float
+    momentum: float
+    s: float
+    v: float
+    cos: float
+    sin: float
+    cos_before: float
+    sin_before: float
+
+
 @inlined
 def expand(
     body: Body, rtol: float, y: State, h: float, a: Vector, slope: Vector, c: NDArray[np.float64]
@@ -181,21 +194,22 @@ def expand(
     sums = Sums(tilt, rate, angle, momentum, s0 + s_1, v0 + v_1, cos0 + cos_1, sin0 + sin_1, Y0)
 
     # the orders that every step takes, one by one: as constants they compile to straight code
-    sums, _ = extend(body, zero, sums, h, 2, c)
-    sums, before = extend(body, zero, sums, h, 3, c)
-    sums, last = extend(body, zero, sums, h, 4, c)
+    newest = Last(rate_1, momentum_1, s_1, v_1, cos_1, sin_1, cos0, sin0)
+    sums, newest, _ = extend(body, zero, sums, newest, h, 2, c)
+    sums, newest, before = extend(body, zero, sums, newest, h, 3, c)
+    sums, newest, last = extend(body, zero, sums, newest, h, 4, c)
     order = _LEAST_ORDER
     while order < _ORDER and not fits(last, before):
         order, before = order + 1, last
-        sums, last = extend(body, zero, sums, h, order, c)
+        sums, newest, last = extend(body, zero, sums, newest, h, order, c)
     c[_TRIG], c[_TRIG + 1], c[_TRIG + 2], c[_TRIG + 3] = sums.s, sums.v, sums.cos, sums.sin
     return order, last, before, (sums.tilt, sums.rate, sums.angle, sums.momentum)
 
 
 @inlined
 def extend(
-    body: Body, zero: Origin, sums: Sums, h: float, order: int, c: NDArray[np.float64]
-) -> tuple[Sums, float]:
+    body: Body, zero: Origin, sums: Sums, newest: Last, h: float, order: int, c: NDArray[np.float64]
+) -> tuple[Sums, Last, float]:
     """Add the term of `order` to the series in `c`; return the sums and its size in tolerances."""
     J, C, E = body.J, body.C, body.E
     ax, ay, gravity = zero.ground
@@ -216,17 +230,16 @@ def extend(
         Q_ww += c[_Q + j] * c[_WW + i]
         X_r += c[_X + j] * c[_RADIAL + i]
         D_t += c[_D + j] * c[_ACROSS + i]
-    s_k, v_k, rate_k, cos_k, sin_k = c[_S + k], c[_V + k], c[_RATE + k], c[_COS + k], c[_SIN + k]
+    rate_k, momentum_k, s_k, v_k, cos_k, sin_k, cos_before, sin_before = newest
     sv += zero.s * v_k + zero.v * s_k
     vv += 2.0 * zero.v * v_k
     B_k = 2.0 * J * v_k + (C - J) * vv + 2.0 * E * sv
     Q_k = (J * s_k + (C - J) * sv + (3.0 * v_k - 2.0 * vv) * E) * zero.per_A
-    w_k = (c[_MOMENTUM + k] - B_w - B_k * zero.w) * zero.per_B
+    w_k = (momentum_k - B_w - B_k * zero.w) * zero.per_B
     ww += 2.0 * zero.w * w_k
     X_k = body.sin_alpha * s_k - body.cos_alpha * v_k
     Y_k = -body.sin_alpha * v_k - body.cos_alpha * s_k
     D_k = body.h * s_k + body.b * v_k
-    cos_before, sin_before = c[_COS + k - 1], c[_SIN + k - 1]
     r_k = ax * cos_k + ay * sin_k + dax * cos_before + day * sin_before
     t_k = ay * cos_k - ax * sin_k + day * cos_before - dax * sin_before
     c[_B + k], c[_Q + k], c[_W + k], c[_WW + k] = B_k, Q_k, w_k, ww
@@ -251,17 +264,21 @@ def extend(
     size = (abs(tilt) * per_tilt + abs(rate) * per_rate) + (
         abs(angle) * per_angle + abs(momentum) * per_momentum
     )
-    return Sums(
-        sums.tilt + tilt,
-        sums.rate + rate,
-        sums.angle + angle,
-        sums.momentum + momentum,
-        sums.s + s,
-        sums.v + v,
-        sums.cos + cos,
-        sums.sin + sin,
-        Y_k,
-    ), size
+    return (
+        Sums(
+            sums.tilt + tilt,
+            sums.rate + rate,
+            sums.angle + angle,
+            sums.momentum + momentum,
+            sums.s + s,
+            sums.v + v,
+            sums.cos + cos,
+            sums.sin + sin,
+            Y_k,
+        ),
+        Last(rate, momentum, s, v, cos, sin, cos_k, sin_k),
+        size,
+    )
 
 
 @inlined

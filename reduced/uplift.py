@@ -31,23 +31,22 @@ WEAK = 1e-12
 @jit
 def excess(body: Body, a: Vector) -> float:
     """Return f = |a| - (g + az) tan(alpha) [m/s^2]; the cylinder cannot stand where it is positive."""
-    return sqrt(a[0] * a[0] + a[1] * a[1]) - (body.g + a[2]) * body.sin_alpha / body.cos_alpha
+    return sqrt(a[0] * a[0] + a[1] * a[1]) - (body.g + a[2]) * (body.sin_alpha / body.cos_alpha)
 
 
 @jit
-def uplift_in(body: Body, a: Vector, slope: Vector, begin: float, end: float) -> float:
-    """Return the first time in [begin, end) at which f reaches zero and rises, or -1.0.
+def uplift_in(body: Body, a: Vector, slope: Vector, end: float) -> float:
+    """Return the first time in [0, end) at which f reaches zero and rises, or -1.0.
 
-    Times count from the sample at which the acceleration is `a`, with rate `slope` per second. A
-    root at `end` itself belongs to the next sample.
+    Times count from where the acceleration is `a`, with rate `slope` per second. A root at `end`
+    itself belongs to the next sample.
     """
-    f_begin = excess(body, ground(a, slope, begin))
-    f_end = excess(body, ground(a, slope, end))
+    f_begin, f_end = excess(body, a), excess(body, ground(a, slope, end))
     if f_begin > 0.0:
-        return begin
+        return 0.0
     if f_end <= 0.0:
         return -1.0
-    low, high = begin, end
+    low, high = 0.0, end
     # bisection and regula falsi in turn (Illinois): f is convex, so one secant side would stall
     f_low, f_high = f_begin, f_end
     for _ in range(200):
@@ -152,7 +151,7 @@ def start_length(body: Body, a: Vector, slope: Vector, at: float) -> float:
     factor = body.p2 * body.cos_alpha / body.g
     F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
     along = (ax * slope[0] + ay * slope[1]) / max(hypot(ax, ay), WEAK * body.g)
-    F1 = factor * (along - slope[2] * body.sin_alpha / body.cos_alpha)
+    F1 = factor * (along - slope[2] * (body.sin_alpha / body.cos_alpha))
     if not starts_as_step(body, F0, F1):
         return START / body.p
     return min(STEP_START / body.p, 1e-3 * F0 / abs(F1)) if F1 != 0.0 else STEP_START / body.p

@@ -129,9 +129,9 @@ def _structure() -> list[Mutation]:
     )
     late = Fault(
         file="driver.py",
-        before="                    lift = uplift_in(body, a, slope, elapsed, length)\n",
-        after="                    lift = uplift_in(body, a, slope, elapsed, length)\n"
-        "                    lift = lift if lift == elapsed else -1.0\n",
+        before="                    lift = elapsed + wait\n",
+        after="                    wait = 0.0 if wait == 0.0 else -1.0\n"
+        "                    lift = elapsed + wait\n",
     )
     rolling = (
         Fault(file="kernels.py", before='"recess": march_recess', after='"recess": march_rolling'),
