@@ -25,6 +25,7 @@ from .uplift import START, nearest_branch, start_length, started, uplift_in
 
 REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a march ends
 MAXIMUM, MINIMUM = 1.0, -1.0
+MOST_SEATING = 0.1  # tilt of the seating rule over alpha
 _LEAST_STEP = 1e-200  # a step that must be shorter fails whatever its length [s]
 
 
@@ -36,6 +37,7 @@ class Options(NamedTuple):
     restitution: float  # of the tilt rate where the base meets the ground in planar motion
     duration: float  # [s]
     step_budget: int
+    relief: int  # steps by which the budget grows when it is used up, and the seating tenfold; 0: the end
     record_steps: bool
 
 
@@ -170,6 +172,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         if not resting:
             uplift_time, uplift_direction = 0.0, y[2]
         peak = y[0]
+        seating, step_budget = options.seating, options.step_budget
         h_next = first_start
         now, piece, status = 0.0, 0, COMPLETED
 
@@ -224,9 +227,11 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     body, options.rtol, y, k, work, h_next, length - elapsed, a_now, slope
                 )
                 step_count += trials
-                if step_count > options.step_budget:
-                    status = OVER_BUDGET
-                    break
+                if step_count > step_budget:
+                    if options.relief == 0 or seating >= MOST_SEATING:
+                        status = OVER_BUDGET
+                        break
+                    seating, step_budget = min(10.0 * seating, MOST_SEATING), step_budget + options.relief
                 if h == 0.0:
                     if h_next < _LEAST_STEP:
                         status = STALLED
@@ -285,7 +290,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                 if options.seating > 0.0 and not falls:
                     L, S = momenta(y)
                     a_now = ground(a, slope, elapsed)
-                    if may_sit_down(body, options.seating, y[0], y[1], L, S, a_now):
+                    if may_sit_down(body, seating, y[0], y[1], L, S, a_now):
                         resting = True
                         y = placed(y, 0.0, 0.0, y[2], 0.0)
             piece += 1

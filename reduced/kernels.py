@@ -71,6 +71,6 @@ SIZES = {"planar": 3, "recess": 4, "rolling": 8}  # variables of a state
 def load(model: str) -> None:
     """Load or compile the march of `model`, by running it on a cylinder at rest for a moment."""
     body = body_of(Cylinder(semidiagonal=1.0, tan_alpha=0.2), 9.81)
-    options = Options(1e-6, 0.0, 1.0, 1.0, 1, False)
+    options = Options(1e-6, 0.0, 1.0, 1.0, 1, 0, False)
     start = (0.0,) * SIZES[model]
     MARCHES[model](body, options, np.zeros((0, 3)), 1.0, 1.0, start, np.zeros(1), np.zeros((0, 2)))

@@ -15,7 +15,7 @@ from rockwobble.models import Cylinder, GroundMotion, InitialState, run_duration
 
 from . import kernels
 from .body import Body, body_of
-from .driver import March, Options, spin_momentum
+from .driver import MOST_SEATING, March, Options, spin_momentum
 
 MODELS = tuple(kernels.MARCHES)
 
@@ -81,16 +81,20 @@ class Problem:
     ) -> tuple[March, float]:
         """Return the march with states at `times` (n,) [s], and the azimuth its angles count from."""
         set_up = self._set_up
-        options = self._options(self._step_budget(len(set_up.record)), record_steps)
+        options = self._options(self._step_budget(len(set_up.record)), record_steps=record_steps)
         march: March = set_up.march(
             self.body, options, set_up.record, 1.0, self._time_step, set_up.start, times, np.empty((0, 2))
         )
         return march, set_up.azimuth
 
-    def scaled_solver(self, step_budget: int) -> Callable[[float], March]:
-        """Return a function of a factor on the motion that marches for the peak only."""
+    def scaled_solver(self, step_budget: int, relief: int) -> Callable[[float], March]:
+        """Return a function of a factor on the motion that marches for the peak only.
+
+        A run that uses up `step_budget` fails if `relief` is 0, and else goes on with ten times the
+        seating, and again each time it has used up `relief` steps more.
+        """
         set_up, body = self._set_up, self.body
-        options = self._options(step_budget, record_steps=False)
+        options = self._options(step_budget, relief=relief)
         later = strongest_and_lightest(set_up.record)
         times = np.empty(0)
 
@@ -110,10 +114,10 @@ class Problem:
     def _time_step(self) -> float:
         return 1.0 if self.motion is None else self.motion.time_step
 
-    def _options(self, step_budget: int, record_steps: bool) -> Options:
+    def _options(self, step_budget: int, *, relief: int = 0, record_steps: bool = False) -> Options:
         least_seating = _LEAST_SEATING_WITH_LOSS if self.restitution < 1.0 else 0.0
         seating = max(self.seating, least_seating)
-        return Options(self.rtol, seating, self.restitution, self.duration, step_budget, record_steps)
+        return Options(self.rtol, seating, self.restitution, self.duration, step_budget, relief, record_steps)
 
     @cached_property
     def _set_up(self) -> SetUp:
@@ -219,7 +223,7 @@ def make_problem(
         raise ValueError(f"gravity must be positive and finite [m/s^2], got {gravity!r}")
     if not 1e-13 <= rtol <= 1e-2:
         raise ValueError(f"rtol must be from 1e-13 to 1e-2, got {rtol!r}")
-    if not 0.0 <= seating <= 0.1:
+    if not 0.0 <= seating <= MOST_SEATING:
         raise ValueError(f"seating must be from 0 (no rule) to 0.1 (of alpha), got {seating!r}")
     if not math.isfinite(plane):
         raise ValueError(f"plane must be a finite azimuth [rad], got {plane!r}")

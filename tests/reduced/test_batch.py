@@ -7,6 +7,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.reduced import driver, problem
 
 EL_CENTRO = el_centro_1940()
 SIZES = np.array([0.8, 3.0, 10.0])
@@ -49,6 +50,60 @@ def test_an_interruption_passes_through_at_once():
 
     with pytest.raises(KeyboardInterrupt):
         reduced.peak_tilts(SIZES, 0.1, EL_CENTRO, SCALES, progress=interrupt)
+
+
+# Size [m] and peak of the resultant over g tan(alpha): small cylinders that the record only just lifts.
+# Undamped they rock hundreds of times a second for the rest of it: single runs take 29 to 350 steps a sample.
+BARELY_LIFTED = [
+    ("recess", 0.1, 0.5, 1.01727),
+    ("recess", 0.3, 0.2, 1.00962),
+    ("rolling", 0.1, 0.5, 1.01727),
+    ("rolling", 0.1, 0.161, 1.00962),
+]
+
+
+@pytest.mark.parametrize(("model", "tan_alpha", "size", "intensity"), BARELY_LIFTED)
+def test_chatter_costs_no_more_than_20_whole_runs(model, tan_alpha, size, intensity, monkeypatch):
+    marches = record_marches(monkeypatch)
+    scale = 9.81 * tan_alpha / EL_CENTRO.peak
+    peaks = reduced.peak_tilts([size], tan_alpha, EL_CENTRO, [intensity * scale], model=model)
+    # a whole run is one step a sample; the rule is raised at 4, and takes this chatter at the first time
+    samples = len(EL_CENTRO.acceleration)
+    assert 4 * samples < marches[-1].step_count <= 12 * samples
+    assert marches[-1].status == driver.REST
+    assert 0.0 < peaks[0, 0] < 1e-3 * math.atan(tan_alpha)
+    if model == "recess":  # the single run rocks on to the end, no higher than it first rose
+        cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+        single = reduced.simulate(cylinder, EL_CENTRO.scaled(intensity * scale), rtol=1e-7)
+        assert single.outcome == "completed"
+        assert single.step_count > 20 * samples
+        assert peaks[0, 0] == pytest.approx(single.peak_tilt, rel=1e-6)
+
+
+def test_runs_that_do_not_chatter_are_single_runs_to_the_bit(monkeypatch):
+    with_rise = reduced.peak_tilts(SIZES, 0.1, EL_CENTRO, SCALES)
+    marches = record_marches(monkeypatch, relief=0)
+    without = reduced.peak_tilts(SIZES, 0.1, EL_CENTRO, SCALES, workers=1)
+    assert max(march.step_count for march in marches) < 2 * len(EL_CENTRO.acceleration)
+    assert np.array_equal(with_rise, without)
+
+
+def record_marches(monkeypatch, relief=None):
+    """Return the list to which every march of a grid is appended from now on."""
+    marches = []
+    scaled_solver = problem.Problem.scaled_solver
+
+    def recorded(self, step_budget, given):
+        solve = scaled_solver(self, step_budget, given if relief is None else relief)
+
+        def recording(factor):
+            marches.append(solve(factor))
+            return marches[-1]
+
+        return recording
+
+    monkeypatch.setattr(problem.Problem, "scaled_solver", recorded)
+    return marches
 
 
 def test_chatter_beyond_the_step_budget_is_masked():
