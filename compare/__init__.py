@@ -4,7 +4,7 @@ from .comparison import Comparison, describe_case, describe_run
 from .contact import TILTED
 from .driver import compare
 from .ensemble import Ensemble, ensemble
-from .ensemble_members import perturbed_starts, synthetic_motions, with_motions
+from .ensemble_members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
 from .error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
 from .execution import Crash, Job, Progress, simulate_all
 from .foreign import Foreign, ForeignTrajectory, read_trajectory
@@ -52,6 +52,7 @@ __all__ = [
     "describe_case",
     "describe_run",
     "ensemble",
+    "far_field_motions",
     "findings",
     "installed_engines",
     "make_pair",

@@ -17,6 +17,7 @@ from .comparison_file import RESTORE, load_comparison, restore_bytes
 from .error_budget import ErrorBudget
 from .fingerprint import fingerprint
 from .parquet_file import pack
+from .provenance import about_results
 from .store import replace_files
 from .stored_trace import stored
 from .traces import Trace
@@ -113,7 +114,7 @@ class Comparison:
     def _pack(self, table: pd.DataFrame) -> bytes:
         """Return a table as Parquet that says what made it and from what."""
         inputs = fingerprint([_inputs(case) for case in self.cases.values()])
-        return pack(table, {"kind": "rockwobble comparison", "versions": self.versions, "inputs": inputs})
+        return pack(table, about_results("rockwobble comparison", inputs, versions=self.versions))
 
     def _passes(self) -> pd.DataFrame:
         import pandas as pd

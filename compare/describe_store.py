@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from .describe_ensemble import TABLE, describe_ensemble, describe_unfinished_ensemble, holds_ensemble
 from .describe_studies import (
     describe_extremes,
     describe_tradeoff,
@@ -15,7 +16,7 @@ from .describe_studies import (
     describe_validity,
 )
 from .parquet_file import read_about
-from .run_store import RUNS
+from .run_store import MEMBERS, RUNS
 from .sweep_store import ABOUT, open_sweep_store
 from .validity.campaign import KEPT
 
@@ -28,6 +29,7 @@ _KINDS = {
     "spectrum.parquet": "an overturning spectrum",
     "run.json": "a single run",
     RUNS: "a comparison that is not finished",
+    TABLE: "an ensemble",
 }
 _STUDIES = {
     "validity.json": describe_validity,
@@ -61,6 +63,10 @@ def describe_store(folder: str | Path) -> list[dict[str, Any]]:
         found.append(_spectrum(path))
     if (path / "run.json").exists():
         found.append(_run(path))
+    if holds_ensemble(path):
+        found.append(describe_ensemble(path))
+    elif (path / MEMBERS).is_dir():
+        found.append(describe_unfinished_ensemble(path))
     found += [describe(path) for file, describe in _STUDIES.items() if (path / file).exists()]
     if (path / KEPT).is_dir() and not (path / "validity.json").exists():
         found.append(describe_unfinished_validity(path))
@@ -194,8 +200,12 @@ def _run(path: Path) -> dict[str, Any]:
         "kind": _KINDS["run.json"],
         "complete": True,
         "runs": 1,
-        "inputs": {"run": about["run"], "case": about["case"]},
-        "versions": {result["engine"]: result["engine_version"]} if "engine" in result else {},
+        "inputs": {
+            "fingerprint": about.get("inputs", ""),  # an older file says less
+            "run": about["run"],
+            "case": about["case"],
+        },
+        "versions": about.get("versions", {}),
         "outcomes": {result["outcome"]: 1},
         "figures": [{"run": about["run"], "peak tilt / alpha": None if peak is None else peak / alpha}],
     }

@@ -46,6 +46,8 @@ class Contrast:
     median_ratio : Interval
         Ratio of the medians, overturned runs counted as the largest; NaN where a median overturns or
         does not uplift.
+    member_factor : float
+        Factor by which the two peaks of a member differ: the median over those that uplift and stand.
     overturned, against_overturned : int
         Runs that overturn.
     both_overturned : int
@@ -59,6 +61,7 @@ class Contrast:
     ks_p: float
     wasserstein: Interval
     median_ratio: Interval
+    member_factor: float
     overturned: int
     against_overturned: int
     both_overturned: int
@@ -112,6 +115,7 @@ def contrast(
         ks_p=float(ks_2samp(*ranks).pvalue),
         wasserstein=_interval(standing_wasserstein, ours, theirs, chosen),
         median_ratio=_interval(median_ratio, ours, theirs, chosen),
+        member_factor=member_factor(ours, theirs),
         overturned=table[0][0],
         against_overturned=table[1][0],
         both_overturned=int((fell & fell_there).sum()),
@@ -143,6 +147,22 @@ def median_ratio(ours: Array, theirs: Array) -> float:
     # the lower of the two middle values, because a mean with infinity is no value of the sample
     first, second = (float(np.sort(values)[(len(values) - 1) // 2]) for values in (ours, theirs))
     return first / second if math.isfinite(first) and math.isfinite(second) and second > 0.0 else math.nan
+
+
+def member_factor(ours: Array, theirs: Array) -> float:
+    """Return the median factor, at least 1, between finite values above zero in pairs; NaN without any."""
+    counts = np.isfinite(ours) & np.isfinite(theirs) & (ours > 0.0) & (theirs > 0.0)
+    if not counts.any():
+        return math.nan
+    return float(np.exp(np.median(np.abs(np.log(ours[counts] / theirs[counts])))))
+
+
+def smallest_distance(count: int) -> float:
+    """Return the KS distance that two samples of one distribution exceed once in twenty times.
+
+    The limit of Kolmogorov and Smirnov for two large samples of `count` values each.
+    """
+    return math.sqrt(math.log(2.0 / (1.0 - CONFIDENCE)) / count)
 
 
 def _ranks(ours: Array, theirs: Array) -> tuple[Array, Array]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,13 +17,17 @@ from rockwobble.models import Case, Run, Suite
 from .distributions import Contrast, contrast
 from .ensemble_members import perturbed_starts
 from .execution import Crash, Job, ProgressCallback, simulate_all
-from .run_store import open_run_store
-from .runs import default_runs, require_runnable, run_labels
+from .fingerprint import fingerprint
+from .provenance import about_results
+from .run_store import job_fingerprint, open_run_store
+from .runs import default_runs, own_model, require_runnable, run_labels
 
 if TYPE_CHECKING:
     import pandas as pd
 
+KIND = "rockwobble ensemble"
 MODELS = ("recess", "rolling")
+_FALLING = "past its balance and falling when the run ended"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -33,15 +37,17 @@ class Ensemble:
     Parameters
     ----------
     members : DataFrame
-        One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed),
-        outcome, message, wall_time [s].
+        One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
+        overturned), outcome, message, wall_time [s]. What falls when its ground motion ends has overturned.
     methods : DataFrame
-        One row for each method: runs, overturned, failed, failed_members (their names), and median and
-        quantiles of the peak tilt of what did not fail [alpha], each that of a run, overturned ones at pi/2.
+        One row for each method: own_model (of the support of an engine), runs, rocked, overturned, failed,
+        failed_members (their names), and median and quantiles of the peak tilt of what did not fail [alpha],
+        each that of a run: infinite where that one overturns.
     contrasts : DataFrame
         One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high.
     about : dict
-        Seed, kind and size of the perturbation, and the draws of the bootstrap.
+        As `about_results`, with what the members are, the range of their sizes and slendernesses, and the
+        draws of the bootstrap.
     """
 
     members: pd.DataFrame
@@ -62,6 +68,7 @@ def ensemble(
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
+    source: str = "cases",
 ) -> Ensemble:
     """Run many members by each method, and hold the distributions of peak tilt against each other.
 
@@ -84,6 +91,8 @@ def ensemble(
         Of the bootstrap.
     workers, progress, resume
         As in `compare`.
+    source : str, optional
+        What the members are, for people, where there are several cases.
 
     Returns
     -------
@@ -104,13 +113,14 @@ def ensemble(
     >>> found.methods[["method", "runs", "failed"]].values.tolist()
     [['recess', 5, 0], ['rolling', 5, 0]]
     """
-    about: dict[str, Any] = {"seed": seed, "draws": draws}
+    about: dict[str, Any] = {}
     if isinstance(case_or_members, Case):
         members = perturbed_starts(case_or_members, size, perturbation=perturbation, seed=seed)
-        about |= {"members": "perturbed starts", "size": size, "perturbation": perturbation}
+        about |= {"members": f"starts of {case_or_members.name}, perturbed by {100.0 * perturbation:g} %"}
+        about |= {"perturbation": perturbation}
     else:
         members = list(case_or_members.cases if isinstance(case_or_members, Suite) else case_or_members)
-        about |= {"members": "cases", "size": len(members)}
+        about |= {"members": source}
     if len(members) < 2 or len({case.name for case in members}) < len(members):
         raise ValueError(f"an ensemble has at least 2 members of different names, got {len(members)}")
     chosen = _runs(case_or_members, runs)
@@ -122,15 +132,22 @@ def ensemble(
     jobs = [
         Job(case=case, method=method, label=label) for case in members for label, method in methods.items()
     ]
-    with nullcontext() if resume is None else open_run_store(resume) as store:
+    with nullcontext() if resume is None else open_run_store(resume, samples=False) as store:
         results = simulate_all(jobs, workers=workers, progress=progress, store=store)
     table = _members(jobs, results)
+    inputs = fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])
+    about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")} | {"draws": draws}
     return Ensemble(
         members=table,
-        methods=_methods(table),
+        methods=_methods(table, methods),
         contrasts=_contrasts(table, list(methods), draws=draws, seed=seed),
-        about=about,
+        about=about_results(KIND, inputs, seeds={"ensemble": seed}) | about,
     )
+
+
+def _range(members: Sequence[Case], name: str) -> dict[str, float]:
+    values = {float(getattr(case.cylinder, name)) for case in members}
+    return {"from": min(values), "to": max(values), "count": len(values)}
 
 
 def _runs(case_or_members: Case | Suite | Sequence[Case], runs: Iterable[Run] | None) -> tuple[Run, ...]:
@@ -148,35 +165,50 @@ def _members(jobs: Sequence[Job], results: Sequence[Any]) -> pd.DataFrame:
     for job, result in zip(jobs, results, strict=True):
         crashed = isinstance(result, Crash)
         failed = crashed or result.outcome == "failed"
+        falling = not failed and _falling(job.case, result)
+        peak = math.nan if failed else 0.5 * math.pi if falling else result.peak_tilt
         rows.append(
             {
                 "member": job.case.name,
                 "method": job.label,
-                "peak_tilt": math.nan if failed else result.peak_tilt / job.case.cylinder.alpha,
-                "outcome": "failed" if failed else result.outcome,
-                "message": result.message,
+                "peak_tilt": peak / job.case.cylinder.alpha,
+                "outcome": "failed" if failed else "overturned" if falling else result.outcome,
+                "message": "; ".join([result.message] * bool(result.message) + [_FALLING] * falling),
                 "wall_time": math.nan if crashed else result.wall_time,
             }
         )
     return pd.DataFrame(rows)
 
 
-def _methods(members: pd.DataFrame) -> pd.DataFrame:
+def _falling(case: Case, result: Any) -> bool:
+    """Return whether a run ends on still ground past its balance and on its way down: nothing holds it."""
+    alpha, motion = case.cylinder.alpha, case.motion
+    if result.outcome == "overturned" or not result.peak_tilt > alpha:
+        return False
+    still = motion is None or case.length >= motion.duration
+    return bool(still and result.tilt[-1] > alpha and result.tilt_rate[-1] >= 0.0)
+
+
+def _methods(members: pd.DataFrame, methods: Mapping[str, str | Run]) -> pd.DataFrame:
     import pandas as pd
 
     rows = []
-    for method, runs in members.groupby("method", sort=False):
+    for method, given in methods.items():
+        runs = members[members["method"] == method]
         failed = runs[runs["outcome"] == "failed"]
-        peaks = np.sort(runs["peak_tilt"].dropna().to_numpy(float))
+        standing = runs.loc[~runs["outcome"].isin(["overturned", "failed"]), "peak_tilt"].to_numpy(float)
+        fallen = int((runs["outcome"] == "overturned").sum())
+        peaks = np.sort([*standing, *[math.inf] * fallen])
         low, median, high = (
             np.quantile(peaks, [0.16, 0.5, 0.84], method="inverted_cdf") if len(peaks) else [math.nan] * 3
         )
         rows.append(
             {
                 "method": method,
+                "own_model": "" if isinstance(given, str) else own_model(given.support),
                 "runs": len(runs),
                 "rocked": int((runs["peak_tilt"] > 0.0).sum()),
-                "overturned": int((runs["outcome"] == "overturned").sum()),
+                "overturned": fallen,
                 "failed": len(failed),
                 "failed_members": ", ".join(failed["member"]),
                 "peak_16": low,
@@ -216,5 +248,5 @@ def _flat(found: Contrast) -> dict[str, float | int]:
     for name in ("ks", "wasserstein", "median_ratio"):
         interval = getattr(found, name)
         row |= {name: interval.value, f"{name}_low": interval.low, f"{name}_high": interval.high}
-    names = ("ks_p", "overturned", "against_overturned", "both_overturned", "overturned_p")
+    names = ("ks_p", "member_factor", "overturned", "against_overturned", "both_overturned", "overturned_p")
     return row | {name: getattr(found, name) for name in names}

@@ -8,13 +8,15 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, GroundMotion
+from rockwobble.models import Case, GroundMotion, p695_far_field
 
 # of the Kanai-Tajimi filter, firm soil: K. Kanai 1957, H. Tajimi 1960
 _GROUND_FREQUENCY, _GROUND_DAMPING = 5.0 * math.pi, 0.6
 # a second, high-pass filter (R. W. Clough, J. Penzien) takes what a ground cannot do: drift away
 _CORNER_FREQUENCY, _CORNER_DAMPING = 0.5 * math.pi, 0.6
 _TIME_STEP = 0.01
+# of the far-field set: FEMA P-695, table A-4A
+FAR_FIELD_PAIRS = 22
 # of the duration: rise and strong part of the envelope, followed by an exponential decay
 _RISE, _STRONG, _DECAY = 0.15, 0.4, 4.0
 
@@ -84,9 +86,7 @@ def synthetic_motions(count: int, *, peak: float, seed: int, duration: float = 2
         If a number is out of range.
     """
     _require_count(count)
-    for name, value in (("peak", peak), ("duration", duration)):
-        if not (math.isfinite(value) and value > 0.0):
-            raise ValueError(f"{name} must be positive and finite, got {value!r}")
+    _require_positive(peak=peak, duration=duration)
     size = round(duration / _TIME_STEP) + 1
     noise = np.random.default_rng(seed).standard_normal((count, size, 2))
     frequency = 2.0 * math.pi * np.fft.rfftfreq(2 * size, _TIME_STEP)
@@ -102,6 +102,24 @@ def synthetic_motions(count: int, *, peak: float, seed: int, duration: float = 2
         GroundMotion(samples, _TIME_STEP, f"synthetic {seed}-{index + 1}")
         for index, samples in enumerate(shaped)
     ]
+
+
+def far_field_motions(*, peak: float) -> list[GroundMotion]:
+    """Return the 22 far-field pairs of FEMA P-695, each scaled to the same peak.
+
+    Parameters
+    ----------
+    peak : float
+        Largest horizontal resultant [m/s^2].
+
+    Raises
+    ------
+    ValueError
+        If the number is out of range, or the records of the extra `records` are not installed.
+    """
+    _require_positive(peak=peak)
+    motions = (p695_far_field(pair) for pair in range(1, FAR_FIELD_PAIRS + 1))
+    return [motion.scaled(peak / motion.peak) for motion in motions]
 
 
 def _transfer(frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
@@ -125,3 +143,9 @@ def with_motions(case: Case, motions: list[GroundMotion]) -> list[Case]:
 def _require_count(count: int) -> None:
     if count < 2:
         raise ValueError(f"an ensemble has at least 2 members, got {count!r}")
+
+
+def _require_positive(**numbers: float) -> None:
+    for name, value in numbers.items():
+        if not (math.isfinite(value) and value > 0.0):
+            raise ValueError(f"{name} must be positive and finite, got {value!r}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,10 +17,12 @@ if TYPE_CHECKING:
     from .execution import Job
 
 RUNS = "runs"
+# runs without their samples but the last: of an ensemble only the numbers count, and it has many members
+MEMBERS = "members"
 
 
 class RunStore:
-    """The folder `runs` within a folder of results: one Parquet file for each finished run.
+    """The folder `runs` or `members` in a folder of results: one Parquet file for each finished run.
 
     A file is named by a hash of the case, the method, the versions of the packages and the code that
     made it. The names of case and run are not part of it: renaming them repeats nothing.
@@ -28,10 +31,13 @@ class RunStore:
     ----------
     folder : Path
         That of the runs, which exists.
+    samples : bool, optional
+        Whether all samples are kept, or only the last of them beside the numbers and passes of a run.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, *, samples: bool = True) -> None:
         self.folder = folder
+        self._samples = samples
         self._used: set[Path] = set()
 
     def find(self, job: Job) -> StoredTrace | None:
@@ -55,7 +61,10 @@ class RunStore:
             "inputs": path.stem,
             "made with": makers_of(job),
         }
-        write_whole(path, to_parquet(stored(trace), about))
+        kept = stored(trace)
+        if not self._samples:
+            kept = dataclasses.replace(kept, samples=kept.samples.iloc[-1:])
+        write_whole(path, to_parquet(kept, about))
 
     def remove_others(self) -> None:
         """Remove the runs that nobody has asked for since this store was opened."""
@@ -69,7 +78,7 @@ class RunStore:
 
 
 @contextmanager
-def open_run_store(folder: str | Path) -> Iterator[RunStore]:
+def open_run_store(folder: str | Path, *, samples: bool = True) -> Iterator[RunStore]:
     """Open the finished runs of a folder of results; nobody else can meanwhile.
 
     What was left half-written is removed. If the block ends well, so are the runs that it did not ask
@@ -80,10 +89,10 @@ def open_run_store(folder: str | Path) -> Iterator[RunStore]:
     ValueError
         If nothing can be written there, or another process has it open.
     """
-    path = Path(folder) / RUNS
+    path = Path(folder) / (RUNS if samples else MEMBERS)
     with sole_writer(path):
         remove_leftovers(path)
-        store = RunStore(path)
+        store = RunStore(path, samples=samples)
         yield store
         store.remove_others()
 

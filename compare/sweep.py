@@ -15,7 +15,7 @@ import numpy as np
 from rockwobble.models import Case, GroundMotion, Suite
 
 from .fingerprint import fingerprint
-from .provenance import package_versions
+from .provenance import about_results
 from .store import remove_leftovers, sole_writer
 from .sweep_cases import CaseSweep
 from .sweep_executor import Chunk, Workers, open_workers, run_chunk
@@ -123,12 +123,9 @@ def sweep(
         remove_leftovers(folder)
         keys = [chunk.key() for chunk in chunks]
         about = {
-            "kind": KIND,
+            **about_results(KIND, fingerprint(keys), seeds=seeds),
             "plan": whole.kind,
-            "inputs": fingerprint(keys),
             "runs": whole.rows,
-            "versions": package_versions(),
-            "seeds": dict(seeds or {}),
             **whole.describe(),
             "chunks": [[key, chunk.rows] for key, chunk in zip(keys, chunks, strict=True)],
         }
@@ -171,9 +168,7 @@ def _run(
         if store is None:
             results[index] = columns
         else:
-            store.write_chunk(
-                index, columns, {"versions": chunks[index].makers, "seeds": store.about["seeds"]}
-            )
+            store.write_chunk(index, columns, chunks[index].makers)
         clock.finished(chunks[index].rows)
 
     with open_workers(scheduler, workers, len(waiting)) if waiting else nullcontext() as place:

@@ -19,6 +19,7 @@ from rockwobble.models import GroundMotion
 
 from . import plain_json
 from .parquet_file import pack
+from .provenance import about_results
 from .store import replace_files, write_whole
 
 if TYPE_CHECKING:
@@ -62,11 +63,11 @@ class SweepStore:
         mine = set(self.finished().values())
         return sorted(path for path in (self.folder / CHUNKS).glob("*.parquet") if path not in mine)
 
-    def write_chunk(self, index: int, columns: Mapping[str, Any], about: Mapping[str, Any]) -> None:
-        """Keep the results of the chunk with this place in the order."""
+    def write_chunk(self, index: int, columns: Mapping[str, Any], versions: Mapping[str, str]) -> None:
+        """Keep the results of the chunk with this place in the order, and what they were made with."""
         key = self.keys[index]
-        content = pack(columns, {"kind": KIND, "inputs": key, **about})
-        write_whole(self._path(index, key), content)
+        about = about_results(KIND, key, versions=versions, seeds=self.about["seeds"])
+        write_whole(self._path(index, key), pack(columns, about))
 
     def put_in_order(self) -> None:
         """Name each chunk that is there by its place: where a grid has grown, places have moved."""

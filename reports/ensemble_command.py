@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import json
+import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,8 +12,7 @@ from . import options
 from .terminal import interruptible, user_input
 
 if TYPE_CHECKING:
-    from rockwobble.compare import Ensemble
-    from rockwobble.models import Case
+    from rockwobble.models import Case, GroundMotion, Run, Suite
 
 Members = Annotated[int, typer.Option("--members", help="Number of members, where no suite gives them.")]
 Perturbation = Annotated[
@@ -31,10 +30,19 @@ Synthetic = Annotated[
         help="Made-up ground motions instead of perturbed starts, with a peak of so many times g tan alpha.",
     ),
 ]
+FarField = Annotated[
+    float | None,
+    typer.Option(
+        "--p695",
+        help="The 22 far-field pairs of FEMA P-695 (extra records) instead of perturbed starts, each scaled "
+        "to a peak of so many times g tan alpha.",
+    ),
+]
 Seed = Annotated[int, typer.Option("--seed", help="Of everything random.")]
 
 
 def ensemble(
+    context: typer.Context,
     suite: options.SuiteName = None,
     semidiagonal: options.Semidiagonal = 6.0,
     tan_alpha: options.TanAlpha = 0.2,
@@ -49,6 +57,7 @@ def ensemble(
     members: Members = 20,
     perturbation: Perturbation = 0.01,
     synthetic: Synthetic = None,
+    far_field: FarField = None,
     seed: Seed = 0,
     engine: options.Engines = None,
     support: options.Supports = None,
@@ -57,31 +66,25 @@ def ensemble(
 ) -> None:
     """Hold the distributions of peak tilt by each method against each other.
 
-    Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly different starts. With a
-    SUITE its cases are the members. --engine none runs the reduced models alone.
+    Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly different starts. With
+    --synthetic or --p695 the members are ground motions, with a SUITE its cases. --engine none runs the
+    reduced models alone.
+
+    Whatever ends it, the same command goes on where it stopped.
 
     Writes members, methods and contrasts as CSV and members as Parquet, ensemble.json, ensemble.svg and
     ensemble.html.
     """
     from .problem import case_from_options, describe
 
-    with interruptible():
+    with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
         with user_input():
             from rockwobble import compare
-            from rockwobble.models import Run, read_suite
 
             compare.require_writable(out)
-            runs = None
-            if engine == ["none"]:
-                runs = []
-            elif suite is None or engine or support or time_step:
-                runs = [
-                    Run(run.engine, run.support, time_step)
-                    for run in compare.default_runs(engine or None, support or None)
-                ]
-            problem: Any
+            problem: Case | Suite | list[Case]
             if suite is not None:
-                problem = read_suite(suite)
+                problem = _suite(context, suite)
                 print(f"Suite {suite}: {len(problem.cases)} members")
             else:
                 case = case_from_options(
@@ -96,15 +99,25 @@ def ensemble(
                     rolling_rate=rolling_rate,
                     duration=duration,
                 )
-                problem = case if synthetic is None else _synthetic(case, members, synthetic, seed)
-                for line in describe(case if synthetic is None else problem[0]):
+                motions = _motions(case, members, synthetic, far_field, seed)
+                problem = _under(case, motions) if motions else case
+                for line in describe(case)[:1] if motions else describe(case):
                     print(line)
-                print(f"Members: {members}, seed {seed}, {_kind(perturbation, synthetic)}")
+                print(f"Members: {len(motions) or members}, {_source(synthetic, far_field, perturbation)}")
+            runs = _runs(engine, support, time_step, stated=suite is not None)
+        from .ensemble_output import ensemble_files, print_ensemble
         from .progress import shown_progress
 
         with user_input(), shown_progress(many=True) as tell:
             found = compare.ensemble(
-                problem, runs=runs, size=members, perturbation=perturbation, seed=seed, progress=tell
+                problem,
+                runs=runs,
+                size=members,
+                perturbation=perturbation,
+                seed=seed,
+                progress=tell,
+                resume=out,
+                source=_source(synthetic, far_field, perturbation) if suite is None else f"cases of {suite}",
             )
         print_ensemble(found)
         contents = ensemble_files(found)
@@ -113,75 +126,60 @@ def ensemble(
     print(f"\nWritten to {out}: {', '.join(contents)}")
 
 
-def _synthetic(case: Case, members: int, times_uplift: float, seed: int) -> list[Case]:
-    from rockwobble.compare import synthetic_motions, with_motions
+def _suite(context: typer.Context, name: str) -> Suite:
+    from rockwobble.models import read_suite
 
-    peak = times_uplift * case.gravity * case.cylinder.tan_alpha
-    return with_motions(case, synthetic_motions(members, peak=peak, seed=seed))
+    from .suite_choice import refuse_problem_options
+
+    for option in ("members", "perturbation", "synthetic", "far_field"):
+        source = context.get_parameter_source(option)
+        if source is not None and source.name == "COMMANDLINE":
+            given = {"far_field": "p695"}.get(option, option)
+            raise ValueError(f"--{given} does not go with a suite, got {name}: its cases are the members")
+    refuse_problem_options(context, name)
+    return read_suite(name)
 
 
-def _kind(perturbation: float, synthetic: float | None) -> str:
+def _motions(
+    case: Case, members: int, synthetic: float | None, far_field: float | None, seed: int
+) -> list[GroundMotion]:
+    """Return the ground motions that are the members; none where the members are perturbed starts."""
+    from rockwobble.compare import far_field_motions, synthetic_motions
+
+    if synthetic is not None and far_field is not None:
+        raise ValueError("the members are made-up ground motions or those of FEMA P-695, got both options")
+    uplift = case.gravity * case.cylinder.tan_alpha
+    if far_field is not None:
+        return far_field_motions(peak=far_field * uplift)
     if synthetic is not None:
-        return f"made-up ground motions of {synthetic:g} times g tan alpha"
-    return f"conditions perturbed by {100.0 * perturbation:g} %"
+        return synthetic_motions(members, peak=synthetic * uplift, seed=seed)
+    return []
 
 
-def print_ensemble(found: Ensemble) -> None:
-    """Print the table of methods and that of contrasts."""
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-
-    console = Console()
-    if not console.is_terminal:
-        console.width = max(console.width, 100)
-    methods = Table("method", "runs", "overturned", "failed", "median", "16 to 84 %", box=box.SIMPLE_HEAD)
-    for _, row in found.methods.iterrows():
-        numbers = (str(row[name]) for name in ("runs", "overturned", "failed"))
-        spread = f"{row.peak_16:.3f} to {row.peak_84:.3f}"
-        methods.add_row(row.method, *numbers, f"{row.peak_median:.3f}", spread)
-    contrasts = Table(
-        "method", "against", "KS", "p", "Wasserstein", "median ratio", "fall", box=box.SIMPLE_HEAD
-    )
-    for _, row in found.contrasts.iterrows():
-        contrasts.add_row(
-            row.method,
-            row.against,
-            f"{row.ks:.2f}",
-            f"{row.ks_p:.2f}",
-            f"{row.wasserstein:.3f} ({row.wasserstein_low:.3f} to {row.wasserstein_high:.3f})",
-            f"{row.median_ratio:.2f} ({row.median_ratio_low:.2f} to {row.median_ratio_high:.2f})",
-            f"{row.overturned} : {row.against_overturned}",
-        )
-    console.print(methods, contrasts)
-    console.print(
-        "Peak tilt and Wasserstein distance in alpha; overturned runs count as the largest, and not in the "
-        "Wasserstein distance. p: that one distribution gives so large a KS distance. In brackets 95 % "
-        "of the bootstrap. fall: overturned runs of both.",
-        style="dim",
-        highlight=False,
-    )
-    for _, row in found.methods[found.methods["failed"] > 0].iterrows():
-        console.print(
-            f"- {row.method} failed in {row.failed_members}: left out", markup=False, highlight=False
-        )
+def _under(case: Case, motions: list[GroundMotion]) -> list[Case]:
+    """Return the case under each motion, named by that alone: the others are all the same."""
+    return [dataclasses.replace(case, name=motion.name, motion=motion) for motion in motions]
 
 
-def ensemble_files(found: Ensemble) -> dict[str, bytes]:
-    """Return name and content of each file."""
-    import io
+def _runs(
+    engines: list[str] | None, supports: list[str] | None, time_step: Any, *, stated: bool
+) -> list[Run] | None:
+    """Return the runs of the options; None where those of a suite count."""
+    from rockwobble.compare import default_runs
+    from rockwobble.models import Run
 
-    from .ensemble_figure import ensemble_figure
-    from .ensemble_page import ensemble_page
+    if engines == ["none"]:
+        return []
+    if stated and not (engines or supports or time_step):
+        return None
+    chosen = default_runs(engines or None, supports or None)
+    return [Run(run.engine, run.support, time_step) for run in chosen]
 
-    buffer = io.BytesIO()
-    found.members.to_parquet(buffer, index=False)
-    return {
-        "members.csv": found.members.to_csv(index=False).encode(),
-        "methods.csv": found.methods.to_csv(index=False).encode(),
-        "contrasts.csv": found.contrasts.to_csv(index=False).encode(),
-        "members.parquet": buffer.getvalue(),
-        "ensemble.json": (json.dumps(found.about, indent=2) + "\n").encode(),
-        "ensemble.svg": ensemble_figure(found),
-        "ensemble.html": ensemble_page(found).encode(),
-    }
+
+def _source(synthetic: float | None, far_field: float | None, perturbation: float) -> str:
+    """Return what the members are."""
+    if far_field is not None:
+        return f"far-field pairs of FEMA P-695, with peaks of {far_field:g} g tan alpha"
+    if synthetic is not None:
+        return f"made-up ground motions, with peaks of {synthetic:g} g tan alpha"
+    return f"starts perturbed by {100.0 * perturbation:g} %"

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from .ensemble_chart import MODELS, end_of_axis
 from .palette import model_style, run_styles
 
 if TYPE_CHECKING:
     from rockwobble.compare import Ensemble
 
-_MODELS = ("recess", "rolling", "planar")
 _DASHES: dict[str, Any] = {
     "solid": "-",
     "dash": (0, (5, 2)),
@@ -32,7 +32,8 @@ def ensemble_figure(found: Ensemble) -> bytes:
     from matplotlib.figure import Figure
 
     methods = list(found.methods["method"])
-    styles = run_styles([method for method in methods if method not in _MODELS])
+    styles = run_styles([method for method in methods if method not in MODELS])
+    reach = end_of_axis(found)
     with mpl.rc_context({"svg.hashsalt": "rockwobble", "font.size": 10}):
         figure = Figure(figsize=(8.0, 4.6), layout="constrained")
         axes = figure.subplots()
@@ -41,10 +42,10 @@ def ensemble_figure(found: Ensemble) -> bytes:
             standing = np.sort(runs.loc[runs["outcome"] != "overturned", "peak_tilt"].to_numpy(float))
             if not len(runs):
                 continue
-            style = model_style(method) if method in _MODELS else styles[method]
+            style = model_style(method) if method in MODELS else styles[method]
             axes.step(
-                np.concatenate([[0.0], standing]),
-                np.arange(len(standing) + 1) / len(runs),
+                np.concatenate([[0.0], standing, [reach]]),
+                np.append(np.arange(len(standing) + 1), len(standing)) / len(runs),
                 where="post",
                 color=style.colour,
                 linestyle=_DASHES[style.dash],
@@ -54,7 +55,7 @@ def ensemble_figure(found: Ensemble) -> bytes:
         axes.set_xlabel("peak tilt / α [-]")
         axes.set_ylabel("share of the members [-]")
         axes.set_ylim(0.0, 1.02)
-        axes.set_xlim(left=0.0)
+        axes.set_xlim(0.0, reach)
         axes.grid(color="#dddddd", linewidth=0.6)
         axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False, fontsize=9)
         buffer = io.BytesIO()

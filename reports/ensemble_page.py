@@ -1,25 +1,46 @@
-"""The page of an ensemble: its picture and its tables, in one file."""
+"""The page of an ensemble: its figure and its tables, in one file."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .ensemble_figure import ensemble_figure
-from .template import render
+from .ensemble_chart import ensemble_chart
+from .ensemble_words import (
+    CONTRASTS,
+    LEGEND,
+    METHODS,
+    OVERTURNING,
+    WORDS,
+    contrast_rows,
+    facts,
+    method_rows,
+    overturning_rows,
+    statements,
+)
+from .paper.provenance import made_by
+from .template import PLOT_CONFIG, render
 
 if TYPE_CHECKING:
     from rockwobble.compare import Ensemble
 
 
 def ensemble_page(found: Ensemble) -> str:
-    """Return the page as HTML."""
-    picture = ensemble_figure(found).decode()
+    """Return the page as HTML, plotly.js inside."""
+    headline, *sentences = statements(found)
     return render(
         "ensemble.html.j2",
-        picture=picture[picture.index("<svg") :],
-        about=found.about,
+        picture=ensemble_chart(found).to_html(
+            full_html=False, include_plotlyjs=False, div_id="ensemble", config=PLOT_CONFIG
+        ),
+        facts=facts(found),
+        headline=headline,
+        sentences=sentences,
         tables=[
-            (title, table.round(4).to_html(index=False, border=0, na_rep="–"))
-            for title, table in (("Methods", found.methods), ("Each against each", found.contrasts))
+            ("Methods", METHODS, method_rows(found)),
+            ("Each against each", CONTRASTS, contrast_rows(found)),
+            ("Overturning: members of each two methods", OVERTURNING, overturning_rows(found)),
         ],
+        legend=LEGEND,
+        words=WORDS,
+        made_by=made_by(found.about["versions"]).replace("`", ""),
     )

@@ -99,7 +99,7 @@ def simulate(
             print(line)
         trace = _run(job)
         _print_result(case, trace, job.label)
-        contents = _contents(case, trace, job.label)
+        contents = _contents(job, trace)
         with user_input():
             replace_files(out, contents)
     print(f"\nWritten to {out}: {', '.join(contents)}")
@@ -164,18 +164,20 @@ def _largest_friction(trace: Any) -> str:
     return f"{largest:.3f}" if math.isfinite(largest) else "contact lost"
 
 
-def _contents(case: Case, trace: Any, label: str) -> dict[str, bytes]:
-    import io
-
+def _contents(job: Job, trace: Any) -> dict[str, bytes]:
     from rockwobble.compare import describe_case, describe_run
+    from rockwobble.compare.parquet_file import pack
+    from rockwobble.compare.provenance import about_results
+    from rockwobble.compare.run_store import job_fingerprint
 
-    samples = trace.to_frame()
-    parquet = io.BytesIO()
-    samples.to_parquet(parquet, index=False)
-    about = {"run": label, "case": describe_case(case), "result": describe_run(trace)}
+    from .paper.provenance import command_line
+
+    case, samples = job.case, trace.to_frame()
+    made = about_results("rockwobble run", job_fingerprint(job)) | {"command": command_line()}
+    about = made | {"run": job.label, "case": describe_case(case), "result": describe_run(trace)}
     return {
         "run.csv": samples.to_csv(index=False).encode(),
-        "run.parquet": parquet.getvalue(),
+        "run.parquet": pack(samples, about),
         "passes.csv": trace.passes.to_csv(index=False).encode(),
         "run.json": (json.dumps(about, indent=2, allow_nan=False) + "\n").encode(),
     }

@@ -11,8 +11,10 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from rockwobble.compare.fingerprint import fingerprint
 from rockwobble.compare.lowest_overturning import islands_frame
 from rockwobble.compare.planar_contrast import planar_contrast
+from rockwobble.compare.provenance import reduced_makers
 from rockwobble.compare.spectrum import SERIES, OverturningSpectrum, overturning_spectrum
 from rockwobble.models import Cylinder, GroundMotion
 
@@ -88,12 +90,28 @@ def print_spectrum(result: OverturningSpectrum, checked: pd.DataFrame) -> None:
 
 def spectrum_files(result: OverturningSpectrum, checked: pd.DataFrame) -> dict[str, bytes]:
     """Return the files of a spectrum by name."""
+    tables = {
+        "spectrum": result.to_frame(),
+        "lowest": result.lowest_frame(),
+        "islands": islands_frame(islands_of(result)),
+        "contrast": planar_contrast(result),
+        "checked": checked,
+    }
+    inputs = _inputs(result)
     return {
         "spectrum.md": spectrum_page(result, checked).encode(),
         "spectrum.svg": spectrum_figure(result),
-        "spectrum.parquet": parquet(result.to_frame()),
-        "lowest.parquet": parquet(result.lowest_frame()),
-        "islands.parquet": parquet(islands_frame(islands_of(result))),
-        "contrast.parquet": parquet(planar_contrast(result)),
-        "checked.parquet": parquet(checked),
+        **{f"{name}.parquet": parquet(table, f"rockwobble {name}", inputs) for name, table in tables.items()},
     }
+
+
+def _inputs(result: OverturningSpectrum) -> str:
+    """Return the hash of all that a spectrum depends on."""
+    names = ("tan_alpha", "gravity", "model", "seating", "semidiagonals", "intensities")
+    return fingerprint(
+        {
+            "motion": (result.motion.acceleration, result.motion.time_step),
+            **{name: getattr(result, name) for name in names},
+            "made with": reduced_makers(),
+        }
+    )

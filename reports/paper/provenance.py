@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import importlib.metadata
-import io
 import platform
 import shlex
 import sys
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -28,14 +28,15 @@ def versions() -> dict[str, str]:
     }
 
 
-def made_by() -> str:
-    """Return the command and the versions as the last paragraph of a page in Markdown."""
-    packages = ", ".join(f"{name} {version}" for name, version in versions().items())
+def made_by(given: Mapping[str, str] | None = None) -> str:
+    """Return the command and the versions, those here or those given, as the last paragraph of a page."""
+    packages = ", ".join(f"{name} {version}" for name, version in (given or versions()).items())
     return f"Made by `{command_line()}` with {packages}."
 
 
-def parquet(table: pd.DataFrame) -> bytes:
-    """Return a table as the bytes of a Parquet file."""
-    buffer = io.BytesIO()
-    table.to_parquet(buffer, index=False)
-    return buffer.getvalue()
+def parquet(table: pd.DataFrame, kind: str, inputs: str) -> bytes:
+    """Return a table as the bytes of a Parquet file that says, as the stores do, what made it."""
+    from rockwobble.compare.parquet_file import pack
+    from rockwobble.compare.provenance import about_results
+
+    return pack(table, about_results(kind, inputs) | {"command": command_line()})

@@ -38,6 +38,7 @@ class MadeUpTrace:
     contact_resolution: float = 0.0
     residual_displacement: float = 0.0
     residual_twist: float = 0.0
+    tilt_rate: np.ndarray | None = None
 
     def to_frame(self) -> pd.DataFrame:
         return pd.DataFrame({"time": self.time, "tilt": self.tilt, "rolling_angle": self.rolling_angle})

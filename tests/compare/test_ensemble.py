@@ -3,13 +3,28 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 from scipy.stats import ks_2samp
 
-from rockwobble.compare import ensemble, execution, perturbed_starts, synthetic_motions
-from rockwobble.compare.distributions import contrast, ks_distance, median_ratio, standing_wasserstein
+from rockwobble.compare import (
+    ensemble,
+    ensemble_members,
+    execution,
+    far_field_motions,
+    perturbed_starts,
+    synthetic_motions,
+)
+from rockwobble.compare.distributions import (
+    contrast,
+    ks_distance,
+    median_ratio,
+    member_factor,
+    smallest_distance,
+    standing_wasserstein,
+)
 from rockwobble.compare.execution import Job
-from rockwobble.models import Case, Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 ROUNDING = 1e-12
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -41,6 +56,21 @@ def test_known_distances():
     assert median_ratio(ours, theirs) == pytest.approx(2.0 / 3.0, abs=ROUNDING)
     a, b = sample(3), sample(4)
     assert ks_distance(a, b) == pytest.approx(ks_2samp(a, b).statistic, abs=ROUNDING)
+
+
+def test_factor_between_the_peaks_of_a_member():
+    ours, theirs = np.array([1.0, 4.0, 3.0, math.inf, 0.0]), np.array([2.0, 1.0, 3.0, 1.0, 1.0])
+    # 2, 4 and 1: what falls or stays at rest has no factor
+    assert member_factor(ours, theirs) == pytest.approx(2.0, abs=ROUNDING)
+    assert math.isnan(member_factor(ours[3:], theirs[3:]))
+
+
+def test_a_distance_within_chance_is_where_its_probability_is_a_twentieth():
+    count = 400
+    shift = round(smallest_distance(count) * count)
+    values = np.arange(float(count))
+    # the limit for large samples: a step of the distance is 1/400, which moves p by less than 0.005
+    assert ks_2samp(values, values + shift, method="asymp").pvalue == pytest.approx(0.05, abs=0.005)
 
 
 def test_an_overturned_run_is_the_largest_and_a_failed_one_does_not_count():
@@ -99,6 +129,56 @@ def test_failed_runs_are_counted_and_named(monkeypatch, make_trace):
     assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [3, "release #2"]
     assert len(found.members) == 8
     assert found.contrasts.loc[0, "ks"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("rate", "length", "outcome"),
+    [(0.1, 1.0, "overturned"), (-0.1, 1.0, "completed"), (0.1, 0.5, "completed")],
+)
+def test_what_falls_when_its_motion_ends_has_overturned(monkeypatch, make_trace, rate, length, outcome):
+    motion = GroundMotion(np.ones((11, 2)), 0.1, "shaking")
+    cases = [Case(name, PIER, motion, duration=length) for name in "ab"]
+    time = np.arange(11) * 0.1
+    trace = make_trace(time, 1.5 * PIER.alpha * time, tilt_rate=np.full(11, rate))
+    monkeypatch.setattr(execution, "simulate", lambda job: trace)
+    found = ensemble(cases, runs=[], draws=20, workers=1)
+    assert set(found.members["outcome"]) == {outcome}
+    tilt = 0.5 * math.pi if outcome == "overturned" else 1.5 * PIER.alpha
+    assert found.members["peak_tilt"].tolist() == pytest.approx([tilt / PIER.alpha] * 4, abs=ROUNDING)
+    assert (
+        found.methods["peak_median"].tolist()
+        == [math.inf if outcome == "overturned" else pytest.approx(1.5, abs=ROUNDING)] * 2
+    )
+
+
+def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):
+    first = ensemble(CASE, runs=[], size=3, draws=20, workers=1, resume=tmp_path)
+    monkeypatch.setattr(execution, "simulate", lambda job: pytest.fail("ran again"))
+    again = ensemble(CASE, runs=[], size=3, draws=20, workers=1, resume=tmp_path)
+    assert first.members.equals(again.members)
+    assert first.contrasts.equals(again.contrasts)
+    assert first.about == again.about
+    assert {len(pd.read_parquet(path)) for path in (tmp_path / "members").glob("*.parquet")} == {1}
+
+
+def test_every_input_is_in_the_hash_of_an_ensemble():
+    hashes = [
+        ensemble(CASE, runs=[], draws=2, workers=1, **options).about["inputs"]
+        for options in ({"size": 2}, {"size": 3}, {"size": 2, "seed": 1}, {"size": 2, "models": ["recess"]})
+    ]
+    assert len(set(hashes)) == 4
+
+
+def test_far_field_motions_have_their_peak_and_their_names(monkeypatch):
+    def made_up(pair: int) -> GroundMotion:
+        return GroundMotion([[0.0, 0.0], [float(pair), 0.0]], 0.01, f"pair {pair}")
+
+    monkeypatch.setattr(ensemble_members, "p695_far_field", made_up)
+    motions = far_field_motions(peak=3.0)
+    assert [motion.peak for motion in motions] == pytest.approx([3.0] * 22, abs=ROUNDING)
+    assert [motion.name for motion in motions] == [f"pair {pair}" for pair in range(1, 23)]
+    with pytest.raises(ValueError, match="peak must be positive"):
+        far_field_motions(peak=-1.0)
 
 
 @pytest.mark.parametrize(

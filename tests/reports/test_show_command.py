@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare import SweepProgress, compare
+from rockwobble.compare.parquet_file import read_about
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.reports.main import main
 from rockwobble.reports.sweep_progress import sentence
@@ -29,6 +30,11 @@ def described(folder: Path, capsys) -> dict:
     assert call("show", str(folder), "--json") == 0
     (result,) = json.loads(capsys.readouterr().out)["results"]
     return result
+
+
+def made_with(result: dict) -> None:
+    assert len(result["inputs"]["fingerprint"]) == 32
+    assert {"python", "numpy", "mujoco", "rockwobble"} <= set(result["versions"])
 
 
 def test_a_sweep_prints_what_it_keeps_and_show_prints_it_again(tmp_path, capsys):
@@ -81,10 +87,29 @@ def test_a_spectrum_and_a_run(tmp_path, capsys):
     assert (result["kind"], result["runs"]) == ("an overturning spectrum", 36)
     assert sum(result["outcomes"].values()) == 36
     assert [row["run"] for row in result["figures"]] == ["3d", "planar_x", "planar_y"]
+    made_with(result)
+    for name in ("lowest", "islands", "contrast", "checked"):
+        about = read_about(tmp_path / "a" / f"{name}.parquet")
+        assert (about["kind"], about["inputs"]) == (f"rockwobble {name}", result["inputs"]["fingerprint"])
     release = ["--release-tilt-deg", "5", "--duration", "0.5", "--out", str(tmp_path / "b")]
     assert call("simulate", *release) == 0
     result = described(tmp_path / "b", capsys)
     assert (result["kind"], result["outcomes"]) == ("a single run", {"completed": 1})
+    made_with(result)
+    assert read_about(tmp_path / "b" / "run.parquet")["inputs"] == result["inputs"]["fingerprint"]
+
+
+def test_an_ensemble_and_one_that_is_not_finished(tmp_path, capsys):
+    release = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--members", "3"]
+    assert call("ensemble", *release, "--out", str(tmp_path)) == 0
+    result = described(tmp_path, capsys)
+    assert (result["kind"], result["complete"], result["runs"]) == ("an ensemble", True, 6)
+    assert result["inputs"]["members"] == "3: starts of free response, perturbed by 1 %"
+    assert (result["seeds"], result["outcomes"]) == ({"ensemble": 0}, {"completed": 6})
+    made_with(result)
+    (tmp_path / "members.parquet").unlink()
+    result = described(tmp_path, capsys)
+    assert (result["kind"], result["runs_finished"]) == ("an ensemble that is not finished", 6)
 
 
 @pytest.mark.parametrize("folder", ["", "nowhere"])
