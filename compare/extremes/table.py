@@ -96,7 +96,7 @@ def _all() -> Iterator[Condition]:
         )  # fmt: skip
     for contact in (0.1, 1.0, 10.0, 1e3, 1e5):
         yield Condition(
-            extreme="contact stiffness", value=f"time constant {contact:g} h", case=_release(),
+            extreme="contact stiffness", value=f"time constant {contact:g} steps", case=_release(),
             contact=contact, only_engines=True,
         )  # fmt: skip
     for friction in (0.0, 0.01, 0.15, 0.25, 10.0):

@@ -184,7 +184,7 @@ def _engine_lines(problem: Problem, quick: bool) -> list[list[Method]]:
         for integrator in ("RK4",) if quick else ("implicitfast", "implicit", "RK4", "discrete"):
             line(f"MuJoCo {integrator}", "mujoco", "guided", few, {"integrator": integrator})
         for contact in (20.0,) if quick else (4.0, 20.0):
-            line(f"MuJoCo contact {contact:g} h", "mujoco", "guided", few, contact=contact)
+            line(f"MuJoCo contact {contact:g} steps", "mujoco", "guided", few, contact=contact)
         held = {"contact_time_constant": _HELD}
         line(f"MuJoCo contact {1e3 * _HELD:g} ms", "mujoco", "guided", few, held)
     return lines

@@ -159,11 +159,11 @@ def _shaken() -> Problem:
     motion = el_centro_1940().scaled(_FACTOR)
     uplift = reduced.simulate(PIER, motion, rtol=TIGHT).uplift_time
     end = _SAMPLE * round((uplift + _AFTER_UPLIFT) / _SAMPLE)
-    case = Case(f"{_FACTOR:g} x El Centro", PIER, motion, None, end)
+    case = Case(f"{_FACTOR:g} × El Centro", PIER, motion, None, end)
     return _make(
         Problem(
             name="shaken",
-            title=f"{_FACTOR:g} x El Centro until {_AFTER_UPLIFT:g} s after uplift",
+            title=f"{_FACTOR:g} × El Centro until {_AFTER_UPLIFT:g} s after uplift",
             error_title="largest error of the tilt [α]",
             cases=[case],
             sample_step=_SAMPLE,
@@ -189,7 +189,7 @@ def _peaks(count: int) -> Problem:
         Problem(
             name="peaks",
             title=f"Distribution of peak tilt over {count} synthetic motions",
-            error_title="distance of the distributions of peak tilt [α]",
+            error_title="distance of distributions [α]",
             cases=with_motions(standing, motions),
             sample_step=_MEMBER_LENGTH,
             quantity=_peak,

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from ..origin_words import made_by
 from ..paper.drawing import drawn
 from ..spectrum_page import markdown_table
+from ..study_tables import grouped
 from ..template import render
-from .words import LEGEND, cell, headline, matrix, rows_of, statements
+from .words import LEGEND, MEANINGS, cell, headline, matrix, rows_of, statements
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,7 +32,7 @@ _COLOURS = {
     "silent": "#f2946a",
     "n/a": "#ffffff",
 }
-_DETAIL_HEADINGS = ("extreme", "value", "method", "verdict", "error", "backed by", "what the run says")
+_DETAIL_HEADINGS = ("value", "method", "verdict", "backed by", "what the run says")
 
 
 def extremes_pages(found: Extremes) -> dict[str, bytes]:
@@ -48,7 +50,7 @@ def extremes_page(found: Extremes) -> str:
     methods, conditions = matrix(table)
     cells = [
         (
-            name,
+            *name.split(": ", 1),
             *(
                 {"kind": _kind(row), "text": cell(row), "title": _tip(row)} if row is not None else ""
                 for row in rows
@@ -57,14 +59,14 @@ def extremes_page(found: Extremes) -> str:
         for name, rows in conditions
     ]
     css = "\n".join(
-        f"td.{verdict.replace('/', '')} {{ background: {colour}; white-space: nowrap; "
+        f".{verdict.replace('/', '')} {{ background: {colour}; white-space: nowrap; "
         "-webkit-print-color-adjust: exact; print-color-adjust: exact; }"
         for verdict, colour in _COLOURS.items()
     )
     return render(
         "study.html.j2",
         title=_TITLE,
-        css=f".study td {{ min-width: 0; }}\n.study thead th {{ white-space: normal; min-width: 0; }}\n{css}",
+        css=css,
         lead=_LEAD,
         headline=headline(table),
         statements=statements(table),
@@ -74,15 +76,17 @@ def extremes_page(found: Extremes) -> str:
         tables=[
             {
                 "title": "All extremes, all methods",
-                "words": LEGEND,
-                "headings": ("extreme", *methods),
-                "rows": cells,
+                "words": MEANINGS,
+                "headings": ("", *methods),
+                "groups": grouped(cells),
+                "folded": False,
             },
             {
                 "title": "What backs each verdict",
                 "words": "Each run with its error, what it was held against, and what it says itself.",
                 "headings": _DETAIL_HEADINGS,
-                "rows": _details(table),
+                "groups": _details(table),
+                "folded": True,
             },
         ],
         origin=found.origin,
@@ -111,18 +115,22 @@ def extremes_markdown(found: Extremes) -> str:
     )
 
 
-def _details(table: pd.DataFrame) -> list[tuple[str, ...]]:
-    return [
+def _details(table: pd.DataFrame) -> list[tuple[str, list[Sequence[Any]]]]:
+    """Return the runs of each extreme under its name, with the number of those that are not fine."""
+    rows = [
         (
             row["extreme"],
             row["value"],
             row["method"],
-            row["verdict"],
-            f"{row['error']:.1e}" if row["error"] == row["error"] else "–",
-            row["backed_by"],
-            row["message"],
+            {"kind": _kind(row), "text": cell(row), "title": row["verdict"]},
+            row["backed_by"] or "–",
+            row["message"] or "–",
         )
         for row in rows_of(table.loc[table["verdict"] != "n/a"])
+    ]
+    return [
+        (f"{name}: {len(own)} runs, {sum(run[2]['kind'] != 'fine' for run in own)} not fine", own)
+        for name, own in grouped(rows)
     ]
 
 

@@ -17,13 +17,25 @@ WORDS = {
     "silent": "WRONG",
     "n/a": "",
 }
-LEGEND = (
-    "fine: the largest error, in α (or relative, of the angle of turn), is at most 0.01. said: it is more, "
-    "or the model leaves its own assumptions, and the run says so in words; the number is the error as far "
-    "as the reference holds. refused: bad input, one line before anything runs. caught: the run ended as "
-    "failed, with its reason. WRONG: an answer that is wrong and says nothing; the command then ends with "
-    "exit code 1. Empty: the method has nothing of the kind. The planar model starts without spin."
+# word of a cell, verdict, meaning
+MEANINGS = (
+    ("fine", "fine", "the largest error, in α (or relative, of the angle of turn), is at most 0.01"),
+    (
+        "said",
+        "inaccurate",
+        "it is more, or the model leaves its own assumptions, and the run says so in words; the number is "
+        "the error as far as the reference holds",
+    ),
+    ("refused", "refused", "bad input, one line before anything runs"),
+    ("caught", "caught", "the run ended as failed, with its reason"),
+    (
+        "WRONG",
+        "silent",
+        "an answer that is wrong and says nothing; the command then ends with exit code 1",
+    ),
+    ("empty", "na", "the method has nothing of the kind; the planar model starts without spin"),
 )
+LEGEND = " ".join(f"{word}: {meaning}." for word, _, meaning in MEANINGS)
 
 
 def rows_of(table: pd.DataFrame) -> list[dict[str, Any]]:
@@ -78,7 +90,9 @@ def cell(row: dict[str, Any] | None) -> str:
     if row is None or row["verdict"] == "n/a":
         return ""
     word = WORDS[row["verdict"]]
-    return f"{word} {row['error']:.0e}" if math.isfinite(row["error"]) else word
+    if not math.isfinite(row["error"]):
+        return word
+    return f"{word} {row['error']:.0e}" if row["error"] else f"{word} 0"
 
 
 def matrix(table: pd.DataFrame) -> tuple[tuple[str, ...], list[tuple[str, list[dict[str, Any] | None]]]]:

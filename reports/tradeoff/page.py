@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from ..origin_words import made_by
 from ..spectrum_page import markdown_table
+from ..study_tables import grouped
 from ..template import PLOT_CONFIG, render
 from .charts import tradeoff_charts, tradeoff_figure
 from .words import (
@@ -81,7 +82,13 @@ def tradeoff_page(found: Tradeoff) -> str:
         figures_words=_FIGURES_WORDS,
         figures=figures,
         tables=[
-            {"title": title, "words": words, "headings": headings, "rows": rows}
+            {
+                "title": title,
+                "words": words,
+                "headings": headings[1:],
+                "groups": grouped(rows),
+                "folded": False,
+            }
             for (title, words), headings, rows in _tables(found)
         ],
         origin=found.origin,

@@ -113,21 +113,22 @@ def _scipy(found: Tradeoff) -> list[str]:
 
 def _seating(found: Tradeoff) -> list[str]:
     prices = seating_price(found.points)
-    titles = dict(zip(found.problems["problem"], found.problems["title"], strict=True))
+    titles = _titles(found)
     lines = []
     for (problem, line), rows in prices.groupby(["problem", "line"], sort=False):
         tight = rows.sort_values("tolerance").iloc[0]
         changed = tight["error"] > 2.0 * tight["error_without"]
         name = "of the default" if line == "reduced, recess" else str(line).removeprefix("reduced, ")
-        effect = f"costs {tight['error']:.1e} α" if changed else "costs no accuracy that shows"
+        effect = f"costs {tight['error']:.2g} α" if changed else "costs no accuracy that shows"
         lines.append(
-            f"Seating {name.removeprefix('seating ')} {effect} in “{titles[str(problem)]}”, at "
-            f"{rows['speed_up'].median():.2f} times the speed of next to none."
+            f"Seating {name.removeprefix('seating ')} {effect} in “{titles[str(problem)]}”, and runs at "
+            f"{rows['speed_up'].median():.2f} times the speed of a rule that hardly ever acts."
         )
     return lines
 
 
 def _flat(found: Tradeoff) -> list[str]:
+    titles = _titles(found)
     flat = [each for each in plateaus(found.points) if math.isfinite(each.begins)]
     falling = [each for each in plateaus(found.points) if not math.isfinite(each.begins)]
     lines = []
@@ -135,8 +136,9 @@ def _flat(found: Tradeoff) -> list[str]:
         worst = max(flat, key=lambda each: each.level)
         lines.append(
             f"Smaller steps stop helping {len(flat)} of {len(flat) + len(falling)} lines of an engine: the "
-            f"table of plateaus says where. The highest is that of {worst.line} ({worst.problem}), "
-            f"{worst.level:.1e} {UNITS[worst.problem]} from a step of {worst.begins:g} s on."
+            "table of plateaus says where. The highest is that of "
+            f"{worst.line} in “{titles[worst.problem]}”, {worst.level:.2g} {UNITS[worst.problem]} from a "
+            f"step of {worst.begins:g} s on."
         )
     return lines
 
@@ -189,16 +191,22 @@ def _scene(row: dict[str, Any]) -> str:
 
 
 def _failures(found: Tradeoff) -> list[str]:
+    titles = _titles(found)
     lost = found.points[found.points["error"].isna()]
     return [
-        f"No answer: {row['line']}, {row['knob']} {row['value']:g}, {row['problem']}: {row['message']}"
+        f"No answer from {row['line']} at a {row['knob']} of {row['value']:g} in “{titles[row['problem']]}”: "
+        f"{row['message']}."
         for row in records(lost)
     ]
 
 
+def _titles(found: Tradeoff) -> dict[str, str]:
+    return dict(zip(found.problems["problem"], found.problems["title"], strict=True))
+
+
 def plateau_rows(found: Tradeoff) -> list[tuple[str, ...]]:
     """Return where each line of an engine stops gaining, see `PLATEAU_HEADINGS`."""
-    titles = dict(zip(found.problems["problem"], found.problems["title"], strict=True))
+    titles = _titles(found)
     return [
         (
             f"{titles[each.problem]}, {WHERE[each.model]}",

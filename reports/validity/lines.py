@@ -127,8 +127,8 @@ def contact_pictures(table: pd.DataFrame) -> list[LinePicture]:
         LinePicture(
             name=f"contact-{name}",
             title=title,
-            caption=caption,
-            x_label="time in which contact takes up a blow, at R = 6 m [ms]",
+            caption=f"{caption} R = 6 m.",
+            x_label="time to take up a blow [ms]",
             y_label=label,
             series=[
                 Series(name=words, x=_of(rows, "ms"), y=np.maximum(_of(rows, column), 1e-6), marks=marks)

@@ -39,10 +39,10 @@ def test_a_fine_answer_of_the_recess_model_is_backed_by_the_exact_one(extreme):
     ("extreme", "method", "verdict", "words"),
     [
         (("time step", "100 times the default"), GUIDED, "refused", "time_step must be at most"),
-        (("contact stiffness", "time constant 0.1 h"), GUIDED, "caught", "energy"),
+        (("contact stiffness", "time constant 0.1 steps"), GUIDED, "caught", "energy"),
         (("friction", "0"), RECESS, "inaccurate", "slips"),
         (("time step", "100 times the default"), RECESS, "n/a", ""),
-        (("contact stiffness", "time constant 0.1 h"), ("PyBullet free", "pybullet", "free"), "n/a", ""),
+        (("contact stiffness", "time constant 0.1 steps"), ("PyBullet free", "pybullet", "free"), "n/a", ""),
     ],
 )
 def test_what_goes_wrong_is_refused_caught_or_said(extreme, method, verdict, words):

@@ -1,82 +1,113 @@
-"""The page in a browser: drawn, quiet and no wider than the window. Runs where Chromium is installed."""
+"""Every page in a browser: drawn, quiet and no wider than the window. Runs where Chromium is installed."""
 
 from __future__ import annotations
 
-import html
-import re
-import shutil
-import subprocess
+from collections.abc import Callable
+from pathlib import Path
 
 import pytest
+from browser import complaints, needs_chromium
 
+from rockwobble import compare
+from rockwobble.compare import Comparison
+from rockwobble.compare.advice import advise
+from rockwobble.compare.extremes import read_extremes
+from rockwobble.compare.tradeoff import read_tradeoff
+from rockwobble.compare.validity import read_validity
+from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
+from rockwobble.reports.advise_page import advice_page
+from rockwobble.reports.ensemble_page import ensemble_page
+from rockwobble.reports.extremes.page import extremes_page
 from rockwobble.reports.page import comparison_page
+from rockwobble.reports.suite_page import suite_page
+from rockwobble.reports.tradeoff.page import tradeoff_page
+from rockwobble.reports.validity.page import validity_page
+from rockwobble.reports.validity.sections import sections_of
+from rockwobble.reports.view_command import view_page
 
-CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-FIGURES = 13
-
-# hints on speed that the browser gives plotly for a scene without a graphics card: no errors
-_HINTS = ("willReadFrequently", "GPU stall due to ReadPixels")
-
-# said by the page itself once it is drawn; an inner page may tell its outer one
-_LOOK = """
-<script>
-window.addEventListener("load", () => setTimeout(() => {
-  const plots = Array.from(document.querySelectorAll(".plotly-graph-div"));
-  const found = [
-    "drawn", plots.filter((plot) => plot.querySelector(".main-svg")).length,
-    "cut off", plots.filter(
-      (plot) => plot.querySelector(".main-svg").getBoundingClientRect().right >
-        plot.parentElement.getBoundingClientRect().right + 1).length,
-    "players drawn", Array.from(document.querySelectorAll(".player")).filter((player) => {
-      const [clock, slider] = ["clock", "time"].map((part) => player.querySelector(`[data-part="${part}"]`));
-      slider.value = 1.5;
-      slider.dispatchEvent(new Event("input"));
-      return player.querySelector("canvas") && clock.textContent.startsWith("1.50 s of");
-    }).length,
-    "too wide by", document.documentElement.scrollWidth - document.documentElement.clientWidth,
-  ].join(" ");
-  document.body.dataset.found = found;
-  window.parent.postMessage(found, "*");
-}, 1500));
-</script>
+PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
+# of a player: moved, it must say where it is
+PLAYER = """
+window.lookFurther = (found) => {
+  const player = document.querySelector(".player");
+  if (!player || !player.querySelector("canvas")) { found.push("the player is not drawn"); return; }
+  const [clock, slider] = ["clock", "time"].map((part) => player.querySelector(`[data-part="${part}"]`));
+  slider.value = 1.5;
+  slider.dispatchEvent(new Event("input"));
+  if (!clock.textContent.startsWith("1.50 s of")) found.push(`the player says ${clock.textContent}`);
+};
 """
-_OUTER = """<!doctype html><body><iframe src="page.html" width="{width}" style="border:0"></iframe>
-<script>window.addEventListener("message", (event) => document.body.dataset.inner = event.data);</script>"""
+# of a suite: another case is chosen and drawn
+CHOOSER = """
+window.addEventListener("load", () => setTimeout(() => document.getElementById("next").click(), 300));
+"""
 
 
-@pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
-@pytest.mark.parametrize("width", [1280, 390])
-def test_page_is_drawn_without_error_and_without_horizontal_scrolling(comparison, tmp_path, width):
-    page = comparison_page(comparison).replace("</body>", f"{_LOOK}</body>")
-    (tmp_path / "page.html").write_text(page)
-    # a window narrower than 500 pixels is not to be had, a frame is
-    (tmp_path / "outer.html").write_text(_OUTER.format(width=width))
-    command = [
-        str(CHROMIUM),
-        "--headless",
-        "--no-sandbox",
-        # the scene in three dimensions is drawn without a graphics card
-        "--use-angle=swiftshader",
-        "--enable-unsafe-swiftshader",
-        "--disable-quic",
-        "--no-first-run",
-        "--disable-background-networking",
-        "--disable-component-update",
-        "--disable-sync",
-        "--enable-logging=stderr",
-        f"--user-data-dir={tmp_path / 'profile'}",
-        "--window-size=1400,1000",
-        "--virtual-time-budget=15000",
-        "--dump-dom",
-        (tmp_path / "outer.html").as_uri(),
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=True)
-    said = re.search(r'data-inner="([^"]*)"', done.stdout)
-    assert said, done.stdout[-500:]
-    assert html.unescape(said.group(1)) == f"drawn {FIGURES} cut off 0 players drawn 1 too wide by 0"
-    complaints = [
-        line
-        for line in done.stderr.splitlines()
-        if "CONSOLE" in line and not any(hint in line for hint in _HINTS)
-    ]
-    assert complaints == []
+def validity() -> str:
+    found = read_validity(PUBLISHED / "validity")
+    return validity_page(sections_of(dict(found.tables)), found)
+
+
+def advice() -> str:
+    case = Case("El Centro", Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
+    return advice_page(advise(case, count=20), "rockwobble advise")
+
+
+def ensemble() -> str:
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
+    case = Case("release", pier, initial=release, duration=1.0)
+    return ensemble_page(compare.ensemble(case, runs=[], size=4, draws=100, workers=1))
+
+
+PAGES: dict[str, tuple[Callable[[], str], int]] = {
+    "validity": (validity, 45),
+    "tradeoff": (lambda: tradeoff_page(read_tradeoff(PUBLISHED / "tradeoff")), 6),
+    "extremes": (lambda: extremes_page(read_extremes(PUBLISHED / "extremes")), 0),
+    "advice": (advice, 4),
+    "ensemble": (ensemble, 1),
+}
+
+
+@needs_chromium
+@pytest.mark.parametrize("name", PAGES)
+def test_page_of_a_study_is_drawn(name: str, tmp_path: Path):
+    page, figures = PAGES[name]
+    assert complaints(page(), tmp_path, figures=figures) == []
+
+
+@needs_chromium
+def test_pages_of_a_comparison_are_drawn(comparison: Comparison, tmp_path: Path):
+    assert complaints(comparison_page(comparison), tmp_path, figures=13, further=PLAYER) == []
+    (name,) = comparison.cases
+    played = view_page(comparison, name)
+    assert played is not None
+    # drawn without a graphics card, a player takes its time: the page above had it at both widths
+    assert complaints(played, tmp_path, figures=0, further=PLAYER, widths=["phone"]) == []
+    assert complaints(suite_page(comparison), tmp_path, figures=5, further=CHOOSER) == []
+
+
+@needs_chromium
+def test_a_page_with_a_broken_figure_is_found(tmp_path: Path):
+    whole = ensemble()
+    broken = whole.replace("Plotly.newPlot(", "Plotly.noPlot(")
+    assert broken != whole
+    said = complaints(broken, tmp_path, figures=1)
+    assert "screen: ensemble: not drawn" in said
+    assert "phone: ensemble: not drawn" in said
+    assert any("Plotly.noPlot is not a function" in line for line in said)
+
+
+@needs_chromium
+def test_what_a_reader_would_stumble_over_is_found(tmp_path: Path):
+    whole = ensemble()
+    wrong = whole.replace("share of the members [-]", 20 * "share of the members ")
+    wrong = wrong.replace(
+        "<header>", '<div style="width: 700px">wide</div><img src="https://example.org/a.png"><header>'
+    )
+    said = complaints(wrong, tmp_path, figures=2)
+    assert any(line.startswith("phone: ensemble: yaxis without a unit") for line in said)
+    assert any(line.startswith("phone: ensemble: text cut off") for line in said)
+    assert any(line.startswith("phone: the page scrolls sideways") for line in said)
+    assert "screen: 1 figures, expected 2" in said
+    assert "screen: asks for https://example.org/a.png" in said

@@ -1,0 +1,94 @@
+"""Pages looked at in Chromium, as wide as a screen and as a phone: what a reader would stumble over.
+
+A page must not ask for anything outside of itself: no name of a host resolves here.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+import shutil
+import subprocess
+from collections.abc import Iterable
+from pathlib import Path
+
+import pytest
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+# [pixel]
+WIDTHS = {"screen": 1280, "phone": 390}
+
+needs_chromium = pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")
+
+# for the look that a page takes at itself, in the browser's own time, which runs ahead of ours [ms]
+_PATIENCE = 2_500
+# for all of it, on a machine that has other things to do [s]
+_DEADLINE = 300
+_LOOK = Path(__file__).with_name("browser.js").read_text()
+# hints on speed that the browser gives plotly for a scene without a graphics card: no errors
+_HINTS = ("willReadFrequently", "GPU stall due to ReadPixels")
+_OPTIONS = (
+    "--headless",
+    "--no-sandbox",
+    # a scene in three dimensions is drawn without a graphics card
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--disable-quic",
+    "--host-resolver-rules=MAP * ~NOTFOUND",
+    "--enable-logging=stderr",
+    f"--window-size={sum(WIDTHS.values()) + 80},1000",
+)
+
+_OUTER = """<!doctype html><body>
+<script>window.addEventListener("message", (event) => {
+  const [name, ...lines] = event.data.split("\\n");
+  document.body.dataset[name] = lines.join("\\n");
+});</script>
+"""
+_FRAME = '<iframe name="{name}" src="page.html" width="{width}" height="900" style="border:0"></iframe>'
+
+
+def complaints(
+    page: str, folder: Path, *, figures: int, further: str = "", widths: Iterable[str] = tuple(WIDTHS)
+) -> list[str]:
+    """Return what is wrong with a page; nothing, if all is well.
+
+    Parameters
+    ----------
+    page : str
+        The HTML.
+    folder : Path
+        For the files of the browser.
+    figures : int
+        Interactive figures that must be drawn.
+    further : str, optional
+        Script that defines `lookFurther(found)`, which adds lines of its own to the array `found`.
+    widths : iterable of str, optional
+        Of `WIDTHS`, by name.
+    """
+    inside = f"<script>{further}\n{_LOOK}</script></body>"
+    (folder / "page.html").write_text(inside.join(page.rsplit("</body>", 1)))
+    frames = [_FRAME.format(name=name, width=WIDTHS[name]) for name in widths]
+    # a window narrower than 500 pixels is not to be had, a frame is
+    (folder / "outer.html").write_text(_OUTER + "".join(frames))
+    command = [str(CHROMIUM), *_OPTIONS, f"--user-data-dir={folder / 'profile'}"]
+    command += [f"--virtual-time-budget={_PATIENCE}", "--dump-dom", (folder / "outer.html").as_uri()]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=_DEADLINE, check=True)
+    wrong = []
+    for name in widths:
+        said = re.search(rf'data-{name}="([^"]*)"', done.stdout)
+        if said is None:
+            wrong.append(f"{name}: the page did not come to its end")
+            continue
+        drawn, *lines = html.unescape(said.group(1)).splitlines()
+        wrong += [f"{name}: {line}" for line in lines]
+        if int(drawn) != figures:
+            wrong.append(f"{name}: {drawn} figures, expected {figures}")
+    wrong += [
+        line for line in done.stderr.splitlines() if "CONSOLE" in line and not any(h in line for h in _HINTS)
+    ]
+    return wrong
