@@ -18,11 +18,12 @@ from .simulate import make_ready
 
 # A run through a whole record takes one to three steps a sample. Only a small cylinder that shaking has
 # hardly lifted takes more: it rocks hundreds of times a second, at a ten-thousandth of alpha, for the rest
-# of the record. A run of a grid may take so many steps for each sample, or in all, without a seating rule.
-# With one the tilt of the rule is raised at each of this number of equal parts: from the default to the most.
-_STEPS_PER_SAMPLE = 20
-_STEPS_AT_LEAST = 25_000
-_PARTS = 5
+# of the record. After so many steps for each sample, or in all, the tilt of the seating rule is raised,
+# and again after each eighth as many more; without the rule a run fails after five times as many.
+_STEPS_PER_SAMPLE = 4
+_STEPS_AT_LEAST = 5_000
+_SHARE_TO_GO_ON = 8
+_WITHOUT_RULE = 5
 
 
 def peak_tilts(
@@ -45,8 +46,8 @@ def peak_tilts(
     The runs are independent and share the cores as threads: the result has the same bits whatever
     their number. A fall that nothing later in the record can stop ends its run at once. A run that
     chatters beyond 4 steps for each sample of the record (5000 steps at least) goes on with ten times
-    the seating, and again each time as many more are used up; without a seating rule a run may take 20
-    steps for each sample (25 000 at least), and then fails. Every other run is that of `simulate`.
+    the seating, and with ten times that after each eighth as many more. Without a seating rule it fails
+    after five times as many. Every other run is that of `simulate`.
 
     Parameters
     ----------
@@ -103,12 +104,9 @@ def peak_tilts(
         return peaks
     make_ready("planar" if problems[0].is_planar() else model)
     budget = max(_STEPS_AT_LEAST, _STEPS_PER_SAMPLE * len(motion.acceleration))
-    relief = budget // _PARTS if seating > 0.0 else 0
+    limits = (budget, budget // _SHARE_TO_GO_ON) if seating > 0.0 else (_WITHOUT_RULE * budget, 0)
     with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        rows = {
-            pool.submit(_row, problem, factors, relief or budget, relief): i
-            for i, problem in enumerate(problems)
-        }
+        rows = {pool.submit(_row, problem, factors, *limits): i for i, problem in enumerate(problems)}
         try:
             for done, row in enumerate(as_completed(rows), start=1):
                 peaks[rows[row]] = row.result()

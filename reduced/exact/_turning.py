@@ -20,8 +20,6 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
-from scipy.optimize import brentq
-
 from ..body import Body
 from ._shape import base_inertia, beta, inertia_growth, sigma
 
@@ -144,4 +142,6 @@ def _first_root(f: Callable[[float], float], guess: float, limit: float) -> floa
 
 def _root(f: Callable[[float], float], lower: float, upper: float) -> float:
     """Return the root of `f` between two points of different sign, to rounding."""
+    from scipy.optimize import brentq
+
     return float(brentq(f, lower, upper, xtol=_SMALLEST, rtol=_RTOL))

@@ -17,7 +17,6 @@ from typing import overload
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import elliprf
 
 from rockwobble.models import Cylinder
 
@@ -112,6 +111,8 @@ def rocking_period(
 
 def quarter_period(body: Body, theta: NDArray[np.float64], gap: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the quarter period [s] of a maximum tilt `theta`, where `gap` is alpha - theta."""
+    from scipy.special import elliprf
+
     k, k1 = np.sin(0.5 * gap), np.cos(0.5 * gap)
     K, K1 = np.sin(0.5 * body.alpha), np.cos(0.5 * body.alpha)
     width = np.sin(body.alpha - 0.5 * theta) * np.sin(0.5 * theta)  # K^2 - k^2

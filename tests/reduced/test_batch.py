@@ -63,21 +63,35 @@ BARELY_LIFTED = [
 
 
 @pytest.mark.parametrize(("model", "tan_alpha", "size", "intensity"), BARELY_LIFTED)
-def test_chatter_costs_no_more_than_20_whole_runs(model, tan_alpha, size, intensity, monkeypatch):
+def test_chatter_costs_a_few_whole_runs(model, tan_alpha, size, intensity, monkeypatch):
     marches = record_marches(monkeypatch)
     scale = 9.81 * tan_alpha / EL_CENTRO.peak
     peaks = reduced.peak_tilts([size], tan_alpha, EL_CENTRO, [intensity * scale], model=model)
-    # a whole run is one step a sample; the rule is raised at 4, and takes this chatter at the first time
+    # a whole run is one step a sample; the rule is raised after 4, and again after each half more
     samples = len(EL_CENTRO.acceleration)
-    assert 4 * samples < marches[-1].step_count <= 12 * samples
+    assert 4 * samples < marches[-1].step_count <= 6 * samples
     assert marches[-1].status == driver.REST
-    assert 0.0 < peaks[0, 0] < 1e-3 * math.atan(tan_alpha)
+    assert 0.0 < peaks[0, 0] < 0.01 * math.atan(tan_alpha)
     if model == "recess":  # the single run rocks on to the end, no higher than it first rose
         cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
         single = reduced.simulate(cylinder, EL_CENTRO.scaled(intensity * scale), rtol=1e-7)
-        assert single.outcome == "completed"
         assert single.step_count > 20 * samples
         assert peaks[0, 0] == pytest.approx(single.peak_tilt, rel=1e-6)
+
+
+def test_the_seating_is_raised_as_often_as_it_takes():
+    motion = EL_CENTRO.scaled(1.01727 * 0.981 / EL_CENTRO.peak)
+    run = problem.make_problem(
+        "recess", Cylinder(semidiagonal=0.5, tan_alpha=0.1), motion, None, None,
+        gravity=9.81, rtol=1e-7, seating=1e-8, plane=0.0, restitution=1.0,
+    )  # fmt: skip
+    # it rocks at some 2e-5 to 9e-5 of alpha: not below a thousand times the seating given
+    march = run.scaled_solver(2000, 100)(1.0)
+    assert march.status == driver.REST
+    assert 2300 < march.step_count < 2800
+    given_up = run.scaled_solver(2000, 0)(1.0)
+    assert given_up.status == driver.OVER_BUDGET
+    assert given_up.step_count == 2001
 
 
 def test_runs_that_do_not_chatter_are_single_runs_to_the_bit(monkeypatch):
