@@ -1,19 +1,15 @@
-"""Trials of the sweep: processes that are killed, and what the store costs.
+"""Trials of the sweep: its processes are killed, and the table must not differ in a single bit.
 
-    python -m rockwobble.compare.sweep_trial kills 20     kills of a local sweep at random moments
-    python -m rockwobble.compare.sweep_trial dask         three Dask workers, one killed in the middle
-    python -m rockwobble.compare.sweep_trial overhead 3   100,000 runs with and without a store, in turn
+    python -m rockwobble.compare.sweep_trial kills 20   kills of a local sweep at random moments
+    python -m rockwobble.compare.sweep_trial dask       three Dask workers, one killed in the middle
 
-Each prints what it found, and ends with exit code 1 if a table differs in a single bit.
+What the store of a sweep costs is measured by `sweep_overhead`.
 """
 
 from __future__ import annotations
 
 import contextlib
 import json
-import os
-import resource
-import statistics
 import subprocess
 import sys
 import tempfile
@@ -36,6 +32,10 @@ if TYPE_CHECKING:
 
 # some tens of milliseconds of work: most kills fall into the middle of several chunks
 CHUNK_SIZE = 40
+# of Dask, which takes some milliseconds for each: the killed worker is in the middle of one
+DASK_CHUNK_SIZE = 200
+# slendernesses times scales of the trial's grid
+ROWS_OF_A_SIZE = 80
 # of the kills, those that come while a process is still starting or cleaning up
 _EARLY = 0.25
 # how long after its first chunk a process may live at most [s]
@@ -139,7 +139,9 @@ def _address(scheduler_file: Path) -> str:
     raise RuntimeError("the Dask scheduler did not start")
 
 
-def dask_sweep_with_a_death(folder: Path, *, sizes: int) -> tuple[pd.DataFrame, int]:
+def dask_sweep_with_a_death(
+    folder: Path, *, sizes: int, chunk_size: int = CHUNK_SIZE
+) -> tuple[pd.DataFrame, int]:
     """Sweep on three Dask workers and kill one in the middle; return the table and the runs done by then."""
     killed_at: list[int] = []
     with dask_cluster(3) as (address, processes):
@@ -149,67 +151,44 @@ def dask_sweep_with_a_death(folder: Path, *, sizes: int) -> tuple[pd.DataFrame, 
                 processes[0].kill()
                 killed_at.append(event.done)
 
-        table = sweep(trial_grid(sizes), out=folder, chunk_size=CHUNK_SIZE, scheduler=address, progress=tell)
+        table = sweep(trial_grid(sizes), out=folder, chunk_size=chunk_size, scheduler=address, progress=tell)
         status = processes[0].wait()
     if status != -9:
         raise RuntimeError(f"the Dask worker must have been killed, it ended with {status}")
     return table, killed_at[0]
 
 
-def overhead(rounds: int) -> None:
-    """Print how much longer 100,000 runs take in a sweep with a store than in `reduced.peak_tilts`."""
-    grid = "np.linspace(0.5, 30.0, 1000), 0.2, el_centro_1940(), np.linspace(0.5, 6.0, 100)"
-    head = f"import sys, numpy as np; from rockwobble.models import el_centro_1940; R, t, m, s = {grid};"
-    codes = {
-        "alone": head + "from rockwobble import reduced; reduced.peak_tilts(R, t, m, s)",
-        "sweep": head + "from rockwobble.compare import Grid, sweep; sweep("
-        "Grid(semidiagonals=R, tan_alphas=[t], scales=s, motions=[m]), out=sys.argv[1])",
-    }
-    ratios = []
-    for turn in range(rounds):
-        wall, used = {}, {}
-        for name in sorted(codes, reverse=turn % 2 == 1):
-            with tempfile.TemporaryDirectory() as folder:
-                before, begun = _cpu_time(), time.perf_counter()
-                subprocess.run([sys.executable, "-c", codes[name], folder], check=True)
-                wall[name], used[name] = time.perf_counter() - begun, _cpu_time() - before
-        ratios.append((wall["sweep"] / wall["alone"], used["sweep"] / used["alone"]))
-        print(
-            f"alone {wall['alone']:.1f} s (cores {used['alone']:.1f} s), sweep {wall['sweep']:.1f} s "
-            f"(cores {used['sweep']:.1f} s): ratio {ratios[-1][0]:.3f} (cores {ratios[-1][1]:.3f}), "
-            f"load of the machine {os.getloadavg()[0]:.1f}",
-            flush=True,
-        )
-    medians = [statistics.median(column) for column in zip(*ratios, strict=True)]
-    print(f"median ratio {medians[0]:.3f} of the time, {medians[1]:.3f} of the time on the cores")
+def main(arguments: list[str] | None = None) -> int:
+    """Run the trial that is asked for; end with 1 if its table differs from that of an undisturbed sweep."""
+    import argparse
 
-
-def _cpu_time() -> float:
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
-
-
-def main(arguments: list[str]) -> int:
-    """Run the trial that is asked for."""
-    what, number = (arguments[0] if arguments else "kills"), int(arguments[1]) if len(arguments) > 1 else 20
-    if what == "overhead":
-        overhead(number)
-        return 0
-    sizes = 100
-    with tempfile.TemporaryDirectory() as folder:
-        undisturbed = sweep(trial_grid(sizes), chunk_size=CHUNK_SIZE)
-        if what == "dask":
-            table, done = dask_sweep_with_a_death(Path(folder), sizes=sizes)
-            print(f"one of three Dask workers killed after {done} of {len(table)} runs")
+    parser = argparse.ArgumentParser(
+        prog="python -m rockwobble.compare.sweep_trial",
+        description="Sweeps whose processes are killed. Example: dask --runs 40000",
+    )
+    parser.add_argument("what", choices=("kills", "dask"))
+    parser.add_argument("kills", nargs="?", type=int, default=20, help="of a local sweep (%(default)s)")
+    parser.add_argument("--runs", type=int, help="of the sweep; default: 8,000 with kills, 40,000 with dask")
+    parser.add_argument("--seed", type=int, default=1, help="of the moments of the kills (%(default)s)")
+    given = parser.parse_args(arguments)
+    chunk_size = CHUNK_SIZE if given.what == "kills" else DASK_CHUNK_SIZE
+    sizes = max(1, (given.runs or (8_000 if given.what == "kills" else 40_000)) // ROWS_OF_A_SIZE)
+    with tempfile.TemporaryDirectory(prefix="rockwobble-") as folder:
+        undisturbed = sweep(trial_grid(sizes), chunk_size=chunk_size)
+        if given.what == "dask":
+            table, done = dask_sweep_with_a_death(Path(folder), sizes=sizes, chunk_size=chunk_size)
+            print(f"one of three Dask workers killed with -9 after {done:,} of {len(table):,} runs")
         else:
-            trial = killed_sweep(Path(folder), sizes=sizes, kills=number, seed=1)
+            trial = killed_sweep(Path(folder), sizes=sizes, kills=given.kills, seed=given.seed)
             table = trial.table
-            print(f"{number} kills; chunks finished after each: {', '.join(map(str, trial.chunks))}")
+            chunks = -(-len(table) // chunk_size)
+            print(f"{given.kills} kills; of {chunks} chunks finished after each: ", end="")
+            print(", ".join(map(str, trial.chunks)))
             print(f"chunks written again: {trial.repeated}")
     same = table.equals(undisturbed)
-    print(f"{len(table)} runs, {'the same table to the last bit' if same else 'A DIFFERENT TABLE'}")
+    print(f"{len(table):,} runs, {'the same table to the last bit' if same else 'A DIFFERENT TABLE'}")
     return 0 if same else 1
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())
