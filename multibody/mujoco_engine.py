@@ -22,8 +22,14 @@ if TYPE_CHECKING:
 
 _SECANT_STEPS = 30
 _STILL = 1e-9  # [m/s^2] acceleration left of the rim at the start
-_STANDING_BLOCK = 200  # steps between two looks at whether a standing cylinder has uplifted
-_RISEN = 0.5e-10  # 1 - cos(1e-5 rad): far above a standing lean, and 20 ms after the uplift
+_STANDING_BLOCK = 20  # steps between two looks at whether a standing cylinder has uplifted
+# Lean from which the rim carries a cylinder better than the corners of its prisms do [rad]. Below it the
+# rounding of the rim's depth, 1e-16 b/lean, makes the rim hop; and the longer the base rolls on corners,
+# the more its path is that of a polygon.
+_RISEN = 1e-7
+# the same over the depth of a single corner under the weight, over b: what stands leans by up to a sixteenth
+_RISEN_DEPTHS = 1000.0
+_LOADED = 0.5  # of b, eccentricity of the load from which prisms follow it
 
 
 class MujocoEngine:
@@ -87,8 +93,12 @@ class _MujocoStepper:
         self._columns = ["xyz".index(component) for component in scene.components]
         self._staggered = settings.integrator != "RK4"
         self._standing = scene.start.standing and settings.standing_corners > 0
+        self._risen = max(_RISEN, _RISEN_DEPTHS * _depth(scene, settings) / scene.body.base_radius)
         self._model = compile_scene(scene, settings, standing=self._standing, ring=ring)
         self._data = mujoco.MjData(self._model)
+        names = [self._model.geom(index).name for index in range(self._model.ngeom)]
+        self._prisms = [index for index, name in enumerate(names) if name.startswith("prism")]
+        self._model.geom_sameframe[self._prisms] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # they will turn
         self._warned: list[str] = []
         _set_start(self._model, self._data, scene, self._staggered)
         kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
@@ -106,9 +116,11 @@ class _MujocoStepper:
         blocks, walls = [], []
         done = 0
         while done < len(acceleration):
-            if self._standing and 1.0 - axis_of(self._state[None, 4:8])[0, 2] > _RISEN:
+            if self._standing and np.hypot(*axis_of(self._state[None, 4:8])[0, :2]) > self._risen:
                 self._leave_prisms()
             end = done + _STANDING_BLOCK if self._standing else len(acceleration)
+            if self._standing:
+                self._turn_prisms(acceleration[done:end].mean(axis=0))
             block, sensors = self._roll(acceleration[done:end])
             blocks.append(block)
             walls.append(sensors)
@@ -166,6 +178,19 @@ class _MujocoStepper:
         self._state = rows[-1].copy()
         return rows, sensors[0]
 
+    def _turn_prisms(self, acceleration: Array) -> None:
+        """Turn the prisms about the axis until one of their corners is under the load."""
+        body, corners = self._scene.body, self._settings.standing_corners
+        push = float(np.hypot(acceleration[0], acceleration[1])) * body.mass_centre_height
+        if push < _LOADED * body.base_radius * self._scene.gravity:
+            return
+        # the first corner of a prism is an eighth of a turn from its x axis
+        first = np.arctan2(-acceleration[1], -acceleration[0]) - 0.25 * np.pi
+        half = 0.5 * (first + 2.0 * np.pi / corners * np.arange(corners // 4))
+        self._model.geom_quat[self._prisms] = np.outer(np.cos(half), [1, 0, 0, 0]) + np.outer(
+            np.sin(half), [0, 0, 0, 1]
+        )
+
     def _leave_prisms(self) -> None:
         """Go on without what only a standing cylinder needs: its corners cost time and brush the ground."""
         import mujoco
@@ -184,6 +209,12 @@ def _warnings(data: mujoco.MjData) -> list[str]:
         mujoco.mjtWarning(int(index)).name.removeprefix("mjWARN_").lower()
         for index in np.flatnonzero(data.warning.number)
     ]
+
+
+def _depth(scene: Scene, settings: MujocoSettings) -> float:
+    """Depth at which one contact carries the weight [m]: what the impedance leaves for the spring."""
+    time = settings.contact_time_constant / scene.unit_time
+    return scene.gravity * time**2 * (1.0 - settings.impedance) / settings.impedance
 
 
 def _wall(sensors: Array) -> Wall:

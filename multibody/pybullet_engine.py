@@ -73,6 +73,7 @@ class _PybulletStepper:
         self._iterations, self._unsolved = settings.iterations, False
         self._overshoot = settings.friction_damping - 1.0
         start = scene.start
+        self._held = settings.held_standing and start.standing
         self._position = start.position
         self._quaternion = start.quaternion
         pose = start.position.tolist(), np.roll(start.quaternion, -1).tolist()
@@ -95,7 +96,13 @@ class _PybulletStepper:
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         before = self._position, self._quaternion
-        positions, quaternions = self._loop((-acceleration - [0.0, 0.0, self._gravity]).tolist(), before[1])
+        held = self._held_steps(acceleration)
+        positions: list[Any] = [before[0].tolist()] * held
+        quaternions: list[Any] = [np.roll(before[1], -1).tolist()] * held
+        if held < len(acceleration):
+            pulls = (-acceleration[held:] - [0.0, 0.0, self._gravity]).tolist()
+            for poses, more in zip((positions, quaternions), self._loop(pulls, before[1]), strict=True):
+                poses += more
         position = np.array(positions)
         quaternion = np.roll(np.array(quaternions), 1, axis=1)
         self._position, self._quaternion = position[-1], quaternion[-1]
@@ -103,6 +110,16 @@ class _PybulletStepper:
         velocity = np.diff(np.vstack([before[0], position]), axis=0) / self._step
         turning = _turning(before[1], quaternion) / self._step
         return Steps(position, quaternion, velocity, turning, unsolved=self._unsolved)
+
+    def _held_steps(self, acceleration: Array) -> int:
+        """Number of steps for which the cylinder is held upright: until the load is on the rim."""
+        if not self._held:
+            return 0
+        b, h = self._lengths
+        push = np.hypot(acceleration[:, 0], acceleration[:, 1])
+        over = np.flatnonzero(push * h >= b * (self._gravity + acceleration[:, 2]))
+        self._held = not len(over)
+        return int(over[0]) if len(over) else len(acceleration)
 
     def warnings(self) -> str:
         """Bullet does not warn."""
