@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
+
+import numpy as np
 
 from rockwobble.models import Case, Run
 
 from .error_budget import ErrorBudget, error_budget
-from .execution import Crash
+from .execution import IMPACT, Crash, Job
 from .horizon import Horizon, agreement_horizon
 from .refinement import Refined, Simulate, limits
 from .runs import own_model, references_of
@@ -70,18 +73,50 @@ def case_budgets(
             )
     extrapolations = limits(refined, simulate) if refined else {}
     by_name = {case.name: case for case in cases}
+    landings = _landings(cases, {run.support for run in runs.values()}, results, simulate)
+
+    def own(name: str, label: str) -> Any:
+        key = name, own_model(runs[label].support)
+        return landings.get(key, results[key])
+
     return {
         (name, label, model): error_budget(
             by_name[name].cylinder,
             results[name, label],
             results[name, model],
-            results[name, own_model(runs[label].support)],
+            own(name, label),
             extrapolations[name, label],
             horizon,
         )
         for (name, label, model), horizon in agreements.items()
         if (name, label) in extrapolations
     }
+
+
+def _landings(
+    cases: Sequence[Case], supports: Collection[str], results: Mapping[Key, Any], simulate: Simulate
+) -> dict[Key, Any]:
+    """Return what an exact engine follows where a model goes through the apex: by names of case and model.
+
+    Motion in one vertical plane passes the apex itself, and there the base lands flat. Recess and rolling
+    model go on without loss, as the limit of a vanishing spin does. A rigid base takes the angular momentum
+    about its new edge (Housner), on any support, and so do both engines: the difference is model form.
+    """
+    keys, jobs = [], []
+    for case in cases:
+        for model in {own_model(support) for support in supports}:
+            response = results[case.name, model]
+            if not (np.asarray(response.passes["minimum_tilt"]) == 0.0).any():
+                continue
+            direction, motion, initial = response.uplift_direction, case.motion, case.initial
+            plane = dataclasses.replace(
+                case,
+                motion=None if motion is None else motion.rotated(-direction),
+                initial=None if initial is None else dataclasses.replace(initial, rolling_angle=0.0),
+            )
+            keys.append((case.name, model))
+            jobs.append(Job(case=plane, method=IMPACT, label=IMPACT))
+    return dict(zip(keys, simulate(jobs), strict=True)) if jobs else {}
 
 
 def _agreement(case: Case, response: Any, trajectory: Any) -> Horizon | None:

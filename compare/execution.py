@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from .run_store import RunStore
 
 SAMPLE_STEP = 0.01
+# a model for jobs: planar in the x z plane, with the loss of a base that lands flat
+IMPACT = "planar with impact"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -92,6 +94,7 @@ def simulate(job: Job) -> Any:
 def _reduced(case: Case, model: str) -> Any:
     from rockwobble import reduced
 
+    impact: dict[str, Any] = {"model": "planar", "restitution": "momentum"} if model == IMPACT else {}
     response = reduced.simulate(
         case.cylinder,
         case.motion,
@@ -100,7 +103,7 @@ def _reduced(case: Case, model: str) -> Any:
         sample_step=SAMPLE_STEP,
         gravity=case.gravity,
         friction=case.friction,
-        model=model,
+        **(impact or {"model": model}),
     )
     _ = response.energy  # computed here, so that it travels with the response
     return response

@@ -10,8 +10,10 @@ import pandas as pd
 import pytest
 
 from rockwobble import multibody, reduced
+from rockwobble.compare import compare
 from rockwobble.compare.error_budget import (
     LARGEST_SHARE,
+    WORTH_EXPLAINING,
     ErrorBudget,
     Limit,
     error_budget,
@@ -20,7 +22,7 @@ from rockwobble.compare.error_budget import (
 )
 from rockwobble.compare.horizon import Horizon
 from rockwobble.compare.refinement import Refined, finer_case, limits
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
 
 ROUNDING = 1e-12
 STEP = 4e-4  # coarse, so that four runs take a second
@@ -143,7 +145,7 @@ def test_the_end_of_the_agreement_is_left_out(make_trace, cylinder):
     assert found.whole[-1] > 0.0
 
 
-def test_from_rest_the_finer_runs_are_turned_over_a_corner(engine):
+def test_from_rest_the_finer_runs_are_turned_to_where_bullet_looks_first(engine):
     motion = GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.5)
     case = Case("pulse", PIER, motion)
     trajectory = dataclasses.replace(engine, uplift_direction=0.7)
@@ -151,8 +153,25 @@ def test_from_rest_the_finer_runs_are_turned_over_a_corner(engine):
         case=case, run=Run("mujoco", "guided"), label="x", trajectory=trajectory, end=0.804, difference=0.0
     )
     finer = finer_case(refined)
-    assert np.allclose(finer.motion.acceleration, motion.rotated(-0.7).acceleration)
+    # 2.35 cm along the rim: further than the 2 cm within which Bullet merges contacts
+    aside = 0.0235 / PIER.base_radius
+    assert np.allclose(finer.motion.acceleration, motion.rotated(aside - 0.7).acceleration)
     assert finer.length == pytest.approx(0.81)  # no longer than the traces agree, in whole samples
+
+
+def test_a_base_that_lands_flat_loses_what_the_model_keeps():
+    # uplift along one direction, past the apex itself, and on: the engine takes Housner's loss there
+    time = np.arange(26) * 0.02
+    pulse = np.column_stack([np.sin(2.0 * np.pi * time / 0.5), np.zeros_like(time)])
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    case = Case("pulse", pier, GroundMotion(2.0 * 9.81 * 0.2 * pulse, 0.02), duration=1.0)
+    run = Run("mujoco", "guided", 2e-4)
+    found = compare(Suite([case], [run]), runs=[run], budget=True, workers=1)
+    (row,) = found.summary.to_dict("records")
+    assert row["whole_rms"] > WORTH_EXPLAINING
+    assert row["model_form_rms"] == pytest.approx(row["whole_rms"], rel=0.1)
+    # 1 %: the engine is twice as coarse here as its default
+    assert row["unexplained_share"] < 0.05
 
 
 def test_findings_are_the_rows_above_the_bound_the_worst_first():
