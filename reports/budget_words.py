@@ -28,10 +28,12 @@ def budget_lines(summary: Any) -> list[str]:
         lines.append(f"So they do in {len(found) - _LISTED} more rows of the summary.")
     explained = len(worth) - len(found)
     share = f" ({100.0 * explained / len(worth):.0f} %)" if len(worth) else ""
+    cases, with_findings = worth["case"].nunique(), found["case"].nunique()
     lines.append(
         f"Model form and numerics explain all but {100.0 * LARGEST_SHARE:.0f} % of the difference in "
         f"{explained} of the {len(worth)} rows{share} that differ by more than {small(WORTH_EXPLAINING)} "
-        f"alpha; {len(known) - len(worth)} differ by less."
+        f"alpha, and in every such row of {cases - with_findings} of {cases} cases; "
+        f"{len(known) - len(worth)} rows differ by less."
     )
     missing = len(summary) - len(known)
     if missing:

@@ -7,6 +7,8 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
+from rockwobble.compare import WORTH_EXPLAINING
+
 from . import charts
 from .budget_figure import budget_figure
 from .budget_words import budget_lines, parting_lines
@@ -74,7 +76,10 @@ def _budget_picture(comparison: Comparison) -> str:
     """SVG of all budgets to stand in the page; empty without budgets."""
     if not comparison.budgets:
         return ""
-    picture = budget_figure(comparison).decode()
+    import matplotlib as mpl
+
+    with mpl.rc_context({"svg.fonttype": "none"}):  # letters as outlines weigh ten times as much
+        picture = budget_figure(comparison).decode()
     return picture[picture.index("<svg") :]
 
 
@@ -135,7 +140,8 @@ def _figures(view: CaseView) -> Iterator[tuple[str, str, go.Figure]]:
             "RMS of model form, numerics and what nobody explains, until 80 % of the agreement.",
             bars,
         )
-    for title, figure in charts.budget_charts(view):
+    # four lines for each run and reference: where there is nothing to explain they are a megabyte for nothing
+    for title, figure in charts.budget_charts(view, above=WORTH_EXPLAINING):
         yield f"Parts of {title}", "Each as its largest value within the last second.", figure
     excitation = charts.excitation_chart(view)
     if excitation is not None:

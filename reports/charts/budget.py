@@ -72,10 +72,15 @@ def budget_bars(view: CaseView) -> go.Figure | None:
     return reserve_legend(figure, len(PARTS))
 
 
-def budget_charts(view: CaseView) -> list[tuple[str, go.Figure]]:
-    """Return title and figure of the parts against time, for each run and reference."""
+def budget_charts(view: CaseView, *, above: float = 0.0) -> list[tuple[str, go.Figure]]:
+    """Return title and figure of the parts against time, for each run and reference.
+
+    Only of differences whose RMS is at least `above` [alpha].
+    """
     panels = []
     for (run, model), budget in view.budgets.items():
+        if budget.rms("whole") < above:
+            continue
         figure = new_figure(TIME_TITLE, "|part| / α [-]", height=300)
         figure.update_yaxes(type="log", exponentformat="power", dtick=2)
         lines = {"whole": ("whole", WHOLE, "")} | PARTS
