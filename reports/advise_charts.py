@@ -20,8 +20,8 @@ if TYPE_CHECKING:
 
 _HEIGHT = 300
 _BAND = "#cfe3f1"  # the pale of the first colour of runs
-_NAMES = {SPATIAL: "3D", PLANAR_X: "planar, x alone", PLANAR_Y: "planar, y alone"}
-_STANDS, _FALLS = 1.2, 1.3  # [alpha] where tilts are cut, and where overturned runs are drawn
+NAMES = {SPATIAL: "3D", PLANAR_X: "planar, x alone", PLANAR_Y: "planar, y alone"}
+STANDS, FALLS = 1.2, 1.3  # [alpha] where tilts are cut, and where overturned runs are drawn
 
 
 def advice_charts(advice: Advice) -> list[tuple[str, str, go.Figure]]:
@@ -65,7 +65,7 @@ def tilt_chart(advice: Advice) -> go.Figure:
     figure.add_trace(
         go.Scatter(
             x=small(np.concatenate([spread.time, spread.time[::-1]])),
-            y=small(np.minimum(np.concatenate([spread.high, spread.low[::-1]]), _STANDS)),
+            y=small(np.minimum(np.concatenate([spread.high, spread.low[::-1]]), STANDS)),
             fill="toself",
             fillcolor=_BAND,
             line={"width": 0},
@@ -80,7 +80,7 @@ def tilt_chart(advice: Advice) -> go.Figure:
         label = advice.verification.label
         lines.insert(0, (label, advice.verification.trajectory, run_styles([label])[label], 1.8))
     for name, trace, style, width in lines:
-        tilt = np.minimum(trace.tilt / alpha, _STANDS)
+        tilt = np.minimum(trace.tilt / alpha, STANDS)
         add_line(figure, trace.time, tilt, name, style, width=width, hovertemplate="%{y:.3f} α at %{x:.2f} s")
     if advice.trust.kind != "trace":
         figure.add_vline(x=advice.trust.until, line={"color": "#222222", "dash": "dash", "width": 1})
@@ -157,12 +157,12 @@ def scales_chart(advice: Advice) -> go.Figure:
     planes = run_styles([PLANAR_X, PLANAR_Y])
     for name, peaks in scan.peaks.items():
         style = model_style(advice.model) if name == SPATIAL else planes[name]
-        tilt = np.where(peaks >= FELL, _FALLS, np.minimum(peaks / alpha, _STANDS))
+        tilt = np.where(peaks >= FELL, FALLS, np.minimum(peaks / alpha, STANDS))
         figure.add_trace(
             go.Scatter(
                 x=small(scan.factors),
                 y=small(tilt),
-                name=_NAMES[name],
+                name=NAMES[name],
                 mode="lines+markers",
                 line={"color": style.colour, "dash": style.dash, "width": 1.3},
                 marker={"size": 4},
@@ -172,7 +172,7 @@ def scales_chart(advice: Advice) -> go.Figure:
     figure.add_vline(x=1.0, line={"color": "#222222", "dash": "dash", "width": 1})
     ticks = [0.25, 0.5, 1, 2, 4, 8, 16]
     figure.update_xaxes(type="log", tickvals=ticks, ticktext=[f"{tick:g}" for tick in ticks])
-    levels = [0.0, 0.25, 0.5, 0.75, 1.0, _FALLS]
+    levels = [0.0, 0.25, 0.5, 0.75, 1.0, FALLS]
     figure.update_yaxes(
         range=[-0.02, 1.4], tickvals=levels, ticktext=[*(f"{level:g}" for level in levels[:-1]), "falls"]
     )
@@ -202,4 +202,4 @@ def friction_chart(advice: Advice) -> go.Figure:
 
 def _tilt_text(advice: Advice) -> str:
     text = "The case as given, over the band that holds 90 % of the perturbed starts at each time."
-    return f"{text} Cut at {_STANDS:g} α." if advice.overturned else text
+    return f"{text} Cut at {STANDS:g} α." if advice.overturned else text

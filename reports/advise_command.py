@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import time
+from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -73,7 +75,8 @@ def advise(
 
     Without options: the 1940 El Centro record on R = 6 m, tan alpha = 0.2, in a recess.
 
-    Writes advice.html, one page that needs nothing else, and advice.json for machines.
+    Writes advice.html, one page that needs nothing else, the same as advice.md with advice.svg, and
+    advice.json for machines.
     """
     from .problem import case_from_options, describe
 
@@ -186,13 +189,18 @@ def print_advice(advice: Advice) -> None:
 
 def advice_files(advice: Advice, command: str = "") -> dict[str, bytes]:
     """Return name and content of each file of an advice."""
-    from rockwobble.compare.plain_json import dumps
+    from rockwobble.compare.plain_json import dumps, loads
 
+    from .advise_document import advice_document
+    from .advise_figure import advice_figure
     from .advise_page import advice_page
 
+    stored = dumps(advice_record(advice, command), indent=2) + "\n"
     return {
         "advice.html": advice_page(advice, command).encode(),
-        "advice.json": (dumps(advice_record(advice, command), indent=2) + "\n").encode(),
+        "advice.md": advice_document(loads(stored)).encode(),
+        "advice.svg": advice_figure(advice),
+        "advice.json": stored.encode(),
     }
 
 
@@ -200,10 +208,14 @@ def advice_record(advice: Advice, command: str = "") -> dict[str, Any]:
     """Return an advice as plain values: what it says, and every number behind it."""
     from rockwobble.compare import describe_case
 
+    from .advise_page import problem_line
     from .advise_statements import statements, verdict, verdict_grade
+    from .problem import describe
 
     return {
         "kind": "rockwobble advice",
+        "name": advice.case.name,
+        "problem": [*describe(advice.case), problem_line(advice)],
         "verdict": verdict(advice),
         "grade": verdict_grade(advice),
         "grades": advice.grades,
@@ -211,5 +223,8 @@ def advice_record(advice: Advice, command: str = "") -> dict[str, Any]:
         "numbers": advice.numbers(),
         "case": describe_case(advice.case),
         "command": command,
+        "date": datetime.now(UTC).date().isoformat(),
+        # of this process since it began, which is what the command costs
+        "seconds": time.process_time(),
         "versions": advice.versions,
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shlex
 from pathlib import Path
 
 import numpy as np
@@ -9,9 +10,13 @@ import pytest
 
 from rockwobble.compare.plain_json import loads
 from rockwobble.models import el_centro_1940
+from rockwobble.reports.advise_document import advice_document
 from rockwobble.reports.main import main
 
 PAGE_LIMIT = 8e6  # bytes, of every page
+PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "advice"
+# of what is computed before traces part: rounding
+SAME = 1e-9
 FAST = ["--engine", "none", "--starts", "20"]
 
 
@@ -66,7 +71,9 @@ def test_every_kind_of_case_gets_its_page(names, more, verdict, topics, records,
     page = (tmp_path / "advice.html").read_text()
     assert len(page) < PAGE_LIMIT
     assert record["verdict"] in page.replace("&#39;", "'")
-    assert {path.name for path in tmp_path.iterdir()} == {"advice.html", "advice.json"}
+    assert {path.name for path in tmp_path.iterdir()} == {
+        f"advice.{ending}" for ending in ("html", "md", "svg", "json")
+    }
 
 
 @pytest.mark.parametrize(
@@ -89,3 +96,18 @@ def test_bad_input_is_one_line_and_writes_nothing(arguments, words, tmp_path, mo
     assert words in captured.err
     assert captured.err.count("\n") == 1
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("name", ["pier", "column", "tower"])
+def test_published_advice_is_what_its_numbers_say_and_what_the_command_says_today(name, tmp_path):
+    published = loads((PUBLISHED / name / "advice.json").read_text())
+    assert (PUBLISHED / name / "advice.md").read_text() == advice_document(published)
+    assert published["verdict"] in (PUBLISHED / name / "advice.md").read_text()
+    assert f"`{published['command']}`" in (PUBLISHED / "README.md").read_text()
+    _, command, *options = shlex.split(published["command"])
+    assert command == "advise"
+    assert call(*options, *FAST, "--out", str(tmp_path)) == 0
+    fresh, stored = loads((tmp_path / "advice.json").read_text())["numbers"], published["numbers"]
+    for number in ("uplift_time", "uplift_factor"):
+        assert fresh[number] == pytest.approx(stored[number], rel=SAME)
+    assert (fresh["planar_kind"], fresh["outcome"]) == (stored["planar_kind"], stored["outcome"])
