@@ -6,10 +6,10 @@ step, and where the limit is still uncertain at an eighth and so on; none longer
 A cylinder that starts from rest stands on a polygon in both engines. MuJoCo turns its corners under the load,
 and its uplift is of first order in the step. Bullet keeps four contacts, wherever the base has leaned before:
 it uplifts with a lean of 1e-8 rad in a direction of chance, which no step removes. So its finer runs are
-held upright until the load is on the rim, and turned about the vertical until that is near the x axis,
-where Bullet looks first, but not so near that it takes the next contact for the same. Ground that is the same
-in every direction knows no difference, and the chance becomes part of the numerics, where it belongs. The
-direction is that of the engine's own run.
+held upright until the load is on the rim, and turned about the vertical until that is opposite to the x axis:
+upright, Bullet finds its first contact there, and is soon rid of it. Ground that is the same in every
+direction knows no difference, and the chance becomes part of the numerics, where it belongs. The direction is
+that of the engine's own run.
 """
 
 from __future__ import annotations
@@ -34,9 +34,6 @@ _ALWAYS, _AT_MOST = 2, 3
 _SMOOTH_UPLIFT = frozenset({"mujoco"})
 # What an engine needs besides a finer step to uplift without chance
 _FINER_SETTINGS: Mapping[str, Mapping[str, Any]] = MappingProxyType({"pybullet": {"held_standing": True}})
-# Distance of the uplift from the x axis along the rim [m] at a semidiagonal of 6 m: Bullet merges contacts
-# within 0.02 m. At 0.0235 m the error is of first order in the step, at 0.001 m of no order.
-_ASIDE, _REFERENCE_SIZE = 0.0235, 6.0
 # uncertainty of a limit, over the whole difference, that asks for a finer step
 _UNCERTAIN = 0.1
 
@@ -106,9 +103,10 @@ def finer_case(refined: Refined) -> Case:
     case = refined.case
     end = min(case.length, math.ceil(refined.end / SAMPLE_STEP - 1e-6) * SAMPLE_STEP)
     motion, direction = case.motion, refined.trajectory.uplift_direction
-    if motion is not None and not _released(case) and math.isfinite(direction):
-        radius = _REFERENCE_SIZE * math.sin(case.cylinder.alpha)
-        motion = motion.rotated(_ASIDE / radius - direction)
+    uplifts = not _released(case) and math.isfinite(direction)
+    if motion is not None and uplifts and refined.run.engine in _FINER_SETTINGS:
+        # elsewhere the error of an uplift may have no order, and a flat landing loses too little
+        motion = motion.rotated(math.pi - direction)
     return dataclasses.replace(case, motion=motion, duration=max(end, SAMPLE_STEP))
 
 
