@@ -37,13 +37,12 @@ def ensemble_document(found: Ensemble) -> str:
         _table(METHODS, method_rows(found)),
         LEGEND,
     ]
-    if len(found.contrasts):
-        parts += [
-            "## Each against each",
-            _table(CONTRASTS, contrast_rows(found)),
-            "## Overturning: members of each two methods",
-            _table(OVERTURNING, overturning_rows(found)),
-        ]
+    for title, headings, rows in (
+        ("Each against each", CONTRASTS, contrast_rows(found)),
+        ("Overturning: members of each two methods", OVERTURNING, overturning_rows(found)),
+    ):
+        if rows:
+            parts += [f"## {title}", _table(headings, rows)]
     return "\n\n".join([*parts, made_by(found.about["versions"])]) + "\n"
 
 

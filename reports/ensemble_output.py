@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
     from rockwobble.compare import Ensemble
 
-# intervals need this many columns
-_WIDE = 118
+# columns of a table with the longest names
+_WIDEST = 1000
 
 
 def print_ensemble(found: Ensemble) -> None:
@@ -33,13 +33,18 @@ def print_ensemble(found: Ensemble) -> None:
     from rich.console import Console
 
     console = Console()
+    contrasts = _table(CONTRASTS, contrast_rows(found))
+    needed = contrasts.__rich_measure__(console, console.options.update(max_width=_WIDEST)).maximum
     if not console.is_terminal:
-        console.width = max(console.width, MINIMUM_WIDTH, _WIDE)
+        console.width = max(console.width, MINIMUM_WIDTH, needed)
+    elif console.width < needed:
+        contrasts = _table(CONTRASTS, contrast_rows(found, intervals=False))
     console.print()
-    console.print(_table(METHODS, method_rows(found)))
-    if len(found.contrasts):
-        console.print(_table(CONTRASTS, contrast_rows(found, intervals=console.width >= _WIDE)))
-        console.print(_table(OVERTURNING, overturning_rows(found)))
+    falls = _table(OVERTURNING, overturning_rows(found))
+    for table in (_table(METHODS, method_rows(found)), contrasts, falls):
+        if table.row_count:
+            console.print(table)
+            console.print()
     console.print(LEGEND, style="dim", highlight=False)
     console.print()
     for i, sentence in enumerate(statements(found)):
@@ -51,10 +56,11 @@ def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
     from rich.table import Table
     from rich.text import Text
 
-    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False, show_edge=False)
     for heading in headings:
-        # as a text, because brackets are markup
-        table.add_column(Text(heading), justify="left" if heading in WORDS else "right", no_wrap=True)
+        # a narrow terminal has room for one word of a heading; as a text, because brackets are markup
+        name = heading if heading in WORDS else "\n".join(heading.rsplit(" ", 1))
+        table.add_column(Text(name), justify="left" if heading in WORDS else "right", no_wrap=True)
     for row in rows:
         table.add_row(*map(Text, row))
     return table

@@ -50,7 +50,7 @@ def contrast_rows(found: Ensemble, *, intervals: bool = True) -> list[tuple[str,
             row["method"],
             row["against"],
             cell(row, "ks", ".2f"),
-            f"{row['ks_p']:.2f}",
+            _probability(row["ks_p"]),
             cell(row, "wasserstein", ".2g"),
             cell(row, "median_ratio", ".2f"),
             _number(row["member_factor"], ".2f"),
@@ -60,14 +60,17 @@ def contrast_rows(found: Ensemble, *, intervals: bool = True) -> list[tuple[str,
 
 
 def overturning_rows(found: Ensemble) -> list[tuple[str, ...]]:
-    """Return the cells of the overturning table, by `OVERTURNING`: members of each two methods."""
+    """Return the cells of the overturning table, by `OVERTURNING`: members of each two methods.
+
+    None where nothing overturns.
+    """
     rows = []
     for row in found.contrasts.to_dict("records"):
         both = row["both_overturned"]
         ours, theirs = row["overturned"] - both, row["against_overturned"] - both
         counts = (both, ours, theirs, row["count"] - both - ours - theirs)
-        rows.append((row["method"], row["against"], *map(str, counts), f"{row['overturned_p']:.2f}"))
-    return rows
+        rows.append((row["method"], row["against"], *map(str, counts), _probability(row["overturned_p"])))
+    return rows if found.methods["overturned"].any() else []
 
 
 def statements(found: Ensemble) -> list[str]:
@@ -98,6 +101,8 @@ def statements(found: Ensemble) -> list[str]:
         "difference that is smaller takes more members to be seen.",
     ]
     lines += [_engine_line(found, row) for row in found.methods.to_dict("records") if row["own_model"]]
+    if not found.methods["overturned"].any():
+        lines.append("No member overturns by any method.")
     failed = found.methods[found.methods["failed"] > 0]
     return [line for line in lines if line] + [
         f"{row['method']} failed in {row['failed_members']}, which are left out."
@@ -111,11 +116,11 @@ def _engine_line(found: Ensemble, method: dict[Any, Any]) -> str:
     if not len(rows):
         return ""
     row = rows.iloc[0]
-    factor = _number(row["member_factor"], ".2f")
+    factor, fallen = _number(row["member_factor"], ".2f"), (row["overturned"], row["against_overturned"])
     return (
-        f"{name} against {own}, its own model: KS distance {row['ks']:.2f} (p = {row['ks_p']:.2f}), "
-        + (f"single peaks differ by a factor of {factor} in the median, " if factor != "-" else "")
-        + f"{row['overturned']} and {row['against_overturned']} of {row['count']} overturn."
+        f"{name} against {own}, its own model: KS distance {row['ks']:.2f} (p = {row['ks_p']:.2f})"
+        + (f", single peaks differ by a factor of {factor} in the median" if factor != "-" else "")
+        + (f", {fallen[0]} and {fallen[1]} of {row['count']} overturn." if any(fallen) else ".")
     )
 
 
@@ -133,6 +138,10 @@ def facts(found: Ensemble) -> list[str]:
 
 def _span(span: dict[str, Any]) -> str:
     return f"{span['from']:g}" if span["count"] == 1 else f"{span['from']:g} to {span['to']:g}"
+
+
+def _probability(value: float) -> str:
+    return f"{value:.2f}" if value >= 0.01 else "<0.01"
 
 
 def _peak(value: float) -> str:

@@ -13,6 +13,7 @@ import pytest
 from rockwobble.compare import Ensemble
 from rockwobble.models import p695
 from rockwobble.reports.ensemble_figure import ensemble_figure
+from rockwobble.reports.ensemble_output import print_ensemble
 from rockwobble.reports.ensemble_page import ensemble_page
 from rockwobble.reports.ensemble_words import contrast_rows, method_rows, overturning_rows, statements
 from rockwobble.reports.main import main
@@ -105,6 +106,17 @@ def test_sentences_say_what_is_told_apart_and_what_cannot_be_seen():
     assert statements(made_up(probability=1e-4))[0] == (
         "The distributions of peak tilt tell mujoco guided from recess (p = 0.0001)."
     )
+    assert contrast_rows(made_up(probability=1e-4))[0][3] == "<0.01"
+
+
+@pytest.mark.parametrize(("columns", "intervals"), [(200, True), (80, False)])
+def test_a_narrow_terminal_leaves_out_the_intervals_and_cuts_nothing(monkeypatch, capsys, columns, intervals):
+    monkeypatch.setenv("COLUMNS", str(columns))
+    monkeypatch.setenv("FORCE_COLOR", "1")
+    print_ensemble(made_up())
+    printed = capsys.readouterr().out
+    assert ("0.25 (0.25 to 0.25)" in printed) is intervals
+    assert "…" not in printed
 
 
 def test_page_and_figure_show_every_method():
