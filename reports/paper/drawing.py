@@ -12,14 +12,15 @@ from numpy.typing import NDArray
 from ..thinning import kept_samples
 
 if TYPE_CHECKING:
+    import pandas as pd
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+
+    from rockwobble.reduced import Response
 
 # a column of text on a screen is some 830 pixels wide, 96 to the inch [inch]
 WIDTH = 8.6
 GRID = "#dddddd"
-# what the figures show of a response, by the names of its table
-DRAWN = ("time", "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "centre_x", "centre_y")
 # more points than such a column has pixels
 _POINTS = 1600
 _STYLE: Any = {
@@ -48,6 +49,19 @@ def drawn(draw: Callable[[Figure], None], height: float) -> bytes:
         metadata = {"Date": None, "Creator": "rockwobble"}
         figure.savefig(buffer, format="svg", dpi=_RASTER_DPI, metadata=metadata)
     return buffer.getvalue()
+
+
+def drawn_samples(response: Response, keep: slice | NDArray[np.intp]) -> pd.DataFrame:
+    """Return what the figures show of a response at the samples to keep, by the names of its table.
+
+    The whole table of the finely sampled releases would take as much memory as figure 6.
+    """
+    import pandas as pd
+
+    names = ("time", "tilt", "tilt_rate", "rolling_angle", "rolling_rate")
+    table = pd.DataFrame({name: getattr(response, name)[keep] for name in names})
+    table[["centre_x", "centre_y"]] = response.centre_of_mass[keep, :2]
+    return table
 
 
 def line(axes: Axes, x: NDArray[np.float64], y: NDArray[np.float64], **style: Any) -> None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
 
-from .drawing import DRAWN, drawn, line, with_grid
+from .drawing import drawn, drawn_samples, line, with_grid
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -100,7 +100,7 @@ class Shaken:
         """Return the samples at the time step of the record, and the record."""
         response = self.response
         every = round(self.motion.time_step / _SAMPLE_STEP)
-        table = response.to_frame()[list(DRAWN)].iloc[::every].reset_index(drop=True)
+        table = drawn_samples(response, slice(None, None, every))
         times = np.arange(len(self.motion.acceleration)) * self.motion.time_step
         for i, name in enumerate(("ground_x", "ground_y")):
             table[name] = np.interp(table["time"], times, self.motion.acceleration[:, i])

@@ -15,7 +15,7 @@ from rockwobble.models import Cylinder, InitialState
 
 from ..thinning import kept_samples
 from .claim import Claim, verdict_of
-from .drawing import DRAWN, drawn, line, path, with_grid
+from .drawing import drawn, drawn_samples, line, path, with_grid
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -72,7 +72,7 @@ class FreeModes:
         tables = []
         for mode, response in self.responses.items():
             keep = kept_samples(response.tilt, response.tilt_rate, response.rolling_rate, points=_POINTS)
-            table = response.to_frame()[list(DRAWN)].iloc[keep]
+            table = drawn_samples(response, keep)
             table.insert(0, "mode", mode)
             tables.append(table)
         return pd.concat(tables, ignore_index=True)
@@ -84,14 +84,14 @@ def free_modes() -> FreeModes:
     spins = {SPIN: _SMALL_SPIN, STEADY: steady, BOTH: _SHARE_OF_STEADY * steady}
     return FreeModes(
         responses={mode: _released(spin) for mode, spin in spins.items()},
-        smaller=_released(0.1 * _SMALL_SPIN),
+        smaller=_released(0.1 * _SMALL_SPIN, sample_step=_DURATION),  # only its greatest force is asked for
     )
 
 
-def _released(spin: float) -> Response:
+def _released(spin: float, sample_step: float = _SAMPLE_STEP) -> Response:
     release = InitialState(tilt=RELEASE * CYLINDER.alpha, rolling_rate=spin)
     return reduced.simulate(
-        CYLINDER, initial=release, duration=_DURATION, rtol=_RTOL, sample_step=_SAMPLE_STEP
+        CYLINDER, initial=release, duration=_DURATION, rtol=_RTOL, sample_step=sample_step
     )
 
 
