@@ -30,6 +30,9 @@ _RISEN = 1e-7
 # the same over the depth of a single corner under the weight, over b: what stands leans by up to a sixteenth
 _RISEN_DEPTHS = 1000.0
 _LOADED = 0.5  # of b, eccentricity of the load from which prisms follow it
+# A standing cylinder that runs into a wall leans too, and then stands on: only under a load on its rim does a
+# lean mean that it has uplifted, or if it is far larger.
+_ON_RIM, _RISEN_ANYHOW = 0.9, 1e-5  # of b, [rad]
 
 
 class MujocoEngine:
@@ -116,11 +119,9 @@ class _MujocoStepper:
         blocks, walls = [], []
         done = 0
         while done < len(acceleration):
-            if self._standing and np.hypot(*axis_of(self._state[None, 4:8])[0, :2]) > self._risen:
-                self._leave_prisms()
-            end = done + _STANDING_BLOCK if self._standing else len(acceleration)
             if self._standing:
-                self._turn_prisms(acceleration[done:end].mean(axis=0))
+                self._follow_load(acceleration[done : done + _STANDING_BLOCK].mean(axis=0))
+            end = done + _STANDING_BLOCK if self._standing else len(acceleration)
             block, sensors = self._roll(acceleration[done:end])
             blocks.append(block)
             walls.append(sensors)
@@ -178,11 +179,15 @@ class _MujocoStepper:
         self._state = rows[-1].copy()
         return rows, sensors[0]
 
-    def _turn_prisms(self, acceleration: Array) -> None:
-        """Turn the prisms about the axis until one of their corners is under the load."""
+    def _follow_load(self, acceleration: Array) -> None:
+        """Turn the prisms about the axis until a corner is under the load; leave them after the uplift."""
         body, corners = self._scene.body, self._settings.standing_corners
         push = float(np.hypot(acceleration[0], acceleration[1])) * body.mass_centre_height
-        if push < _LOADED * body.base_radius * self._scene.gravity:
+        eccentricity = push / (body.base_radius * self._scene.gravity)
+        lean = float(np.hypot(*axis_of(self._state[None, 4:8])[0, :2]))
+        if lean > (self._risen if eccentricity > _ON_RIM else max(self._risen, _RISEN_ANYHOW)):
+            self._leave_prisms()
+        if not self._standing or eccentricity < _LOADED:
             return
         # the first corner of a prism is an eighth of a turn from its x axis
         first = np.arctan2(-acceleration[1], -acceleration[0]) - 0.25 * np.pi
