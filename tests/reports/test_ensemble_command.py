@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import math
 from pathlib import Path
@@ -11,6 +12,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare import Ensemble
+from rockwobble.compare.describe_store import describe_store
 from rockwobble.models import p695
 from rockwobble.reports.ensemble_figure import ensemble_figure
 from rockwobble.reports.ensemble_output import print_ensemble
@@ -18,6 +20,7 @@ from rockwobble.reports.ensemble_page import ensemble_page
 from rockwobble.reports.ensemble_words import contrast_rows, method_rows, overturning_rows, statements
 from rockwobble.reports.main import main
 
+PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "ensemble"
 RELEASE = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--members", "3"]
 
 
@@ -179,3 +182,21 @@ def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words)
     assert error.count("\n") == 1
     assert words in error
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["p695-2", "p695-3.5", "starts", "synthetic-3"])
+def test_published_pages_say_what_their_tables_hold(name):
+    folder = PUBLISHED / name
+    (result,) = describe_store(folder)
+    assert (result["kind"], result["complete"]) == ("an ensemble", True)
+    page = (folder / "ensemble.md").read_text()
+    table = pd.read_parquet(folder / "members.parquet")
+    for method, runs in table.groupby("method", sort=False):
+        counts = (
+            len(runs),
+            (runs["peak_tilt"] > 0.0).sum(),
+            *((runs["outcome"] == outcome).sum() for outcome in ("overturned", "failed")),
+        )
+        assert f"| {method} | {' | '.join(map(str, counts))} |" in page
+    for method, against in itertools.combinations(table["method"].unique(), 2):
+        assert f"| {against} | {method} |" in page
