@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 _NAMED = 10
 _TITLES = ("cases\n[-]", "agree\n[-]", "least\n[%]", "RMS\n[%]", "worst\n[%]", "peak\n[α]", "time\n[s]")
 LEGEND = (
-    "Each run against the model of its support. agree: cases whose tilts differ by less than 1 % of alpha to "
-    "the end. least: shortest agreement over the length of the run. RMS, worst: median and largest tilt "
-    "difference over tilt. peak: largest difference of peak tilts. time: computing time of the engine."
+    "Each run against the model of its support (guided: recess; free and, until it touches a wall, ring: "
+    "rolling). agree: cases whose tilts differ by less than 1 % of alpha to the end. least: shortest "
+    "agreement over the length of the run. RMS, worst: median and largest tilt difference over tilt. peak: "
+    "largest difference of peak tilts. time: computing time of the engine."
 )
 
 

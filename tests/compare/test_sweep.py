@@ -15,6 +15,7 @@ from rockwobble.compare import sweep as sweep_function
 from rockwobble.compare.parquet_file import read_about
 from rockwobble.compare.process_pool import WorkerDiedError
 from rockwobble.compare.sweep_executor import InThisProcess, Workers, run_chunk
+from rockwobble.compare.sweep_overhead import IN_MEMORY, KERNEL, STORED, Cost, measure, overhead_grid, ratios
 from rockwobble.compare.sweep_store import CHUNKS
 from rockwobble.compare.sweep_trial import CHUNK_SIZE, dask_sweep_with_a_death, killed_sweep, trial_grid
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
@@ -228,3 +229,20 @@ def test_a_chunk_that_cannot_be_read_is_named(tmp_path):
 def test_bad_input_gets_one_clear_line(make, words):
     with pytest.raises(ValueError, match=words):
         make()
+
+
+def test_overhead_is_measured_in_turns_and_its_ratios_inside_each_round(tmp_path):
+    lines: list[str] = []
+    rows = measure(2, 100, workers=1, folder=tmp_path, say=lines.append)
+    assert [set(row) for row in rows] == [{STORED, IN_MEMORY, KERNEL}] * 2
+    assert all(cost.wall > 0.0 and cost.cores > 0.0 for row in rows for cost in row.values())
+    assert len(lines) == 2
+    assert list(tmp_path.iterdir()) == []
+    assert overhead_grid(10_000).rows == 10_000
+
+
+def test_a_disturbed_round_does_not_move_the_ratio():
+    quiet = {STORED: Cost(1.02, 2.02), IN_MEMORY: Cost(1.0, 2.0)}
+    disturbed = {STORED: Cost(9.0, 2.02), IN_MEMORY: Cost(1.0, 2.0)}
+    found = ratios([quiet, disturbed, quiet], STORED, IN_MEMORY)
+    assert (found.wall, found.cores) == pytest.approx((1.02, 1.01), abs=1e-12)
