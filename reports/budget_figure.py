@@ -67,7 +67,8 @@ def budget_figure(comparison: Comparison) -> bytes:
             "RMS of each part over the sum of the three; on the right the RMS of the whole difference"
         )
         axes.spines[["top", "right"]].set_visible(False)
-        axes.legend(loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=3, frameon=False)
+        # outside of the axes, which long names leave too narrow for it
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside upper right", ncols=3, frameon=False)
         buffer = io.BytesIO()
         figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "rockwobble"})
     return buffer.getvalue()

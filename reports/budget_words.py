@@ -25,7 +25,8 @@ def budget_lines(summary: Any) -> list[str]:
         for _, row in found.head(_LISTED).iterrows()
     ]
     if len(found) > _LISTED:
-        lines.append(f"So they do in {len(found) - _LISTED} more rows of the summary.")
+        more = len(found) - _LISTED
+        lines.append(f"So they do in {more} more row{'s' if more > 1 else ''} of the summary.")
     explained = len(worth) - len(found)
     share = f" ({100.0 * explained / len(worth):.0f} %)" if len(worth) else ""
     cases, with_findings = worth["case"].nunique(), found["case"].nunique()
