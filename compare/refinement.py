@@ -69,6 +69,11 @@ class Refined:
         """Whether the error of the run is a power series in the step: from rest not in every engine."""
         return _released(self.case) or self.run.engine in _SMOOTH_UPLIFT
 
+    @property
+    def finer_smooth(self) -> bool:
+        """Whether that of the finer runs is."""
+        return self.smooth or self.run.engine in _FINER_SETTINGS
+
 
 def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str, str], Limit]:
     """Return the limit of each run, by names of case and run.
@@ -135,12 +140,12 @@ def _limit(refined: Refined, traces: Sequence[Any]) -> Limit | None:
     if count == 0 or not all(np.isfinite(tilt).all() for tilt in tilts):
         return None
     steps = [trace.time_step for trace in used]
-    return extrapolated(used[0].time[:count], tilts, steps, smooth=refined.smooth)
+    return extrapolated(used[0].time[:count], tilts, steps, smooth=refined.finer_smooth)
 
 
 def _is_uncertain(refined: Refined, traces: Sequence[Any]) -> bool:
     limit = _limit(refined, traces)
-    if limit is None or not refined.smooth:
+    if limit is None or not refined.finer_smooth:
         return False
     covered = limit.time <= COVERED * refined.end
     error = _rms(limit.error[covered]) / refined.case.cylinder.alpha
