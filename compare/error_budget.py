@@ -4,7 +4,8 @@
                        =     numerics     +  unexplained  +   model form
 
 limit is the engine extrapolated to a time step of zero, own the reduced model of the engine's support
-(see `own_model`). The three are signed traces of the tilt, and add up exactly.
+(see `own_model`) or, where that goes through the apex itself, planar motion with the loss of a base that
+lands flat. The three are signed traces of the tilt, and add up exactly.
 Tilt itself is never negative, so it folds where a motion goes past the apex; as long as two motions agree
 within 1 % of alpha they are on the same side of that fold, which is why the budget ends with the agreement.
 """
