@@ -91,10 +91,15 @@ def _by_problem(found: Tradeoff) -> list[str]:
                 f"{row['title']}, {WHERE[row['model']]}: the engines get below {target:g} "
                 f"{UNITS[row['problem']]}. {engine.line} at a {engine.knob} of {engine.value:g} s is the "
                 f"fastest there and takes {engine.ratio / own.ratio:,.0f} times the time of the reduced "
-                f"model ({engine.milliseconds:.3g} ms against {own.milliseconds:.2g} ms a run)."
+                f"model ({_milliseconds(engine)} against {_milliseconds(own)} a run)."
             )
             break
     return lines
+
+
+def _milliseconds(best: Fastest) -> str:
+    size = best.milliseconds
+    return f"{size:,.0f} ms" if size >= 100.0 else f"{size:.2g} ms"
 
 
 def _scipy(found: Tradeoff) -> list[str]:
