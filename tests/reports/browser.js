@@ -12,6 +12,7 @@ window.addEventListener("load", () => setTimeout(() => {
     const sheet = plot.querySelector(".main-svg"), drawn = plot._fullLayout;
     if (!sheet || !drawn) { say("not drawn"); return; }
     if (edges(sheet).right > edges(plot.parentElement).right + 1) say("wider than its place");
+    if (edges(sheet).bottom > edges(plot.parentElement).bottom + 1) say("taller than its place");
     if (plot._fullData.some((trace) => trace.type.endsWith("3d"))) return;
     for (const name of ["xaxis", "yaxis"]) {
       const title = drawn[name].title.text || "";
