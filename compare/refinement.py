@@ -147,9 +147,12 @@ def _is_uncertain(refined: Refined, traces: Sequence[Any]) -> bool:
     limit = _limit(refined, traces)
     if limit is None or not refined.finer_smooth:
         return False
-    covered = limit.time <= COVERED * refined.end
+    # the stretch that the budget covers, from the uplift on: before it there is nothing to err in
+    uplift = refined.trajectory.uplift_time
+    start = uplift if math.isfinite(uplift) else 0.0
+    covered = (limit.time >= start) & (limit.time <= start + COVERED * (refined.end - start))
     error = _rms(limit.error[covered]) / refined.case.cylinder.alpha
-    whole = _rms(refined.difference)
+    whole = _rms(refined.difference[: math.ceil(COVERED * len(refined.difference))])
     return whole > WORTH_EXPLAINING and error > _UNCERTAIN * whole
 
 
