@@ -18,9 +18,11 @@ from .simulate import make_ready
 
 # A run through a whole record takes one to three steps a sample. Only a small cylinder that shaking has
 # hardly lifted takes more: it rocks hundreds of times a second, at a ten-thousandth of alpha, for the rest
-# of the record. After so many steps for each sample, or in all, the tilt of the seating rule is raised,
-# and again after each eighth as many more; without the rule a run fails after five times as many.
+# of the record. After so many steps for each sample, for each time 1/p (what rocking at a hundredth of alpha
+# takes, which a coarse record may well cause), or in all, the tilt of the seating rule is raised, and again
+# after each eighth as many more; without the rule a run fails after five times as many.
 _STEPS_PER_SAMPLE = 4
+_STEPS_PER_TIME = 60
 _STEPS_AT_LEAST = 5_000
 _SHARE_TO_GO_ON = 8
 _WITHOUT_RULE = 5
@@ -45,9 +47,9 @@ def peak_tilts(
 
     The runs are independent and share the cores as threads: the result has the same bits whatever
     their number. A fall that nothing later in the record can stop ends its run at once. A run that
-    chatters beyond 4 steps for each sample of the record (5000 steps at least) goes on with ten times
-    the seating, and with ten times that after each eighth as many more. Without a seating rule it fails
-    after five times as many. Every other run is that of `simulate`.
+    chatters beyond 4 steps for each sample of the record (60 for each time 1/p, 5000 in all at least)
+    goes on with ten times the seating, and with ten times that after each eighth as many more. Without
+    a seating rule it fails after five times as many. Every other run is that of `simulate`.
 
     Parameters
     ----------
@@ -103,10 +105,8 @@ def peak_tilts(
     if peaks.size == 0:
         return peaks
     make_ready("planar" if problems[0].is_planar() else model)
-    budget = max(_STEPS_AT_LEAST, _STEPS_PER_SAMPLE * len(motion.acceleration))
-    limits = (budget, budget // _SHARE_TO_GO_ON) if seating > 0.0 else (_WITHOUT_RULE * budget, 0)
     with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        rows = {pool.submit(_row, problem, factors, *limits): i for i, problem in enumerate(problems)}
+        rows = {pool.submit(_row, problem, factors): i for i, problem in enumerate(problems)}
         try:
             for done, row in enumerate(as_completed(rows), start=1):
                 peaks[rows[row]] = row.result()
@@ -118,14 +118,23 @@ def peak_tilts(
     return peaks
 
 
-def _row(problem: Problem, factors: NDArray[np.float64], step_budget: int, relief: int) -> list[float]:
-    solve = problem.scaled_solver(step_budget, relief)
+def _row(problem: Problem, factors: NDArray[np.float64]) -> list[float]:
+    solve = problem.scaled_solver(*_limits(problem))
     peaks = []
     for factor in factors:
         march = solve(float(factor))
         peak = march.peak if march.status <= OVERTURNED else math.nan
         peaks.append(0.5 * math.pi if march.status == OVERTURNED else peak)
     return peaks
+
+
+def _limits(problem: Problem) -> tuple[int, int]:
+    """Return the steps that a run may take, and by how many they grow when they are used up."""
+    assert problem.motion is not None
+    by_sample = _STEPS_PER_SAMPLE * len(problem.motion.acceleration)
+    by_time = _STEPS_PER_TIME * problem.duration * problem.body.p
+    budget = int(min(max(_STEPS_AT_LEAST, by_sample, by_time), 2**58))
+    return (budget, budget // _SHARE_TO_GO_ON) if problem.seating > 0.0 else (_WITHOUT_RULE * budget, 0)
 
 
 def _axis(name: str, values: ArrayLike) -> NDArray[np.float64]:

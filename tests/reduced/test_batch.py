@@ -136,3 +136,18 @@ def test_chatter_beyond_the_step_budget_is_masked():
 def test_bad_axes_are_named(sizes, scales, words):
     with pytest.raises(ValueError, match=words):
         reduced.peak_tilts(sizes, 0.1, EL_CENTRO, scales)
+
+
+def test_the_samples_of_a_coarse_record_do_not_limit_a_run(monkeypatch):
+    given = []
+    monkeypatch.setattr(
+        problem.Problem,
+        "scaled_solver",
+        lambda self, budget, relief: given.append(budget) or pytest.fail("enough"),
+    )
+    coarse = GroundMotion(np.full((100, 2), 0.1), 10.0)
+    with pytest.raises(pytest.fail.Exception):
+        reduced.peak_tilts([1.0], 0.2, coarse, [1.0])
+    # rocking at a hundredth of alpha takes some 60 steps for each time 1/p
+    p = math.sqrt(12.0 / (15.0 + math.cos(math.atan(0.2)) ** 2) * 9.81)
+    assert given == [int(60 * 990.0 * p)]
