@@ -165,7 +165,7 @@ def _members(jobs: Sequence[Job], results: Sequence[Any]) -> pd.DataFrame:
     for job, result in zip(jobs, results, strict=True):
         crashed = isinstance(result, Crash)
         failed = crashed or result.outcome == "failed"
-        falling = not failed and _falling(job.case, result)
+        falling = not failed and falls_at_the_end(job.case, result)
         peak = math.nan if failed else 0.5 * math.pi if falling else result.peak_tilt
         rows.append(
             {
@@ -180,7 +180,7 @@ def _members(jobs: Sequence[Job], results: Sequence[Any]) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def _falling(case: Case, result: Any) -> bool:
+def falls_at_the_end(case: Case, result: Any) -> bool:
     """Return whether a run ends on still ground past its balance and on its way down: nothing holds it."""
     alpha, motion = case.cylinder.alpha, case.motion
     if result.outcome == "overturned" or not result.peak_tilt > alpha:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from rockwobble import multibody, reduced
 
+from ..ensemble import falls_at_the_end
 from ..runs import SUPPORTS, own_model
 from .extent import Extent
 from .motions import ensemble_names, shaken_case
@@ -47,10 +49,14 @@ def measure(inputs: Inputs) -> list[Row]:
             friction=case.friction,
         )
     point = {name: inputs[name] for name in ("motion", "level", "tan_alpha", "semidiagonal")}
-    return [
-        {**point, "method": method, "peak": run.peak_tilt / case.cylinder.alpha, "outcome": run.outcome}
-        for method, run in found.items()
-    ]
+    rows: list[Row] = []
+    for method, run in found.items():
+        fell = falls_at_the_end(case, run)
+        peak = (0.5 * math.pi if fell else run.peak_tilt) / case.cylinder.alpha
+        rows.append(
+            {**point, "method": method, "peak": peak, "outcome": "overturned" if fell else run.outcome}
+        )
+    return rows
 
 
 PART = Part(
