@@ -30,8 +30,8 @@ _RISEN = 1e-7
 # the same over the depth of a single corner under the weight, over b: what stands leans by up to a sixteenth
 _RISEN_DEPTHS = 1000.0
 _LOADED = 0.5  # of b, eccentricity of the load from which prisms follow it
-# A standing cylinder that runs into a wall, or hops while it slides, leans too, and then stands on: only under
-# a load on its rim does a lean mean that it has uplifted, or if it is far larger.
+# A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
+# under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
 _ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # of b, [rad]
 
 
