@@ -3,7 +3,7 @@
 from .comparison import Comparison, describe_case, describe_run
 from .contact import TILTED
 from .driver import compare
-from .ensemble import Ensemble, ensemble
+from .ensemble import Ensemble, ensemble, read_ensemble
 from .ensemble_members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
 from .error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
 from .execution import Crash, Job, Progress, simulate_all
@@ -60,6 +60,7 @@ __all__ = [
     "open_sweep_store",
     "own_model",
     "perturbed_starts",
+    "read_ensemble",
     "read_trajectory",
     "relative_rms",
     "replace_files",

@@ -6,12 +6,10 @@ import math
 from pathlib import Path
 from typing import Any
 
-from .ensemble import KIND
+from .ensemble import KIND, TABLE
 from .origin import read_table
 from .parquet_file import read_about
 from .run_store import MEMBERS
-
-TABLE = "members.parquet"
 
 
 def holds_ensemble(path: Path) -> bool:

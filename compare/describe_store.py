@@ -8,13 +8,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .describe_ensemble import TABLE, describe_ensemble, describe_unfinished_ensemble, holds_ensemble
+from .describe_ensemble import describe_ensemble, describe_unfinished_ensemble, holds_ensemble
 from .describe_studies import (
     describe_extremes,
     describe_tradeoff,
     describe_unfinished_validity,
     describe_validity,
 )
+from .ensemble import TABLE
 from .parquet_file import read_about
 from .run_store import MEMBERS, RUNS
 from .sweep_store import ABOUT, open_sweep_store

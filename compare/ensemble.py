@@ -18,6 +18,8 @@ from .distributions import Contrast, contrast
 from .ensemble_members import perturbed_starts
 from .execution import Crash, Job, ProgressCallback, simulate_all
 from .fingerprint import fingerprint
+from .origin import read_table
+from .parquet_file import read_about
 from .provenance import about_results
 from .run_store import job_fingerprint, open_run_store
 from .runs import default_runs, own_model, require_runnable, run_labels
@@ -26,6 +28,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 KIND = "rockwobble ensemble"
+TABLE = "members.parquet"
 MODELS = ("recess", "rolling")
 _FALLING = "past its balance and falling when the run ended"
 
@@ -46,8 +49,8 @@ class Ensemble:
     contrasts : DataFrame
         One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high.
     about : dict
-        As `about_results`, with what the members are, the range of their sizes and slendernesses, and the
-        draws of the bootstrap.
+        As `about_results`, with what the members are, the range of their sizes and slendernesses, the model
+        of the support of each method, and the draws of the bootstrap.
     """
 
     members: pd.DataFrame
@@ -137,12 +140,37 @@ def ensemble(
     table = _members(jobs, results)
     inputs = fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")} | {"draws": draws}
+    about |= {
+        "methods": {label: "" if isinstance(m, str) else own_model(m.support) for label, m in methods.items()}
+    }
+    return ensemble_of(table, about_results(KIND, inputs, seeds={"ensemble": seed}) | about)
+
+
+def ensemble_of(members: pd.DataFrame, about: dict[str, Any]) -> Ensemble:
+    """Return the ensemble of a table of members, and of what `Ensemble.about` says of them."""
+    methods, seed = about["methods"], about["seeds"]["ensemble"]
     return Ensemble(
-        members=table,
-        methods=_methods(table, methods),
-        contrasts=_contrasts(table, list(methods), draws=draws, seed=seed),
-        about=about_results(KIND, inputs, seeds={"ensemble": seed}) | about,
+        members=members,
+        methods=_methods(members, methods),
+        contrasts=_contrasts(members, list(methods), draws=about["draws"], seed=seed),
+        about=about,
     )
+
+
+def read_ensemble(folder: str | Path) -> Ensemble:
+    """Return an ensemble whose members were stored as `members.parquet`.
+
+    Raises
+    ------
+    ValueError
+        If the file is missing or is not what was stored.
+    """
+    file = Path(folder) / TABLE
+    members = read_table(file)
+    try:
+        return ensemble_of(members, read_about(file))
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"{file} does not hold the members of an ensemble: {error!r}") from None
 
 
 def _range(members: Sequence[Case], name: str) -> dict[str, float]:
@@ -189,11 +217,11 @@ def falls_at_the_end(case: Case, result: Any) -> bool:
     return bool(still and result.tilt[-1] > alpha and result.tilt_rate[-1] >= 0.0)
 
 
-def _methods(members: pd.DataFrame, methods: Mapping[str, str | Run]) -> pd.DataFrame:
+def _methods(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:
     import pandas as pd
 
     rows = []
-    for method, given in methods.items():
+    for method, own in methods.items():
         runs = members[members["method"] == method]
         failed = runs[runs["outcome"] == "failed"]
         standing = runs.loc[~runs["outcome"].isin(["overturned", "failed"]), "peak_tilt"].to_numpy(float)
@@ -205,7 +233,7 @@ def _methods(members: pd.DataFrame, methods: Mapping[str, str | Run]) -> pd.Data
         rows.append(
             {
                 "method": method,
-                "own_model": "" if isinstance(given, str) else own_model(given.support),
+                "own_model": own,
                 "runs": len(runs),
                 "rocked": int((runs["peak_tilt"] > 0.0).sum()),
                 "overturned": fallen,

@@ -106,6 +106,7 @@ def ensemble(
                 print(f"Members: {len(motions) or members}, {_source(synthetic, far_field, perturbation)}")
             runs = _runs(engine, support, time_step, stated=suite is not None)
         from .ensemble_output import ensemble_files, print_ensemble
+        from .paper.provenance import command_line
         from .progress import shown_progress
 
         with user_input(), shown_progress(many=True) as tell:
@@ -119,6 +120,7 @@ def ensemble(
                 resume=out,
                 source=_source(synthetic, far_field, perturbation) if suite is None else f"cases of {suite}",
             )
+        found = dataclasses.replace(found, about={**found.about, "command": command_line()})
         print_ensemble(found)
         contents = ensemble_files(found)
         with user_input():

@@ -43,7 +43,7 @@ def ensemble_document(found: Ensemble) -> str:
     ):
         if rows:
             parts += [f"## {title}", _table(headings, rows)]
-    return "\n\n".join([*parts, made_by(found.about["versions"])]) + "\n"
+    return "\n\n".join([*parts, made_by(found.about["versions"], found.about.get("command"))]) + "\n"
 
 
 def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

@@ -67,13 +67,9 @@ def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
 
 
 def ensemble_files(found: Ensemble) -> dict[str, bytes]:
-    """Return name and content of each file."""
+    """Return name and content of each file: the numbers, and the pages that are drawn from them."""
     from rockwobble.compare import plain_json
     from rockwobble.compare.parquet_file import pack
-
-    from .ensemble_document import ensemble_document
-    from .ensemble_figure import ensemble_figure
-    from .ensemble_page import ensemble_page
 
     return {
         "members.csv": found.members.to_csv(index=False).encode(),
@@ -81,6 +77,16 @@ def ensemble_files(found: Ensemble) -> dict[str, bytes]:
         "contrasts.csv": found.contrasts.to_csv(index=False).encode(),
         "members.parquet": pack(found.members, found.about),
         "ensemble.json": (plain_json.dumps(found.about, indent=2) + "\n").encode(),
+    } | ensemble_pages(found)
+
+
+def ensemble_pages(found: Ensemble) -> dict[str, bytes]:
+    """Return name and content of each page and picture."""
+    from .ensemble_document import ensemble_document
+    from .ensemble_figure import ensemble_figure
+    from .ensemble_page import ensemble_page
+
+    return {
         "ensemble.md": ensemble_document(found).encode(),
         "ensemble.svg": ensemble_figure(found),
         "ensemble.html": ensemble_page(found).encode(),

@@ -42,5 +42,5 @@ def ensemble_page(found: Ensemble) -> str:
         ],
         legend=LEGEND,
         words=WORDS,
-        made_by=made_by(found.about["versions"]).replace("`", ""),
+        made_by=made_by(found.about["versions"], found.about.get("command")).replace("`", ""),
     )

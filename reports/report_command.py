@@ -12,7 +12,7 @@ from .terminal import interruptible, user_input
 Folder = Annotated[
     Path,
     typer.Argument(
-        help="Folder that `rockwobble compare`, `validity`, `tradeoff` or `extremes` has written.",
+        help="Folder that `compare`, `ensemble`, `validity`, `tradeoff` or `extremes` has written.",
         show_default=False,
     ),
 ]

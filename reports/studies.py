@@ -66,8 +66,18 @@ def _extremes(folder: Path) -> Draw:
     return lambda: extremes_pages(found)
 
 
+def _ensemble(folder: Path) -> Draw:
+    from rockwobble.compare import read_ensemble
+
+    from .ensemble_output import ensemble_pages
+
+    found = read_ensemble(folder)
+    return lambda: ensemble_pages(found)
+
+
 STUDIES = (
     Study(command="compare", file="comparison.json", read=_comparison),
+    Study(command="ensemble", file="ensemble.json", read=_ensemble),
     Study(command="validity", file="validity.json", read=_validity),
     Study(command="tradeoff", file="tradeoff.json", read=_tradeoff),
     Study(command="extremes", file="extremes.json", read=_extremes),

@@ -28,10 +28,10 @@ def versions() -> dict[str, str]:
     }
 
 
-def made_by(given: Mapping[str, str] | None = None) -> str:
+def made_by(given: Mapping[str, str] | None = None, command: str | None = None) -> str:
     """Return the command and the versions, those here or those given, as the last paragraph of a page."""
     packages = ", ".join(f"{name} {version}" for name, version in (given or versions()).items())
-    return f"Made by `{command_line()}` with {packages}."
+    return f"Made by `{command or command_line()}` with {packages}."
 
 
 def parquet(table: pd.DataFrame, kind: str, inputs: str) -> bytes:

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import pytest
 
-from rockwobble.compare import describe_store, origin, provenance
+from rockwobble.compare import describe_store, origin, provenance, read_ensemble
 from rockwobble.compare.extremes import read_extremes
 from rockwobble.compare.plain_json import dumps, loads
 from rockwobble.compare.tradeoff import read_tradeoff
 from rockwobble.compare.validity import motions, read_validity
+from rockwobble.reports.ensemble_document import ensemble_document
 from rockwobble.reports.extremes.page import extremes_markdown
 from rockwobble.reports.main import main
 from rockwobble.reports.tradeoff.page import tradeoff_markdown
@@ -54,11 +55,14 @@ def validity_text(folder: Path) -> str:
         ("validity", validity_text),
         ("tradeoff", lambda folder: tradeoff_markdown(read_tradeoff(folder))),
         ("extremes", lambda folder: extremes_markdown(read_extremes(folder))),
+        ("ensemble/starts", lambda folder: ensemble_document(read_ensemble(folder))),
+        ("ensemble/p695-2", lambda folder: ensemble_document(read_ensemble(folder))),
     ],
 )
 @pytest.mark.usefixtures("nothing_here")
 def test_what_is_published_is_what_its_stored_results_say_anywhere(study: str, text: Callable[[Path], str]):
-    assert text(PUBLISHED / study) == (PUBLISHED / study / f"{study}.md").read_text()
+    document = PUBLISHED / study / f"{study.split('/')[0]}.md"
+    assert text(PUBLISHED / study) == document.read_text()
 
 
 @pytest.mark.usefixtures("nothing_here")
@@ -75,6 +79,14 @@ def test_pages_go_into_the_folder_of_the_results_or_elsewhere(tmp_path: Path, ca
     assert {path.name for path in stored.iterdir()} == pages | set(results)
     assert all((stored / name).read_bytes() == content for name, content in results.items())
     assert (stored / "extremes.md").read_text() == (PUBLISHED / "extremes" / "extremes.md").read_text()
+
+
+def test_a_table_of_another_kind_is_no_ensemble(tmp_path: Path, capsys):
+    shutil.copy(PUBLISHED / "ensemble" / "starts" / "ensemble.json", tmp_path)
+    shutil.copy(PUBLISHED / "extremes" / "extremes.parquet", tmp_path / "members.parquet")
+    assert call("report", str(tmp_path)) == 2
+    assert "members.parquet does not hold the members of an ensemble" in capsys.readouterr().err
+    assert not (tmp_path / "ensemble.html").exists()
 
 
 @pytest.mark.parametrize(
