@@ -7,13 +7,12 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-import numpy as np
-
 from rockwobble.models import Case, Run
 
 from .error_budget import ErrorBudget, error_budget
 from .execution import IMPACT, Crash, Job
 from .horizon import Horizon, agreement_horizon
+from .predicted_horizon import landings
 from .refinement import Refined, Simulate, limits
 from .runs import own_model, references_of
 from .traces import make_pair
@@ -106,7 +105,7 @@ def _landings(
     for case in cases:
         for model in {own_model(support) for support in supports}:
             response = results[case.name, model]
-            if not (np.asarray(response.passes["minimum_tilt"]) == 0.0).any():
+            if not len(landings(response)):
                 continue
             direction, motion, initial = response.uplift_direction, case.motion, case.initial
             plane = dataclasses.replace(

@@ -28,7 +28,7 @@ from rockwobble.models import Case
 
 from .error_budget import ErrorBudget
 from .horizon import agreement_horizon
-from .traces import Trace, make_pair
+from .traces import FloatArray, Trace, make_pair
 
 # a prediction is in time if the measured horizon is within this factor of it, either way
 IN_TIME = 2.0
@@ -45,6 +45,8 @@ _LARGEST = 1e-2
 _AFTER_RELEASE: Mapping[str, float] = MappingProxyType({"mujoco": 2e-6, "pybullet": 1.5e-5})
 _AFTER_UPLIFT: Mapping[str, float] = MappingProxyType({"mujoco": 2.5e-5, "pybullet": 4e-5})
 _SMALLEST_ERROR = 1e-9  # [alpha] no engine is better than its contact
+
+_HALF_A_TURN = 1e-9  # [rad] rounding of half a turn: motion with spin takes longer than a sample for it
 
 Simulate = Callable[[Case, str], Trace]
 
@@ -157,6 +159,15 @@ def verdict(measured: float, parted: bool, predicted: float, reason: str) -> str
     return "in time"
 
 
+def landings(response: Trace) -> FloatArray:
+    """Return when a reduced model goes through the apex itself (n,) [s], to a sample.
+
+    Its contact then jumps to the other end of the diameter. A fall that follows makes no pass of it.
+    """
+    turned = np.abs(np.diff(response.rolling_angle))
+    return np.asarray(response.time)[1:][np.abs(turned - np.pi) < _HALF_A_TURN]
+
+
 def early_rms(case: Case, time: Any, difference: Any, start: float) -> float:
     """Return the RMS of a difference in the first second after `start`, scaled with the cylinder's time."""
     first = (time >= start) & (time <= start + FIRST_STRETCH * time_scale(case))
@@ -181,7 +192,7 @@ def _parting(case: Case, reference: Trace, other: Trace) -> float:
 def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:
     close = np.asarray(own.passes["minimum_tilt"], dtype=np.float64) < contact_resolution
     times = np.asarray(own.passes["time"], dtype=np.float64)[close]
-    return float(times[0]) if len(times) else length
+    return float(min([*times[:1], *landings(own)[:1], length]))
 
 
 def _twin_parting(case: Case, own: Trace, model: str, error: float, simulate: Simulate) -> float:

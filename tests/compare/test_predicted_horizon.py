@@ -5,8 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rockwobble.compare.predicted_horizon import estimated_error, predict_horizon, verdict
-from rockwobble.models import Case, InitialState
+from rockwobble import reduced
+from rockwobble.compare.predicted_horizon import (
+    close_pass,
+    estimated_error,
+    landings,
+    predict_horizon,
+    verdict,
+)
+from rockwobble.models import Case, GroundMotion, InitialState
 
 TIME = np.arange(1001) * 0.01
 
@@ -56,6 +63,20 @@ def test_the_first_of_the_three_counts(predict):
     assert predict(1e-5, passes=[(4.0, 1e-6)]).length == 4.0
     found = predict(1e-5, passes=[(4.0, 1e-6)], rolls_off=3.0)
     assert (found.reason, found.length) == ("model form", pytest.approx(3.0))
+
+
+def test_the_apex_itself_ends_an_agreement_though_a_fall_follows(cylinder):
+    # past the apex once, and over: no later maximum makes a pass of it
+    time = np.arange(102) * 0.01
+    pulse = 4.0 * 9.81 * cylinder.tan_alpha * np.sin(2.0 * np.pi * np.minimum(time, 1.0))
+    motion = GroundMotion(np.column_stack([pulse, np.zeros_like(pulse)]), 0.01)
+    response = reduced.simulate(cylinder, motion, duration=6.0)
+    assert response.outcome == "overturned"
+    assert response.passes.empty
+    (landed,) = landings(response)
+    assert landed == pytest.approx(response.extrema[1, 0], abs=0.01)  # a sample
+    found = close_pass(response, 1e-5, 6.0)
+    assert (found.reason, found.length) == ("pass", landed - response.uplift_time)
 
 
 def test_a_small_error_and_no_close_pass_end_nothing(predict):
