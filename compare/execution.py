@@ -15,6 +15,8 @@ from rockwobble.models import Case, Run
 from .process_pool import ProcessPool, WorkerDiedError
 
 if TYPE_CHECKING:
+    from rockwobble.multibody import Trajectory
+
     from .run_store import RunStore
 
 SAMPLE_STEP = 0.01
@@ -72,8 +74,11 @@ class Crash:
 def simulate(job: Job) -> Any:
     """Run one job in this process; return a Response or a Trajectory."""
     case, method = job.case, job.method
-    if isinstance(method, str):
-        return _reduced(case, method)
+    return _reduced(case, method) if isinstance(method, str) else run_engine(case, method)
+
+
+def run_engine(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> Trajectory:
+    """Run an engine on a case, with all that the case says: friction and gravity, too."""
     from rockwobble import multibody
 
     return multibody.simulate(
@@ -81,13 +86,13 @@ def simulate(job: Job) -> Any:
         case.motion,
         initial=case.initial,
         duration=case.duration,
-        engine=method.engine,
-        support=method.support,
-        time_step=method.time_step,
+        engine=run.engine,
+        support=run.support,
+        time_step=run.time_step,
         friction=case.friction,
-        sample_step=SAMPLE_STEP,
+        sample_step=sample_step,
         gravity=case.gravity,
-        **method.settings,
+        **run.settings,
     )
 
 

@@ -10,7 +10,7 @@ from rockwobble.compare.advice.scales import FELL
 from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SPATIAL
 
 from .advise_charts import FALLS, NAMES, STANDS
-from .palette import Style, model_style, run_styles
+from .palette import DASHES, Style, model_style, run_styles
 from .paper.drawing import drawn, line, with_grid
 
 if TYPE_CHECKING:
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from rockwobble.compare.advice import Advice
 
 _BAND = "#cfe3f1"
-_DASHES = {"solid": "-", "dash": (0, (5, 2)), "dashdot": (0, (5, 2, 1, 2)), "dot": (0, (1, 1.5))}
 
 
 def advice_figure(advice: Advice) -> bytes:
@@ -46,7 +45,7 @@ def advice_figure(advice: Advice) -> bytes:
 
 
 def _style(style: Style) -> dict[str, Any]:
-    return {"color": style.colour, "linestyle": _DASHES[style.dash], "linewidth": 1.2}
+    return {"color": style.colour, "linestyle": DASHES[style.dash], "linewidth": 1.2}
 
 
 def _tilt(axes: Axes, advice: Advice) -> None:

@@ -5,18 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .ensemble_words import (
-    CONTRASTS,
-    LEGEND,
-    METHODS,
-    OVERTURNING,
-    WORDS,
-    contrast_rows,
-    facts,
-    method_rows,
-    overturning_rows,
-    statements,
-)
+from .ensemble_words import LEGEND, WORDS, facts, statements, tables
 from .paper.provenance import made_by
 
 if TYPE_CHECKING:
@@ -26,6 +15,7 @@ if TYPE_CHECKING:
 def ensemble_document(found: Ensemble) -> str:
     """Return the page as Markdown; its picture is ensemble.svg."""
     headline, *rest = statements(found)
+    (_, headings, rows), *others = tables(found)
     parts = [
         "# Distributions of peak tilt",
         "Once traces have parted, single runs say nothing about each other; distributions over many members "
@@ -34,15 +24,11 @@ def ensemble_document(found: Ensemble) -> str:
         "![Share of the members whose peak tilt is at most that of the axis, by method](ensemble.svg)",
         "Each curve is the share of the members with at most this peak tilt; what it lacks to 1 overturns.",
         "\n".join(f"- {sentence}" for sentence in rest),
-        _table(METHODS, method_rows(found)),
+        _table(headings, rows),
         LEGEND,
     ]
-    for title, headings, rows in (
-        ("Each against each", CONTRASTS, contrast_rows(found)),
-        ("Overturning: members of each two methods", OVERTURNING, overturning_rows(found)),
-    ):
-        if rows:
-            parts += [f"## {title}", _table(headings, rows)]
+    for title, headings, rows in others:
+        parts += [f"## {title}", _table(headings, rows)]
     return "\n\n".join([*parts, made_by(found.about["versions"], found.about.get("command"))]) + "\n"
 
 

@@ -3,24 +3,15 @@
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from .ensemble_chart import MODELS, end_of_axis
-from .palette import model_style, run_styles
+from .palette import DASHES, model_style, run_styles
 
 if TYPE_CHECKING:
     from rockwobble.compare import Ensemble
-
-_DASHES: dict[str, Any] = {
-    "solid": "-",
-    "dash": (0, (5, 2)),
-    "dashdot": (0, (5, 2, 1, 2)),
-    "dot": (0, (1, 1.5)),
-    "longdash": (0, (9, 3)),
-    "longdashdot": (0, (9, 3, 1, 3)),
-}
 
 
 def ensemble_figure(found: Ensemble) -> bytes:
@@ -48,7 +39,7 @@ def ensemble_figure(found: Ensemble) -> bytes:
                 np.append(np.arange(len(standing) + 1), len(standing)) / len(runs),
                 where="post",
                 color=style.colour,
-                linestyle=_DASHES[style.dash],
+                linestyle=DASHES[style.dash],
                 linewidth=1.6,
                 label=method,
             )

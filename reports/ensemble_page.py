@@ -5,18 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from .ensemble_chart import ensemble_chart
-from .ensemble_words import (
-    CONTRASTS,
-    LEGEND,
-    METHODS,
-    OVERTURNING,
-    WORDS,
-    contrast_rows,
-    facts,
-    method_rows,
-    overturning_rows,
-    statements,
-)
+from .ensemble_words import LEGEND, WORDS, facts, statements, tables
 from .paper.provenance import made_by
 from .template import PLOT_CONFIG, render
 
@@ -35,11 +24,7 @@ def ensemble_page(found: Ensemble) -> str:
         facts=facts(found),
         headline=headline,
         sentences=sentences,
-        tables=[
-            ("Methods", METHODS, method_rows(found)),
-            ("Each against each", CONTRASTS, contrast_rows(found)),
-            ("Overturning: members of each two methods", OVERTURNING, overturning_rows(found)),
-        ],
+        tables=tables(found),
         legend=LEGEND,
         words=WORDS,
         made_by=made_by(found.about["versions"], found.about.get("command")).replace("`", ""),

@@ -24,6 +24,16 @@ LEGEND = (
 _MOST_NAMED = 4
 
 
+def tables(found: Ensemble) -> list[tuple[str, tuple[str, ...], list[tuple[str, ...]]]]:
+    """Return title, headings and rows of each table of a page that has rows."""
+    every = [
+        ("Methods", METHODS, method_rows(found)),
+        ("Each against each", CONTRASTS, contrast_rows(found)),
+        ("Overturning: members of each two methods", OVERTURNING, overturning_rows(found)),
+    ]
+    return [table for table in every if table[2]]
+
+
 def method_rows(found: Ensemble) -> list[tuple[str, ...]]:
     """Return the cells of the table of methods, by `METHODS`."""
     return [

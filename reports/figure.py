@@ -11,7 +11,7 @@ from rockwobble.compare import AGREEMENT, make_pair, own_model
 
 from .case_view import CaseView, case_views
 from .charts.tilt import SMALLEST, WINDOW
-from .palette import Style
+from .palette import DASHES, Style
 from .thinning import envelope, kept_samples
 
 if TYPE_CHECKING:
@@ -19,14 +19,6 @@ if TYPE_CHECKING:
 
     from rockwobble.compare import Comparison
 
-_DASHES: dict[str, Any] = {
-    "solid": "-",
-    "dash": (0, (5, 2)),
-    "dashdot": (0, (5, 2, 1, 2)),
-    "dot": (0, (1, 1.5)),
-    "longdash": (0, (9, 3)),
-    "longdashdot": (0, (9, 3, 1, 3)),
-}
 # a picture of some 800 pixels shows no more
 _POINTS = 1200
 
@@ -100,5 +92,5 @@ def _finish(axes: Axes) -> None:
 def _line(axes: Axes, x: Any, y: Any, label: str, style: Style, width: float) -> None:
     keep = kept_samples(y, points=_POINTS)
     axes.plot(
-        x[keep], y[keep], label=label, color=style.colour, linestyle=_DASHES[style.dash], linewidth=width
+        x[keep], y[keep], label=label, color=style.colour, linestyle=DASHES[style.dash], linewidth=width
     )

@@ -26,7 +26,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody, reduced
+from rockwobble.models import Run
 
+from ..execution import run_engine
 from ..process_pool import ProcessPool, WorkerDiedError
 from ..runs import own_model
 from ..traces import make_pair
@@ -202,19 +204,8 @@ def _engine(condition: Condition, engine: str, support: str) -> _Verdict:
     settings: dict[str, Any] = (
         {} if math.isnan(condition.contact) else {"contact_time_constant": condition.contact * step}
     )
-    result = multibody.simulate(
-        case.cylinder,
-        case.motion,
-        initial=case.initial,
-        duration=case.duration,
-        engine=engine,
-        support=support,
-        time_step=None if condition.time_step == 1.0 and not settings else step,
-        friction=case.friction,
-        sample_step=condition.sample_step,
-        gravity=case.gravity,
-        **settings,
-    )
+    run = Run(engine, support, None if condition.time_step == 1.0 and not settings else step, **settings)
+    result = run_engine(case, run, sample_step=condition.sample_step)
     if result.outcome == "failed":
         return _Verdict(verdict="caught" if result.message else "silent", message=result.message)
     model = _solve(condition, own_model(support), 1e-10)

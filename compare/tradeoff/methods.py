@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case
+from rockwobble.models import Case, Run
 
+from ..execution import run_engine
 from ..runs import own_model
 from .problems import FINE_SEATING, Problem
 from .scipy_methods import METHODS, Rates, compiled, plain, scipy_answer
@@ -205,17 +206,8 @@ def _engine(
 
     def solve(case: Case) -> Answer:
         try:
-            trajectory = multibody.simulate(
-                case.cylinder,
-                case.motion,
-                initial=case.initial,
-                duration=case.duration,
-                engine=engine,
-                support=support,
-                time_step=step,
-                sample_step=problem.sample_step,
-                **settings,
-            )
+            run = Run(engine, support, step, **settings)
+            trajectory = run_engine(case, run, sample_step=problem.sample_step)
         except ValueError as refusal:
             return Answer(quantity=np.empty(0), message=f"refused: {refusal}")
         return _answer(problem, trajectory, case)

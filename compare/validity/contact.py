@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from typing import Any
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case
+from rockwobble.models import Case, Run
 
+from ..execution import run_engine
 from .extent import Extent
 from .motions import EL_CENTRO, shaken_case
 from .part import Inputs, Part, Row
@@ -62,16 +63,7 @@ def measure(inputs: Inputs) -> list[Row]:
 
 
 def _engine(case: Case, settings: dict[str, Any]) -> multibody.Trajectory:
-    return multibody.simulate(
-        case.cylinder,
-        case.motion,
-        initial=case.initial,
-        duration=case.duration,
-        engine=ENGINE,
-        support="guided",
-        friction=case.friction,
-        **settings,
-    )
+    return run_engine(case, Run(ENGINE, "guided", **settings))
 
 
 def _frequency(tan_alpha: float) -> float:

@@ -6,8 +6,10 @@ import math
 from collections.abc import Sequence
 
 from rockwobble import multibody, reduced
+from rockwobble.models import Run
 
 from ..ensemble import falls_at_the_end
+from ..execution import run_engine
 from ..runs import SUPPORTS, own_model
 from .extent import Extent
 from .motions import ensemble_names, shaken_case
@@ -39,15 +41,7 @@ def measure(inputs: Inputs) -> list[Row]:
         for model in map(own_model, SUPPORTS)
     }
     for support in SUPPORTS:
-        found[f"engine, {support}"] = multibody.simulate(
-            case.cylinder,
-            case.motion,
-            duration=case.duration,
-            engine=ENGINE,
-            support=support,
-            time_step=inputs["time_step"],
-            friction=case.friction,
-        )
+        found[f"engine, {support}"] = run_engine(case, Run(ENGINE, support, inputs["time_step"]))
     point = {name: inputs[name] for name in ("motion", "level", "tan_alpha", "semidiagonal")}
     rows: list[Row] = []
     for method, run in found.items():

@@ -1,8 +1,5 @@
-// a stretch of time selected in one figure is selected in all figures over time
-(function () {
-  const plots = Array.from(document.querySelectorAll(".plotly-graph-div")).filter(
-    (plot) => plot.layout && plot.layout.xaxis.title.text.startsWith("time")
-  );
+// a stretch of time selected in one of these figures is selected in all of them
+function linkTime(plots) {
   let busy = false;
   plots.forEach((plot) =>
     plot.on("plotly_relayout", (change) => {
@@ -21,4 +18,4 @@
       );
     })
   );
-})();
+}

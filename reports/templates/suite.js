@@ -3,28 +3,6 @@
   const sections = Array.from(document.querySelectorAll("section.case"));
   const chooser = document.getElementById("chooser");
 
-  function link(plots) {
-    // a stretch of time selected in one figure is selected in all figures of the case
-    let busy = false;
-    plots.forEach((plot) =>
-      plot.on("plotly_relayout", (change) => {
-        if (busy) return;
-        const update = {};
-        if ("xaxis.range[0]" in change) {
-          update["xaxis.range"] = [change["xaxis.range[0]"], change["xaxis.range[1]"]];
-        } else if ("xaxis.autorange" in change) {
-          update["xaxis.autorange"] = true;
-        } else {
-          return;
-        }
-        busy = true;
-        Promise.all(plots.filter((other) => other !== plot).map((other) => Plotly.relayout(other, update))).finally(
-          () => { busy = false; }
-        );
-      })
-    );
-  }
-
   function draw(section) {
     const holders = Array.from(section.querySelectorAll("script[data-plot]"));
     const plots = holders.map((holder) => {
@@ -35,7 +13,7 @@
       Plotly.newPlot(plot, spec.data, spec.layout, PLOT_CONFIG);
       return plot;
     });
-    if (plots.length) link(plots);
+    linkTime(plots);
   }
 
   function show(id) {

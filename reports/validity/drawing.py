@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..palette import DASHES
 from ..paper.drawing import drawn, with_grid
 from .picture import LinePicture, MapPanel, MapPicture, Picture, series_styles
 
@@ -18,14 +19,6 @@ _NOTHING = "#d9d9d9"
 _COLUMNS = 2
 _MAP_HEIGHT, _LINE_HEIGHT = 3.0, 3.6  # [inch]
 _MARKS = "osD^vP"
-_DASHES: dict[str, Any] = {
-    "solid": "-",
-    "dash": (0, (5, 2)),
-    "dashdot": (0, (5, 2, 1, 2)),
-    "dot": (0, (1, 1.5)),
-    "longdash": (0, (9, 3)),
-    "longdashdot": (0, (9, 3, 1, 3)),
-}
 # more numbers than these would run into each other
 _MOST_WRITTEN = 64
 # of the scale of colours: above it white letters are read better
@@ -91,7 +84,7 @@ def _lines(figure: Figure, picture: LinePicture) -> None:
             line.y,
             label=line.name,
             color=style.colour,
-            linestyle="none" if line.marks else _DASHES[style.dash],
+            linestyle="none" if line.marks else DASHES[style.dash],
             drawstyle="steps-post" if line.steps else "default",
             marker=None if line.steps else _MARKS[index % len(_MARKS)],
             markersize=5,
