@@ -175,6 +175,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         seating, step_budget = options.seating, options.step_budget
         h_next = first_start
         now, piece, status = 0.0, 0, COMPLETED
+        restart = True  # kept until a step has been made ready, also when an uplift ends at a sample
 
         while now < options.duration and status == COMPLETED:
             begin = now
@@ -183,7 +184,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             length = finish - begin
             elapsed = 0.0
             # the forcing jumps where a record begins or ends, and only there
-            restart = piece == 0 or piece == len(record) - 1
+            restart = restart or piece == 0 or piece == len(record) - 1
 
             while now < finish and status == COMPLETED:
                 if resting:
