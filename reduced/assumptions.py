@@ -3,10 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+# Parts of a step at which the demands are looked at: between two of them they are close to a parabola. A run
+# of a million steps, which is chatter, has fewer.
+_PARTS, _LEAST_PARTS, _MOST_TIMES = 8, 2, 400_000
+_ROUNDS = 5  # each looks eight times closer, so that a parabola is off by 8^-8 of what it was at first
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -19,7 +28,7 @@ class Breach:
     first_time : float
         When it first failed [s].
     duration : float
-        For how long altogether [s].
+        For how long altogether, rest apart [s].
     extreme : float
         Least normal force in weights (contact), or largest friction needed (friction).
     """
@@ -72,29 +81,36 @@ class Assumptions:
         return "the assumptions broke: " + "; ".join(str(breach) for breach in self.breaches)
 
 
+class Demands(NamedTuple):
+    """What a solution asks at n times; standing included, where nothing is asked."""
+
+    normal: Array  # (n,) normal force in weights
+    friction: Array  # (n,) horizontal over normal force; inf where the normal force is not positive
+    couple: Array  # (n,) of the recess, over the weight [m]
+    moving: NDArray[np.bool_]  # (n,)
+
+
 def review(
-    times: NDArray[np.float64],
-    force: NDArray[np.float64],
-    couple: NDArray[np.float64],
-    moving: NDArray[np.bool_],
-    friction: float,
+    demands_at: Callable[[Array], Demands], steps: Array, jumps: Array, friction: float
 ) -> Assumptions:
-    """Hold the forces of a solution against contact and a coefficient of friction.
+    """Hold the demands of a solution against contact and a coefficient of friction.
 
     Parameters
     ----------
-    times : ndarray, shape (n,)
-        Every step of the solution [s].
-    force : ndarray, shape (n, 3)
-        Contact force in weights.
-    couple : ndarray, shape (n,)
-        Of the recess, over the weight [m].
-    moving : ndarray of bool, shape (n,)
-        False where the cylinder stands.
+    demands_at : callable
+        Demands of the continuous solution at increasing times (n,) [s].
+    steps : ndarray, shape (k,)
+        Times between which the demands are smooth, from beginning to end [s]: the steps of the solution.
+    jumps : ndarray, shape (j,)
+        Times at which they jump: uplifts and landings [s]. At such a time the solution is that before it.
     friction : float
         Coefficient of the pair [-].
     """
-    if not moving.any():
+    edges = np.unique(np.concatenate([steps, jumps, np.nextafter(jumps, math.inf)]))
+    parts = max(_LEAST_PARTS, min(_PARTS, _MOST_TIMES // len(edges)))
+    times = np.unique(_divided(edges, parts))
+    found = demands_at(times)
+    if not found.moving.any():
         return Assumptions(
             held=True,
             breaches=(),
@@ -104,35 +120,86 @@ def review(
             largest_couple=0.0,
             friction=friction,
         )
-    normal = force[:, 2]
-    lost = moving & (normal <= 0.0)
-    pressed = moving & (normal > 0.0)
-    needed = np.zeros(len(times))
-    needed[pressed] = np.hypot(force[pressed, 0], force[pressed, 1]) / normal[pressed]
-    needed[lost] = math.inf
-    slips = pressed & (needed > friction)
+
+    def slips(found: Demands) -> NDArray[np.bool_]:
+        # where contact is lost it is that which is said
+        return found.moving & (found.normal > 0.0) & (found.friction > friction)
+
+    def largest(quantity: Callable[[Demands], Array]) -> float:
+        return _largest(quantity, demands_at, times, found)
+
     breaches = []
-    if lost.any():
-        breaches.append(_breach("contact", times, lost, float(normal[lost].min())))
-    if slips.any():
-        breaches.append(_breach("friction", times, slips, float(needed[slips].max())))
+    if _lost(found).any():
+        breaches.append(_breach("contact", _lost, demands_at, times, found, -largest(_pull)))
+    if slips(found).any():
+        breaches.append(_breach("friction", slips, demands_at, times, found, largest(_need)))
     return Assumptions(
         held=not breaches,
         breaches=tuple(breaches),
-        least_normal_force=float(normal[moving].min()),
-        largest_normal_force=float(normal[moving].max()),
-        largest_friction_needed=float(needed.max()),
-        largest_couple=float(np.abs(couple[moving]).max()),
+        least_normal_force=-largest(_pull),
+        largest_normal_force=largest(lambda found: found.normal),
+        largest_friction_needed=largest(_need),
+        largest_couple=largest(lambda found: np.abs(found.couple)),
         friction=friction,
     )
 
 
-def _breach(assumption: str, times: NDArray[np.float64], where: NDArray[np.bool_], extreme: float) -> Breach:
-    # each step stands for the time until the next
-    lengths = np.diff(times, append=times[-1])
+def _pull(found: Demands) -> Array:
+    return -found.normal
+
+
+def _need(found: Demands) -> Array:
+    return found.friction
+
+
+def _lost(found: Demands) -> NDArray[np.bool_]:
+    return found.moving & (found.normal <= 0.0)
+
+
+def _breach(
+    assumption: str,
+    broken_at: Callable[[Demands], NDArray[np.bool_]],
+    demands_at: Callable[[Array], Demands],
+    times: Array,
+    found: Demands,
+    extreme: float,
+) -> Breach:
+    broken = broken_at(found)
+    # the intervals in which a breach begins or ends, divided twice
+    for _ in range(2):
+        changes = np.flatnonzero(broken[1:] != broken[:-1])
+        times = np.unique(np.concatenate([times, *(_divided(times[i : i + 2], _PARTS) for i in changes)]))
+        broken = broken_at(demands_at(times))
     return Breach(
         assumption=assumption,
-        first_time=float(times[where.argmax()]),
-        duration=float(lengths[where].sum()),
+        first_time=float(times[broken.argmax()]),
+        duration=float(np.diff(times)[broken[:-1] & broken[1:]].sum()),
         extreme=extreme,
     )
+
+
+def _largest(
+    quantity: Callable[[Demands], Array],
+    demands_at: Callable[[Array], Demands],
+    times: Array,
+    found: Demands,
+) -> float:
+    """Return the largest value in motion, looked for ever closer about the largest at `times`."""
+    best = -math.inf
+    for _ in range(_ROUNDS):
+        values = np.where(found.moving, quantity(found), -math.inf)
+        at = int(values.argmax())
+        best = max(best, float(values[at]))
+        if math.isinf(best):
+            break
+        about = times[max(at - 1, 0) : at + 2]
+        times = np.unique(_divided(about, _PARTS))
+        found = demands_at(times)
+    return best
+
+
+def _divided(edges: Array, parts: int) -> Array:
+    """Return times (parts (k - 1) + 1,) that divide each interval between `edges` (k,)."""
+    share = np.arange(parts) / parts
+    inner = edges[:-1, None] + np.diff(edges)[:, None] * share
+    return np.append(inner.ravel(), edges[-1])

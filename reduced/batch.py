@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import dataclasses
+import itertools
 import math
 import os
 from collections.abc import Callable
@@ -12,20 +14,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Cylinder, GroundMotion
 
-from .driver import OVERTURNED
-from .problem import SEATING, Problem, make_problem
+from .march import OVERTURNED, March
+from .problem import SEATING, make_problem
 from .simulate import make_ready
 
-# A run through a whole record takes one to three steps a sample. Only a small cylinder that shaking has
-# hardly lifted takes more: it rocks hundreds of times a second, at a ten-thousandth of alpha, for the rest
-# of the record. After so many steps for each sample, for each time 1/p (what rocking at a hundredth of alpha
-# takes, which a coarse record may well cause), or in all, the tilt of the seating rule is raised, and again
-# after each eighth as many more; without the rule a run fails after five times as many.
-_STEPS_PER_SAMPLE = 4
-_STEPS_PER_TIME = 60
-_STEPS_AT_LEAST = 5_000
-_SHARE_TO_GO_ON = 8
-_WITHOUT_RULE = 5
+# Tasks for each thread, so that all end at about the same time. The sizes of one task share the preparation
+# of the scaled motion, which takes as long as a short run.
+_TASKS = 8
 
 
 def peak_tilts(
@@ -46,10 +41,7 @@ def peak_tilts(
     """Return the peak tilt from rest for each size and intensity.
 
     The runs are independent and share the cores as threads: the result has the same bits whatever
-    their number. A fall that nothing later in the record can stop ends its run at once. A run that
-    chatters beyond 4 steps for each sample of the record (60 for each time 1/p, 5000 in all at least)
-    goes on with ten times the seating, and with ten times that after each eighth as many more. Without
-    a seating rule it fails after five times as many. Every other run is that of `simulate`.
+    their number, and each is that of `simulate` under ``motion.scaled(scale)``.
 
     Parameters
     ----------
@@ -65,13 +57,12 @@ def peak_tilts(
     workers : int, optional
         Number of threads; default: that of the cores.
     progress : callable, optional
-        Called with the fraction done, after each size.
+        Called with the fraction done, now and then.
 
     Returns
     -------
     ndarray, shape (n_R, n_scale)
-        Peak tilt [rad]: 0 without uplift, pi/2 if overturned, NaN where the run failed (only with
-        `seating` 0, where the motion can chatter beyond the step budget).
+        Peak tilt [rad]: 0 without uplift, pi/2 if overturned, NaN where the run failed.
 
     Raises
     ------
@@ -86,7 +77,7 @@ def peak_tilts(
     ((1, 2), 0.0)
     """
     sizes, factors = _axis("semidiagonals", semidiagonals), _axis("scales", scales)
-    problems = [
+    bodies = [
         make_problem(
             model,
             Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha),
@@ -104,37 +95,33 @@ def peak_tilts(
     peaks = np.zeros((len(sizes), len(factors)))
     if peaks.size == 0:
         return peaks
-    make_ready("planar" if problems[0].is_planar() else model)
-    with ThreadPoolExecutor(workers or os.cpu_count()) as pool:
-        rows = {pool.submit(_row, problem, factors): i for i, problem in enumerate(problems)}
+    make_ready("planar" if bodies[0].is_planar() else model)
+
+    def run_cells(column: int, rows: slice) -> None:
+        scaled = dataclasses.replace(bodies[0], motion=motion.scaled(float(factors[column])))
+        peaks[rows, column] = [_peak(body.march_scaled(scaled)) for body in bodies[rows]]
+
+    threads = workers or os.cpu_count() or 1
+    parts = min(len(sizes), math.ceil(_TASKS * threads / len(factors)))
+    edges = [len(sizes) * part // parts for part in range(parts + 1)]
+    tasks = [(column, slice(*rows)) for column in range(len(factors)) for rows in itertools.pairwise(edges)]
+    with ThreadPoolExecutor(threads) as pool:
+        running = [pool.submit(run_cells, *task) for task in tasks]
         try:
-            for done, row in enumerate(as_completed(rows), start=1):
-                peaks[rows[row]] = row.result()
+            for done, task in enumerate(as_completed(running), start=1):
+                task.result()
                 if progress is not None:
-                    progress(done / len(rows))
+                    progress(done / len(running))
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
     return peaks
 
 
-def _row(problem: Problem, factors: NDArray[np.float64]) -> list[float]:
-    solve = problem.scaled_solver(*_limits(problem))
-    peaks = []
-    for factor in factors:
-        march = solve(float(factor))
-        peak = march.peak if march.status <= OVERTURNED else math.nan
-        peaks.append(0.5 * math.pi if march.status == OVERTURNED else peak)
-    return peaks
-
-
-def _limits(problem: Problem) -> tuple[int, int]:
-    """Return the steps that a run may take, and by how many they grow when they are used up."""
-    assert problem.motion is not None
-    by_sample = _STEPS_PER_SAMPLE * len(problem.motion.acceleration)
-    by_time = _STEPS_PER_TIME * problem.duration * problem.body.p
-    budget = int(min(max(_STEPS_AT_LEAST, by_sample, by_time), 2**58))
-    return (budget, budget // _SHARE_TO_GO_ON) if problem.seating > 0.0 else (_WITHOUT_RULE * budget, 0)
+def _peak(march: March) -> float:
+    if march.status == OVERTURNED:
+        return 0.5 * math.pi
+    return march.peak if march.status < OVERTURNED else math.nan
 
 
 def _axis(name: str, values: ArrayLike) -> NDArray[np.float64]:

@@ -1,99 +1,53 @@
-"""The march through a record: rest, uplift, motion, turning points, seating, overturning.
+"""Time integration through a record: rest, uplift, motion, turning points, seating, overturning.
 
 One driver serves the three models; they differ in their equations and in the number of variables.
 `systems` says which.
 Every step ends at the next record sample at the latest, because the forcing has a kink there.
+
+A run that ends with more energy than standing on the rim at alpha takes is carried on over still ground
+until it is decided whether the cylinder overturns: free motion returns to the same largest tilt, so its
+next maximum tells.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from math import pi
-from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._compile import borrowed, inlined, jit
+from ._compile import borrowed, jit
 from .body import Body
-from .endings import HALF_PI, may_sit_down, surely_falls
+from .endings import HALF_PI, may_overturn, may_sit_down, surely_falls
+from .march import (
+    COMPLETED,
+    MAXIMUM,
+    MINIMUM,
+    OVER_BUDGET,
+    OVERTURNED,
+    REST,
+    STALLED,
+    Driver,
+    March,
+    Options,
+    as_table,
+    piece_of_record,
+    write,
+)
 from .stepping import Stepper, make_events
 from .systems import System
 from .trigonometry import sin_cos
 from .tsit5 import State, Vector, ground
-from .uplift import START, nearest_branch, start_length, started, uplift_in
+from .uplift import nearest_branch, start_length, started, uplift_in
 
-REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a march ends
-MAXIMUM, MINIMUM = 1.0, -1.0
-MOST_SEATING = 0.1  # tilt of the seating rule over alpha
 _LEAST_STEP = 1e-200  # a step that must be shorter fails whatever its length [s]
-
-
-class Options(NamedTuple):
-    """What steers a march."""
-
-    rtol: float  # tolerance of one step, relative
-    seating: float  # tilt of the seating rule over alpha; 0 leaves the rule out
-    restitution: float  # of the tilt rate where the base meets the ground in planar motion
-    duration: float  # [s]
-    step_budget: int
-    relief: int  # steps by which the budget grows when it is used up, and the seating tenfold; 0: the end
-    record_steps: bool
-
-
-class March(NamedTuple):
-    """What a march returns; `size` is the number of variables of the model."""
-
-    status: int
-    end: float  # time reached [s]
-    peak: float  # largest tilt [rad]
-    uplift_time: float  # first uplift, or 0 for a release [s]; NaN if there is none
-    uplift_direction: float  # rolling angle there [rad]
-    samples: NDArray[np.float64]  # (n, size) state at the times asked for
-    moving: NDArray[np.bool_]  # (n,) False where the cylinder stands
-    reached: int  # how many samples were reached
-    final: NDArray[np.float64]  # (size,) state at the end
-    extrema: NDArray[np.float64]  # (k, 4) time, tilt, rolling angle, MAXIMUM or MINIMUM
-    steps: NDArray[np.float64]  # (j, 1 + size) time and state after each step, if recorded
-    step_count: int
-
-
-Driver = Callable[..., March]
-
-
-# Loops instead of slice assignment: that carries shape checks with formatted messages, which double
-# the time to compile.
-@jit
-def write(source: State, target: NDArray[np.float64]) -> None:
-    """Copy a tuple to an array of its length."""
-    for i in range(len(source)):
-        target[i] = source[i]
-
-
-@jit
-def as_table(rows: Any, width: int) -> NDArray[np.float64]:
-    """Return a list of tuples as an array (n, width)."""
-    table = np.empty((len(rows), width))
-    for i in range(len(rows)):
-        write(rows[i], table[i])
-    return table
-
-
-@inlined
-def piece_of_record(
-    record: NDArray[np.float64], scale: float, time_step: float, index: int
-) -> tuple[Vector, Vector, float]:
-    """Return the acceleration at sample `index`, its rate from there on, and where that ends [s]."""
-    if index >= len(record) - 1:  # the ground is still after the record
-        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), np.inf
-    end = index + 1
-    a = (scale * record[index, 0], scale * record[index, 1], scale * record[index, 2])
-    slope = (
-        (scale * record[end, 0] - a[0]) / time_step,
-        (scale * record[end, 1] - a[1]) / time_step,
-        (scale * record[end, 2] - a[2]) / time_step,
-    )
-    return a, slope, end * time_step
+_FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
+_RETRY = 1.0 / 32.0  # of a step that went wrong; the next may be four times as long
+_HAIR = 1e-6  # of 1/p; an uplift so near to the next sample leaves no more than its square
+# of 1/p; what leaves the balance, or unstable steady wobble, grows by exp(p t): in this time all motion turns
+# or falls but what is nearer to them than 3e-7, which nobody could tell from resting there
+_UNDECIDED = 15.0
 
 
 @jit
@@ -118,9 +72,11 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         return bool(L == 0.0 and S == 0.0)
 
     @jit
-    def lifted(body: Body, a: Vector, slope: Vector, at: float, time: float, last: State) -> State:
+    def lifted(
+        body: Body, time_step: float, a: Vector, slope: Vector, at: float, time: float, last: State
+    ) -> State:
         """Return the state `time` after an uplift; `last` is the state in which it stood."""
-        theta, omega, angle, rate = started(body, a, slope, at, time)
+        theta, omega, angle, rate = started(body, time_step, a, slope, at, time)
         return placed(last, theta, omega, nearest_branch(angle, last[2]), spin_momentum(body, theta, rate))
 
     @jit
@@ -128,7 +84,6 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         body: Body,
         options: Options,
         record: NDArray[np.float64],
-        scale: float,
         time_step: float,
         initial: State,
         times: NDArray[np.float64],
@@ -142,8 +97,6 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         options : Options
         record : ndarray, shape (m, 3)
             Samples of the ground acceleration [m/s^2]; m = 0 for still ground.
-        scale : float
-            Factor on them.
         time_step : float
             Their spacing [s].
         initial : tuple of float
@@ -151,8 +104,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         times : ndarray, shape (n,)
             Increasing times at which the state is wanted [s]; they do not influence the steps.
         later : ndarray, shape (m, 2)
-            From each sample on, the largest |a| and the least az of `record`, by which a fall that
-            nothing can stop ends the march early; m = 0 marches on until the side is down.
+            From each sample on, the largest |a| and the least az of `record` [m/s^2], by which a fall that
+            nothing can stop ends the integration early; m = 0 goes on until the side is down.
         """
         size = len(initial)
         y, k = initial, initial
@@ -161,52 +114,63 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         samples, moving = np.zeros((len(times), size)), np.zeros(len(times), dtype=np.bool_)
         sample = 0
         # lists, typed by a row and emptied: a growing array would have its references counted in each step
-        extrema, steps = [(0.0, 0.0, 0.0, 0.0)], [(0.0, *initial)]
+        extrema, rests, steps = [(0.0, 0.0, 0.0, 0.0)], [(0.0, 0.0)], [(0.0, *initial)]
         extrema.clear()
+        rests.clear()
         steps.clear()
         step_count = 0
-        first_start = START / body.p
 
         resting = y[0] == 0.0
         uplift_time, uplift_direction = np.nan, np.nan
         if not resting:
             uplift_time, uplift_direction = 0.0, y[2]
         peak = y[0]
-        seating, step_budget = options.seating, options.step_budget
-        h_next = first_start
+        h_next = _FIRST_STEP / body.p
         now, piece, status = 0.0, 0, COMPLETED
         restart = True  # kept until a step has been made ready, also when an uplift ends at a sample
+        end, deciding, decided = options.duration, False, False
+        y_end, peak_end, kept = y, peak, (0, 0, 0)  # what stood when the duration was over
 
-        while now < options.duration and status == COMPLETED:
+        while status == COMPLETED and not decided:
+            if now >= end:
+                if deciding or resting or not may_overturn(body, y[0], y[1], *momenta(y)):
+                    break
+                deciding, end = True, now + _UNDECIDED / body.p
+                y_end, peak_end, kept = y, peak, (len(extrema), len(rests), len(steps))
+                piece, restart = len(record), True
             begin = now
-            a, slope, finish = piece_of_record(record, scale, time_step, piece)
-            finish = min(finish, options.duration)
+            a, slope, finish = piece_of_record(record, time_step, piece)
+            finish = min(finish, end)
             length = finish - begin
             elapsed = 0.0
             # the forcing jumps where a record begins or ends, and only there
             restart = restart or piece == 0 or piece == len(record) - 1
 
-            while now < finish and status == COMPLETED:
+            while now < finish and status == COMPLETED and not decided:
                 if resting:
                     wait = uplift_in(body, ground(a, slope, elapsed), slope, length - elapsed)
                     lift = elapsed + wait
                     # one within a hair of the next sample is taken up there, already above the threshold
-                    stays = wait < 0.0 or length - lift < 1e-3 * first_start
+                    stays = wait < 0.0 or length - lift < _HAIR / body.p
                     now = finish if stays else begin + lift
                     while sample < len(times) and times[sample] <= now:
                         write(y, samples[sample])
                         sample += 1
                     if stays:
                         break
-                    series = min(start_length(body, a, slope, lift), length - lift)
-                    y_new = lifted(body, a, slope, lift, series, y)
+                    series = min(start_length(body, options.rtol, a, slope, lift), length - lift)
+                    y_new = lifted(body, time_step, a, slope, lift, series, y)
                     elapsed = lift + series
                     if y_new[0] <= 0.0:  # touched the threshold and fell back
                         continue
                     if np.isnan(uplift_time):
-                        uplift_time, uplift_direction = now, lifted(body, a, slope, lift, 0.0, y)[2]
+                        uplift_time = now
+                        uplift_direction = lifted(body, time_step, a, slope, lift, 0.0, y)[2]
+                    if len(rests) > 0:
+                        rests[-1] = (rests[-1][0], now)
                     while sample < len(times) and times[sample] <= begin + elapsed:
-                        write(lifted(body, a, slope, lift, times[sample] - now, y), samples[sample])
+                        y_at = lifted(body, time_step, a, slope, lift, times[sample] - now, y)
+                        write(y_at, samples[sample])
                         moving[sample] = True
                         sample += 1
                     y = y_new
@@ -228,11 +192,9 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     body, options.rtol, y, k, work, h_next, length - elapsed, a_now, slope
                 )
                 step_count += trials
-                if step_count > step_budget:
-                    if options.relief == 0 or seating >= MOST_SEATING:
-                        status = OVER_BUDGET
-                        break
-                    seating, step_budget = min(10.0 * seating, MOST_SEATING), step_budget + options.relief
+                if step_count > options.step_budget:
+                    status = OVER_BUDGET
+                    break
                 if h == 0.0:
                     if h_next < _LEAST_STEP:
                         status = STALLED
@@ -243,15 +205,17 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                 turn = turned_tilt = turned_angle = 0.0
                 if turns:
                     turn, turned_tilt, turned_angle = turning_point(body, work, path, y, h, y_new[1])
-                    peak = max(peak, turned_tilt)
                 # with spin the tilt stays positive; without it the base meets the ground
-                lands = is_flat(y) and (y_new[0] <= 0.0 or (turns and turned_tilt <= 0.0))
+                flat = is_flat(y) and is_flat(y_new)
+                lands = flat and (y_new[0] <= 0.0 or (turns and turned_tilt <= 0.0))
+                if turns and not flat and turned_tilt <= 0.0:  # it jumped the barrier and came back
+                    h_next, restart = _RETRY * h, True
+                    continue
                 falls = y_new[0] >= HALF_PI
-                if len(later) > 0 and y_new[0] > body.alpha and y_new[1] >= 0.0:
-                    strongest, lightest = scale * later[piece, 0], body.g + scale * later[piece, 1]
-                    if surely_falls(body, y_new[0], strongest, lightest, options.duration - now - h):
-                        peak, status = HALF_PI, OVERTURNED
-                        break
+                outward = piece < len(later) and y_new[0] > body.alpha and y_new[1] >= 0.0
+                if outward and surely_falls(body, y_new[0], later[piece, 0], body.g + later[piece, 1]):
+                    peak, status = HALF_PI, OVERTURNED
+                    break
                 if lands or falls:
                     level = HALF_PI if falls else 0.0
                     # a hop within one step lands after its highest point, a dip before its lowest
@@ -274,6 +238,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                 if turns:
                     kind = MAXIMUM if y[1] > 0.0 else MINIMUM
                     extrema.append((now + turn, turned_tilt, turned_angle, kind))
+                    peak = max(peak, turned_tilt)
+                    decided = deciding and kind == MAXIMUM
 
                 y = y_new
                 elapsed = length if whole else elapsed + h
@@ -291,12 +257,17 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                 if options.seating > 0.0 and not falls:
                     L, S = momenta(y)
                     a_now = ground(a, slope, elapsed)
-                    if may_sit_down(body, seating, y[0], y[1], L, S, a_now):
+                    if may_sit_down(body, options.seating, y[0], y[1], L, S, a_now):
                         resting = True
+                        rests.append((now, np.nan))
                         y = placed(y, 0.0, 0.0, y[2], 0.0)
             piece += 1
 
-        if status == COMPLETED and resting:
+        if deciding and status == COMPLETED:
+            y, peak, now = y_end, peak_end, options.duration
+        else:
+            kept = (len(extrema), len(rests), len(steps))
+        if status == COMPLETED and resting and not deciding:
             status = REST
         final = np.empty(size)
         write(y, final)
@@ -311,8 +282,9 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             moving,
             sample,
             final,
-            as_table(extrema, 4),
-            as_table(steps, 1 + size),
+            as_table(extrema, kept[0], 4),
+            as_table(rests, kept[1], 2),
+            as_table(steps, kept[2], 1 + size),
             step_count,
         )
 

@@ -31,6 +31,18 @@ from ._compile import jit
 from .body import Body
 from .trigonometry import sin_cos
 
+_PLANE = 1e-13  # a few hundred roundings: what a rotation of a record leaves across its plane
+
+
+@jit
+def in_plane_below(body: Body, ax: float, ay: float) -> float:
+    """Return the acceleration across a plane [m/s^2] that cannot be told from none.
+
+    Motion without spin in the plane of the ground acceleration stays there. Rounding across it would
+    choose on which side such motion passes the upright position.
+    """
+    return _PLANE * (abs(ax) + abs(ay) + body.g * (body.sin_alpha / body.cos_alpha))
+
 
 @jit
 def planar_rhs(body: Body, theta: float, direction: float, a: float, az: float) -> float:
@@ -60,6 +72,8 @@ def recess_rhs(
     sin_phi, cos_phi = sin_cos(phi)
     a_r = ax * cos_phi + ay * sin_phi
     a_t = ay * cos_phi - ax * sin_phi
+    if L == 0.0 and abs(a_t) <= in_plane_below(body, ax, ay):
+        a_t = 0.0
     restoring = (body.g + az) * (body.sin_alpha * c - body.cos_alpha * s)
     inertial = (body.cos_alpha * c + body.sin_alpha * s) * a_r
     # the two constants wait for nothing, so they are ready when the rest is
@@ -98,6 +112,8 @@ def rolling_rhs(
     sin_phi, cos_phi = sin_cos(phi)
     a_r = ax * cos_phi + ay * sin_phi
     a_t = ay * cos_phi - ax * sin_phi
+    if Lambda == 0.0 and S == 0.0 and abs(a_t) <= in_plane_below(body, ax, ay):
+        a_t = 0.0
 
     tau_rate = S / M
     L_over_B = Lambda / (s * s * H) if Lambda != 0.0 else 0.0
@@ -112,7 +128,9 @@ def rolling_rhs(
     inertial = (b * s + h * c) * a_r
     theta_acceleration = (centrifugal + twisting - restoring - inertial) / body.A
     Lambda_rate = -b * (b * s + h * c) * omega * tau_rate - s * (h + b * t) * a_t
-    S_rate = twist_coupling(body, t, H) * omega * Lambda + (b * body.I1 - h * body.I2 * t) / H * a_t
+    # without spin the coupling is none, also at theta = 0 where its coefficient is infinite
+    coupling = twist_coupling(body, t, H) * omega * Lambda if Lambda != 0.0 else 0.0
+    S_rate = coupling + (b * body.I1 - h * body.I2 * t) / H * a_t
     return omega, theta_acceleration, L_over_B + roll_ratio * tau_rate, Lambda_rate, tau_rate, S_rate
 
 

@@ -9,7 +9,8 @@ from rockwobble.models import Cylinder
 
 from ._compile import kernel
 from .body import Body, body_of
-from .driver import March, Options, make_driver
+from .driver import make_driver
+from .march import March, Options
 from .stepping import runge_kutta, taylor_series
 from .systems import PLANAR, RECESS, ROLLING, planar_combine, planar_ratio, rolling_combine, rolling_ratio
 from .tsit5 import State
@@ -24,14 +25,13 @@ def march_planar(
     body: Body,
     options: Options,
     record: NDArray[np.float64],
-    scale: float,
     time_step: float,
     initial: State,
     times: NDArray[np.float64],
     later: NDArray[np.float64],
 ) -> March:
     """Solve the planar model; see `driver.make_driver`."""
-    return _march_planar(body, options, record, scale, time_step, initial, times, later)
+    return _march_planar(body, options, record, time_step, initial, times, later)
 
 
 @kernel
@@ -39,14 +39,13 @@ def march_recess(
     body: Body,
     options: Options,
     record: NDArray[np.float64],
-    scale: float,
     time_step: float,
     initial: State,
     times: NDArray[np.float64],
     later: NDArray[np.float64],
 ) -> March:
     """Solve the recess model; see `driver.make_driver`."""
-    return _march_recess(body, options, record, scale, time_step, initial, times, later)
+    return _march_recess(body, options, record, time_step, initial, times, later)
 
 
 @kernel
@@ -54,14 +53,13 @@ def march_rolling(
     body: Body,
     options: Options,
     record: NDArray[np.float64],
-    scale: float,
     time_step: float,
     initial: State,
     times: NDArray[np.float64],
     later: NDArray[np.float64],
 ) -> March:
     """Solve the rolling model; see `driver.make_driver`."""
-    return _march_rolling(body, options, record, scale, time_step, initial, times, later)
+    return _march_rolling(body, options, record, time_step, initial, times, later)
 
 
 MARCHES = {"planar": march_planar, "recess": march_recess, "rolling": march_rolling}
@@ -71,6 +69,6 @@ SIZES = {"planar": 3, "recess": 4, "rolling": 8}  # variables of a state
 def load(model: str) -> None:
     """Load or compile the march of `model`, by running it on a cylinder at rest for a moment."""
     body = body_of(Cylinder(semidiagonal=1.0, tan_alpha=0.2), 9.81)
-    options = Options(1e-6, 0.0, 1.0, 1.0, 1, 0, False)
+    options = Options(1e-6, 0.0, 1.0, 1.0, 1, False)
     start = (0.0,) * SIZES[model]
-    MARCHES[model](body, options, np.zeros((0, 3)), 1.0, 1.0, start, np.zeros(1), np.zeros((0, 2)))
+    MARCHES[model](body, options, np.zeros((0, 3)), 1.0, start, np.zeros(1), np.zeros((0, 2)))

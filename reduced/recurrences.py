@@ -28,6 +28,7 @@ from numpy.typing import NDArray
 
 from ._compile import inlined
 from .body import Body
+from .equations import in_plane_below
 from .series import (
     ACROSS,
     ANGLE,
@@ -141,7 +142,14 @@ def expand(
     D0 = body.h * s0 + body.b * v0
     r0, t0 = ax * cos0 + ay * sin0, ay * cos0 - ax * sin0
     # without spin, now and later, the motion is planar and may reach theta = 0, where L/B is 0/0
-    flat = L == 0.0 and t0 == 0.0 and day * cos0 == dax * sin0
+    flat = False
+    if L == 0.0:
+        least = in_plane_below(body, ax, ay)
+        flat = abs(t0) <= least and abs(day * cos0 - dax * sin0) <= least
+    if flat:  # in the axes of its plane nothing across it is left to rounding
+        ax, ay, t0 = r0, 0.0, 0.0
+        dax, day = dax * cos0 + day * sin0, 0.0
+        cos0, sin0 = 1.0, 0.0
     per_B = 0.0 if flat else 1.0 / (J * s0 * s0 + 2.0 * E * sv + C * vv)
     w0 = L * per_B
     ww0 = w0 * w0
@@ -193,6 +201,8 @@ def expand(
         order, before = order + 1, last
         sums, newest, last = extend(body, zero, sums, newest, h, order, c)
     c[TRIG], c[TRIG + 1], c[TRIG + 2], c[TRIG + 3] = sums.s, sums.v, sums.cos, sums.sin
+    if flat:
+        c[STEPS_LEFT] = 0.0  # these count from the plane
     return order, last, before, (sums.tilt, sums.rate, sums.angle, sums.momentum)
 
 

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from rockwobble.models import Cylinder
 
 from . import forces
-from .assumptions import Assumptions, review
-from .driver import MAXIMUM, MINIMUM
+from .assumptions import Assumptions, Demands, review
+from .march import MAXIMUM, MINIMUM
 from .problem import Problem, ground_at
 
 if TYPE_CHECKING:
@@ -61,6 +61,8 @@ class Response:
         First uplift [s]; 0 for a release, NaN if there is none.
     uplift_direction : float
         Rolling angle there [rad].
+    rests : ndarray, shape (r, 2)
+        When the cylinder came to rest after it had moved, and when it uplifted again; NaN if it did not [s].
     model : str
     cylinder : Cylinder
     gravity : float
@@ -91,6 +93,7 @@ class Response:
     twist_momentum: Array  # S (n,) [m^2/s]
     roll_out: Array  # centre of the circle that the rim rolls on, relative to O (n, 2) [m]
     extrema: Array  # (k, 4): time, tilt, rolling angle, MAXIMUM or MINIMUM
+    rests: Array
 
     @property
     def model(self) -> str:
@@ -166,34 +169,40 @@ class Response:
 
         Columns: time [s] of the minimum, minimum_tilt [rad], angle_of_turn [rad], the change of
         rolling angle from maximum to maximum. Turning points closer than the tolerance of the
-        solution, as in steady wobble, are not told apart and make no pass.
+        solution, as in steady wobble, are not told apart and make no pass, and neither does a rest.
         """
         import pandas as pd
 
         rows = self.extrema
         kinds = rows[:, 3]
+        motion = np.searchsorted(self.rests[:, 0], rows[:, 0])  # number of rests before
         found = [
             (rows[i, 0], rows[i, 1], rows[i + 1, 2] - rows[i - 1, 2])
             for i in range(1, len(rows) - 1)
             if kinds[i] == MINIMUM
             and kinds[i - 1] == kinds[i + 1] == MAXIMUM
+            and motion[i - 1] == motion[i + 1]
             and min(rows[i - 1, 1], rows[i + 1, 1]) > rows[i, 1] * (1.0 + 100.0 * self.problem.rtol)
         ]
         return pd.DataFrame(found, columns=["time", "minimum_tilt", "angle_of_turn"], dtype=float)
 
     @cached_property
     def assumptions(self) -> Assumptions:
-        """Whether contact and friction held, from every step of the solution; solved again for it."""
-        march, azimuth = self.problem.solve(np.empty(0), record_steps=True)
-        times, states = march.steps[:, 0], six_columns(march.steps[:, 1:], azimuth)
-        derived = self._derive(times, states)
-        return review(
-            times,
-            derived[:, forces.FORCE_X : forces.FORCE_Z + 1],
-            derived[:, forces.COUPLE],
-            states[:, 0] > 0.0,
-            self.friction,
-        )
+        """Whether contact and friction held, from the extrema of the continuous solution; solved again."""
+        march, _ = self.problem.solve(np.empty(0), record_steps=True)
+        steps = np.concatenate([[0.0], march.steps[:, 0], self.rests[:, 0], [march.end]])
+        landings = self.extrema[self.extrema[:, 1] == 0.0, 0]
+        jumps = np.concatenate([[self.uplift_time], self.rests[:, 1], landings])
+        jumps = jumps[np.isfinite(jumps) & (jumps > 0.0)]
+        return review(self._demands_at, np.unique(steps), jumps, self.friction)
+
+    def _demands_at(self, times: Array) -> Demands:
+        march, azimuth = self.problem.solve(times)
+        reached = march.reached
+        states = six_columns(march.samples[:reached], azimuth)
+        derived = self._derive(times[:reached], states)
+        force = derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
+        return Demands(force[:, 2], friction_of(force), derived[:, forces.COUPLE], march.moving[:reached])
 
     def to_frame(self) -> pd.DataFrame:
         """Return the samples as a table, one column for each component, SI units and radians."""
@@ -234,7 +243,7 @@ class Response:
         return forces.derived_quantities(
             self.problem.body,
             np.ascontiguousarray(states),
-            ground_at(self.problem.motion, times),
+            ground_at(self.problem.motion, self.problem.duration, times),
             self.model == "rolling",
         )
 

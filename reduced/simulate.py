@@ -13,7 +13,7 @@ from rockwobble.models import Cylinder, GroundMotion, InitialState
 
 from . import kernels
 from ._compile import in_memory, on_disk
-from .driver import COMPLETED, OVER_BUDGET, OVERTURNED, REST, March
+from .march import COMPLETED, OVER_BUDGET, OVERTURNED, REST, March
 from .problem import SEATING, Problem, make_problem
 from .response import Response
 
@@ -105,6 +105,9 @@ def simulate(
     times = sample_times(problem.duration, sample_step)
     started = time.perf_counter()
     march, azimuth = problem.solve(times)
+    if march.end > problem.duration:  # it overturns later
+        times = sample_times(march.end, sample_step)
+        march, azimuth = problem.solve(times)
     wall_time = time.perf_counter() - started
     return _response(problem, march, azimuth, times, friction, wall_time)
 
@@ -171,16 +174,33 @@ def _response(
         twist_momentum=twist_momentum,
         roll_out=states[:, 6:8] if states.shape[1] == 8 else np.zeros((len(states), 2)),
         extrema=extrema,
+        rests=march.rests,
     )
 
 
 def _message(problem: Problem, march: March) -> str:
+    remarks = [_ending(problem, march)]
+    count = len(march.rests) - (march.status == REST)
+    if count > 0:
+        times = "once" if count == 1 else f"{count} times"
+        remarks.append(f"came to rest {times} in between, first at {march.rests[0, 0]:.4g} s")
+    straight = march.extrema[march.extrema[:, 1] == 0.0]
+    if len(straight) and not problem.is_planar():
+        remarks.append(
+            f"passed straight through the upright position, first at {straight[0, 0]:.4g} s: the ground had "
+            "moved in one plane, and the side of such a pass is undetermined"
+        )
+    return "; ".join(remarks)
+
+
+def _ending(problem: Problem, march: March) -> str:
     if march.status == OVERTURNED:
-        return f"overturned: the side reached the ground at {march.end:.4g} s"
+        after = ", after the end of the run, on still ground" if march.end > problem.duration else ""
+        return f"overturned: the side reached the ground at {march.end:.4g} s{after}"
     if march.status == OVER_BUDGET:
         return (
-            f"the step budget of {march.step_count - 1} steps was used up at {march.end:.4g} s: "
-            f"the motion chatters near the apex (a seating above {problem.seating:g} would end it)"
+            f"the step budget of {march.step_count - 1} steps was used up at {march.end:.4g} s: the motion "
+            f"chatters near the upright position (a seating above {problem.seating:g} would end it)"
         )
     if march.status not in _OUTCOMES:
         return f"no step met the tolerance of {problem.rtol:g} at {march.end:.4g} s"

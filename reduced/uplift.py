@@ -15,12 +15,14 @@ import numpy as np
 
 from ._compile import jit
 from .body import Body
+from .equations import in_plane_below
 from .tsit5 import Vector, ground
 
-# The series is left at p t = START. The solution oscillates there about the direction of the
-# inertia force, ever faster towards t = 0, so an earlier start costs steps (about 1/sqrt(START))
-# and a later one digits: the terms left out are below START^3 relative to those kept.
-START = 1e-3
+# The series is left at the share x of the shortest time scale there: 1/p, and the time in which the
+# ground acceleration turns or changes by its own size. The terms left out are below x^3 relative to
+# those kept, so x^3 is the tolerance. The solution oscillates there about the direction of the inertia
+# force, ever faster towards t = 0, so an earlier start costs steps, about 1/sqrt(x).
+_LATEST_START = 5e-3
 # Where the very first sample is already over the threshold the oscillation is only logarithmic in
 # t, and a start this much earlier is free.
 STEP_START = 1e-6
@@ -76,6 +78,7 @@ def nearest_branch(angle: float, last: float) -> float:
 @jit
 def started(
     body: Body,
+    time_step: float,
     a: Vector,
     slope: Vector,
     at: float,
@@ -86,6 +89,8 @@ def started(
     Parameters
     ----------
     body : Body
+    time_step : float
+        Spacing of the samples [s], over which what the ground turns by less than a rounding is none.
     a, slope : tuple of 3 floats
         Acceleration at the last sample and its rate.
     at : float
@@ -110,6 +115,8 @@ def started(
     size = max(hypot(ax, ay), WEAK * body.g)
     along = (ax * slope[0] + ay * slope[1]) / size  # d|a|/dt
     cross = ax * slope[1] - ay * slope[0]  # |a|^2 times the turning rate, constant in a sample
+    if abs(cross) * time_step <= in_plane_below(body, ax, ay) * size:
+        cross = 0.0
     turning = cross / (size * size)
     factor = body.p2 * body.cos_alpha / body.g
     tan_alpha = body.sin_alpha / body.cos_alpha
@@ -127,7 +134,7 @@ def started(
     direction = atan2(-by, -bx)
     now = max(hypot(bx, by), WEAK * body.g)
     W = cross / (now * now)
-    if starts_as_step(body, F0, F1):
+    if starts_as_step(F0, F1, shortest_time(body, a, slope, at)):
         rate = W / (1.0 + 2.0 * body.J * F0 / (body.h * size))
         return theta, theta_1, direction - (W - rate) * t, rate
     W_1 = -2.0 * W * (bx * slope[0] + by * slope[1]) / (now * now)
@@ -139,19 +146,28 @@ def started(
 
 
 @jit
-def starts_as_step(body: Body, F0: float, F1: float) -> bool:
-    """Return whether the jump F0 of theta'' [rad/s^2] outweighs its rise F1 t where the series ends."""
-    return abs(F1) * 1e-3 * START / body.p < F0
+def shortest_time(body: Body, a: Vector, slope: Vector, at: float) -> float:
+    """Return the time [s] in which motion or ground acceleration change by their own size at an uplift."""
+    ax, ay, _ = ground(a, slope, at)
+    change = hypot(slope[0], slope[1]) / max(hypot(ax, ay), WEAK * body.g)
+    return 1.0 / max(body.p, change)
 
 
 @jit
-def start_length(body: Body, a: Vector, slope: Vector, at: float) -> float:
+def starts_as_step(F0: float, F1: float, unit: float) -> bool:
+    """Return whether the jump F0 of theta'' [rad/s^2] outweighs its rise F1 t at the first of times."""
+    return abs(F1) * STEP_START * unit < F0
+
+
+@jit
+def start_length(body: Body, rtol: float, a: Vector, slope: Vector, at: float) -> float:
     """Return for how long after uplift [s] the series is used."""
     ax, ay, az = ground(a, slope, at)
     factor = body.p2 * body.cos_alpha / body.g
     F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
     along = (ax * slope[0] + ay * slope[1]) / max(hypot(ax, ay), WEAK * body.g)
     F1 = factor * (along - slope[2] * (body.sin_alpha / body.cos_alpha))
-    if not starts_as_step(body, F0, F1):
-        return START / body.p
-    return min(STEP_START / body.p, 1e-3 * F0 / abs(F1)) if F1 != 0.0 else STEP_START / body.p
+    unit = shortest_time(body, a, slope, at)
+    if not starts_as_step(F0, F1, unit):
+        return min(rtol ** (1.0 / 3.0), _LATEST_START) * unit
+    return min(STEP_START * unit, 1e-3 * F0 / abs(F1)) if F1 != 0.0 else STEP_START * unit
