@@ -169,5 +169,5 @@ def start_length(body: Body, rtol: float, a: Vector, slope: Vector, at: float) -
     F1 = factor * (along - slope[2] * (body.sin_alpha / body.cos_alpha))
     unit = shortest_time(body, a, slope, at)
     if not starts_as_step(F0, F1, unit):
-        return min(rtol ** (1.0 / 3.0), _LATEST_START) * unit
+        return unit * min(float(rtol ** (1.0 / 3.0)), _LATEST_START)
     return min(STEP_START * unit, 1e-3 * F0 / abs(F1)) if F1 != 0.0 else STEP_START * unit
