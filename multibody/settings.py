@@ -46,7 +46,7 @@ class MujocoSettings:
         Euler. At the cost of its step of 1e-4 s the error under El Centro (guided, relative RMS) is 2.0e-4
         by Euler, 2.5e-4 by implicitfast, 2.3e-4 by implicit, 3.0e-4 by RK4, whose step takes 3.2 times as
         long, and 3.9e-3 by "discrete"; that of a release 5e-6, 3e-5, 4e-5, 5e-4 and 0.5 alpha: "discrete"
-        damps the guide, and is sound on open ground. `python -m rockwobble.compare.engine_settings` prints
+        damps the guide, and is sound on open ground. `python tests/benchmarks engine_settings` prints
         them all.
     cone : str
         The elliptic cone is Coulomb's; the friction damping above exists for it only.

@@ -6,7 +6,7 @@ Two methods take the steps. The recess model, of which millions of runs are aske
 only: the four more variables of the rolling model would take as many products of series again, for
 single runs that take a millisecond, and planar motion has no spin whose passes take most steps.
 
-What that brought was measured on ten seconds of El Centro (`rockwobble.compare.speed`) at an error of
+What that brought was measured on ten seconds of El Centro (`python tests/benchmarks speed`) at an error of
 1e-7 alpha, where LSODA takes more than a thousand times as long as a whole run (396 with a Runge-Kutta
 pair). Taylor series take 1108 steps instead of 1744, 0.21 ms instead of 0.52 ms: one for each of the 1000
 samples and a hundred more in the passes, of a cost that the tolerance sets (order 5 to 16). Of that

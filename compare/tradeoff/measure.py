@@ -73,7 +73,7 @@ def measure_tradeoff(*, quick: bool = False, command: str = "", tell: Tell | Non
     """
     import pandas as pd
 
-    from ..scene_cost import scene_costs
+    from .scene_cost import scene_costs
 
     say = tell or (lambda stage, fraction: None)
     say(STAGES[0], 0.0)

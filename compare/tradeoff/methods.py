@@ -16,7 +16,8 @@ from rockwobble.models import Case, Run
 from ..execution import run_engine
 from ..runs import own_model
 from .problems import FINE_SEATING, Problem
-from .scipy_methods import METHODS, Rates, compiled, plain, scipy_answer
+from .scipy_equations import SOLVERS
+from .scipy_methods import Rates, compiled, plain, scipy_answer
 
 Array = NDArray[np.float64]
 
@@ -152,7 +153,7 @@ def _scipy(problem: Problem, quick: bool) -> list[Method]:
                 value=rtol,
                 solve=scipy_answer(problem, name, rates, rtol),
             )
-            for name in METHODS
+            for name in SOLVERS
             for rtol in tolerances
         ]
     return found

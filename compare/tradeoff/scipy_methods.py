@@ -17,20 +17,16 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion
 
-from ..speed import Method as Name
-from ..speed import Problem as Start
-from ..speed import compiled_rates, python_rates
 from .problems import TIGHT, Problem
+from .scipy_equations import TOLERANCE_SCALE, InitialValueProblem, SolverName, compiled_rates, python_rates
 
 if TYPE_CHECKING:
     from .methods import Answer
 
 Array = NDArray[np.float64]
-METHODS: tuple[Name, ...] = ("RK45", "DOP853", "LSODA")
 
 _AFTER_UPLIFT = 2e-3  # [s]
 _INSTANT = 1e-9  # of motion, for the momentum of a release [s]
-_SCALE = np.array([1e-3, 1e-3, 1.0, 1e-3])  # of tilts, rates, angles and momenta
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -38,7 +34,7 @@ class Rates:
     """The right-hand side of a case and where it starts."""
 
     function: Any
-    start: Start
+    start: InitialValueProblem
 
 
 def plain(case: Case) -> Rates:
@@ -53,7 +49,7 @@ def compiled(case: Case) -> Rates:
     return Rates(function=compiled_rates(start), start=start)
 
 
-def _start(case: Case) -> Start:
+def _start(case: Case) -> InitialValueProblem:
     motion = case.motion or GroundMotion(np.zeros((2, 2)), case.length)
     # a sample more than the run is long: the last stage of a solver stands at its end
     samples = np.vstack([motion.acceleration[:, :2], np.zeros((2, 2))])
@@ -61,8 +57,8 @@ def _start(case: Case) -> Start:
     begin = _departure(case) if case.initial is None else _INSTANT
     reach = reduced.simulate(case.cylinder, case.motion, initial=case.initial, duration=begin, rtol=TIGHT)
     state = np.array([reach.tilt[-1], reach.tilt_rate[-1], reach.rolling_angle[-1], reach.momentum[-1]])
-    return Start(
-        cylinder=case.cylinder, motion=padded, end=case.length, start=begin, state=state, exact=state[:2]
+    return InitialValueProblem(
+        cylinder=case.cylinder, motion=padded, start=begin, end=case.length, state=state
     )
 
 
@@ -77,7 +73,7 @@ def _departure(case: Case) -> float:
 
 
 def scipy_answer(
-    problem: Problem, name: Name, rates: Mapping[str, Rates], rtol: float
+    problem: Problem, name: SolverName, rates: Mapping[str, Rates], rtol: float
 ) -> Callable[[Case], Answer]:
     """Return what solves a case by one of scipy's solvers at a tolerance."""
     from .methods import Answer
@@ -90,7 +86,7 @@ def scipy_answer(
     return solve
 
 
-def _solve(problem: Problem, case: Case, name: Name, rates: Rates, rtol: float) -> Array:
+def _solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: float) -> Array:
     from scipy.integrate import solve_ivp
 
     start = rates.start
@@ -116,7 +112,7 @@ def _solve(problem: Problem, case: Case, name: Name, rates: Rates, rtol: float) 
             t_eval=np.minimum(times, start.end) if sampled else None,
             events=None if sampled else (turns_back, falls),
             rtol=rtol,
-            atol=rtol * _SCALE,
+            atol=rtol * TOLERANCE_SCALE,
         )
     if not run.success or not np.isfinite(run.y).all() or run.y[0].min() < 0.0:
         return np.empty(0)

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from rockwobble.models import Case, Run
 
-from ..ring_losses import RingRow, ring_cases
-from ..ring_losses import measure as measure_rings
 from .extent import Extent
 from .motions import EL_CENTRO, shaken_case
 from .part import Inputs, Part, Row
+from .ring_losses import RingRow, ring_cases
+from .ring_losses import measure as measure_rings
 from .verification import ENGINE
 
 # strong rocking without a fall

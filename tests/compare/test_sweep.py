@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import importlib.util
 import math
 import sys
 from contextlib import contextmanager
@@ -15,9 +14,7 @@ from rockwobble.compare import sweep as sweep_function
 from rockwobble.compare.parquet_file import read_about
 from rockwobble.compare.process_pool import WorkerDiedError
 from rockwobble.compare.sweep_executor import InThisProcess, Workers, run_chunk
-from rockwobble.compare.sweep_overhead import IN_MEMORY, KERNEL, STORED, Cost, measure, overhead_grid, ratios
 from rockwobble.compare.sweep_store import CHUNKS
-from rockwobble.compare.sweep_trial import CHUNK_SIZE, dask_sweep_with_a_death, killed_sweep, trial_grid
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -94,21 +91,6 @@ def test_chunks_of_another_sweep_go_only_when_this_one_is_complete(tmp_path):
     table = sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5)
     assert not other & set(files(tmp_path))
     pd.testing.assert_frame_equal(table, pd.read_parquet(tmp_path / CHUNKS), check_exact=True)
-
-
-def test_kills_at_random_moments_lose_and_repeat_nothing(tmp_path):
-    trial = killed_sweep(tmp_path, sizes=15, kills=3, seed=2, workers=1)
-    assert trial.repeated == 0
-    assert trial.chunks[-1] > 0
-    pd.testing.assert_frame_equal(trial.table, sweep(trial_grid(15), chunk_size=CHUNK_SIZE), check_exact=True)
-    assert [path.name for path in (tmp_path / CHUNKS).iterdir() if path.suffix != ".parquet"] == [".lock"]
-
-
-@pytest.mark.skipif(importlib.util.find_spec("distributed") is None, reason="Dask is not installed")
-def test_dask_gives_the_same_bits_though_a_worker_is_killed(tmp_path):
-    table, done = dask_sweep_with_a_death(tmp_path, sizes=8)
-    assert 0 < done < len(table)
-    pd.testing.assert_frame_equal(table, sweep(trial_grid(8), chunk_size=CHUNK_SIZE), check_exact=True)
 
 
 def test_a_scheduler_that_is_not_there(monkeypatch):
@@ -229,20 +211,3 @@ def test_a_chunk_that_cannot_be_read_is_named(tmp_path):
 def test_bad_input_gets_one_clear_line(make, words):
     with pytest.raises(ValueError, match=words):
         make()
-
-
-def test_overhead_is_measured_in_turns_and_its_ratios_inside_each_round(tmp_path):
-    lines: list[str] = []
-    rows = measure(2, 100, workers=1, folder=tmp_path, say=lines.append)
-    assert [set(row) for row in rows] == [{STORED, IN_MEMORY, KERNEL}] * 2
-    assert all(cost.wall > 0.0 and cost.cores > 0.0 for row in rows for cost in row.values())
-    assert len(lines) == 2
-    assert list(tmp_path.iterdir()) == []
-    assert overhead_grid(10_000).rows == 10_000
-
-
-def test_a_disturbed_round_does_not_move_the_ratio():
-    quiet = {STORED: Cost(1.02, 2.02), IN_MEMORY: Cost(1.0, 2.0)}
-    disturbed = {STORED: Cost(9.0, 2.02), IN_MEMORY: Cost(1.0, 2.0)}
-    found = ratios([quiet, disturbed, quiet], STORED, IN_MEMORY)
-    assert (found.wall, found.cores) == pytest.approx((1.02, 1.01), abs=1e-12)

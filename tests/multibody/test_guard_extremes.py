@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from benchmarks.engine_extremes import AGREES, run
+from benchmarks.engine_trials import Trial, trials
 
 from rockwobble import multibody
-from rockwobble.compare.engine_extremes import AGREES, run
-from rockwobble.compare.engine_trials import Trial, trials
 from rockwobble.models import Cylinder, InitialState
 
 
@@ -86,7 +86,7 @@ def test_friction_that_does_not_suffice_is_said(engine: str) -> None:
 
 
 def test_a_run_that_disagrees_in_silence_is_called_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
-    import rockwobble.compare.engine_extremes as module
+    import benchmarks.engine_extremes as module
 
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     # the run of another release

@@ -1,6 +1,6 @@
 """Until when MuJoCo follows its reduced model under El Centro from rest, and what ends it.
 
-`python -m rockwobble.compare.engine_horizons` prints the table: the record at 1, 1.5 and 2 times, on
+`python tests/benchmarks engine_horizons` prints the table: the record at 1, 1.5 and 2 times, on
 cylinders of three sizes and slendernesses, guided against the recess model and free against the rolling
 model, and free against the recess model for contrast.
 
@@ -17,14 +17,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rockwobble.compare.execution import Job, ProgressCallback, simulate, simulate_all
+from rockwobble.compare.horizon import agreement_horizon
+from rockwobble.compare.predicted_horizon import estimated_error, predict_horizon, verdict
+from rockwobble.compare.runs import SUPPORTS, own_model
+from rockwobble.compare.traces import Pair, make_pair
 from rockwobble.models import Case, Cylinder, Run, el_centro_1940
 
-from .console import parse_plain, show, tell
-from .execution import Job, ProgressCallback, simulate, simulate_all
-from .horizon import agreement_horizon
-from .predicted_horizon import estimated_error, predict_horizon, verdict
-from .runs import SUPPORTS, own_model
-from .traces import Pair, make_pair
+from .console import options_of, show, tell
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -168,9 +168,10 @@ def force_error(case: Case, model: Any, trial: Any, end: float) -> float:
     return float(np.max(parts)) if between.any() else math.nan
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
-    parse_plain("engine_horizons", "Until when MuJoCo follows its reduced model, and what ends it.")
+    options = options_of("engine_horizons", "Until when MuJoCo follows its reduced model, and what ends it.")
+    options.parse_args(arguments)
     formats = {
         "case": "", "support": "", "reference": "", "length": ".2f", "horizon": ".2f", "rms": ".1e",
         "passes": ".0f", "closest": ".1e", "resolution": ".1e", "close_pass": ".2f", "close_tilt": ".1e",
@@ -184,7 +185,4 @@ def main() -> None:
         "first of the engine's own model below the contact resolution; force: largest difference of the "
         "contact force between passes over the force, until the tilts differ by 0.1 % of alpha",
     )
-
-
-if __name__ == "__main__":
-    main()
+    return 0

@@ -1,6 +1,6 @@
 """What the store of a sweep costs: the same runs with and without one, in turn.
 
-    python -m rockwobble.compare.sweep_overhead --rounds 9 --runs 10000
+    python tests/benchmarks sweep_overhead --rounds 9 --runs 10000
 
 Each round runs the same grid as a sweep into a folder, as one into memory, and by `reduced.peak_tilts`
 alone, in an order that turns round with every round: what else the machine does falls on all three alike.
@@ -14,17 +14,18 @@ import resource
 import statistics
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from rockwobble import reduced
+from rockwobble.compare.sweep import sweep
+from rockwobble.compare.sweep_grid import Grid
 from rockwobble.models import el_centro_1940
 
-from .sweep import sweep
-from .sweep_grid import Grid
+from .console import options_of
 
 STORED, IN_MEMORY, KERNEL = "sweep with a store", "sweep without", "peak_tilts alone"
 # largest share of the store in the time of a sweep
@@ -125,14 +126,9 @@ def _round_line(turn: int, row: dict[str, Cost]) -> str:
     return f"round {turn + 1}: ratio {ratio:.3f}; {times}; load of the machine {os.getloadavg()[0]:.1f}"
 
 
-def main(arguments: list[str] | None = None) -> int:
-    """Print the ratios of each round and their medians; end with 1 if the store costs more than it may."""
-    import argparse
-
-    parser = argparse.ArgumentParser(
-        prog="python -m rockwobble.compare.sweep_overhead",
-        description="What the store of a sweep costs. Example: --rounds 9 --runs 10000",
-    )
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the ratios of each round and their medians; return 1 if the store costs more than it may."""
+    parser = options_of("sweep_overhead", "What the store of a sweep costs. Example: --rounds 9 --runs 10000")
     parser.add_argument("--rounds", type=int, default=9, help="times each way is measured (%(default)s)")
     parser.add_argument("--runs", type=int, default=10_000, help="of each sweep (%(default)s)")
     parser.add_argument("--workers", type=int, help="processes; default: one for each core")
@@ -155,7 +151,3 @@ def main(arguments: list[str] | None = None) -> int:
     wall = statistics.median(row[STORED].wall for row in rows)
     print(f"median time of a sweep with a store {wall:.1f} s, {runs / wall:,.0f} runs a second")
     return 0 if ratios(rows, STORED, IN_MEMORY).wall <= 1.0 + ALLOWED else 1
-
-
-if __name__ == "__main__":
-    raise SystemExit(main())

@@ -2,13 +2,13 @@
 
 `multibody.simulate`, with all that it follows at every step (guard, passes, uplift, energy, slip), against
 `mj_step` on the same compiled scene from the same start, in turn, in processor time of this thread.
-``python -m rockwobble.compare.run_overhead`` prints the table.
+``python tests/benchmarks run_overhead`` prints the table.
 """
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -16,6 +16,8 @@ import numpy as np
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 from rockwobble.multibody.scene_of_case import open_scene
+
+from .console import options_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -96,18 +98,17 @@ def _whole(case: Case, support: str) -> float:
     return time.thread_time() - begin
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
-    import argparse
     import sys
 
-    parser = argparse.ArgumentParser(
-        prog="python -m rockwobble.compare.run_overhead",
-        description="Cost of a MuJoCo run over the bare steps of its scene in C. Example: --rounds 5",
+    parser = options_of(
+        "run_overhead",
+        "Cost of a MuJoCo run over the bare steps of its scene in C. Example: --rounds 5",
     )
     parser.add_argument("--rounds", type=int, default=ROUNDS, help="times each run is measured (%(default)s)")
     parser.add_argument("--seconds", type=float, default=SECONDS, help="length of a run [s] (%(default)s)")
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     table = run_overheads(
         rounds=given.rounds, seconds=given.seconds, say=lambda line: print(line, file=sys.stderr)
     )
@@ -117,7 +118,4 @@ def main() -> None:
             f"{row['support']:8} {row['ground']:15} {row['steps']:8d} {row['bare']:10.2f} {row['run']:9.2f} "
             f"{row['ratio']:6.3f}"
         )
-
-
-if __name__ == "__main__":
-    main()
+    return 0

@@ -3,22 +3,33 @@
 One run: El Centro on R = 6 m, tan(alpha) = 0.2 until ten seconds after uplift. Each solver gets the
 loosest tolerance with which its own error at the end is below 1e-7 alpha; then all are timed in turn,
 round after round, so that a change of the machine's speed meets them alike, and the ratio is taken
-inside each round. ``python -m rockwobble.compare.speed`` prints the table.
+inside each round. ``python tests/benchmarks speed`` prints the table.
 """
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.compare.tradeoff.scipy_equations import (
+    SOLVERS,
+    TOLERANCE_SCALE,
+    InitialValueProblem,
+    Rates,
+    SolverName,
+    State,
+    compiled_rates,
+    python_rates,
+)
+from rockwobble.models import Cylinder, el_centro_1940
+
+from .console import options_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,27 +39,20 @@ _AFTER_UPLIFT = 10.0  # [s]
 _START = 2e-3  # the other solvers start this long after uplift [s]: it is singular for them
 _TOLERANCES = 10.0 ** -np.arange(5.0, 13.1, 0.25)
 
-Method = Literal["RK45", "DOP853", "LSODA"]
-State = NDArray[np.float64]
-Rates = Any  # (t, y) -> y'; Python or compiled
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Problem:
-    """The run, its start for solvers that cannot uplift, and its exact end."""
+    """The run, for solvers that cannot uplift from just after it, and its exact end."""
 
-    cylinder: Cylinder
-    motion: GroundMotion
-    end: float
-    start: float
-    state: State  # theta, theta', phi, L at the start
+    moving: InitialValueProblem
     exact: State  # theta, theta' at the end
 
     def error(self, state: State) -> float:
         """Error of theta and theta'/p at the end, in alpha."""
-        p = math.sqrt(12.0 / (15.0 + math.cos(self.cylinder.alpha) ** 2) * 9.81 / self.cylinder.semidiagonal)
+        cylinder = self.moving.cylinder
+        p = math.sqrt(12.0 / (15.0 + math.cos(cylinder.alpha) ** 2) * 9.81 / cylinder.semidiagonal)
         tilt, rate = abs(state[0] - self.exact[0]), abs(state[1] - self.exact[1])
-        return float(max(tilt, rate / p)) / self.cylinder.alpha
+        return float(max(tilt, rate / p)) / cylinder.alpha
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -70,90 +74,39 @@ def el_centro_problem() -> Problem:
     start = reduced.simulate(cylinder, motion, rtol=1e-13, duration=uplift + _START)
     exact = reduced.simulate(cylinder, motion, rtol=1e-13, duration=end)
     state = np.array([start.tilt[-1], start.tilt_rate[-1], start.rolling_angle[-1], start.momentum[-1]])
-    return Problem(
-        cylinder=cylinder,
-        motion=motion,
-        end=end,
-        start=uplift + _START,
-        state=state,
-        exact=np.array([exact.tilt[-1], exact.tilt_rate[-1]]),
+    moving = InitialValueProblem(
+        cylinder=cylinder, motion=motion, start=uplift + _START, end=end, state=state
     )
+    return Problem(moving=moving, exact=np.array([exact.tilt[-1], exact.tilt_rate[-1]]))
 
 
 def kernel(problem: Problem) -> Solver:
     """The reduced kernel, from rest, uplift included."""
 
+    moving = problem.moving
+
     def solve(rtol: float) -> tuple[State, int]:
         response = reduced.simulate(
-            problem.cylinder, problem.motion, duration=problem.end, rtol=rtol, sample_step=problem.end
+            moving.cylinder, moving.motion, duration=moving.end, rtol=rtol, sample_step=moving.end
         )
         return np.array([response.tilt[-1], response.tilt_rate[-1]]), response.step_count
 
     return Solver(name="rockwobble", solve=solve)
 
 
-def scipy_solver(problem: Problem, method: Method, rates: Rates, language: str) -> Solver:
+def scipy_solver(problem: Problem, method: SolverName, rates: Rates, language: str) -> Solver:
     """One of scipy's solvers, over the whole record."""
     from scipy.integrate import solve_ivp
 
-    scale = np.array([1e-3, 1e-3, 1.0, 1e-3])  # of tilts, rates, angles and momenta
+    moving = problem.moving
 
     def solve(rtol: float) -> tuple[State, int]:
         run = solve_ivp(
-            rates, (problem.start, problem.end), problem.state, method, rtol=rtol, atol=rtol * scale
+            rates, (moving.start, moving.end), moving.state, method, rtol=rtol, atol=rtol * TOLERANCE_SCALE
         )
         return run.y[:2, -1], int(run.nfev)
 
     return Solver(name=f"scipy {method}, {language}", solve=solve)
-
-
-def python_rates(problem: Problem) -> Rates:
-    """Return the equations as one writes them for scipy: plain Python and the math module."""
-    from math import cos, sin
-
-    b, h = problem.cylinder.base_radius, problem.cylinder.half_height
-    I1, I2, g = (3.0 * b * b + 4.0 * h * h) / 12.0, 0.5 * b * b, 9.81
-    A, J, C, E = I1 + h * h + b * b, I1 + h * h, I2 + b * b, h * b
-    samples = [tuple(row) for row in problem.motion.acceleration.tolist()]
-    per_second = 1.0 / problem.motion.time_step
-
-    def rates(t: float, y: Any) -> list[float]:
-        theta, omega, phi, L = y
-        position = t * per_second
-        i = int(position)
-        part = position - i
-        (ax, ay), (bx, by) = samples[i], samples[i + 1]
-        ax += (bx - ax) * part
-        ay += (by - ay) * part
-        s, c = sin(theta), cos(theta)
-        v = s * s / (1.0 + c)
-        B = J * s * s + (2.0 * E * s + C * v) * v
-        phi_rate = L / B
-        sp, cp = sin(phi), cos(phi)
-        lever = h * s + b * v
-        acceleration = ((J * c + C * v) * s + E * (c * v + s * s)) * phi_rate * phi_rate
-        acceleration -= g * (b * c - h * s) + (b * s + h * c) * (ax * cp + ay * sp)
-        return [omega, acceleration / A, phi_rate, lever * (ax * sp - ay * cp)]
-
-    return rates
-
-
-def compiled_rates(problem: Problem) -> Rates:
-    """Return the same function compiled by numba, which scipy still calls through Python."""
-    import numba
-
-    plain: Any = python_rates(problem)
-    samples = np.array(problem.motion.acceleration)
-    # the same code on an array instead of a list of tuples
-    names = dict(zip(plain.__code__.co_freevars, (c.cell_contents for c in plain.__closure__), strict=True))
-    names["samples"] = samples
-    cells = tuple(_cell(names[name]) for name in plain.__code__.co_freevars)
-    function = type(plain)(plain.__code__, plain.__globals__, "rates", None, cells)
-    return numba.njit(function)
-
-
-def _cell(value: object) -> Any:
-    return (lambda: value).__closure__[0]  # type: ignore[index]
 
 
 def heyoka_solver(problem: Problem) -> Solver | None:
@@ -162,7 +115,8 @@ def heyoka_solver(problem: Problem) -> Solver | None:
         import heyoka as hy
     except ImportError:
         return None
-    b, h = problem.cylinder.base_radius, problem.cylinder.half_height
+    moving = problem.moving
+    b, h = moving.cylinder.base_radius, moving.cylinder.half_height
     I1, I2, g = (3.0 * b * b + 4.0 * h * h) / 12.0, 0.5 * b * b, 9.81
     A, J, C, E = I1 + h * h + b * b, I1 + h * h, I2 + b * b, h * b
     theta, omega, phi, L = hy.make_vars("theta", "omega", "phi", "L")
@@ -180,20 +134,20 @@ def heyoka_solver(problem: Problem) -> Solver | None:
         (phi, phi_rate),
         (L, lever * (ax * hy.sin(phi) - ay * hy.cos(phi))),
     ]
-    step, samples = problem.motion.time_step, problem.motion.acceleration
+    step, samples = moving.motion.time_step, moving.motion.acceleration
     slopes = np.diff(samples, axis=0) / step
     integrators: dict[float, Any] = {}
 
     def solve(rtol: float) -> tuple[State, int]:
         if rtol not in integrators:
-            integrators[rtol] = hy.taylor_adaptive(system, state=problem.state.copy(), tol=rtol)
+            integrators[rtol] = hy.taylor_adaptive(system, state=moving.state.copy(), tol=rtol)
         run = integrators[rtol]
-        run.state[:] = problem.state
-        first, last, steps = int(problem.start / step), int(problem.end / step), 0
+        run.state[:] = moving.state
+        first, last, steps = int(moving.start / step), int(moving.end / step), 0
         for i in range(first, last + 1):
             run.pars[:2], run.pars[2:] = samples[i], slopes[i]
-            run.time = problem.start - i * step if i == first else 0.0
-            steps += run.propagate_until(problem.end - i * step if i == last else step)[3]
+            run.time = moving.start - i * step if i == first else 0.0
+            steps += run.propagate_until(moving.end - i * step if i == last else step)[3]
         return np.array(run.state[:2]), steps
 
     return Solver(name="heyoka (compiled)", solve=solve)
@@ -237,9 +191,9 @@ def measure(
 
     problem = el_centro_problem()
     solvers = [kernel(problem)]
-    solvers += [scipy_solver(problem, m, python_rates(problem), "Python") for m in _METHODS]
+    solvers += [scipy_solver(problem, m, python_rates(problem.moving), "Python") for m in SOLVERS]
     if compiled:
-        solvers += [scipy_solver(problem, m, compiled_rates(problem), "numba") for m in _METHODS]
+        solvers += [scipy_solver(problem, m, compiled_rates(problem.moving), "numba") for m in SOLVERS]
     peer = heyoka_solver(problem)
     if peer is not None:
         solvers.append(peer)
@@ -275,13 +229,13 @@ def _seconds(solver: Solver, rtol: float) -> float:
     return time.perf_counter() - begin
 
 
-_METHODS: tuple[Method, ...] = ("RK45", "DOP853", "LSODA")
-
-
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
     import sys
 
+    options_of("speed", "How much faster the reduced kernel is than others at equal error.").parse_args(
+        arguments
+    )
     table = measure(say=lambda line: print(line, file=sys.stderr))
     seconds = _AFTER_UPLIFT
     print(f"El Centro, R = 6 m, tan alpha = 0.2, {seconds:g} s from uplift, error below {TARGET:g} alpha\n")
@@ -298,7 +252,4 @@ def main() -> None:
             f"{row['solver']:24} {row['ratio']:8.1f} {row['milliseconds']:9.3f} {per_second:9.1f} "
             f"{row['calls']:8d} {unit(row['solver']):4} {row['tolerance']:8.1e} {row['error']:11.1e}"
         )
-
-
-if __name__ == "__main__":
-    main()
+    return 0

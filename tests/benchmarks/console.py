@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from .execution import Progress
+from rockwobble.compare.execution import Progress
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def parse_plain(module: str, description: str, arguments: Sequence[str] | None = None) -> None:
-    """Answer --help at once, and refuse arguments, for a command without options."""
-    parser = argparse.ArgumentParser(prog=f"python -m rockwobble.compare.{module}", description=description)
-    parser.parse_args(arguments)
+def options_of(name: str, description: str) -> argparse.ArgumentParser:
+    """Return the parser of a script of this folder, to which it adds its options."""
+    return argparse.ArgumentParser(prog=f"python tests/benchmarks {name}", description=description)
 
 
 def tell(event: Progress) -> None:

@@ -1,10 +1,4 @@
-"""Trials of the sweep: its processes are killed, and the table must not differ in a single bit.
-
-    python -m rockwobble.compare.sweep_trial kills 20   kills of a local sweep at random moments
-    python -m rockwobble.compare.sweep_trial dask       three Dask workers, one killed in the middle
-
-What the store of a sweep costs is measured by `sweep_overhead`.
-"""
+"""Trials of the sweep: its processes are killed, and the table must not differ in a single bit."""
 
 from __future__ import annotations
 
@@ -21,11 +15,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockwobble.compare.sweep import SweepProgress, sweep
+from rockwobble.compare.sweep_grid import Grid
+from rockwobble.compare.sweep_store import CHUNKS
 from rockwobble.models import el_centro_1940
-
-from .sweep import SweepProgress, sweep
-from .sweep_grid import Grid
-from .sweep_store import CHUNKS
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -34,6 +27,7 @@ if TYPE_CHECKING:
 CHUNK_SIZE = 40
 # of Dask, which takes some milliseconds for each: the killed worker is in the middle of one
 DASK_CHUNK_SIZE = 200
+_TESTS = Path(__file__).resolve().parents[1]
 # slendernesses times scales of the trial's grid
 ROWS_OF_A_SIZE = 80
 # of the kills, those that come while a process is still starting or cleaning up
@@ -76,12 +70,15 @@ def trial_grid(sizes: int) -> Grid:
 def killed_sweep(folder: Path, *, sizes: int, kills: int, seed: int, workers: int | None = None) -> Kills:
     """Sweep into `folder` in processes that are killed with -9 at random moments, then to the end."""
     random = np.random.default_rng(seed)
-    code = f"from rockwobble.compare.sweep_trial import swept; swept({str(folder)!r}, {sizes}, {workers})"
+    # started where this package is found, so the folder must be given whole
+    code = f"from stress.sweep_trial import swept; swept({str(folder.resolve())!r}, {sizes}, {workers})"
     finished: dict[str, int] = {}
     counts: list[int] = []
     repeated = 0
     while len(counts) < kills:
-        process = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+        process = subprocess.Popen(
+            [sys.executable, "-c", code], cwd=_TESTS, stdout=subprocess.PIPE, text=True
+        )
         assert process.stdout is not None
         if random.random() < _EARLY:
             time.sleep(random.uniform(0.0, 1.0))
@@ -156,39 +153,3 @@ def dask_sweep_with_a_death(
     if status != -9:
         raise RuntimeError(f"the Dask worker must have been killed, it ended with {status}")
     return table, killed_at[0]
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Run the trial that is asked for; end with 1 if its table differs from that of an undisturbed sweep."""
-    import argparse
-
-    parser = argparse.ArgumentParser(
-        prog="python -m rockwobble.compare.sweep_trial",
-        description="Sweeps whose processes are killed. Example: dask --runs 40000",
-    )
-    parser.add_argument("what", choices=("kills", "dask"))
-    parser.add_argument("kills", nargs="?", type=int, default=20, help="of a local sweep (%(default)s)")
-    parser.add_argument("--runs", type=int, help="of the sweep; default: 8,000 with kills, 40,000 with dask")
-    parser.add_argument("--seed", type=int, default=1, help="of the moments of the kills (%(default)s)")
-    given = parser.parse_args(arguments)
-    chunk_size = CHUNK_SIZE if given.what == "kills" else DASK_CHUNK_SIZE
-    sizes = max(1, (given.runs or (8_000 if given.what == "kills" else 40_000)) // ROWS_OF_A_SIZE)
-    with tempfile.TemporaryDirectory(prefix="rockwobble-") as folder:
-        undisturbed = sweep(trial_grid(sizes), chunk_size=chunk_size)
-        if given.what == "dask":
-            table, done = dask_sweep_with_a_death(Path(folder), sizes=sizes, chunk_size=chunk_size)
-            print(f"one of three Dask workers killed with -9 after {done:,} of {len(table):,} runs")
-        else:
-            trial = killed_sweep(Path(folder), sizes=sizes, kills=given.kills, seed=given.seed)
-            table = trial.table
-            chunks = -(-len(table) // chunk_size)
-            print(f"{given.kills} kills; of {chunks} chunks finished after each: ", end="")
-            print(", ".join(map(str, trial.chunks)))
-            print(f"chunks written again: {trial.repeated}")
-    same = table.equals(undisturbed)
-    print(f"{len(table):,} runs, {'the same table to the last bit' if same else 'A DIFFERENT TABLE'}")
-    return 0 if same else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main())

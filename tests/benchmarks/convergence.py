@@ -1,6 +1,6 @@
 """How the engines converge to the reduced models: free response, angle of turn, sizes.
 
-`python -m rockwobble.compare.convergence` prints three tables.
+`python tests/benchmarks convergence` prints three tables.
 
 1. Guided against the recess model and free against the rolling model over 8 s, released at 0.3, 0.5 and
    0.8 alpha with 0.5 rad/s at 6 m, for tan(alpha) from 0.1 to 3: error at each step, and the order. A release
@@ -23,13 +23,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody, reduced
+from rockwobble.compare.execution import Job, ProgressCallback, simulate_all
+from rockwobble.compare.runs import SUPPORTS, own_model
+from rockwobble.compare.traces import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.multibody.registry import find_engine
 
-from .console import show, tell
-from .execution import Job, ProgressCallback, simulate_all
-from .runs import SUPPORTS, own_model
-from .traces import make_pair
+from .console import options_of, show, tell
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -211,14 +211,11 @@ def angle_of_turn(
     return pd.DataFrame(rows)
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print the tables."""
-    import argparse
-
-    parser = argparse.ArgumentParser(
-        prog="python -m rockwobble.compare.convergence",
-        description="How the engines converge to the reduced models. "
-        "Example: --table free --engine mujoco --tan-alpha 3",
+    parser = options_of(
+        "convergence",
+        "How the engines converge to the reduced models. Example: --table free --engine mujoco --tan-alpha 3",
     )
     parser.add_argument("--table", action="append", choices=TABLES, help="may be repeated (default: all)")
     parser.add_argument(
@@ -227,7 +224,7 @@ def main() -> None:
     parser.add_argument(
         "--tan-alpha", action="append", type=float, help="of the first table; may be repeated"
     )
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     engines = [name for name in given.engine or engines_here() if name in engines_here()]
     for table in given.table or TABLES:
         if table == "free":
@@ -238,6 +235,7 @@ def main() -> None:
             cases = [release_case(tan_alpha, 0.5, size) for tan_alpha in (0.2, 1.0) for size in SIZES]
             errors = convergence(cases, engines=engines, progress=tell)
             show(errors, "The same at every size", _FORM, f"{_STEPS_IN_WORDS} at 6 m")
+    return 0
 
 
 _FORM = (
@@ -265,7 +263,3 @@ def _print_turn(engines: Sequence[str] | None) -> None:
         {"support": "", "engine": "", "exact": ".4f"} | errors,
         "in degrees; differences at steps of " + ", ".join(f"{step:g} s" for step in TURN_STEPS) + " at 6 m",
     )
-
-
-if __name__ == "__main__":
-    main()

@@ -3,7 +3,7 @@
 Every scene is opened anew in each round and all are timed in turn, round after round, so that a change of
 the machine's speed meets them alike; the ratio to the cheapest scene of the same engine is taken inside
 each round. Timed is the engine alone, in processor time of this thread: for MuJoCo the rollout in C, for
-Bullet its loop in Python. ``python -m rockwobble.compare.scene_cost`` prints the table.
+Bullet its loop in Python.
 """
 
 from __future__ import annotations
@@ -181,77 +181,3 @@ def step_cost(variant: Variant, steps: int) -> tuple[float, SceneCounts]:
         spent = (time.thread_time() - begin) / steps
         counts: SceneCounts = stepper.counts()
         return spent, counts
-
-
-def print_table(table: pd.DataFrame) -> None:
-    """Print the table of `scene_costs` for a person to read."""
-    from rich.box import SIMPLE
-    from rich.console import Console
-    from rich.table import Table
-
-    shown = Table(
-        title="Cost of one step, R = 6 m, tan alpha = 0.2, h = 1e-4 s",
-        title_justify="left",
-        box=SIMPLE,
-        show_edge=False,
-        pad_edge=False,
-        padding=(0, 1, 0, 0),
-    )
-    for name in ("engine", "support", "scene"):
-        shown.add_column(name, no_wrap=True)
-    for name in ("dof", "contacts", "rows", "us/step", "ratio"):
-        shown.add_column(name, justify="right", no_wrap=True)
-    before = ("", "")
-    for row in table.to_dict("records"):
-        here = row["engine"], row["support"]
-        if before[0] and here[0] != before[0]:
-            shown.add_section()
-        shown.add_row(
-            here[0] if here[0] != before[0] else "",
-            here[1] if here != before else "",
-            row["option"],
-            str(row["degrees_of_freedom"]),
-            str(row["contacts"]),
-            str(row["constraint_rows"]),
-            f"{row['microseconds']:.2f}",
-            f"{row['ratio']:.2f}",
-        )
-        before = here
-    Console().print(shown)
-    Console().print("dof: degrees of freedom; rows: scalar constraints; ratio: to the cheapest")
-
-
-def main() -> None:
-    """Print the table."""
-    import argparse
-    import sys
-
-    parser = argparse.ArgumentParser(
-        prog="python -m rockwobble.compare.scene_cost",
-        description="Cost of one step of every support and option. Example: --engine mujoco --out cost.csv",
-    )
-    parser.add_argument(
-        "--engine", action="append", help="mujoco or pybullet; may be repeated (default: all)"
-    )
-    parser.add_argument(
-        "--rounds", type=int, default=ROUNDS, help="times each scene is measured (%(default)s)"
-    )
-    parser.add_argument("--steps", type=int, default=STEPS, help="steps each time (%(default)s)")
-    parser.add_argument("--out", help="also write the table there, as CSV")
-    given = parser.parse_args()
-    try:
-        table = scene_costs(
-            given.engine,
-            rounds=given.rounds,
-            steps=given.steps,
-            say=lambda line: print(line, file=sys.stderr),
-        )
-    except ValueError as error:
-        parser.error(str(error))
-    print_table(table)
-    if given.out:
-        table.to_csv(given.out, index=False)
-
-
-if __name__ == "__main__":
-    main()

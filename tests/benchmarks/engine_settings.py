@@ -1,6 +1,6 @@
 """Which settings of an engine give the least error for a given cost.
 
-`python -m rockwobble.compare.engine_settings` prints the table. Each variant differs from the default in
+`python tests/benchmarks engine_settings` prints the table. Each variant differs from the default in
 one setting. First the time of a step is measured, in turns, so that a change of the machine's speed meets
 all alike; then each runs with the step that its time allows, so that all cost the same. The errors are
 those of the tilt, guided against the recess model and free against the rolling model:
@@ -22,13 +22,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody
+from rockwobble.compare.execution import Job, ProgressCallback, simulate_all
+from rockwobble.compare.runs import SUPPORTS, own_model
+from rockwobble.compare.tilt import tilt_rms_relative
+from rockwobble.compare.traces import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run, el_centro_1940
 
-from .console import show, tell
-from .execution import Job, ProgressCallback, simulate_all
-from .runs import SUPPORTS, own_model
-from .tilt import tilt_rms_relative
-from .traces import make_pair
+from .console import options_of, show, tell
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -239,13 +239,11 @@ def _error(case: Case, reference: Any, trial: Any) -> float:
     return float(np.abs(pair.tilt_difference).max())
 
 
-def main() -> None:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
-    import argparse
-
-    parser = argparse.ArgumentParser(
-        prog="python -m rockwobble.compare.engine_settings",
-        description="Which settings of an engine give the least error for a given cost. "
+    parser = options_of(
+        "engine_settings",
+        "Which settings of an engine give the least error for a given cost. "
         "Example: --engine mujoco --turns 3",
     )
     parser.add_argument("--engine", action="append", choices=("mujoco", "pybullet"), help="may be repeated")
@@ -256,7 +254,7 @@ def main() -> None:
         default=1,
         help="azimuths of the record over which errors are averaged (%(default)s)",
     )
-    given = parser.parse_args()
+    given = parser.parse_args(arguments)
     errors = ("shaken_guided", "shaken_free", "released_guided", "released_free")
     formats = {"engine": "", "setting": "", "microseconds": ".1f", "time_step": ".2e"}
     show(
@@ -265,7 +263,4 @@ def main() -> None:
         formats | dict.fromkeys(errors, ".1e"),
         "time step at 6 m in s; shaken: RMS over that of the model; released: largest, in alpha; - failed",
     )
-
-
-if __name__ == "__main__":
-    main()
+    return 0

@@ -1,6 +1,6 @@
 """Whether a run at an extreme of its engine says so where it goes wrong.
 
-`python -m rockwobble.compare.engine_extremes` prints the table. Each trial takes one thing to its extreme
+`python tests/benchmarks engine_extremes` prints the table. Each trial takes one thing to its extreme
 (step, contact, friction, slenderness, spin, excitation, guide) and is held against the reduced model of
 its support, solved to 1e-10. The verdict is
 
@@ -23,12 +23,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody, reduced
+from rockwobble.compare.runs import own_model
+from rockwobble.compare.traces import make_pair
 from rockwobble.models import Cylinder, InitialState
 
-from .console import parse_plain, show
+from .console import options_of, show
 from .engine_trials import Trial, trials
-from .runs import own_model
-from .traces import make_pair
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -115,7 +115,7 @@ def measure(
 
     import pandas as pd
 
-    from .process_pool import ProcessPool
+    from rockwobble.compare.process_pool import ProcessPool
 
     chosen = trials() if chosen is None else chosen
     rows = []
@@ -127,17 +127,16 @@ def measure(
     return pd.DataFrame(rows)
 
 
-def main() -> None:
-    """Print the table; end with code 1 if a run is silently wrong."""
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the table; return 1 if a run is silently wrong."""
     import sys
 
-    parse_plain("engine_extremes", "The engines at their own extremes: does a run that goes wrong say so?")
+    options = options_of(
+        "engine_extremes", "The engines at their own extremes: does a run that goes wrong say so?"
+    )
+    options.parse_args(arguments)
     table = measure(say=lambda line: print(line, file=sys.stderr, flush=True))
     formats = {"extreme": "", "value": "", "tan_alpha": "g", "engine": "", "support": ""}
     counts = ", ".join(f"{count} {verdict}" for verdict, count in table["verdict"].value_counts().items())
     show(table, "Engines at their extremes", formats | {"verdict": "", "error": ".1e", "message": ""}, counts)
-    sys.exit(1 if (table["verdict"] == "wrong").any() else 0)
-
-
-if __name__ == "__main__":
-    main()
+    return 1 if (table["verdict"] == "wrong").any() else 0

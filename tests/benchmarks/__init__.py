@@ -1,0 +1,1 @@
+"""Measurements of cost and error, printed as tables: `python tests/benchmarks --help`."""

@@ -1,0 +1,1 @@
+"""Sweeps whose processes are killed: `python tests/stress --help`."""
