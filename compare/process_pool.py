@@ -202,3 +202,7 @@ def _listen(stdin: BinaryIO, calls: queue.SimpleQueue[Any]) -> None:
             calls.put(pickle.load(stdin))
     except EOFError:
         os._exit(0)
+    except BaseException:  # such as a function that cannot be imported here: nobody would ever answer
+        traceback.print_exc()
+        sys.stderr.flush()
+        os._exit(1)

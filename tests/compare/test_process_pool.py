@@ -31,6 +31,20 @@ def test_bad_input_is_raised_here_with_where_it_came_from():
     assert "require_positive" in "".join(caught.value.__notes__)
 
 
+def test_a_function_that_cannot_be_imported_there_is_said(tmp_path):
+    # the script's own functions are those of __main__, which is another module there
+    script = tmp_path / "script.py"
+    script.write_text(
+        "from rockwobble.compare.process_pool import ProcessPool\n"
+        "def own(): pass\n"
+        "with ProcessPool(1) as pool: pool.submit(own).result(timeout=20)\n"
+    )
+    run = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60)
+    last = run.stderr.splitlines()[-1]
+    assert "WorkerDiedError: the process ended with status 1: AttributeError: " in last
+    assert "'own'" in last
+
+
 def test_a_process_that_dies_fails_only_its_own_call():
     with ProcessPool(1) as pool:
         dead = pool.submit(os.abort)
