@@ -13,7 +13,7 @@ import numpy as np
 
 from rockwobble.models import Case
 
-from .comparison_file import RESTORE, load_comparison, restore_bytes
+from .comparison_file import RESTORE, ComparisonFields, load_comparison, restore_bytes
 from .error_budget import ErrorBudget
 from .fingerprint import fingerprint
 from .parquet_file import pack
@@ -83,7 +83,7 @@ class Comparison:
         ValueError
             If the folder holds no comparison.
         """
-        return load_comparison(folder)
+        return cls(**load_comparison(folder))
 
     def files(self) -> dict[str, bytes]:
         """Return name and content of each file that `save` writes."""
@@ -95,9 +95,20 @@ class Comparison:
             "passes.parquet": self._pack(self._passes()),
             "excitation.parquet": self._pack(self._excitation()),
             "comparison.json": (json.dumps(self._about(), indent=2, allow_nan=False) + "\n").encode(),
-            RESTORE: restore_bytes(self),
+            RESTORE: restore_bytes(self._fields()),
         }
         return found | ({"budget.parquet": self._pack(self._budget())} if self.budgets else {})
+
+    def _fields(self) -> ComparisonFields:
+        return ComparisonFields(
+            summary=self.summary,
+            cases=self.cases,
+            responses=self.responses,
+            trajectories=self.trajectories,
+            versions=self.versions,
+            until=self.until,
+            budgets=self.budgets,
+        )
 
     def _budget(self) -> pd.DataFrame:
         import pandas as pd

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
 
@@ -18,37 +18,45 @@ from .stored_trace import StoredTrace, passes_table, stored
 if TYPE_CHECKING:
     import pandas as pd
 
-    from .comparison import Comparison
-
 RESTORE = "restore.json"
 _SEPARATOR = "\n"  # in no name of a case or a run: these are single lines
 
 
-def restore_bytes(comparison: Comparison) -> bytes:
+class ComparisonFields(TypedDict):
+    """What a comparison is made of: the arguments of `Comparison`."""
+
+    summary: pd.DataFrame
+    cases: Mapping[str, Case]
+    responses: Mapping[tuple[str, str], Any]
+    trajectories: Mapping[tuple[str, str], Any]
+    versions: Mapping[str, str]
+    until: float | None
+    budgets: Mapping[tuple[str, str, str], ErrorBudget]
+
+
+def restore_bytes(fields: ComparisonFields) -> bytes:
     """Return the file that holds what the tables of a comparison do not."""
     whole = {
-        "versions": comparison.versions,
-        "until": comparison.until,
-        "cases": {name: _case_fields(case) for name, case in comparison.cases.items()},
-        "responses": _trace_fields(comparison.responses),
-        "trajectories": _trace_fields(comparison.trajectories),
+        "versions": fields["versions"],
+        "until": fields["until"],
+        "cases": {name: _case_fields(case) for name, case in fields["cases"].items()},
+        "responses": _trace_fields(fields["responses"]),
+        "trajectories": _trace_fields(fields["trajectories"]),
         "budgets": {
             _SEPARATOR.join(key): {
                 "covered": budget.covered,
                 "steps": budget.limit.steps,
                 "order": budget.limit.order,
             }
-            for key, budget in comparison.budgets.items()
+            for key, budget in fields["budgets"].items()
         },
     }
     return (plain_json.dumps(whole) + "\n").encode()
 
 
-def load_comparison(folder: str | Path) -> Comparison:
-    """Return the comparison that was saved in `folder`; see `Comparison.load`."""
+def load_comparison(folder: str | Path) -> ComparisonFields:
+    """Return what the comparison saved in `folder` is made of; see `Comparison.load`."""
     import pandas as pd
-
-    from .comparison import Comparison
 
     path = Path(folder)
     try:
@@ -61,7 +69,7 @@ def load_comparison(folder: str | Path) -> Comparison:
     except (OSError, ValueError, KeyError) as error:
         why = str(error).partition("\n")[0]
         raise ValueError(f"{path} must be the folder of a comparison, cannot read it as one: {why}") from None
-    return Comparison(
+    return ComparisonFields(
         summary=summary,
         cases={name: _case(name, given, excitation) for name, given in rest["cases"].items()},
         responses=responses,

@@ -8,7 +8,7 @@ import queue
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from rockwobble.models import Case, Run
 
@@ -16,8 +16,6 @@ from .process_pool import ProcessPool, WorkerDiedError
 
 if TYPE_CHECKING:
     from rockwobble.multibody import Trajectory
-
-    from .run_store import RunStore
 
 SAMPLE_STEP = 0.01
 # a model for jobs: planar in the x z plane, with the loss of a base that lands flat
@@ -71,6 +69,16 @@ class Crash:
     message: str
 
 
+class FinishedRuns(Protocol):
+    """Where finished runs are kept, as a `RunStore` does."""
+
+    def find(self, job: Job) -> Any:
+        """Return the run of a job, or None if it is not there."""
+
+    def keep(self, job: Job, trace: Any) -> None:
+        """Keep the run of a job."""
+
+
 def simulate(job: Job) -> Any:
     """Run one job in this process; return a Response or a Trajectory."""
     case, method = job.case, job.method
@@ -119,7 +127,7 @@ def simulate_all(
     *,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
-    store: RunStore | None = None,
+    store: FinishedRuns | None = None,
 ) -> list[Any]:
     """Run all jobs; return their results in the same order.
 
@@ -131,8 +139,8 @@ def simulate_all(
         core, but no more than jobs.
     progress : callable, optional
         Told of the start and the end of each job that runs, in this thread.
-    store : RunStore, optional
-        Finished runs: a job found there does not run again, and one that runs is kept there at its end.
+    store : FinishedRuns, optional
+        A job found there does not run again, and one that runs is kept there at its end.
 
     Returns
     -------

@@ -6,15 +6,13 @@ import dataclasses
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from .execution import SAMPLE_STEP, Job
 from .fingerprint import fingerprint
 from .provenance import engine_makers, reduced_makers
 from .store import remove_leftovers, sole_writer, write_whole
 from .stored_trace import StoredTrace, from_parquet, stored, to_parquet
-
-if TYPE_CHECKING:
-    from .execution import Job
 
 RUNS = "runs"
 # runs without their samples but the last: of an ensemble only the numbers count, and it has many members
@@ -104,8 +102,6 @@ def makers_of(job: Job) -> dict[str, str]:
 
 def job_fingerprint(job: Job) -> str:
     """Return the hash of everything that the result of a job depends on."""
-    from .execution import SAMPLE_STEP
-
     case, motion = job.case, job.case.motion
     return fingerprint(
         {

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..origin import Origin, origin_now
-from .methods import Answer, Method, methods_for
-from .problems import Problem, problems, sampling_distance
+from .methods import Method, methods_for
+from .problems import Answer, Problem, problems, sampling_distance
 
 if TYPE_CHECKING:
     import pandas as pd

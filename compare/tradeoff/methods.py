@@ -15,7 +15,7 @@ from rockwobble.models import Case, Run
 
 from ..execution import run_engine
 from ..runs import own_model
-from .problems import FINE_SEATING, Problem
+from .problems import FINE_SEATING, Answer, Problem
 from .scipy_equations import SOLVERS
 from .scipy_methods import Rates, compiled, plain, scipy_answer
 
@@ -28,14 +28,6 @@ _STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5)
 _QUICK_STEPS = (1e-3, 5e-4, 2e-4)
 # what a held contact time constant is: that of the default settings at a step of 1e-3 s [s]
 _HELD = 2e-3
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Answer:
-    """What a method says of one case: the quantity, empty where it failed, and its message."""
-
-    quantity: Array
-    message: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -85,6 +85,14 @@ class Problem:
         return self.distance(quantities, self.references[model])
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Answer:
+    """What a method says of one case: the quantity, empty where it failed, and its message."""
+
+    quantity: Array
+    message: str = ""
+
+
 def problems(*, quick: bool = False) -> list[Problem]:
     """Return the three problems; `quick` has fewer members of the ensemble."""
     return [_turn(), _shaken(), _peaks(4 if quick else 12)]

@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +17,8 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion
 
-from .problems import TIGHT, Problem
+from .problems import TIGHT, Answer, Problem
 from .scipy_equations import TOLERANCE_SCALE, InitialValueProblem, SolverName, compiled_rates, python_rates
-
-if TYPE_CHECKING:
-    from .methods import Answer
 
 Array = NDArray[np.float64]
 
@@ -76,7 +73,6 @@ def scipy_answer(
     problem: Problem, name: SolverName, rates: Mapping[str, Rates], rtol: float
 ) -> Callable[[Case], Answer]:
     """Return what solves a case by one of scipy's solvers at a tolerance."""
-    from .methods import Answer
 
     def solve(case: Case) -> Answer:
         quantity = _solve(problem, case, name, rates[case.name], rtol)
