@@ -3,8 +3,8 @@
 from .comparison import Comparison, describe_case, describe_run
 from .contact import TILTED
 from .driver import compare
-from .ensemble import Ensemble, ensemble, read_ensemble
 from .ensemble_members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
+from .ensemble_study import Ensemble, ensemble, read_ensemble
 from .error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
 from .execution import Crash, Job, Progress, simulate_all
 from .foreign import Foreign, ForeignTrajectory, read_trajectory
@@ -20,10 +20,10 @@ from .runs import (
 )
 from .store import replace_files, require_writable
 from .summary import SUMMARY_COLUMNS
-from .sweep import SweepIncompleteError, SweepProgress, sweep
 from .sweep_cases import CaseSweep
 from .sweep_grid import Grid
 from .sweep_store import SweepStore, open_sweep_store
+from .sweep_study import SweepIncompleteError, SweepProgress, sweep
 from .tilt import relative_rms
 from .traces import Pair, make_pair
 

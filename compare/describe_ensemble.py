@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from .ensemble import KIND, TABLE
+from .ensemble_study import KIND, TABLE
 from .origin import read_table
 from .parquet_file import read_about
 from .run_store import MEMBERS

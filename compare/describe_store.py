@@ -15,7 +15,7 @@ from .describe_studies import (
     describe_unfinished_validity,
     describe_validity,
 )
-from .ensemble import TABLE
+from .ensemble_study import TABLE
 from .parquet_file import read_about
 from .run_store import MEMBERS, RUNS
 from .sweep_store import ABOUT, open_sweep_store

@@ -7,7 +7,7 @@ and energy are derived from the pose of a rigid body.
 
 from .ensemble import simulate_many
 from .registry import BrokenEngineError, EngineNotInstalledError, available_engines, engine_names
-from .simulate import simulate
+from .simulation import simulate
 from .trajectory import Trajectory
 
 __all__ = [

@@ -21,7 +21,7 @@ from .engine import Array, Scene
 from .froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, froude_scale
 from .guard import energy_scale
 from .registry import find_engine
-from .simulate import simulate
+from .simulation import simulate
 from .start import starting_state
 from .trajectory import Trajectory
 

@@ -21,7 +21,7 @@ from typing import Any, Literal
 from rockwobble.models import Case
 
 from .registry import find_engine
-from .simulate import Progress, simulate
+from .simulation import Progress, simulate
 from .trajectory import Trajectory
 
 _Run = Callable[[Case, Progress], Trajectory]

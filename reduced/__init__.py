@@ -13,7 +13,7 @@ from .exact import (
 )
 from .problem import MODELS, SEATING, restitution_from_momentum
 from .response import Response
-from .simulate import simulate
+from .simulation import simulate
 
 __all__ = [
     "MODELS",

@@ -16,7 +16,7 @@ from rockwobble.models import Cylinder, GroundMotion
 
 from .march import OVERTURNED, March
 from .problem import SEATING, make_problem
-from .simulate import make_ready
+from .simulation import make_ready
 
 # Tasks for each thread, so that all end at about the same time. The sizes of one task share the preparation
 # of the scaled motion, which takes as long as a short run.

@@ -51,7 +51,7 @@ def tradeoff(
 
 def _measured(quick: bool) -> Tradeoff:
     from rockwobble.compare.tradeoff import STAGES, measure_tradeoff
-    from rockwobble.compare.tradeoff.problems import PIER
+    from rockwobble.compare.tradeoff.problem import PIER
     from rockwobble.models import Case
 
     from .paper.provenance import command_line

@@ -32,4 +32,4 @@ def test_examples_of_the_docstrings(folder: str) -> None:
 
 def test_examples_are_found() -> None:
     found = {test.name for folder in ("models", "reduced") for test in examples(folder)}
-    assert {"rockwobble.models.cylinder.Cylinder", "rockwobble.reduced.simulate.simulate"} <= found
+    assert {"rockwobble.models.cylinder.Cylinder", "rockwobble.reduced.simulation.simulate"} <= found

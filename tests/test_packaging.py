@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import importlib
+import pkgutil
 import subprocess
 import sys
 import time
@@ -50,6 +52,19 @@ def test_every_data_file_of_the_checkout_is_installed(folder: str) -> None:
     assert Path("py.typed") in data
     missing = [str(path) for path in data if not installed.joinpath(*path.parts).is_file()]
     assert missing == []
+
+
+def test_no_name_of_a_package_hides_its_module() -> None:
+    names = [module.name for module in pkgutil.walk_packages(rockwobble.__path__, "rockwobble.")]
+    modules = {name: importlib.import_module(name) for name in names}
+    assert len(modules) > 200
+    hidden = [
+        name
+        for name, module in modules.items()
+        if "." in name.removeprefix("rockwobble.")
+        and getattr(modules[name.rpartition(".")[0]], name.rpartition(".")[2]) is not module
+    ]
+    assert hidden == []
 
 
 def test_the_records_are_data_of_the_package() -> None:

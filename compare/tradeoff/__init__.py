@@ -3,7 +3,7 @@
 from .conclusions import Fastest, Plateau, fastest, plateaus, seating_price
 from .measure import STAGES, Tradeoff, measure_tradeoff
 from .methods import Method, methods_for
-from .problems import Problem, problems
+from .problem import Problem, problems
 from .store import read_tradeoff, tradeoff_tables
 
 __all__ = [

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .problems import FINE_SEATING
+from .problem import FINE_SEATING
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..origin import Origin, origin_now
 from .methods import Method, methods_for
-from .problems import Answer, Problem, problems, sampling_distance
+from .problem import Answer, Problem, problems, sampling_distance
 
 if TYPE_CHECKING:
     import pandas as pd

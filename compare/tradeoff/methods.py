@@ -15,7 +15,7 @@ from rockwobble.models import Case, Run
 
 from ..execution import run_engine
 from ..runs import own_model
-from .problems import FINE_SEATING, Answer, Problem
+from .problem import FINE_SEATING, Answer, Problem
 from .scipy_equations import SOLVERS
 from .scipy_methods import Rates, compiled, plain, scipy_answer
 

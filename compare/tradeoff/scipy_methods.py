@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion
 
-from .problems import TIGHT, Answer, Problem
+from .problem import TIGHT, Answer, Problem
 from .scipy_equations import TOLERANCE_SCALE, InitialValueProblem, SolverName, compiled_rates, python_rates
 
 Array = NDArray[np.float64]

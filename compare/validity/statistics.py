@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from rockwobble import multibody, reduced
 from rockwobble.models import Run
 
-from ..ensemble import falls_at_the_end
+from ..ensemble_study import falls_at_the_end
 from ..execution import run_engine
 from ..runs import SUPPORTS, own_model
 from .extent import Extent

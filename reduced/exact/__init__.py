@@ -1,6 +1,6 @@
 """Exact solutions of the reduced models, independent of any integrator."""
 
-from .free_response import FreeResponse, angle_of_turn, free_response, limiting_angle_of_turn
+from .free_motion import FreeResponse, angle_of_turn, free_response, limiting_angle_of_turn
 from .planar import planar_quarter_period, rocking_period
 from .wobble import steady_wobble_rate, wobbling_period
 

@@ -41,7 +41,7 @@ def test_a_copy_leaves_nothing_behind() -> None:
         name = copy.__name__
         assert name in sys.modules
     assert not [module for module in sys.modules if module.startswith(name)]
-    assert reduced.simulate.__module__ == "rockwobble.reduced.simulate"
+    assert reduced.simulate.__module__ == "rockwobble.reduced.simulation"
 
 
 def test_every_sum_has_faults_in_both_senses() -> None:

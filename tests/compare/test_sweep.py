@@ -1,7 +1,6 @@
 from __future__ import annotations
 
 import math
-import sys
 from contextlib import contextmanager
 
 import numpy as np
@@ -117,8 +116,7 @@ def test_a_chunk_whose_process_dies_is_tried_again(tmp_path, monkeypatch):
     def dying(*_):
         yield Workers(Dying(), lambda: 1, (WorkerDiedError,))
 
-    # the name of the module is also that of its function in the package
-    monkeypatch.setattr(sys.modules["rockwobble.compare.sweep"], "open_workers", dying)
+    monkeypatch.setattr("rockwobble.compare.sweep_study.open_workers", dying)
     deadly = {2, 3, 5}
     table = sweep(grid(), chunk_size=5)
     pd.testing.assert_frame_equal(table, sweep(grid()), check_exact=True)

@@ -2,17 +2,17 @@
 
 from collections.abc import Callable
 
-from .couple import couple
-from .distribution import contrasts, distribution
-from .friction import friction
-from .horizon import horizon
+from .couple_limit import couple
+from .distribution_limit import contrasts, distribution
+from .friction_limit import friction
+from .horizon_limit import horizon
 from .limit import Limit, Tables
-from .loss_of_contact import loss_of_contact
-from .model_form import model_form
-from .peak_tilt import peak_tilt
-from .real_recess import real_recess
-from .soft_contact import soft_contact
-from .vertical import vertical
+from .loss_of_contact_limit import loss_of_contact
+from .model_form_limit import model_form
+from .peak_tilt_limit import peak_tilt
+from .real_recess_limit import real_recess
+from .soft_contact_limit import soft_contact
+from .vertical_limit import vertical
 
 LIMITS: tuple[Callable[[Tables], Limit], ...] = (
     peak_tilt,
