@@ -81,8 +81,9 @@ def _apart(case: Case, run: Any, model: Any) -> tuple[float, float]:
     if crashed(run):
         return math.nan, math.nan
     size = case.gravity / case.cylinder.semidiagonal
-    time = model.time
+    count = int(np.count_nonzero(model.time <= case.length))  # what overturns later goes on for longer
+    time = model.time[:count]
     return tuple(
-        abs(float(2.0 * ((own - other) * time**2).sum() / (time**4).sum())) / size
+        abs(float(2.0 * ((own[:count] - other[:count]) * time**2).sum() / (time**4).sum())) / size
         for own, other in ((run.tilt, model.tilt), (run.rolling_angle, model.rolling_angle))
     )  # type: ignore[return-value]
