@@ -92,6 +92,7 @@ class Recorder:
         self.ended: str = ""
         self.reason = ""
         self.end_time = math.inf
+        self.undecided = False  # whether it falls after the end, and nobody knows how far
 
     @property
     def table(self) -> Array:
@@ -180,6 +181,11 @@ class Recorder:
             self.grip_time = first_grip(time, force, self._scene.friction)
         self._angle, self._twist, self._leans = float(angle[-1]), float(state.twist[-1]), bool(leans[-1])
         self._count += stop
+
+    def extend(self, samples: Array) -> None:
+        """Go on to further samples, at times (n,) after the last one [s]."""
+        self._samples = np.append(self._samples, samples)
+        self.forces.extend(samples)
 
     def fail(self, reason: str) -> None:
         """End the run at the last step analysed."""

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 def remarks(recorder: Recorder, passes: pd.DataFrame, resolution: float, scale: Scale) -> str:
     """Return the remarks, separated by semicolons; empty if there are none.
 
-    `passes` and `resolution` [rad] are those of the trajectory, in the time of the user.
+    `passes` and `resolution` [rad] are those of the trajectory, in the time of the user. How the side comes
+    down in a fall that is followed beyond the end asked for limits nothing: what happens there is not said.
     """
     end = recorder.asked
     # what never happened has the time NaN, which is no time before the end
@@ -41,6 +42,8 @@ def remarks(recorder: Recorder, passes: pd.DataFrame, resolution: float, scale: 
             f"contact {'made' if share > 0.0 else 'took'} {abs(share):.1e} of the energy of the motion, "
             f"which shows from {since * scale.time:.4g} s on"
         )
+    if recorder.undecided:
+        found.append("it ends in the middle of a fall, and whether that overturns it is not decided")
     if recorder.unsolved:
         found.append(
             f"the solver had not converged in {recorder.unsolved} of the {recorder.looks} steps looked at"

@@ -85,7 +85,9 @@ def simulate(
     Returns
     -------
     Trajectory
-        A numerical failure is an outcome with a message, not an exception.
+        A numerical failure is an outcome with a message, not an exception. A run that ends while the cylinder
+        falls, or rises with the energy to pass its balance, is carried on over still ground: one that
+        overturns ends there, later than `duration`, and one whose tilt turns back ends at `duration`.
 
     Raises
     ------
@@ -140,7 +142,7 @@ def _simulate(
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(scene, samples, release.rolling_angle, release.tilt_rate == 0.0)
     means = StepMeans(case.motion, scale, scene.time_step)
-    recorder = run_steps(backend, scene, resolved, recorder, means, progress)
+    recorder = run_steps(backend, scene, resolved, recorder, means, sample_step / scale.time, progress)
     return _trajectory(
         recorder,
         scene,

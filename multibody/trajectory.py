@@ -30,7 +30,8 @@ class Trajectory:
     wall_time : float
         Time that the run took [s].
     time : ndarray, shape (n,)
-        Multiples of the sample step and the exact end [s].
+        Multiples of the sample step and the exact end [s]; of a run that overturns, the time at which its
+        side is on the ground, which may be later than the duration asked for.
     tilt, tilt_rate, rolling_angle, rolling_rate, twist : ndarray, shape (n,)
         [rad], [rad/s]. The rolling angle and the twist are unwrapped at every step of the engine, the twist
         from 0. The rolling angle is NaN at rest: before the uplift, and where the tilt is below 5e-6 alpha.
