@@ -14,12 +14,18 @@ NOT_RUN: Outcome = "not run"
 
 # tightest first: what comes later rests on what comes earlier
 LAYERS = (
+    "records",
     "equations",
     "conserved",
     "exact",
+    "rest",
     "invariance",
+    "properties",
     "order",
     "residual",
+    "metrics",
+    "studies",
+    "traces",
     "agreement",
     "baseline",
 )
