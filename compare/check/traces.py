@@ -18,13 +18,12 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 
 from ..execution import run_engine
-from ..runs import installed_engines, own_model
-from .bench import Bench, crashed
-from .finding import Finding, at_most, not_run
+from ..runs import own_model
+from .bench import Bench, crashed, engines_here, not_here
+from .finding import Finding, at_most
 from .polyline import steady
 
 LAYER = "traces"
-ENGINES = ("mujoco", "pybullet")
 GRAVITY = 9.81
 SQUAT = Cylinder(semidiagonal=3.0, tan_alpha=1.0, height=5.0, transverse_inertia=3.0, axial_inertia=1.6)
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -66,12 +65,8 @@ PEAK, PASS = 1e-7, 1e-6  # [rad]; [s, rad]
 
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this layer."""
-    for engine in ENGINES:
-        if engine not in installed_engines():
-            yield not_run(
-                LAYER, f"traces of {engine}", part=f"{engine}", note=f"{engine} is not installed here"
-            )
-            continue
+    yield from not_here(LAYER, "fields of a trace")
+    for engine in engines_here():
         for support in ("guided", "free"):
             yield from _shaken(bench, engine, support)
         yield from _uplift(bench, engine)
