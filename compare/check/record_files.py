@@ -105,7 +105,7 @@ def _damaged(folder: Path) -> Finding:
         "two time steps": ([good, good.replace(".0100", ".0050")], None),
         "another unit than given": ([good] * 2, "m/s2"),
         "no unit at all": ([good.replace("IN UNITS OF G", "")] * 2, None),
-        "a velocity": ([good.replace("ACCELERATION", "VELOCITY").replace("OF G", "OF CM/S")] * 2, None),
+        "a velocity": ([good.replace("ACCELERATION TIME SERIES IN UNITS OF G", "VELOCITY")] * 2, "g"),
         "a unit that is unknown": ([csv(values, 0.01, "mm/s^2", ",")] * 2, None),
         "a sample left out": (["\n".join([*lines[:9], *lines[10:]])] * 2, None),
         "times that fall": (["\n".join([lines[0], *lines[:0:-1]])] * 2, None),

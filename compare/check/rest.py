@@ -45,15 +45,20 @@ def _first_sample(bench: Bench) -> Iterator[Finding]:
     step = 0.1
     shape = shape_of(CYLINDER, GRAVITY)
     A = quadrature.tilt_inertia(shape)
-    time = 2e-3 / math.sqrt(GRAVITY * CYLINDER.semidiagonal / A)
-    found = bench.reduced.simulate(
-        CYLINDER,
-        GroundMotion(samples, step),
-        duration=time,
-        sample_step=time,
-        rtol=1e-12,
-        gravity=GRAVITY,
-    )
+    p = math.sqrt(GRAVITY * CYLINDER.semidiagonal / A)
+
+    def after(time: float) -> Any:
+        return bench.reduced.simulate(
+            CYLINDER,
+            GroundMotion(samples, step),
+            duration=time,
+            sample_step=time,
+            rtol=1e-12,
+            gravity=GRAVITY,
+        )
+
+    time, at_once = 2e-3 / p, 5e-7 / p
+    found = after(time)
     yield at_most(
         LAYER,
         "uplift at a first sample above the threshold",
@@ -69,12 +74,17 @@ def _first_sample(bench: Bench) -> Iterator[Finding]:
     # theta'' = F + F' t with F = (h/A) (|a| - (g + az) tan(alpha))
     jump = shape.h / A * (size - (GRAVITY + a[2]) * CYLINDER.tan_alpha)
     rise = shape.h / A * (float(a[:2] @ slope[:2]) / size - slope[2] * CYLINDER.tan_alpha)
-    expected = 0.5 * jump * time**2 + rise * time**3 / 6.0
+
+    def expected(time: float) -> float:
+        return 0.5 * jump * time**2 + rise * time**3 / 6.0
+
     part = "start after an uplift at a first sample above the threshold"
     yield at_most(
         LAYER,
         "tilt just after it",
-        abs(found.tilt[-1] / expected - 1.0),
+        max(
+            abs(found.tilt[-1] / expected(time) - 1.0), abs(after(at_once).tilt[-1] / expected(at_once) - 1.0)
+        ),
         EARLY,
         reason="two terms of its series: K0 t^2/2 and the slope of the record",
         part=part,
