@@ -18,7 +18,7 @@ from rockwobble.models import Case, Cylinder, InitialState
 from ..foreign import Foreign, ForeignTrajectory, read_trajectory
 from . import lagrange
 from .bench import Bench
-from .finding import Finding, at_most
+from .finding import Finding, worst_of
 from .made_traces import Array
 
 LAYER = "metrics"
@@ -50,16 +50,16 @@ def check(bench: Bench) -> Iterator[Finding]:
         }
         for name, (text, offset) in forms.items():
             found = _read(path, text, offset)
-            yield _worst(f"external trajectory, {name}", _errors(found, name), ROUNDING, "digits printed")
+            yield _finding(f"external trajectory, {name}", _errors(found, name), ROUNDING, "digits printed")
         found = _read(path, _quaternions(coarse, placed=True), 0.0)
-        yield _worst(
+        yield _finding(
             "external trajectory, samples twice as far apart",
             _errors(found, "places"),
             COARSE,
             "local cubic between samples 0.02 s apart",
         )
         found = _read(path, _quaternions(fine, placed=True), 0.0)
-        yield _worst(
+        yield _finding(
             "turning points of an external trajectory",
             _turning(found),
             TURNING,
@@ -155,15 +155,13 @@ def _read(path: Path, text: str, offset: float) -> ForeignTrajectory:
     return read_trajectory(Foreign(path=path, time_offset=offset), CASE)
 
 
-def _worst(name: str, errors: Mapping[str, float], bound: float, why: str) -> Finding:
-    place = max(errors, key=lambda key: abs(errors[key]) if math.isfinite(errors[key]) else math.inf)
-    return at_most(
+def _finding(name: str, errors: Mapping[str, float], bound: float, why: str) -> Finding:
+    return worst_of(
         LAYER,
         name,
-        abs(errors[place]),
+        errors,
         bound,
         unit="s, rad, m",
         reason=f"a motion that is written down; {why}",
         part="external trajectories: units, quaternions, places or turning points",
-        note=f"worst of {len(errors)}: {place}",
     )

@@ -22,7 +22,7 @@ from ..tilt import tilt_rms, tilt_rms_relative
 from ..traces import make_pair
 from ..turning import direction_difference, first_unresolved_pass, turn_difference
 from .bench import Bench
-from .finding import Finding, at_most
+from .finding import Finding, worst_of
 from .made_traces import Array, MadeTrace, made, passes
 
 LAYER = "metrics"
@@ -37,15 +37,15 @@ WORK = 1e-7
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part."""
     del bench
-    yield _worst("differences of tilt", _tilts(), "RMS of the tilt (compare/tilt.py)")
-    yield _worst(
+    yield _finding("differences of tilt", _tilts(), "RMS of the tilt (compare/tilt.py)")
+    yield _finding(
         "one time axis for two traces", _axes(), "interpolation or window of a pair (compare/traces.py)"
     )
-    yield _worst("distance of the contact points", _contacts(), "RMS of the contact (compare/contact.py)")
-    yield _worst("differences of turn and direction", _turns(), "turning (compare/turning.py)")
-    yield _worst("agreement time and passes within it", _agreement(), "agreement time (compare/horizon.py)")
-    yield _worst("energy lost", _energies(), "energy lost (compare/energy.py)", WORK)
-    yield _worst("a row of the summary", _row(), "columns of the summary (compare/summary.py)")
+    yield _finding("distance of the contact points", _contacts(), "RMS of the contact (compare/contact.py)")
+    yield _finding("differences of turn and direction", _turns(), "turning (compare/turning.py)")
+    yield _finding("agreement time and passes within it", _agreement(), "agreement time (compare/horizon.py)")
+    yield _finding("energy lost", _energies(), "energy lost (compare/energy.py)", WORK)
+    yield _finding("a row of the summary", _row(), "columns of the summary (compare/summary.py)")
 
 
 def _tilts() -> dict[str, float]:
@@ -249,16 +249,7 @@ def _none(value: float) -> float:
     return 0.0 if math.isnan(value) else math.inf
 
 
-def _worst(name: str, errors: Mapping[str, float], part: str, bound: float = ROUNDING) -> Finding:
-    place = max(errors, key=lambda key: abs(errors[key]) if math.isfinite(errors[key]) else math.inf)
-    return at_most(
-        LAYER,
-        name,
-        abs(errors[place]),
-        bound,
-        reason="made up so that each value is known; rounding"
-        if bound == ROUNDING
-        else "made up so that each value is known; samples 0.01 s apart",
-        part=part,
-        note=f"worst of {len(errors)}: {place}",
-    )
+def _finding(name: str, errors: Mapping[str, float], part: str, bound: float = ROUNDING) -> Finding:
+    why = "rounding" if bound == ROUNDING else "samples 0.01 s apart"
+    reason = f"made up so that each value is known; {why}"
+    return worst_of(LAYER, name, errors, bound, reason=reason, part=part)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from rockwobble.models import Case, Cylinder, InitialState
 from ..distributions import contrast, ks_distance, median_ratio, member_factor, standing_wasserstein
 from ..predicted_horizon import Prediction, close_pass, estimated_error, predict_horizon, verdict
 from .bench import Bench
-from .finding import Finding, at_most
+from .finding import Finding, worst_of
 from .made_traces import Array, MadeTrace, made, passes
 
 LAYER = "metrics"
@@ -28,26 +28,31 @@ GROWTH, ERROR = 0.8, 1e-5  # of a perturbed copy [1/s], of an engine in its firs
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part."""
     del bench
-    yield _worst(
+    part = "predicted agreement time (compare/predicted_horizon.py)"
+    yield worst_of(
+        LAYER,
         "predicted agreement times",
         _predictions(),
-        STEP,
-        "a difference that grows as an exponential reaches 1 % where it must; samples 0.01 s apart",
-        "predicted agreement time (compare/predicted_horizon.py)",
+        STEP * (1.0 + 1e-9),
+        reason="a difference that grows as an exponential reaches 1 % where it must; samples 0.01 s apart",
+        part=part,
+        unit="s",
     )
-    yield _worst(
+    yield worst_of(
+        LAYER,
         "words on a prediction, and scale of an estimated error",
         _verdicts(),
         ROUNDING,
-        "within a factor of two; in proportion to the step, at any size",
-        "predicted agreement time (compare/predicted_horizon.py)",
+        reason="within a factor of two; in proportion to the step, at any size",
+        part=part,
     )
-    yield _worst(
+    yield worst_of(
+        LAYER,
         "distances of distributions of peaks",
         _distances(),
         ROUNDING,
-        "counted value by value",
-        "distributions (compare/distributions.py)",
+        reason="counted value by value",
+        part="distributions (compare/distributions.py)",
     )
 
 
@@ -157,17 +162,3 @@ def _distances() -> dict[str, float]:
 
 def _unlike(found: str, expected: str) -> float:
     return 0.0 if found == expected else math.inf
-
-
-def _worst(name: str, errors: Mapping[str, float], bound: float, reason: str, part: str) -> Finding:
-    place = max(errors, key=lambda key: abs(errors[key]) if math.isfinite(errors[key]) else math.inf)
-    value = abs(errors[place])
-    return at_most(
-        LAYER,
-        name,
-        value,
-        bound * (1.0 + 1e-9),
-        reason=reason,
-        part=part,
-        note=f"worst of {len(errors)}: {place}",
-    )

@@ -13,7 +13,7 @@ import numpy as np
 from rockwobble.models import Case, Suite, read_suite
 
 from .bench import Bench
-from .finding import Finding, at_most
+from .finding import Finding, at_most, worst_of
 
 LAYER = "studies"
 TEXT = """
@@ -76,16 +76,20 @@ def check(bench: Bench) -> Iterator[Finding]:
         suite = read_suite(path)
     yield _expansion(suite)
     named = {case.name: case for case in suite.cases}
-    yield _worst(
-        "fields of a case, from a suite file",
-        _field_errors(named["fields"]),
-        "suite file: keys of a case, or their units",
-    )
-    yield _worst(
-        "ground motions of a suite file",
-        _motion_errors(named),
-        "suite file: scale, rotation, shift or strength of a motion",
-    )
+    for name, errors, part in (
+        (
+            "fields of a case, from a suite file",
+            _field_errors(named["fields"]),
+            "keys of a case, or their units",
+        ),
+        (
+            "ground motions of a suite file",
+            _motion_errors(named),
+            "scale, rotation, shift or strength of a motion",
+        ),
+    ):
+        reason = "the same numbers worked out by hand, to rounding"
+        yield worst_of(LAYER, name, errors, ROUNDING, reason=reason, part=f"suite file: {part}")
 
 
 def _expansion(suite: Suite) -> Finding:
@@ -167,16 +171,3 @@ def _motion_errors(named: dict[str, Case]) -> dict[str, float]:
         apart = float(np.abs(motion.acceleration - np.column_stack([0.0 * along, along])).max()) / 9.81
         found["pulse"] = apart if abs(motion.duration - 1.5) < ROUNDING else math.nan
     return found
-
-
-def _worst(name: str, errors: dict[str, float], part: str) -> Finding:
-    place = max(errors, key=lambda key: errors[key] if math.isfinite(errors[key]) else math.inf)
-    return at_most(
-        LAYER,
-        name,
-        errors[place],
-        ROUNDING,
-        reason="the same numbers worked out by hand, to rounding",
-        part=part,
-        note=f"worst of {len(errors)}: {place}",
-    )
