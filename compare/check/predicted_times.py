@@ -149,6 +149,7 @@ def _distances() -> dict[str, float]:
     found = contrast(failed, fallen, fell, fell_there, draws=10)
     return {
         "Kolmogorov-Smirnov": ks_distance(ours, theirs) - distance,
+        "the same the other way round": ks_distance(theirs, ours) - distance,
         "Wasserstein of a shift": standing_wasserstein(ours, standing + moved) - moved,
         "ratio of medians": median_ratio(ours, theirs) - middles,
         "factor of a member": member_factor(ours, theirs) - middle,

@@ -78,7 +78,7 @@ def _first_sample(bench: Bench) -> Iterator[Finding]:
     rise = shape.h / A * (float(a[:2] @ slope[:2]) / size - slope[2] * CYLINDER.tan_alpha)
 
     def expected(time: float) -> float:
-        return 0.5 * jump * time**2 + rise * time**3 / 6.0
+        return float(0.5 * jump * time**2 + rise * time**3 / 6.0)
 
     part = "start after an uplift at a first sample above the threshold"
     yield at_most(
