@@ -70,7 +70,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 def _motion(time: Array) -> tuple[Array, Array, Array, Array]:
     """Tilt, azimuth, twist (n,) [rad] and drift of the place (n, 3) [m]."""
     tilt = ALPHA * (0.5 + 0.3 * np.cos(2.0 * time - LATE) - 0.02 * time)
-    return tilt, 0.4 + 1.5 * time, 0.9 * time, np.outer(time / LENGTH, DRIFT) * B
+    return tilt, 0.4 + 1.5 * time, 2.2 * time, np.outer(time / LENGTH, DRIFT) * B
 
 
 def _centre(time: Array) -> Array:
@@ -136,8 +136,10 @@ def _quaternions(time: Array, *, placed: bool, shift: float = 0.0) -> str:
     tilt, azimuth, twist, _ = _motion(time + shift)
     own = twist - azimuth  # about the axis of the cylinder
     half, lean, mean = 0.5 * tilt, 0.5 * (azimuth - own), 0.5 * twist
-    columns = [time, np.cos(half) * np.cos(mean), -np.sin(half) * np.sin(lean)]
-    columns += [np.sin(half) * np.cos(lean), np.cos(half) * np.sin(mean)]
+    w, x = np.cos(half) * np.cos(mean), -np.sin(half) * np.sin(lean)
+    y, z = np.sin(half) * np.cos(lean), np.cos(half) * np.sin(mean)
+    # as an instrument gives them: q and -q are one pose, and the scalar part is not negative
+    columns = [time, *(np.where(w < 0.0, -1.0, 1.0) * part for part in (w, x, y, z))]
     head = "time, qw, qx, qy, qz"
     if placed:
         return _csv(
