@@ -75,13 +75,7 @@ def _free(bench: Bench, cylinder: Cylinder) -> Iterator[Finding]:
 
 def _limit(bench: Bench, cylinder: Cylinder) -> Finding:
     shape = shape_of(cylinder, GRAVITY)
-    # near the apex B = J theta^2
-    small = 1e-4
-    inertia = (
-        2.0 * quadrature.turn_inertia(shape, np.array([small]))[0]
-        - 0.25 * (quadrature.turn_inertia(shape, np.array([2.0 * small]))[0])
-    )
-    limit = math.pi * math.sqrt(quadrature.tilt_inertia(shape) * small**2 / inertia)
+    limit = math.pi * math.sqrt(quadrature.tilt_inertia(shape) / quadrature.cone_inertia(shape))
     found = bench.reduced.simulate(
         cylinder,
         initial=InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=VANISHING_SPIN),
