@@ -33,7 +33,7 @@ SHAKEN = Case(
     "even acceleration in three components",
     SQUAT,
     steady(GROUND, 0.9),
-    InitialState(0.6 * SQUAT.alpha, tilt_rate=-0.1, rolling_angle=0.7, rolling_rate=1.1),
+    InitialState(0.5 * SQUAT.alpha, tilt_rate=-0.1, rolling_angle=0.7, rolling_rate=1.1),
     0.9,
     friction=2.0,
 )
