@@ -24,6 +24,7 @@ OVERTURNED = 0.5 * math.pi - 1e-3  # [rad] contact of the side may stop the fall
 
 FLIGHT = 1e-3  # of b, height that is flight: a rim that slides may hover below it in MuJoCo
 SLIP = 0.01  # of b, slip that is more than the creep of a rim that rolls
+_ROUNDING = 1e-6  # of a step
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
     "x", "y", "z", "energy", "energy_error", "slip", "wall_contact",
@@ -239,7 +240,9 @@ class Recorder:
     def _sample(self, time: Array, rows: Callable[[Indices], Array]) -> None:
         """Take the samples that are due; `rows` gives the fields at some of the steps."""
         last = len(time) - 1
-        due = self._samples[self._taken : np.searchsorted(self._samples, time[-1], side="right")]
+        # the end of a run, a sum of samples, may round beyond its last step
+        reached = time[-1] + _ROUNDING * self._scene.time_step
+        due = self._samples[self._taken : np.searchsorted(self._samples, reached, side="right")]
         # the steps around each sample; -1 is the last step of the chunk before
         before = np.searchsorted(time, due, side="right") - 1
         after = np.minimum(before + 1, last)
