@@ -29,6 +29,7 @@ FLIGHT = 1e-3  # of b, height that is flight: a rim that slides may hover below 
 SLIP = 0.01  # of b, slip that is more than the creep of a rim that rolls
 # of the energy scale: a base that opens by less than 1e-4 alpha has not moved
 _LEAST_ENERGY = 2e-4
+_ROUNDING = 1e-6  # of a step
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
     "base_x", "base_y", "x", "y", "z", "energy", "energy_error", "slip", "wall_contact",
@@ -261,7 +262,9 @@ class Recorder:
     def _sample(self, time: Array, rows: Callable[[Indices], Array]) -> None:
         """Take the samples that are due; `rows` gives the fields at some of the steps."""
         last = len(time) - 1
-        due = self._samples[self._taken : np.searchsorted(self._samples, time[-1], side="right")]
+        # the end of a run, a sum of samples, may round beyond its last step
+        reached = time[-1] + _ROUNDING * self._scene.time_step
+        due = self._samples[self._taken : np.searchsorted(self._samples, reached, side="right")]
         # the steps around each sample; -1 is the last step of the chunk before
         before = np.searchsorted(time, due, side="right") - 1
         after = np.minimum(before + 1, last)

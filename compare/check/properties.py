@@ -144,7 +144,7 @@ def _backwards(bench: Bench) -> Finding:
 def _equivalence(bench: Bench, model: str) -> Finding:
     """Ground that falls with 0.3 g all the time is a gravity of 0.7 g, in motion, at uplift and at rest."""
     fall = 0.3 * GRAVITY
-    level = SHOCK * [0.9, 0.9, 0.0]
+    level = SHOCK * [0.8, 0.8, 0.0]
     values = np.vstack([np.zeros((1, 3)), 0.4 * level[:-1], level, np.zeros((1, 3))])
     times = np.arange(len(values)) * 0.5
     length = float(times[-1])

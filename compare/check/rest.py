@@ -182,5 +182,6 @@ def _threshold(bench: Bench) -> Finding:
 
 def _ended(found: Any, outcome: str) -> bool:
     if outcome == "rest":
-        return bool(found.outcome == "rest" and found.tilt[-1] == 0.0 and np.isnan(found.rolling_angle[-1]))
+        still = found.tilt[-1] == found.tilt_rate[-1] == 0.0
+        return bool(found.outcome == "rest" and still and np.isnan(found.rolling_angle[-1]))
     return bool(found.outcome == outcome and np.isfinite(found.rolling_angle).all())

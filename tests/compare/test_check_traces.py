@@ -43,7 +43,7 @@ def test_traces_of_an_engine_hold(monkeypatch: pytest.MonkeyPatch, engine: str) 
     monkeypatch.setattr(bench, "ENGINES", (engine,))
     monkeypatch.setattr(traces, "run_engine", once)
     findings = list(traces.check(made()))
-    assert len(findings) == 32
+    assert len(findings) == 33
     assert not [f"{f.name}: {f.value}" for f in findings if f.failed]
 
 
