@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .order_statistics import CONFIDENCE, Interval, quantile_interval
+from .order_statistics import CONFIDENCE, Interval, end_index, quantile_interval
 
 Array = NDArray[np.float64]
 Flags = NDArray[np.bool_]
@@ -25,8 +25,6 @@ MARGIN = 0.05
 POWER = 0.8
 # probability of a difference as large by chance, below which two methods are told apart
 SIGNIFICANCE = 0.05
-# in place of the logarithm of an infinite ratio, where sums are taken: larger than that of any other
-_ENDLESS = 1e3
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,8 +51,8 @@ class Contrast:
         Of Wilcoxon's signed ranks of the logarithms: probability of a difference as large if both methods
         could be exchanged in every member. Infinite ratios have the largest ranks; ratios of 1 have none.
     within_reach : float
-        Ratio above 1 of all members that as many, scattered as these are, tell from 1 with a probability of
-        `POWER`; infinite where none does.
+        The least ratio above 1 for which, and for its inverse, the interval of the median of as many members,
+        scattered as these are, leaves 1 out with a probability of `POWER`; infinite where there is none.
     overturned, against_overturned : int
         Runs that overturn.
     both_overturned : int
@@ -140,14 +138,22 @@ def log_ratios(peaks: Array, against: Array, overturned: Flags, against_overturn
 
 
 def signed_rank_p(logarithms: Array) -> float:
-    """Return the probability of Wilcoxon's signed ranks, infinite values the largest and zeros left out."""
-    from scipy.stats import rankdata, wilcoxon
+    """Return the probability of Wilcoxon's signed ranks, infinite values the largest and zeros left out.
+
+    Exact for every number of members, and for ties as those of infinite ratios, which share a mean rank:
+    scipy takes a normal distribution there, or tries all signs one by one.
+    """
+    from scipy.stats import rankdata
 
     differs = logarithms[logarithms != 0.0]
-    if not len(differs):
-        return 1.0
-    # ranks of ranks are the same ranks, and finite
-    return float(wilcoxon(np.sign(differs) * rankdata(np.abs(differs))).pvalue)
+    ranks = np.rint(2.0 * rankdata(np.abs(differs))).astype(int)  # mean ranks are whole or a half
+    # how often each sum of the ranks of the larger ones comes about where every sign is a coin
+    sums = np.zeros(ranks.sum() + 1)
+    sums[0] = 1.0
+    for rank in ranks:
+        sums = 0.5 * (sums + np.concatenate([np.zeros(rank), sums[:-rank]]))
+    found = ranks[differs > 0.0].sum()
+    return min(2.0 * float(min(sums[: found + 1].sum(), sums[found:].sum())), 1.0)
 
 
 def mcnemar_p(only: int, only_there: int) -> float:
@@ -191,22 +197,27 @@ def largest_share_unseen(count: int) -> float:
 def ratio_within_reach(logarithms: Array) -> float:
     """Return the ratio above 1 that as many members, scattered as these, tell from 1; infinite without one.
 
-    Signed ranks find a shift with the wanted power where the mean of two members is above zero with a
-    probability of 1/2 + (z_significance + z_power)/sqrt(3 n) (G. E. Noether, J. Am. Stat. Assoc. 82, 645-647,
-    1987). Shifted are the members as they are, less their median and as often mirrored: which method is the
-    first makes no difference.
+    Told is a ratio that the interval of the median leaves 1 out for. Its lower end, the order statistic of
+    index k, is above 1 with the wanted power where a member is with the share q: I_q(n + 1 - k, k) is the
+    power. The members scatter about the ratio as these do about their median; where they scatter more to one
+    side, the side counts on which the ratio has to be farther from 1.
+
+    Parameters
+    ----------
+    logarithms : ndarray, shape (n,)
+        Of the ratios, see `log_ratios`, without those that have none.
     """
+    from scipy.special import betaincinv
+
     count = len(logarithms)
-    reach = _normal(1.0 - 0.5 * SIGNIFICANCE) + _normal(POWER)
-    share = 0.5 + reach / math.sqrt(3.0 * count) if count else 1.0
+    index = end_index(count, 0.5, 0.5 * (1.0 - CONFIDENCE)) if count else None
     middle = quantile_interval(logarithms, 0.5).value
-    if share >= 1.0 or not math.isfinite(middle):
+    if index is None or not math.isfinite(middle):
         return math.inf
-    scattered = np.clip(logarithms - middle, -_ENDLESS, _ENDLESS)
-    first, second = np.triu_indices(count, 1)
-    means = 0.5 * (scattered[first] + scattered[second])
-    needed = float(np.quantile(np.concatenate([means, -means]), share))
-    return math.inf if needed > 0.25 * _ENDLESS else math.exp(max(needed, 0.0))
+    share = float(betaincinv(count + 1 - index, index, POWER))
+    scatter = logarithms - middle
+    needed = (float(np.quantile(side, share, method="inverted_cdf")) for side in (scatter, -scatter))
+    return math.exp(max(*needed, 0.0))
 
 
 def adjusted(probabilities: Array) -> Array:

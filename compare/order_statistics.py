@@ -72,11 +72,11 @@ def quantile_interval(values: Array, share: float) -> Interval:
     if not count:
         return Interval(value=math.nan, low=-math.inf, high=math.inf)
     left_out = 1.0 - CONFIDENCE
-    lower, upper = (_index(count, part, 0.5 * left_out) for part in (share, 1.0 - share))
-    if upper is None:
-        lower = _index(count, share, left_out)
-    elif lower is None:
-        upper = _index(count, 1.0 - share, left_out)
+    lower, upper = (end_index(count, part, 0.5 * left_out) for part in (share, 1.0 - share))
+    if upper is None and lower is not None:
+        lower = end_index(count, share, left_out)
+    elif lower is None and upper is not None:
+        upper = end_index(count, 1.0 - share, left_out)
     return Interval(
         value=_between(ordered, min(max(share * (count + 1), 1.0), count)),
         low=-math.inf if lower is None else _between(ordered, lower),
@@ -85,8 +85,11 @@ def quantile_interval(values: Array, share: float) -> Interval:
 
 
 @cache
-def _index(count: int, share: float, left_out: float) -> float | None:
-    """Return the index, from 1, of what is above the quantile with a probability `left_out`; None without."""
+def end_index(count: int, share: float, left_out: float) -> float | None:
+    """Return the index, from 1, of the order statistic that is above the quantile with a given probability.
+
+    None where even the smallest value is so with more than the probability `left_out`.
+    """
     from scipy.optimize import brentq
     from scipy.special import betainc
 

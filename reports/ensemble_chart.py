@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import compress
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from rockwobble.compare import Ensemble
 
 MODELS = ("recess", "rolling", "planar")
-_BAR = "#222222"
+_BAR, _BEYOND = "#222222", "#D55E00"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -106,39 +107,46 @@ def ratio_chart(found: Ensemble) -> go.Figure | None:
     if not rows:
         return None
     low, high = ratio_span(rows)
-    figure = new_figure("ratio of the peak tilts of a member [-]", "", height=110 + 60 * len(rows))
+    figure = new_figure("ratio of peak tilts [-]", "method / against [-]", height=190 + 60 * len(rows))
     figure.add_vrect(
         x0=1.0 / (1.0 + MARGIN), x1=1.0 + MARGIN, fillcolor="#e8eef4", line_width=0, layer="below"
     )
     for place, row in enumerate(rows):
-        symbols = np.where(row.ratios == 0.0, "triangle-left", "circle").astype(object)
-        symbols[np.isinf(row.ratios)] = "triangle-right"
+        inside = (row.ratios > 0.0) & np.isfinite(row.ratios)
         figure.add_trace(
             go.Scatter(
-                x=small(np.clip(row.ratios, low, high)),
-                y=np.full(len(row.ratios), place - 0.2),
+                x=small(row.ratios[inside]),
+                y=np.full(inside.sum(), place - 0.2),
                 mode="markers",
                 name="members",
                 showlegend=place == 0,
-                marker={
-                    "symbol": list(symbols),
-                    "size": np.where(symbols == "circle", 6, 10),
-                    "color": np.where(symbols == "circle", "#0072B2", "#D55E00"),
-                    "opacity": 0.6,
-                },
-                cliponaxis=False,
-                text=[
-                    "overturns by one alone" if ratio in (0.0, np.inf) else f"{ratio:.3f}"
-                    for ratio in row.ratios
-                ],
-                customdata=row.members,
-                hovertemplate="%{customdata}: %{text}<extra></extra>",
+                marker={"size": 6, "color": "#0072B2", "opacity": 0.6},
+                text=list(compress(row.members, inside)),
+                hovertemplate="%{text}: %{x:.3f}<extra></extra>",
             )
         )
+        for edge, side, beyond in ((low, "left", row.ratios == 0.0), (high, "right", np.isinf(row.ratios))):
+            if not beyond.any():
+                continue
+            figure.add_trace(
+                go.Scatter(
+                    x=[edge],
+                    y=[place - 0.2],
+                    mode="markers+text",
+                    showlegend=False,
+                    marker={"symbol": f"triangle-{side}", "size": 11, "color": _BEYOND},
+                    cliponaxis=False,
+                    text=[str(int(beyond.sum()))],
+                    textposition="middle right" if side == "left" else "middle left",
+                    textfont={"color": _BEYOND, "size": 12},
+                    hovertext="<br>".join(compress(row.members, beyond)),
+                    hovertemplate="%{hovertext}: one method alone overturns<extra></extra>",
+                )
+            )
         for ends, width, name in ((row.spread, 1.2, "5 to 95 %"), (row.ends, 5.0, "95 % of the median")):
             figure.add_trace(
                 go.Scatter(
-                    x=small(np.clip(ends, low, high)),
+                    x=np.clip(ends, low, high),
                     y=[place + 0.2] * 2,
                     mode="lines",
                     name=name,
@@ -173,8 +181,11 @@ def ratio_chart(found: Ensemble) -> go.Figure | None:
     figure.update_yaxes(
         range=[len(rows) - 0.4, -0.6],
         tickvals=list(range(len(rows))),
-        # one below the other, or a phone has no room for the picture
-        ticktext=[f"{row.method}<br>/ {row.against}<br>n = {len(row.ratios)}" for row in rows],
+        ticktext=["<br>".join(row.label) for row in rows],
+        showgrid=False,
+        zeroline=False,
+        ticks="",
+        ticklabelstandoff=10,  # room for the triangles
     )
     return reserve_legend(figure, 4)
 

@@ -102,9 +102,10 @@ def _draw_ratios(axes: Any, rows: list[RatioRow]) -> None:
     axes.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     axes.set_xticks([], minor=True)
     axes.set_ylim(len(rows) - 0.4, -0.6)
-    axes.set_yticks(range(len(rows)), [row.label for row in rows])
+    axes.set_yticks(range(len(rows)), ["\n".join(row.label) for row in rows], fontsize=9)
+    axes.tick_params(axis="y", length=0.0, pad=10.0)  # room for the triangles
     axes.grid(axis="x", color=_LIGHT, linewidth=0.6)
-    axes.set_xlabel("ratio of the peak tilts of a member [-]")
+    axes.set_xlabel("ratio of peak tilts of the same member [-]")
 
 
 _DOT = {"markersize": 4, "alpha": 0.55, "markeredgewidth": 0.0}

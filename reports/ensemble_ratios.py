@@ -47,9 +47,9 @@ class RatioRow:
     spread: tuple[float, float]
 
     @property
-    def label(self) -> str:
-        """What stands beside the line."""
-        return f"{self.method} / {self.against} (n = {len(self.ratios)})"
+    def label(self) -> tuple[str, str]:
+        """What stands beside the line, in two lines: a phone has no room for one."""
+        return self.method, f"/ {self.against}, n = {len(self.ratios)}"
 
 
 def ratio_rows(found: Ensemble) -> list[RatioRow]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 WITHIN = f"{100.0 * MARGIN:g} %"
 METHODS = ("method", "runs", "uplift", "overturn", "fail", "median [α]", "16 to 84 % [α]")
 CONTRASTS = (
-    *("method", "against", "members", "higher", "lower", "median ratio", "5 to 95 %", "p", "p (Holm)"),
+    *("method", "against", "n", "higher", "lower", "median ratio", "5 to 95 %", "p", "p (Holm)"),
     *(f"within {WITHIN}", "within reach"),
 )
 OVERTURNING = ("method", "against", "both", "only method", "only against", "neither", "difference [%]", "p")
@@ -31,18 +31,18 @@ INTRODUCTION = (
 )
 CAPTION = (
     "Above: share of the members whose peak tilt is at most that of the axis; what a curve lacks to 1 at the "
-    "triangle overturns. Below: ratio of the two peaks of each member (dots; a triangle at an edge: overturns "
-    "by one method alone), the median with its 95 % interval (diamond and thick bar), 5 to 95 % of the members "
-    f"(thin bar), and the margin of {WITHIN} (shaded)."
+    "triangle overturns. Below: ratio of the two peaks of each member (dots; triangles at the edges count "
+    "those that overturn by one method alone), the median with its 95 % interval (diamond and thick bar), 5 "
+    f"to 95 % of the members (thin bar), and the margin of {WITHIN} (shaded)."
 )
 LEGEND = (
     "Peak tilt in α; an overturned run is larger than all others. In brackets: 95 % intervals, from order "
     "statistics. Ratio: of the two peaks of a member, ∞ where it overturns by the method alone, 0 where by "
-    "the other alone; members that overturn or rest by both have none. 5 to 95 %: of the members. p: "
+    "the other alone; members that overturn or rest by both have none, n have one. 5 to 95 %: of these. p: "
     "Wilcoxon's signed ranks of the log ratios; in the table of overturning McNemar's exact test; Holm: "
     f"corrected for all pairs. within {WITHIN}: yes only where the whole interval of the median ratio is, no "
-    "where none of it is; a p above 0.05 is no agreement. within reach: ratio that as many members, so "
-    f"scattered, tell from 1 with a power of {100.0 * POWER:g} %."
+    "where none of it is; a p above 0.05 is no agreement. within reach: median ratio that as many members, "
+    f"so scattered, tell from 1 as well as its inverse, with a power of {100.0 * POWER:g} %."
 )
 VERDICTS = {"within": "yes", "beyond": "no", "undecided": "undecided"}
 _MOST_NAMED = 4
@@ -72,14 +72,14 @@ def method_rows(found: Ensemble) -> list[tuple[str, ...]]:
     ]
 
 
-def contrast_rows(found: Ensemble, *, intervals: bool = True) -> list[tuple[str, ...]]:
+def contrast_rows(found: Ensemble) -> list[tuple[str, ...]]:
     """Return the cells of the table of each method against each, by `CONTRASTS`."""
     return [
         (
             row["method"],
             row["against"],
             *(str(row[name]) for name in ("compared", "higher", "lower")),
-            ratio_with_interval(row) if intervals else _ratio(row["ratio"]),
+            ratio_with_interval(row),
             f"{_ratio(row['ratio_05'])} to {_ratio(row['ratio_95'])}",
             _probability(row["ratio_p"]),
             _probability(row["ratio_p_adjusted"]),
@@ -121,7 +121,7 @@ def main_pairs(found: Ensemble) -> list[dict[Any, Any]]:
 
 
 def statements(found: Ensemble) -> list[str]:
-    """Return what the members say: what is the same, what differs, what is open, and the pairs that matter."""
+    """Return what the members say: what is the same, what differs, what is open; and those that matter."""
     contrasts = found.contrasts
     if not len(contrasts):
         return ["Fewer than two members ran by any two methods: there is nothing to hold against each other."]
@@ -152,16 +152,16 @@ def statements(found: Ensemble) -> list[str]:
 def _pair_line(row: dict[Any, Any]) -> str:
     name = f"{row['method']} against {row['against']}"
     fallen = f"{row['overturned']} and {row['against_overturned']} of {row['count']} overturn, "
-    fallen += f"{row['both_overturned']} by both (p = {_probability(row['overturned_p'])})."
+    fallen += f"{row['both_overturned']} by both ({_stated(row['overturned_p'])})."
     if not row["compared"]:
         return f"{name}: no member has a ratio; {fallen}"
     reach = row["within_reach"]
     tell = f"{row['compared']} members so scattered tell " + (
-        f"a ratio of {_ratio(reach)}" if math.isfinite(reach) else "no ratio from 1"
+        f"a ratio of {_ratio(reach)} or its inverse" if math.isfinite(reach) else "no ratio on one side of 1"
     )
     return (
         f"{name}: median ratio {ratio_with_interval(row)}, higher in {row['higher']} and lower in "
-        f"{row['lower']} of {row['compared']} members (p = {_probability(row['ratio_p'])}); {tell}"
+        f"{row['lower']} of {row['compared']} members ({_stated(row['ratio_p'])}); {tell}"
         + (f"; {fallen}" if row["overturned"] or row["against_overturned"] else ".")
     )
 
@@ -170,14 +170,17 @@ def _told(found: Ensemble) -> str:
     """Return which methods are told apart, chance taken into account for every pair."""
     contrasts, pairs = found.contrasts, len(found.contrasts)
     after = f" after Holm's correction for {pairs} pairs" if pairs > 1 else ""
-    apart = contrasts[contrasts["ratio_p_adjusted"] < SIGNIFICANCE].sort_values("ratio_p")
-    if not len(apart):
+    # those that matter first, then the others by their probability
+    rows = main_pairs(found) + contrasts.sort_values("ratio_p").to_dict("records")
+    every = {(row["method"], row["against"]): row for row in rows}
+    apart = [row for row in every.values() if row["ratio_p_adjusted"] < SIGNIFICANCE]
+    if not apart:
         return (
             f"No peaks are told apart (p below {SIGNIFICANCE:g}{after}), which does not make them the same."
         )
     told = [
         f"{row['method']} from {row['against']} (higher in {row['higher']}, lower in {row['lower']})"
-        for row in apart.to_dict("records")
+        for row in apart
     ]
     more = f" and {len(told) - _MOST_NAMED} more" if len(told) > _MOST_NAMED else ""
     return f"Told apart (p below {SIGNIFICANCE:g}{after}): {', '.join(told[:_MOST_NAMED])}{more}."
@@ -221,14 +224,20 @@ def _span(span: dict[str, Any]) -> str:
 
 
 def _difference(row: dict[Any, Any]) -> str:
-    value, low, high = (100.0 * row[f"overturned_difference{end}"] for end in ("", "_low", "_high"))
-    return f"{value:+.0f} ({low:+.0f} to {high:+.0f})"
+    ends = (round(100.0 * row[f"overturned_difference{end}"]) for end in ("", "_low", "_high"))
+    value, low, high = (f"{end:+d}" if end else "0" for end in ends)
+    return f"{value} ({low} to {high})"
 
 
 def _probability(value: float) -> str:
     if value >= 0.1:
         return f"{value:.2f}"
     return f"{value:.3f}" if value >= 0.001 else "<0.001"
+
+
+def _stated(value: float) -> str:
+    said = _probability(value)
+    return f"p {said[0]} {said[1:]}" if said.startswith("<") else f"p = {said}"
 
 
 def _peak(value: float) -> str:

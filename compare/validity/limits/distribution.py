@@ -9,6 +9,7 @@ from ...ensemble_tables import pairs
 from ..motions import source_of
 from .limit import Limit, Tables, percent
 
+# the first two are those of the places below
 METHODS = ("engine, guided", "engine, free", "rolling")
 _PLACES = {"guided": "in an ideal recess", "open": "on open ground"}
 
@@ -45,12 +46,8 @@ def distribution(tables: Tables) -> Limit:
         subject="Distributions of peak tilt",
         use=f"For statistics over records ({records}; the engine's peak of each against the model's): "
         f"{'; '.join(_verdict(numbers, place) for place in _PLACES)}.",
-        error="Nine in ten records have a ratio of the two peaks "
-        + " and ".join(
-            f"from {_ratio(numbers[f'{place}_05'])} to {_ratio(numbers[f'{place}_95'])} {words}"
-            for place, words in _PLACES.items()
-        )
-        + ".",
+        error=f"Nine in ten records have a ratio of the two peaks {'; '.join(_spreads(found))} (0 and ∞: by "
+        "the model or by the engine alone it overturns).",
         avoid=f"To name the records that overturn: {numbers['recess_fell']:.0f} do in the model, "
         f"{numbers['open_fell']:.0f} on open ground, {numbers['both_fell']:.0f} in both.",
         numbers=numbers,
@@ -73,6 +70,19 @@ def _verdict(numbers: dict[str, float], place: str) -> str:
     )
 
 
+def _spreads(found: dict[tuple[float, str], Contrast]) -> list[str]:
+    """Return the 5th to 95th percentile of the ratios, level by level."""
+    said = []
+    for level in sorted({level for level, _ in found}):
+        parts = [
+            f"from {_ratio(item.ratio_05.value)} to {_ratio(item.ratio_95.value)} {place}"
+            for method, place in zip(METHODS, _PLACES.values(), strict=False)
+            if (item := found.get((level, method))) is not None
+        ]
+        said.append(f"{' and '.join(parts)} at {level:g} g tan α")
+    return said
+
+
 def _worst(items: list[Contrast]) -> dict[str, float]:
     """Return what holds at every level: the widest of each."""
     nothing = math.nan
@@ -88,6 +98,6 @@ def _worst(items: list[Contrast]) -> dict[str, float]:
 
 
 def _ratio(value: float, form: str = ".2g") -> str:
-    if value in (0.0, math.inf):
-        return f"overturning by the {'engine' if value else 'model'} alone"
-    return f"{value:{form}}"
+    if math.isnan(value):
+        return "an unknown one"
+    return "0" if value == 0.0 else "∞" if value == math.inf else f"{value:{form}}"
