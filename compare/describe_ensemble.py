@@ -24,7 +24,7 @@ def describe_ensemble(path: Path) -> dict[str, Any]:
     table, about = read_table(path / TABLE), read_about(path / TABLE)
     figures = []
     for row in method_table(table, dict.fromkeys(table["method"].unique(), "")).to_dict("records"):
-        rows = table[(table["method"] == row["method"]) & (table["outcome"] != "overturned")]
+        rows = table[(table["method"] == row["method"]) & ~table["outcome"].isin(["overturned", "failed"])]
         known = row["runs"] - row["failed"]
         figures.append(
             {

@@ -204,7 +204,8 @@ def test_a_ratio_within_reach_is_told_with_its_power(count):
     # deviations of 2000 trials
     most = betainc(count + 1 - index, index, needed + 1.0 / count)
     assert POWER - 0.027 <= told <= most + 0.027
-    assert ratio_within_reach(-scatter) == pytest.approx(reach, abs=ROUNDING)
+    for same in (-scatter, scatter + 0.5):
+        assert ratio_within_reach(same) == pytest.approx(reach, abs=ROUNDING)
 
 
 def test_no_ratio_is_within_reach_of_too_few():

@@ -110,12 +110,17 @@ def test_stored_members_that_say_too_little_are_too_old(tmp_path):
 
 
 def test_a_failed_run_is_no_member_that_stands(tmp_path):
-    found = ensemble(CASE, runs=[], size=4, models=["recess"], workers=1)
-    outcomes = ["overturned", "overturned", "completed", "failed"]
-    peaks = [8.0, 8.0, 0.3, math.nan]
-    members = found.members.assign(outcome=outcomes, peak_tilt=peaks)
+    found = ensemble(CASE, runs=[], size=4, workers=1)
+    members = found.members
+    recess = members["method"] == "recess"
+    members.loc[recess, "outcome"] = ["overturned", "overturned", "completed", "failed"]
+    # the last is how far it came before it failed: no peak
+    members.loc[recess, "peak_tilt"] = [8.0, 8.0, 0.3, 0.4]
+    again = ensemble_of(members, found.about)
+    assert again.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
+    assert again.methods.loc[0, ["runs", "rocked", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
     (tmp_path / "members.parquet").write_bytes(pack(members, found.about))
-    (figure,) = describe_ensemble(tmp_path)["figures"]
+    figure = describe_ensemble(tmp_path)["figures"][0]
     assert (figure["rows"], figure["failed"]) == (4, 1)
     assert figure["overturned [%]"] == pytest.approx(200.0 / 3.0)
     assert figure["median peak tilt / alpha"] == "overturned"
