@@ -118,6 +118,8 @@ def test_a_failed_run_is_no_member_that_stands(tmp_path):
     members.loc[recess, "peak_tilt"] = [8.0, 8.0, 0.3, 0.4]
     again = ensemble_of(members, found.about)
     assert again.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
+    turned = ensemble_of(members, {**found.about, "methods": {"rolling": "", "recess": ""}})
+    assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
     assert again.methods.loc[0, ["runs", "rocked", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
     (tmp_path / "members.parquet").write_bytes(pack(members, found.about))
     figure = describe_ensemble(tmp_path)["figures"][0]

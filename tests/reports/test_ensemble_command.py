@@ -35,10 +35,10 @@ def call(*arguments: str) -> int:
     return ended.value.code
 
 
-def made_up(factor: float = 1.1, engine: str = "mujoco guided") -> Ensemble:
+def made_up(factor: float = 1.1, model: str = "recess", engine: str = "mujoco guided") -> Ensemble:
     """Ten members by a model and an engine: one overturns by both, one by the engine alone."""
-    model = np.array([*np.arange(1, 9) / 10.0, 0.9, FALLEN])
-    peaks = {"recess": model, engine: np.array([*factor * model[:8], FALLEN, FALLEN])}
+    first = np.array([*np.arange(1, 9) / 10.0, 0.9, FALLEN])
+    peaks = {model: first, engine: np.array([*factor * first[:8], FALLEN, FALLEN])}
     rows = [
         {
             "member": f"record {i + 1}",
@@ -54,7 +54,7 @@ def made_up(factor: float = 1.1, engine: str = "mujoco guided") -> Ensemble:
     span = {"from": 6.0, "to": 6.0, "count": 1}
     about = {
         "members": "records",
-        "methods": {"recess": "", engine: "recess"},
+        "methods": {model: "", engine: model},
         "seeds": {"ensemble": 3},
         "versions": {"mujoco": "4.0.0"},
         "semidiagonal": span,
@@ -134,7 +134,7 @@ def test_the_picture_marks_who_overturns_by_one_method_alone():
 def test_a_narrow_terminal_leaves_out_the_intervals_and_cuts_nothing(monkeypatch, capsys, columns, intervals):
     monkeypatch.setenv("COLUMNS", str(columns))
     monkeypatch.setenv("FORCE_COLOR", "1")
-    print_ensemble(made_up(engine="pybullet guided"))
+    print_ensemble(made_up(model="pybullet free", engine="pybullet guided"))
     printed = capsys.readouterr().out
     assert ("0.605 (0.272 to overturned)" in printed) is intervals
     assert "…" not in printed
