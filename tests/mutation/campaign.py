@@ -218,7 +218,7 @@ def _row(fault: GeneratedFault, place: Tree, limits: Limits, tree: str, *, tests
         verdict = ask_check(root, group_of(fault.file).layers, limits)
         seconds, detail, asked = verdict.seconds, verdict.detail, ""
         if verdict.found_by == NOTHING and tests:
-            by_tests = ask_tests(root, _folder(fault), limits)
+            by_tests = ask_tests(root, _folder(fault), limits, module=Path(fault.file).stem)
             seconds, detail, asked = seconds + by_tests.seconds, by_tests.detail, by_tests.found_by
     return Row(
         fault=fault.name,

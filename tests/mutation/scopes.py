@@ -105,7 +105,7 @@ def _spots(spot: Spot) -> Iterator[Spot]:
         return
     yield spot
     for role, value in ast.iter_fields(node):
-        if role in ("annotation", "returns", "decorator_list") or (role == "test" and _refuses(node)):
+        if role == "annotation" or (role == "test" and _refuses(node)):
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST):

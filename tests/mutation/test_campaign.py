@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -70,6 +71,9 @@ def test_a_table_is_taken_up_where_fault_and_sources_are_the_same(
     write_rows(checkout.parent / "table.csv", rows[1:])
     assert tried(checkout, check := Check("x - 1"), monkeypatch) == rows
     assert check.asked == 1
+    write_rows(checkout.parent / "table.csv", [dataclasses.replace(rows[0], change="another"), *rows[1:]])
+    assert tried(checkout, check := Check("x - 1"), monkeypatch) == rows
+    assert check.asked == 1
     (checkout / "compare/other.py").write_text("")  # other sources may find other faults
     tried(checkout, check := Check("x - 1"), monkeypatch)
     assert check.asked == len(rows)
@@ -89,7 +93,7 @@ def test_survivors_that_were_never_put_to_the_tests_are_tried_again_with_them(
 ) -> None:
     asked = []
 
-    def tests(root: Path, folder: str, limits: Limits) -> Verdict:
+    def tests(root: Path, folder: str, limits: Limits, *, module: str = "") -> Verdict:
         asked.append(folder)
         return Verdict(found_by=NOTHING, detail="", seconds=1.0)
 

@@ -46,7 +46,7 @@ def tree_of(checkout: Path, tmp_path: Path) -> Tree:
 
 def value(root: Path, call: str) -> str:
     command = [sys.executable, "-P", "-c", f"import {call.split('.')[0]} as m; print(m.{call.split('.')[1]})"]
-    environment = os.environ | {"PYTHONPATH": str(root / "reduced")}
+    environment = os.environ | {"PYTHONPATH": str(root / "reduced"), "PYTHONDONTWRITEBYTECODE": ""}
     return subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout.strip()
 
 
@@ -119,6 +119,13 @@ def test_tests_are_asked(tmp_path: Path, test: str, found: str, detail: str) -> 
     (tmp_path / "tests/models/test_a.py").write_text(f"def test_a():\n    {test}\n")
     verdict = ask_tests(tmp_path, "models", Limits(tests={"models": 2.0}))
     assert (verdict.found_by, verdict.detail) == (found, detail)
+
+
+def test_tests_that_name_the_module_are_asked_first(tmp_path: Path) -> None:
+    (tmp_path / "tests/models").mkdir(parents=True)
+    for name, module in (("a", "case"), ("b", "cylinder"), ("c", "case")):
+        (tmp_path / f"tests/models/test_{name}.py").write_text(f"# {module}\ndef test(): assert False\n")
+    assert ask_tests(tmp_path, "models", Limits(), module="cylinder").detail == "tests/models/test_b.py::test"
 
 
 def test_the_check_finds_a_fault_in_a_copy_and_no_other_package(tmp_path: Path) -> None:
