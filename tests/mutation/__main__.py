@@ -77,7 +77,10 @@ def _generated(options: argparse.Namespace) -> int:
     from mutation.sites import GeneratedFault
     from mutation.targets import all_faults, sample
 
+    known: set[tuple[str, str]] = set()
+
     def choose(faults: dict[str, list[GeneratedFault]]) -> list[GeneratedFault]:
+        known.update((each.name, each.change) for of in faults.values() for each in of)
         named = {file: [each for each in of if options.only in each.name] for file, of in faults.items()}
         return sample(named, options.count, options.seed)
 
@@ -101,7 +104,7 @@ def _generated(options: argparse.Namespace) -> int:
     command += (f" --only {options.only}" if options.only else "") + (" --tests" if options.tests else "")
     place = options.table.with_suffix(".md")
     place.write_text(page(rows, reasons, command), encoding="utf-8")
-    for name in stale(rows, reasons):
+    for name in stale(rows, reasons, known):
         print(f"equivalent.toml: the reason for {name} no longer fits", file=sys.stderr)
     print(f"{sum(row.found for row in rows)} of {len(rows)} found; {place}")
     return 0

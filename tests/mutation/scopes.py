@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 # arguments by which a run does not change, only what it refuses or how it is kept
 _IRRELEVANT = frozenset(
     {"strict", "copy", "encoding", "maxsize", "dtype", "eq", "frozen", "slots", "kw_only"}
+    | {"wait", "cancel_futures"}
 )
 # functions in a scope are scopes of their own; a message is made where something is refused
 _SILENT = (ast.FunctionDef, ast.ClassDef, ast.Import, ast.ImportFrom, ast.Raise, ast.Assert, ast.JoinedStr)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Sequence
 from pathlib import Path
 
 from .campaign import Row
@@ -20,8 +20,7 @@ Left out are messages, and the conditions under which bad input is refused. A cr
 count as found. A fault that changes no result (equivalent) does not count: the share is that of the others.
 Made by
 
-    {command}
-"""
+    {command}"""
 
 
 def read_reasons(path: Path) -> dict[tuple[str, str], str]:
@@ -55,10 +54,12 @@ def page(rows: Sequence[Row], reasons: dict[tuple[str, str], str], command: str)
     return "\n".join([_HEAD.format(command=command), *_parts(rows, reasons)]) + "\n"
 
 
-def stale(rows: Sequence[Row], reasons: dict[tuple[str, str], str]) -> list[str]:
-    """Return the names of faults with a reason that no longer fits: found, or not in the table."""
-    survivors = {(row.fault, row.change) for row in rows if not row.found}
-    return [fault for fault, change in reasons if (fault, change) not in survivors]
+def stale(
+    rows: Sequence[Row], reasons: dict[tuple[str, str], str], known: Container[tuple[str, str]]
+) -> list[str]:
+    """Return the names of faults with a reason that no longer fits: found after all, or not `known`."""
+    found = {(row.fault, row.change) for row in rows if row.found}
+    return [key[0] for key in reasons if key in found or key not in known]
 
 
 def _parts(rows: Sequence[Row], reasons: dict[tuple[str, str], str]) -> Iterator[str]:

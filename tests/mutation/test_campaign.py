@@ -139,7 +139,10 @@ def test_the_page_counts_and_names_what_was_not_found() -> None:
     assert f"| `{rows[4].fault}` | {code} | tests/models/test_a.py::test_a |" in text
     assert "## Out of time: 1" in text
     assert "## Crashed: 1" in text
-    assert stale(rows, reasons) == [rows[0].fault]
+    known = {(each.fault, each.change) for each in rows}
+    assert stale(rows, reasons, known) == [rows[0].fault]
+    assert stale(rows, reasons, known - {(rows[2].fault, rows[2].change)}) == [rows[2].fault, rows[0].fault]
+    assert stale([], reasons, known) == []  # a small sample says nothing of the others
 
 
 def test_every_reason_is_one(tmp_path: Path) -> None:
