@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from .ensemble_study import KIND, TABLE
+from .ensemble_tables import method_table
 from .origin import read_table
 from .parquet_file import read_about
 from .run_store import MEMBERS
@@ -22,16 +23,17 @@ def describe_ensemble(path: Path) -> dict[str, Any]:
     """Return what an ensemble was made of, and the distributions of its methods."""
     table, about = read_table(path / TABLE), read_about(path / TABLE)
     figures = []
-    for method, rows in table.groupby("method", sort=False):
-        fallen = rows["outcome"] == "overturned"
-        standing = rows.loc[~fallen, "peak_tilt"]
+    for row in method_table(table, dict.fromkeys(table["method"].unique(), "")).to_dict("records"):
+        rows = table[(table["method"] == row["method"]) & ~table["outcome"].isin(["overturned", "failed"])]
+        known = row["runs"] - row["failed"]
         figures.append(
             {
-                "run": str(method),
-                "rows": len(rows),
-                "overturned [%]": 100.0 * float(fallen.mean()),
-                "median peak tilt / alpha where not": _number(standing.median()),
-                "largest": _number(standing.max()),
+                "run": row["method"],
+                "rows": row["runs"],
+                "failed": row["failed"],
+                "overturned [%]": 100.0 * row["overturned"] / known if known else None,
+                "median peak tilt / alpha": _median(row["peak_median"]),
+                "largest where not overturned": _number(rows["peak_tilt"].max()),
             }
         )
     inputs = {"fingerprint": about["inputs"], "members": f"{table['member'].nunique()}: {about['members']}"}
@@ -66,6 +68,10 @@ def describe_unfinished_ensemble(path: Path) -> dict[str, Any]:
         "outcomes": outcomes,
         "figures": [],
     }
+
+
+def _median(value: float) -> float | str | None:
+    return "overturned" if value == math.inf else _number(value)
 
 
 def _number(value: float) -> float | None:

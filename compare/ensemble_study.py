@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from rockwobble.models import Case, Run, Suite
 
-from .distributions import Contrast, contrast
 from .ensemble_members import perturbed_starts
+from .ensemble_tables import contrast_table, method_table
 from .execution import Crash, Job, ProgressCallback, simulate_all
 from .fingerprint import fingerprint
 from .origin import read_table
@@ -30,7 +27,9 @@ if TYPE_CHECKING:
 KIND = "rockwobble ensemble"
 TABLE = "members.parquet"
 MODELS = ("recess", "rolling")
-_FALLING = "past its balance and falling when the run ended"
+# without which the members cannot be held against each other or described
+_NEEDED = ("methods", "members", "semidiagonal", "tan_alpha", "seeds", "versions")
+_COLUMNS = ("member", "method", "peak_tilt", "outcome")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -41,16 +40,19 @@ class Ensemble:
     ----------
     members : DataFrame
         One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
-        overturned), outcome, message, wall_time [s]. What falls when its ground motion ends has overturned.
+        overturned), outcome, message, wall_time [s], all as the run has them.
     methods : DataFrame
         One row for each method: own_model (of the support of an engine), runs, rocked, overturned, failed,
-        failed_members (their names), and median and quantiles of the peak tilt of what did not fail [alpha],
-        each that of a run: infinite where that one overturns.
+        failed_members (their names), and of the peak tilts of what did not fail [alpha] the median with its
+        interval (peak_median, _low, _high) and the 16th and 84th percentile (peak_16, peak_84): infinite
+        where they overturn.
     contrasts : DataFrame
-        One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high.
+        One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high, its
+        verdict, masked (members that failed by one of them), and both probabilities corrected for the number
+        of pairs (Holm) in columns _adjusted.
     about : dict
-        As `about_results`, with what the members are, the range of their sizes and slendernesses, the model
-        of the support of each method, and the draws of the bootstrap.
+        As `about_results`, with what the members are, the range of their sizes and slendernesses, and the
+        model of the support of each method.
     """
 
     members: pd.DataFrame
@@ -67,13 +69,12 @@ def ensemble(
     size: int = 20,
     perturbation: float = 0.01,
     seed: int = 0,
-    draws: int = 1000,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
     source: str = "cases",
 ) -> Ensemble:
-    """Run many members by each method, and hold the distributions of peak tilt against each other.
+    """Run many members by each method, and hold their peak tilts against each other, member by member.
 
     Parameters
     ----------
@@ -89,9 +90,7 @@ def ensemble(
     perturbation : float, optional
         Their relative standard deviation.
     seed : int, optional
-        Of the perturbations and of the bootstrap.
-    draws : int, optional
-        Of the bootstrap.
+        Of the perturbations.
     workers, progress, resume
         As in `compare`.
     source : str, optional
@@ -139,7 +138,7 @@ def ensemble(
         results = simulate_all(jobs, workers=workers, progress=progress, store=store)
     table = _members(jobs, results)
     inputs = fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])
-    about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")} | {"draws": draws}
+    about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
     about |= {
         "methods": {label: "" if isinstance(m, str) else own_model(m.support) for label, m in methods.items()}
     }
@@ -148,11 +147,10 @@ def ensemble(
 
 def ensemble_of(members: pd.DataFrame, about: dict[str, Any]) -> Ensemble:
     """Return the ensemble of a table of members, and of what `Ensemble.about` says of them."""
-    methods, seed = about["methods"], about["seeds"]["ensemble"]
     return Ensemble(
         members=members,
-        methods=_methods(members, methods),
-        contrasts=_contrasts(members, list(methods), draws=about["draws"], seed=seed),
+        methods=method_table(members, about["methods"]),
+        contrasts=contrast_table(members, about["methods"]),
         about=about,
     )
 
@@ -163,14 +161,17 @@ def read_ensemble(folder: str | Path) -> Ensemble:
     Raises
     ------
     ValueError
-        If the file is missing or is not what was stored.
+        If the file is missing, is not what was stored, or is too old to say what is needed.
     """
     file = Path(folder) / TABLE
-    members = read_table(file)
-    try:
-        return ensemble_of(members, read_about(file))
-    except (KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"{file} does not hold the members of an ensemble: {error!r}") from None
+    members, about = read_table(file), read_about(file)
+    if about.get("kind") != KIND:
+        raise ValueError(f"{file} does not hold the members of an ensemble")
+    missing = [name for name in _NEEDED if name not in about]
+    missing += [name for name in _COLUMNS if name not in members]
+    if missing:
+        raise ValueError(f"{file} is too old: it does not hold {', '.join(missing)}; run the ensemble again")
+    return ensemble_of(members, about)
 
 
 def _range(members: Sequence[Case], name: str) -> dict[str, float]:
@@ -193,88 +194,14 @@ def _members(jobs: Sequence[Job], results: Sequence[Any]) -> pd.DataFrame:
     for job, result in zip(jobs, results, strict=True):
         crashed = isinstance(result, Crash)
         failed = crashed or result.outcome == "failed"
-        falling = not failed and falls_at_the_end(job.case, result)
-        peak = math.nan if failed else 0.5 * math.pi if falling else result.peak_tilt
         rows.append(
             {
                 "member": job.case.name,
                 "method": job.label,
-                "peak_tilt": peak / job.case.cylinder.alpha,
-                "outcome": "failed" if failed else "overturned" if falling else result.outcome,
-                "message": "; ".join([result.message] * bool(result.message) + [_FALLING] * falling),
+                "peak_tilt": math.nan if failed else result.peak_tilt / job.case.cylinder.alpha,
+                "outcome": "failed" if failed else result.outcome,
+                "message": result.message,
                 "wall_time": math.nan if crashed else result.wall_time,
             }
         )
     return pd.DataFrame(rows)
-
-
-def falls_at_the_end(case: Case, result: Any) -> bool:
-    """Return whether a run ends on still ground past its balance and on its way down: nothing holds it."""
-    alpha, motion = case.cylinder.alpha, case.motion
-    if result.outcome == "overturned" or not result.peak_tilt > alpha:
-        return False
-    still = motion is None or case.length >= motion.duration
-    return bool(still and result.tilt[-1] > alpha and result.tilt_rate[-1] >= 0.0)
-
-
-def _methods(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:
-    import pandas as pd
-
-    rows = []
-    for method, own in methods.items():
-        runs = members[members["method"] == method]
-        failed = runs[runs["outcome"] == "failed"]
-        standing = runs.loc[~runs["outcome"].isin(["overturned", "failed"]), "peak_tilt"].to_numpy(float)
-        fallen = int((runs["outcome"] == "overturned").sum())
-        peaks = np.sort([*standing, *[math.inf] * fallen])
-        low, median, high = (
-            np.quantile(peaks, [0.16, 0.5, 0.84], method="inverted_cdf") if len(peaks) else [math.nan] * 3
-        )
-        rows.append(
-            {
-                "method": method,
-                "own_model": own,
-                "runs": len(runs),
-                "rocked": int((runs["peak_tilt"] > 0.0).sum()),
-                "overturned": fallen,
-                "failed": len(failed),
-                "failed_members": ", ".join(failed["member"]),
-                "peak_16": low,
-                "peak_median": median,
-                "peak_84": high,
-            }
-        )
-    return pd.DataFrame(rows)
-
-
-def _contrasts(members: pd.DataFrame, methods: list[str], *, draws: int, seed: int) -> pd.DataFrame:
-    import pandas as pd
-
-    names = members["member"].unique()
-    peaks = members.pivot_table("peak_tilt", "member", "method", dropna=False).reindex(names)
-    fell = (
-        members.assign(fell=members["outcome"] == "overturned")
-        .pivot_table("fell", "member", "method", aggfunc="max")
-        .reindex(names)
-        .astype(bool)
-    )
-    rows = []
-    for against, method in itertools.combinations(methods, 2):
-        ours, theirs = (peaks[name].to_numpy(float) for name in (method, against))
-        if np.count_nonzero(np.isfinite(ours) & np.isfinite(theirs)) < 2:
-            continue
-        found = contrast(
-            ours, theirs, fell[method].to_numpy(bool), fell[against].to_numpy(bool), draws=draws, seed=seed
-        )
-        masked = names[~(np.isfinite(ours) & np.isfinite(theirs))]
-        rows.append({"method": method, "against": against, **_flat(found), "masked": ", ".join(masked)})
-    return pd.DataFrame(rows)
-
-
-def _flat(found: Contrast) -> dict[str, float | int]:
-    row: dict[str, float | int] = {"count": found.count}
-    for name in ("ks", "wasserstein", "median_ratio"):
-        interval = getattr(found, name)
-        row |= {name: interval.value, f"{name}_low": interval.low, f"{name}_high": interval.high}
-    names = ("ks_p", "member_factor", "overturned", "against_overturned", "both_overturned", "overturned_p")
-    return row | {name: getattr(found, name) for name in names}

@@ -21,7 +21,8 @@ from typing import Any, Literal
 from rockwobble.models import Case
 
 from .registry import find_engine
-from .simulation import Progress, simulate
+from .simulation import simulate
+from .stepping import Progress
 from .trajectory import Trajectory
 
 _Run = Callable[[Case, Progress], Trajectory]

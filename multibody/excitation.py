@@ -55,6 +55,15 @@ class StepMeans:
         velocity = self.ground_velocity(edges).T
         return np.asarray((velocity[:, 1:] - velocity[:, :-1]) / self._step).T
 
+    def stop(self, end: float, step: int, centre: float = 0.0) -> Array:
+        """Return the mean of a step that takes the ground back to its velocity at `end` [s], (3,) [m/s^2].
+
+        The step before it held the mean of a time that goes beyond the end. Where a record goes on there, and
+        the ground shall keep still, this takes that part back.
+        """
+        at_end, given = self.ground_velocity(np.array([end, (step + centre - 0.5) * self._step]))
+        return np.asarray((at_end - given) / self._step)
+
     def ground_velocity(self, time: Array) -> Array:
         """Return the integral of the acceleration up to `time` (n,), shape (n, 3) [m/s]."""
         inside = np.clip(time, 0.0, self._spacing * (len(self._samples) - 1))

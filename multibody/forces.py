@@ -87,6 +87,10 @@ class ForceSamples:
         self._found: list[Array] = []
         self._taken = 0
 
+    def extend(self, samples: Array) -> None:
+        """Ask for further times (n,), after the last one [s]."""
+        self._samples = np.append(self._samples, samples)
+
     def add(self, force: Array) -> None:
         """Take the next steps, shape (3, n)."""
         if self._first == 0 and not self._known.size and force.shape[1] > 1:

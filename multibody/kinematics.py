@@ -2,7 +2,7 @@
 
 theta  tilt: angle of the axis from the vertical                                  [rad]
 phi    rolling angle: azimuth of the lean, hence of the lowest point of the rim   [rad]
-tau    twist phi + psi = 2 atan2(q_z, q_w)                                        [rad]
+tau    twist phi + psi = 2 atan2(q_z, q_w), which tells it up to whole turns       [rad]
 S, O   mass centre, centre of the original base circle; positions relative to O   [m]
 """
 
@@ -27,7 +27,7 @@ class Kinematics:
     Attributes
     ----------
     tilt, tilt_rate, azimuth, twist : ndarray
-        The azimuth is phi between -pi and pi.
+        The azimuth is phi between -pi and pi, the twist as the quaternion tells it: see `unwrap_twist`.
     energy : ndarray
         Kinetic and potential, per unit mass, zero standing [m^2/s^2].
     depth : ndarray
@@ -156,17 +156,37 @@ def axis_of(quaternion: Array) -> Array:
     return axis.T
 
 
+def tilt_of(quaternion: Array) -> Array:
+    """Return the tilts, shape (n,) [rad], of quaternions (n, 4), scalar first."""
+    ax, ay, az = axis_of(quaternion).T
+    # atan2 of both, because the cosine alone loses a tilt below 1e-8
+    return np.asarray(np.arctan2(np.sqrt(ax * ax + ay * ay), az))
+
+
+def unwrap_twist(twist: Array, before: float) -> Array:
+    """Return the twist (n,) without jumps, going on from `before` [rad].
+
+    A quaternion and its negative are one pose, and the twists that they tell differ by a whole turn. A step
+    twists by far less than half a turn, unlike the azimuth at the apex: q_z and q_w vanish together only
+    upside down.
+    """
+    turns = np.cumsum(np.round(np.diff(twist, prepend=before) / (2.0 * np.pi)))
+    return np.asarray(twist - 2.0 * np.pi * turns)
+
+
 def unwrap(
     azimuth: Array,
     momentum: Callable[[NDArray[np.intp]], Array],
     meaningful: NDArray[np.bool_],
     before: float,
+    leant_before: bool = True,
 ) -> Array:
     """Return the rolling angle without jumps, going on from `before` [rad].
 
     A change above a quarter turn in one step happens next to the apex, where the shorter way round may
     be the wrong one: the sign of the momentum, given for some indices, says which way the cylinder
-    turned. Where the azimuth is not `meaningful`, because the cylinder stands, the angle waits.
+    turned. Where the azimuth is not `meaningful`, because the cylinder stands, the angle waits;
+    `leant_before` says whether it was meaningful at `before`.
     """
     waiting = azimuth
     if not meaningful.all():
@@ -176,7 +196,7 @@ def unwrap(
     change -= 2.0 * np.pi * np.round(change / (2.0 * np.pi))
     large = np.flatnonzero(np.abs(change) > 0.5 * np.pi)
     # the first lean after standing comes from no turn at all
-    large = large[meaningful[large] & (meaningful[large - 1] | (large == 0))]
+    large = large[meaningful[large] & np.append(leant_before, meaningful[:-1])[large]]
     if len(large):
         way = np.sign(momentum(large))
         wrong = np.sign(change[large]) == -way

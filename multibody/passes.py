@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -59,8 +61,8 @@ def turning_points(time: Array, tilt: Array, rolling_angle: Array) -> list[Turni
     return found
 
 
-def passes_between(points: list[TurningPoint], threshold: float) -> list[Pass]:
-    """Return the passes, leaving out swings smaller than `threshold` [rad]: those are contact noise."""
+def true_swings(points: list[TurningPoint], threshold: float) -> list[TurningPoint]:
+    """Leave out swings smaller than `threshold` [rad]: those are contact noise."""
     kept: list[TurningPoint] = []
     for point in points:
         if kept and point.is_maximum != kept[-1].is_maximum and abs(point.tilt - kept[-1].tilt) < threshold:
@@ -71,6 +73,28 @@ def passes_between(points: list[TurningPoint], threshold: float) -> list[Pass]:
                 kept[-1] = point
         else:
             kept.append(point)
+    return kept
+
+
+def passes_between(
+    points: list[TurningPoint], threshold: float, rests: Sequence[tuple[float, float]] = ()
+) -> list[Pass]:
+    """Return the passes, without swings smaller than `threshold` [rad].
+
+    A pass belongs to one motion: both its maxima lie on the same side of every rest, of which `rests` holds
+    start and end [s].
+    """
+    motions: list[list[TurningPoint]] = [[] for _ in range(len(rests) + 1)]
+    ends = [end for _, end in rests]
+    for point in points:
+        number = bisect_right(ends, point.time)
+        # what happens in a rest is no swing of either motion
+        if number == len(rests) or point.time < rests[number][0]:
+            motions[number].append(point)
+    return [found for motion in motions for found in _passes(true_swings(motion, threshold))]
+
+
+def _passes(kept: list[TurningPoint]) -> list[Pass]:
     return [
         Pass(low.time, low.tilt, after.rolling_angle - before.rolling_angle)
         for before, low, after in zip(kept, kept[1:], kept[2:], strict=False)

@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from .energy_watch import EnergyWatch
 from .engine import Scene, Steps, Wall
 from .forces import ForceSamples, first_grip, first_pull, force_of_steps
 from .guard import energy_scale, first_breach
-from .kinematics import Kinematics, axis_of, kinematics, mean_velocity, rim, rolling_momentum, unwrap
+from .kinematics import Kinematics, kinematics, rim, rolling_momentum, tilt_of, unwrap, unwrap_twist
 from .passes import TurningPoint, turning_points
+from .rests import RestWatch
 from .start import Start
 from .uplift import UpliftWatch, sure_tilt
 from .wall_watch import WallWatch
@@ -24,9 +27,12 @@ OVERTURNED = 0.5 * math.pi - 1e-3  # [rad] contact of the side may stop the fall
 
 FLIGHT = 1e-3  # of b, height that is flight: a rim that slides may hover below it in MuJoCo
 SLIP = 0.01  # of b, slip that is more than the creep of a rim that rolls
+# of the energy scale: a base that opens by less than 1e-4 alpha has not moved
+_LEAST_ENERGY = 2e-4
+_ROUNDING = 1e-6  # of a step
 COLUMNS = (
     "tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_x", "contact_y",
-    "x", "y", "z", "energy", "energy_error", "slip", "wall_contact",
+    "base_x", "base_y", "x", "y", "z", "energy", "energy_error", "slip", "wall_contact",
     "wall_impulse",
 )  # fmt: skip
 
@@ -48,13 +54,13 @@ class Recorder:
     def __init__(self, scene: Scene, samples: Array, rolling_angle: float, starts_at_turn: bool) -> None:
         body, start = scene.body, scene.start
         self._scene, self._samples = scene, samples
+        self.asked = float(samples[-1])  # end of the run that was asked for, before it was extended [s]
         self._watch = UpliftWatch(body, scene.gravity, scene.time_step) if start.standing else None
         self._start: Start | None = start
         self._last: Steps | None = None  # the pose whose next velocity is still to come
         self._count = 0  # poses analysed
-        self._angle = rolling_angle
-        self._work = 0.0
-        self._energy: float | None = None
+        self._angle, self._twist = rolling_angle, 0.0
+        self._leans = not start.standing  # at the last pose analysed
         self._tail: Array = np.empty((3, 0))  # time, tilt and rolling angle of the last steps
         self._row: Array = np.empty(len(COLUMNS) + 1)
         self._rows: list[Array] = []
@@ -65,18 +71,20 @@ class Recorder:
         self.walls = WallWatch(scene.time_step)
         self.slip_time = math.nan  # when the slip became worth a remark [s]
         self.flight_time = math.nan  # when the rim left the ground [s]
-        self.drift = 0.0  # largest energy error, with its sign, over the energy scale
+        balance, lean = energy_scale(body, scene.gravity), float(tilt_of(start.quaternion[None])[0])
+        self.energy = EnergyWatch(
+            scene.time_step,
+            _LEAST_ENERGY * balance if start.standing else 0.0,
+            balance if lean > math.atan(body.tan_alpha) else 0.0,
+        )
         self.looks = 0  # at the solver, and how often it had not converged
         self.unsolved = 0
         self.grip_time = math.nan  # when more than friction held the rim, which only a joint does [s]
         self.pull_time = math.nan  # when the ground held the rim down, which only a joint does [s]
         # a standing cylinder leans by less, in no direction
         sure = sure_tilt(body)
-        self.floor = (
-            sure
-            if start.standing
-            else min(sure, 0.5 * float(np.hypot(*axis_of(start.quaternion[None])[0, :2])))
-        )
+        self.floor = sure if start.standing else min(sure, 0.5 * lean)
+        self.rests = RestWatch(2.0 * self.floor)
         self._at_turn = not start.standing and starts_at_turn
         self.points: list[TurningPoint] = []
         self.peak = 0.0
@@ -85,7 +93,7 @@ class Recorder:
         self.ended: str = ""
         self.reason = ""
         self.end_time = math.inf
-        self.base_centre: Array = np.zeros(3)
+        self.undecided = False  # whether it falls after the end, and nobody knows how far
 
     @property
     def table(self) -> Array:
@@ -93,9 +101,18 @@ class Recorder:
         return np.vstack(self._rows) if self._rows else np.empty((0, len(COLUMNS) + 1))
 
     @property
+    def end(self) -> float:
+        """Time of the last sample asked for [s]."""
+        return float(self._samples[-1])
+
+    @property
     def last_row(self) -> Array:
         """The last step analysed: time and the fields of `COLUMNS`."""
         return self._row
+
+    def last_value(self, name: str) -> float:
+        """Field of `COLUMNS` at the last step analysed."""
+        return float(self._row[1 + COLUMNS.index(name)])
 
     @property
     def penetration(self) -> float:
@@ -110,50 +127,66 @@ class Recorder:
         """
         self.looks, self.unsolved = self.looks + 1, self.unsolved + steps.unsolved
         poses, after = self._pair(steps)
-        count = len(poses.position)
+        count, wall = len(poses.position), steps.wall
         time: Array = self._scene.time_step * np.arange(self._count, self._count + count, dtype=float)
         body = self._scene.body
         state = kinematics(poses, after, body, self._scene.gravity)
-        gained = self._energy_error(state, poses, after, acceleration)
-        wall_contact, wall_impulse = self.walls.take(time, steps.wall)
-        stop = self._stop(time, state, gained, steps.wall)
+        state = replace(state, twist=unwrap_twist(state.twist, self._twist))
+        gained = self.energy.error(state, poses, after, acceleration)
+        stop = self._stop(time, state, gained, wall)
+        if not stop:
+            return
+        if stop < count:
+            # whatever the engine did after the end, the side on the ground included, is no part of the run
+            inside = slice(stop)
+            time, gained, acceleration = time[inside], gained[inside], acceleration[inside]
+            poses, after = _rows(poses, inside), _rows(after, inside)
+            state = Kinematics(*(getattr(state, field.name)[inside] for field in fields(state)))
+            wall = wall and Wall(wall.touching[inside], wall.force[inside], wall.depth[inside])
+        leans = state.tilt > self.floor
         angle = unwrap(
             state.azimuth,
             lambda at: rolling_momentum(_rows(poses, at), _rows(after, at), body),
-            state.tilt > self.floor,
+            leans,
             self._angle,
+            self._leans,
         )
         slip = self._slip(time, state)
+        wall_contact, wall_impulse = self.walls.take(time, wall)
         if self._watch is not None and self.uplift is None:
             self.uplift = self._watch.watch(time, state.tilt, poses, after, acceleration)
-        self._depths.append(float(np.median(state.depth[: max(stop, 1)])))
-        if stop:
 
-            def rows(at: Indices) -> Array:
-                some, later = _rows(poses, at), _rows(after, at)
-                place = rim(some, later, body)
-                self.base_centre = place.base_centre[-1]
-                return np.column_stack(
-                    [time[at], state.tilt[at], state.tilt_rate[at], angle[at], place.rolling_rate,
-                     state.twist[at], place.contact_point, some.position, state.energy[at], gained[at],
-                     slip[at], wall_contact[at], wall_impulse[at]]
-                )  # fmt: skip
+        def rows(at: Indices) -> Array:
+            some, later = _rows(poses, at), _rows(after, at)
+            place = rim(some, later, body)
+            return np.column_stack(
+                [time[at], state.tilt[at], state.tilt_rate[at], angle[at], place.rolling_rate,
+                 state.twist[at], place.contact_point, place.base_centre[:, :2], some.position,
+                 state.energy[at], gained[at], slip[at], wall_contact[at], wall_impulse[at]]
+            )  # fmt: skip
 
-            self._follow(np.stack([time[:stop], state.tilt[:stop], angle[:stop]]))
-            extreme = float(gained[:stop][np.abs(gained[:stop]).argmax()]) / energy_scale(
-                body, self._scene.gravity
-            )
-            self.drift = max(self.drift, extreme, key=abs)
-            self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[:stop]).max()))
-            self._sample(time[:stop], rows)
-            force = force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity)
-            self.forces.add(force[:, :stop])
-            # a wall may well push the cylinder down, by its friction or where the rim is below it
-            if math.isnan(self.pull_time) and steps.wall is None:
-                self.pull_time = first_pull(time, force[2, :stop])
-            if math.isnan(self.grip_time) and steps.wall is None:
-                self.grip_time = first_grip(time, force[:, :stop], self._scene.friction)
-        self._angle, self._count = float(angle[-1]), self._count + count
+        self._depths.append(float(np.median(state.depth)))
+        self._follow(np.stack([time, state.tilt, angle]))
+        self.energy.take(time, state.energy, gained)
+        self.rests.take(time, state.tilt)
+        # a fall beyond the balance is faster than any pass, and none comes after it
+        within = state.tilt < math.atan(body.tan_alpha)
+        self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[within]).max(initial=0.0)))
+        self._sample(time, rows)
+        force = force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity)
+        self.forces.add(force)
+        # a wall may well push the cylinder down, by its friction or where the rim is below it
+        if math.isnan(self.pull_time) and wall is None:
+            self.pull_time = first_pull(time, force[2])
+        if math.isnan(self.grip_time) and wall is None:
+            self.grip_time = first_grip(time, force, self._scene.friction)
+        self._angle, self._twist, self._leans = float(angle[-1]), float(state.twist[-1]), bool(leans[-1])
+        self._count += stop
+
+    def extend(self, samples: Array) -> None:
+        """Go on to further samples, at times (n,) after the last one [s]."""
+        self._samples = np.append(self._samples, samples)
+        self.forces.extend(samples)
 
     def fail(self, reason: str) -> None:
         """End the run at the last step analysed."""
@@ -180,17 +213,6 @@ class Recorder:
         self._last = _rows(joined, slice(-1, None))
         return _rows(joined, slice(0, -1)), _rows(joined, slice(1, None))
 
-    def _energy_error(self, state: Kinematics, poses: Steps, after: Steps, acceleration: Array) -> Array:
-        """Energy less that of the start and the work of the excitation at each pose."""
-        # the impulse of a step acts at its pose: half of it belongs to the energy there
-        velocity = mean_velocity(poses, after)
-        work = -(acceleration * velocity).sum(axis=1) * self._scene.time_step
-        until = self._work + np.cumsum(work) - 0.5 * work
-        self._work += float(work.sum())
-        if self._energy is None:
-            self._energy = float(state.energy[0] - until[0])
-        return np.asarray(state.energy - self._energy - until)
-
     def _slip(self, time: Array, state: Kinematics) -> Array:
         """Distance that the contact has slipped until each pose [m]; note slip and flight."""
         b = self._scene.body.base_radius
@@ -211,10 +233,10 @@ class Recorder:
             self.ended = "overturned"
             rate = max(float(state.tilt_rate[stop]), 1e-3)
             self.end_time = float(time[stop] + max(0.5 * math.pi - state.tilt[stop], 0.0) / rate)
-            self.end_time = min(self.end_time, float(self._samples[-1]))
         breach = first_breach(
-            state, gained, self._scene.body, self._scene.gravity, self._scene.support == "guided", wall
-        )
+            state, gained, self._scene.body, self._scene.gravity, self._scene.support == "guided", wall,
+            self.energy.largest,
+        )  # fmt: skip
         if breach is not None and breach.index < stop:
             stop = breach.index
             self.ended, self.reason, self.end_time = "failed", breach.reason, float(time[stop])
@@ -234,12 +256,15 @@ class Recorder:
             # the two carried steps were inner ones already, except for the last of them
             self.points.extend(turning_points(*fresh))
         self._tail = joined[:, -3:].copy()
-        self.peak = max(self.peak, float(tilt.max()))
+        # the last step may lie beyond the last sample
+        self.peak = max(self.peak, float(tilt[joined[0] <= self.end].max(initial=0.0)))
 
     def _sample(self, time: Array, rows: Callable[[Indices], Array]) -> None:
         """Take the samples that are due; `rows` gives the fields at some of the steps."""
         last = len(time) - 1
-        due = self._samples[self._taken : np.searchsorted(self._samples, time[-1], side="right")]
+        # the end of a run, a sum of samples, may round beyond its last step
+        reached = time[-1] + _ROUNDING * self._scene.time_step
+        due = self._samples[self._taken : np.searchsorted(self._samples, reached, side="right")]
         # the steps around each sample; -1 is the last step of the chunk before
         before = np.searchsorted(time, due, side="right") - 1
         after = np.minimum(before + 1, last)

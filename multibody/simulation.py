@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time as clock
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -14,7 +14,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from .ability import require_able
 from .auto_step import AUTO, STEP_TOLERANCE, find_step
-from .engine import Engine, Scene
+from .engine import Scene
 from .excitation import StepMeans
 from .froude import REFERENCE_TIME_STEP, Scale, froude_scale
 from .guard import check_time_step
@@ -23,16 +23,14 @@ from .recorder import COLUMNS, Recorder
 from .registry import find_engine
 from .remarks import remarks
 from .scene_of_case import make_scene
+from .stepping import Progress, run_steps
 from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
-Progress = Callable[[float], None]
 
-_CHUNK = 10_000  # steps between two looks at the run: a second of the reference scene, 3 MB of states
-_STILL = 1e-5  # of alpha; a cylinder that leans less at the end, and has not moved since, is at rest
 _SWING = 1e-9  # [rad] smallest difference of two turning points that is not rounding
 
 
@@ -87,7 +85,9 @@ def simulate(
     Returns
     -------
     Trajectory
-        A numerical failure is an outcome with a message, not an exception.
+        A numerical failure is an outcome with a message, not an exception. A run that ends while the cylinder
+        falls, or rises with the energy to pass its balance, is carried on over still ground: one that
+        overturns ends there, later than `duration`, and one whose tilt turns back ends at `duration`.
 
     Raises
     ------
@@ -142,7 +142,7 @@ def _simulate(
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(scene, samples, release.rolling_angle, release.tilt_rate == 0.0)
     means = StepMeans(case.motion, scale, scene.time_step)
-    _run(backend, scene, resolved, recorder, means, samples[-1], progress)
+    recorder = run_steps(backend, scene, resolved, recorder, means, sample_step / scale.time, progress)
     return _trajectory(
         recorder,
         scene,
@@ -156,39 +156,10 @@ def _simulate(
     )
 
 
-def _run(
-    backend: Engine,
-    scene: Scene,
-    settings: Mapping[str, Any],
-    recorder: Recorder,
-    means: StepMeans,
-    end: float,
-    progress: Progress | None,
-) -> None:
-    # one step past the end: the velocity at a pose is the mean of those before and after it
-    total = math.ceil(end / scene.time_step - 1e-6) + 1
-    with backend.open(scene, settings) as stepper:
-        done = 0
-        while done < total and not recorder.ended:
-            count = min(_CHUNK, total - done)
-            acceleration = means(done, count, stepper.hold_centre)
-            steps = stepper.advance(acceleration)
-            # the force belongs to the pose, wherever the engine holds it
-            at_pose = means(done, count) if stepper.hold_centre else acceleration
-            recorder.take(steps, at_pose)
-            done += count
-            warning = stepper.warnings()
-            if warning and not recorder.ended:
-                recorder.fail(f"the engine warned: {warning}")
-            elif warning and recorder.ended == "failed":
-                recorder.reason += f"; the engine warned: {warning}"
-            if progress is not None:
-                progress(done / total)
-
-
 def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> Trajectory:
     rows = _rows_to_end(recorder)
-    outcome = recorder.ended or _quiet_outcome(recorder, scene, rows)
+    resting_at_end = recorder.uplift is None or recorder.rests.resting
+    outcome = recorder.ended or ("rest" if resting_at_end else "completed")
     table = dict(zip(("time", *COLUMNS), rows.T, strict=True))
     uplift_time, uplift_direction = recorder.uplift or (math.nan, math.nan)
     contact = np.column_stack([table["contact_x"], table["contact_y"]])
@@ -217,14 +188,14 @@ def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> T
         wall_contact=table["wall_contact"] * scale.time,
         wall_impulse=table["wall_impulse"] * scale.length / scale.time,
         first_wall_contact=recorder.walls.first * scale.time,
-        peak_tilt=_peak(recorder, outcome),
+        peak_tilt=_peak(recorder, outcome, rows),
         outcome=outcome,
         message=remarks(recorder, passes, resolution, scale),
         uplift_time=uplift_time * scale.time,
         uplift_direction=uplift_direction,
         passes=passes,
         contact_resolution=resolution,
-        residual_displacement=float(np.hypot(*recorder.base_centre[:2])) * scale.length,
+        residual_displacement=float(np.hypot(table["base_x"][-1], table["base_y"][-1])) * scale.length,
         residual_twist=float(table["twist"][-1]),
         **run,
     )
@@ -242,25 +213,22 @@ def _rows_to_end(recorder: Recorder) -> Array:
     return np.vstack([rows, last])
 
 
-def _quiet_outcome(recorder: Recorder, scene: Scene, rows: Array) -> str:
-    still = _STILL * math.atan(scene.body.tan_alpha)
-    settled = rows[-min(len(rows), 100) :, 1]
-    return "rest" if recorder.uplift is None or bool((settled < still).all()) else "completed"
-
-
-def _peak(recorder: Recorder, outcome: str) -> float:
+def _peak(recorder: Recorder, outcome: str, rows: Array) -> float:
     if outcome == "failed":
         return math.nan
     if outcome == "overturned":
         return 0.5 * math.pi
-    return max([recorder.peak, *(point.tilt for point in recorder.points if point.is_maximum)])
+    maxima = [point.tilt for point in recorder.points if point.is_maximum and point.time <= recorder.end]
+    # a tilt that still rises at the end is largest in its last sample
+    return max([recorder.peak, float(rows[-1, 1]), *maxima])
 
 
 def _passes(recorder: Recorder, resolution: float, scale: Scale) -> pd.DataFrame:
     import pandas as pd
 
     start = recorder.uplift[0] if recorder.uplift is not None else math.inf
-    passes = passes_between([point for point in recorder.points if point.time >= start], _SWING)
+    points = [point for point in recorder.points if start <= point.time <= recorder.end]
+    passes = passes_between(points, _SWING, recorder.rests.rests())
     return pd.DataFrame(
         {
             "time": np.array([item.time for item in passes], dtype=float) * scale.time,

@@ -30,10 +30,11 @@ class Trajectory:
     wall_time : float
         Time that the run took [s].
     time : ndarray, shape (n,)
-        Multiples of the sample step and the exact end [s].
+        Multiples of the sample step and the exact end [s]; of a run that overturns, the time at which its
+        side is on the ground, which may be later than the duration asked for.
     tilt, tilt_rate, rolling_angle, rolling_rate, twist : ndarray, shape (n,)
-        [rad], [rad/s]. The rolling angle is unwrapped at every step of the engine; it is NaN at rest:
-        before the uplift, and where the tilt is below 5e-6 alpha.
+        [rad], [rad/s]. The rolling angle and the twist are unwrapped at every step of the engine, the twist
+        from 0. The rolling angle is NaN at rest: before the uplift, and where the tilt is below 5e-6 alpha.
     contact_point : ndarray, shape (n, 2)
         Lowest point of the rim [m]; NaN at rest.
     contact_offset : ndarray, shape (n,)
@@ -60,22 +61,23 @@ class Trajectory:
     first_wall_contact : float
         Time [s]; NaN if there was none.
     peak_tilt : float
-        Vertex of the parabola through the largest step [rad]; pi/2 where overturned, NaN where failed.
+        Vertex of the parabola through the largest step until the end of the run [rad]; pi/2 where
+        overturned, NaN where failed.
     outcome : {"rest", "completed", "overturned", "failed"}
     message : str
         Why the run failed, or what limits it: slip, flight, passes too close to the apex. May be empty.
     uplift_time, uplift_direction : float
         [s], [rad]. NaN if the base never uplifts; 0 and the rolling angle of the start for a release.
     passes : DataFrame
-        Tilt minima between two maxima: time [s], minimum_tilt [rad], angle_of_turn [rad], and
-        resolved [bool], whether the minimum exceeds `contact_resolution`.
+        Tilt minima between two maxima of one motion, with no rest between: time [s], minimum_tilt [rad],
+        angle_of_turn [rad], and resolved [bool], whether the minimum exceeds `contact_resolution`.
     contact_resolution : float
         Smallest minimum tilt of a pass that the run resolves [rad]: penetration/(1.5 b), or the tilt
-        that the fastest fall crosses in one step where that is larger.
+        that the fastest motion within the balance crosses in one step where that is larger.
     residual_displacement : float
         Horizontal distance of the base centre from O at the end [m].
     residual_twist : float
-        [rad]
+        At the end, whole turns included [rad].
     error_estimate : float
         Error of the tilt that the time step leaves, until `settled_until` [rad]; NaN unless time_step="auto".
     settled_until : float

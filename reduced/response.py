@@ -189,12 +189,16 @@ class Response:
     @cached_property
     def assumptions(self) -> Assumptions:
         """Whether contact and friction held, from the extrema of the continuous solution; solved again."""
+        return self.assumptions_until(math.inf)
+
+    def assumptions_until(self, end: float) -> Assumptions:
+        """Return whether contact and friction held until the time `end` [s], such as that of a fall."""
         march, _ = self.problem.solve(np.empty(0), record_steps=True)
-        steps = np.concatenate([[0.0], march.steps[:, 0], self.rests[:, 0], [march.end]])
+        steps = np.concatenate([[0.0], march.steps[:, 0], self.rests[:, 0], [min(march.end, end)]])
         landings = self.extrema[self.extrema[:, 1] == 0.0, 0]
         jumps = np.concatenate([[self.uplift_time], self.rests[:, 1], landings])
-        jumps = jumps[np.isfinite(jumps) & (jumps > 0.0)]
-        return review(self._demands_at, np.unique(steps), jumps, self.friction)
+        jumps = jumps[np.isfinite(jumps) & (jumps > 0.0) & (jumps < end)]
+        return review(self._demands_at, np.unique(steps[steps <= end]), jumps, self.friction)
 
     def _demands_at(self, times: Array) -> Demands:
         march, azimuth = self.problem.solve(times)

@@ -24,8 +24,8 @@ Only = Annotated[
     typer.Option(
         "--only",
         metavar="LAYER",
-        help="Run one layer; may be repeated: equations, conserved, exact, invariance, order, residual, "
-        "agreement, baseline. Default: all.",
+        help="Run one layer; may be repeated: records, equations, conserved, exact, rest, invariance, "
+        "properties, order, residual, metrics, studies, traces, agreement, baseline. Default: all.",
     ),
 ]
 Json = Annotated[
@@ -70,9 +70,11 @@ def check(
 ) -> None:
     """Check that the reduced model stays the same model, and stays in agreement with the engines.
 
-    Tightest first: equations against the energies, term by term, and against accelerations in the engines;
-    conserved quantities; exact solutions; invariances; order; zero residual displacement; agreement with
-    the engines on a suite; stored baselines. Each check says what it measured, what it may be, why, and
+    Tightest first: files of records; equations against the energies, term by term, and against
+    accelerations in the engines; conserved quantities; exact solutions; rest, landings and the end of a
+    record; invariances; one motion stated in several ways; order; zero residual displacement; metrics on
+    made-up traces; suites, sweeps and grids against single runs; every field of an engine's trace; agreement
+    with the engines on a suite; stored baselines. Each check says what it measured, what it may be, why, and
     what is wrong if it is more.
 
     Exit code 0 if all checks hold, 1 if one does not, 2 for bad input.

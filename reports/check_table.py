@@ -17,12 +17,18 @@ _STYLES = {"passed": "green", "FAILED": "bold red", "no baseline": "yellow", "no
 _MINIMUM_WIDTH = 150  # where there is no terminal
 _ROOM_FOR_REASONS = 120
 LAYER_WORDS = {
+    "records": "Records: files of every form, the records that ship, pulses",
     "equations": "Equations: Lagrange's, (18) and (19) on computed motions; accelerations in the engines",
     "conserved": "Conserved: energy and L in free motion, and the work of the ground",
     "exact": "Exact solutions: uplift, periods, angles of turn, steady wobble",
+    "rest": "Rest: uplift at once, rest, landings, and what comes after the end of a record",
     "invariance": "Invariance: mirror, size, rotation, delay, gravity, sampling",
+    "properties": "Properties: one motion stated in several ways; turning points, peaks and passes",
     "order": "Order: error against tolerance and time step",
     "residual": "Residual: no displacement and no twist is left",
+    "metrics": "Metrics: differences, agreement times and external trajectories on made-up traces",
+    "studies": "Studies: peak_tilts, suites and sweeps against single runs",
+    "traces": "Traces: every field of an engine's trace",
     "agreement": "Agreement: engines against the reduced models",
     "baseline": "Baseline: the numbers that were kept",
 }

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from .ensemble_words import LEGEND, WORDS, facts, statements, tables
+from .ensemble_words import CAPTION, INTRODUCTION, LEGEND, WORDS, facts, statements, tables
 from .paper.provenance import made_by
 
 if TYPE_CHECKING:
@@ -18,11 +18,10 @@ def ensemble_document(found: Ensemble) -> str:
     (_, headings, rows), *others = tables(found)
     parts = [
         "# Distributions of peak tilt",
-        "Once traces have parted, single runs say nothing about each other; distributions over many members "
-        "do. " + "; ".join(facts(found)) + ".",
+        f"{INTRODUCTION} {'; '.join(facts(found))}.",
         f"**{headline}**",
-        "![Share of the members whose peak tilt is at most that of the axis, by method](ensemble.svg)",
-        "Each curve is the share of the members with at most this peak tilt; what it lacks to 1 overturns.",
+        "![Distributions of peak tilt by method, and ratios of the peaks of each member](ensemble.svg)",
+        CAPTION,
         "\n".join(f"- {sentence}" for sentence in rest),
         _table(headings, rows),
         LEGEND,

@@ -4,17 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .ensemble_words import (
-    CONTRASTS,
-    LEGEND,
-    METHODS,
-    OVERTURNING,
-    WORDS,
-    contrast_rows,
-    method_rows,
-    overturning_rows,
-    statements,
-)
+from .ensemble_words import LEGEND, WORDS, statements, tables
 from .summary_table import MINIMUM_WIDTH
 
 if TYPE_CHECKING:
@@ -26,6 +16,8 @@ if TYPE_CHECKING:
 
 # columns of a table with the longest names
 _WIDEST = 1000
+# what a narrow terminal leaves out, beside the intervals; all of it is in the files
+_LEFT_OUT = ("lower", "5 to 95 %", "p (Holm)", "within reach", "neither")
 
 
 def print_ensemble(found: Ensemble) -> None:
@@ -33,22 +25,31 @@ def print_ensemble(found: Ensemble) -> None:
     from rich.console import Console
 
     console = Console()
-    contrasts = _table(CONTRASTS, contrast_rows(found))
-    needed = contrasts.__rich_measure__(console, console.options.update(max_width=_WIDEST)).maximum
+    shown: list[tuple[Sequence[str], Sequence[Sequence[str]]]]
+    shown = [(headings, rows) for _, headings, rows in tables(found)]
+    measure = console.options.update(max_width=_WIDEST)
+    needed = max(_table(*table).__rich_measure__(console, measure).maximum for table in shown)
     if not console.is_terminal:
         console.width = max(console.width, MINIMUM_WIDTH, needed)
     elif console.width < needed:
-        contrasts = _table(CONTRASTS, contrast_rows(found, intervals=False))
+        shown = [_narrow(*table) for table in shown]
     console.print()
-    falls = _table(OVERTURNING, overturning_rows(found))
-    for table in (_table(METHODS, method_rows(found)), contrasts, falls):
-        if table.row_count:
-            console.print(table)
-            console.print()
+    for table in shown:
+        console.print(_table(*table))
+        console.print()
     console.print(LEGEND, style="dim", highlight=False)
     console.print()
     for i, sentence in enumerate(statements(found)):
         console.print(sentence, style="bold" if i == 0 else "", highlight=False, markup=False)
+
+
+def _narrow(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> tuple[list[str], list[list[str]]]:
+    """Return a table without its intervals and its last details."""
+    kept = [(index, name in WORDS) for index, name in enumerate(headings) if name not in _LEFT_OUT]
+    return (
+        [headings[index] for index, _ in kept],
+        [[row[index] if words else row[index].split(" (")[0] for index, words in kept] for row in rows],
+    )
 
 
 def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:

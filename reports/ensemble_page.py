@@ -1,11 +1,11 @@
-"""The page of an ensemble: its figure and its tables, in one file."""
+"""The page of an ensemble: its figures and its tables, in one file."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from .ensemble_chart import ensemble_chart
-from .ensemble_words import LEGEND, WORDS, facts, statements, tables
+from .ensemble_chart import ensemble_chart, ratio_chart
+from .ensemble_words import CAPTION, INTRODUCTION, LEGEND, WORDS, facts, statements, tables
 from .paper.provenance import made_by
 from .template import PLOT_CONFIG, render
 
@@ -16,11 +16,16 @@ if TYPE_CHECKING:
 def ensemble_page(found: Ensemble) -> str:
     """Return the page as HTML, plotly.js inside."""
     headline, *sentences = statements(found)
+    charts = {"ensemble": ensemble_chart(found), "ratios": ratio_chart(found)}
     return render(
         "ensemble.html.j2",
-        picture=ensemble_chart(found).to_html(
-            full_html=False, include_plotlyjs=False, div_id="ensemble", config=PLOT_CONFIG
-        ),
+        pictures=[
+            chart.to_html(full_html=False, include_plotlyjs=False, div_id=name, config=PLOT_CONFIG)
+            for name, chart in charts.items()
+            if chart is not None
+        ],
+        introduction=INTRODUCTION,
+        caption=CAPTION,
         facts=facts(found),
         headline=headline,
         sentences=sentences,

@@ -81,10 +81,8 @@ class Spread:
         return float(fell[known].mean()) if known.any() else math.nan
 
     def contrast(self) -> Contrast:
-        """Hold the distributions of both models against each other: the other against the first."""
-        return contrast(
-            self.other_peaks, self.peaks, self.other_overturned, self.overturned, draws=200, seed=self.seed
-        )
+        """Hold the peak tilts of both models against each other, member by member: the other's first."""
+        return contrast(self.other_peaks, self.peaks, self.other_overturned, self.overturned)
 
 
 def spread_of_starts(

@@ -10,7 +10,11 @@ from rockwobble.models import Case, Run, Suite
 
 from ..execution import Crash, Job, ProgressCallback, simulate_all
 from ..fingerprint import fingerprint
-from ..runs import run_labels
+from ..runs import installed_engines, run_labels
+from .finding import Finding, not_run
+
+# the engines that every installation is meant to have, and whose accuracy at the default step is known
+ENGINES = ("mujoco", "pybullet")
 
 
 def _as_given(run: Run) -> Run:
@@ -79,6 +83,18 @@ class Bench:
             model=model,
             **options,
         )
+
+
+def engines_here() -> tuple[str, ...]:
+    """Return those of `ENGINES` that are installed."""
+    return tuple(name for name in ENGINES if name in installed_engines())
+
+
+def not_here(layer: str, what: str) -> Iterator[Finding]:
+    """Yield for each of `ENGINES` that is not installed that `what` was not checked with it."""
+    for name in ENGINES:
+        if name not in engines_here():
+            yield not_run(layer, f"{what}, {name}", part=name, note=f"{name} is not installed here")
 
 
 def crashed(trajectory: Any) -> bool:

@@ -15,12 +15,10 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder, InitialState, Run
 
-from ..runs import installed_engines
-from .bench import Bench, crashed
+from .bench import Bench, crashed, engines_here, not_here
 from .finding import Finding, at_most
 
 LAYER = "agreement"
-ENGINES = ("mujoco", "pybullet")
 CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case(
     "release, tan alpha = 0.2",
@@ -38,7 +36,8 @@ BY_CONTACT = 1e-7
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part."""
     exact = bench.response(CASE, "recess", rtol=1e-11)
-    for engine in (name for name in ENGINES if name in installed_engines()):
+    yield from not_here(LAYER, "contact and time step")
+    for engine in engines_here():
         run = bench.adjust(Run(engine, "guided", STEP))
         step = run.time_step if isinstance(run.time_step, float) else STEP
         finer = Run(engine, "guided", 0.5 * step, **run.settings)

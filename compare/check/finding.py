@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,12 +15,18 @@ NOT_RUN: Outcome = "not run"
 
 # tightest first: what comes later rests on what comes earlier
 LAYERS = (
+    "records",
     "equations",
     "conserved",
     "exact",
+    "rest",
     "invariance",
+    "properties",
     "order",
     "residual",
+    "metrics",
+    "studies",
+    "traces",
     "agreement",
     "baseline",
 )
@@ -88,6 +95,22 @@ def at_most(
         outcome=PASSED if math.isfinite(value) and value <= bound else FAILED,
         note=note,
     )
+
+
+def worst_of(
+    layer: str,
+    name: str,
+    errors: Mapping[str, float],
+    bound: float,
+    *,
+    reason: str,
+    part: str,
+    unit: str = "",
+) -> Finding:
+    """Return the finding on the largest of several errors, and say which; one that is no number fails."""
+    place = max(errors, key=lambda key: abs(errors[key]) if math.isfinite(errors[key]) else math.inf)
+    note = f"worst of {len(errors)}: {place}"
+    return at_most(layer, name, abs(errors[place]), bound, reason=reason, part=part, unit=unit, note=note)
 
 
 def not_run(layer: str, name: str, *, part: str, note: str) -> Finding:

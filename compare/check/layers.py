@@ -5,16 +5,30 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from . import (
+    after_record,
     agreement,
+    batch,
     conserved,
     engine_baseline,
     engine_equations,
     equations,
     exact,
+    external_trajectories,
+    ground_motions,
     invariance,
+    landing,
+    metrics,
     order,
+    predicted_times,
+    properties,
+    record_files,
     reduced_baseline,
     residual,
+    rest,
+    suites,
+    sweeps,
+    traces,
+    turning_points,
 )
 from .bench import Bench
 from .finding import FAILED, LAYERS, Finding, at_most
@@ -25,12 +39,18 @@ Check = Callable[[Bench], Iterator[Finding]]
 def parts_of(layer: str, bench: Bench) -> tuple[Check, ...]:
     """Return the checks of a layer; engine baselines exist for the suite that ships only."""
     parts: dict[str, tuple[Check, ...]] = {
+        "records": (record_files.check, ground_motions.check),
         "equations": (equations.check, engine_equations.check),
         "conserved": (conserved.check,),
         "exact": (exact.check,),
+        "rest": (rest.check, landing.check, after_record.check),
         "invariance": (invariance.check,),
+        "properties": (properties.check, turning_points.check),
         "order": (order.check,),
         "residual": (residual.check,),
+        "metrics": (metrics.check, predicted_times.check, external_trajectories.check),
+        "studies": (batch.check, suites.check, sweeps.check),
+        "traces": (traces.check,),
         "agreement": (agreement.check,),
         "baseline": (reduced_baseline.check, *((engine_baseline.check,) if bench.shipped else ())),
     }

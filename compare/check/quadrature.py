@@ -35,6 +35,14 @@ def turn_inertia(shape: Shape, tilt: Array) -> Array:
     return np.asarray(2.0 * kinetic(shape, tilt, none, none, np.ones_like(tilt)), dtype=float)
 
 
+def cone_inertia(shape: Shape) -> float:
+    """Return J of B = J theta^2 near the apex [m^2]."""
+    small = 1e-4
+    near, double = turn_inertia(shape, np.array([small, 2.0 * small]))
+    # the next term is one of theta^3: extrapolated
+    return float(2.0 * near - 0.25 * double) / small**2
+
+
 def height_energy(shape: Shape, tilt: Array) -> Array:
     """Return V (n,) of tilts (n,) over still ground [m^2/s^2]."""
     still = np.zeros((len(tilt), 3))

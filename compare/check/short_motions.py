@@ -99,9 +99,9 @@ def sample(reduced: Any, cylinder: Cylinder) -> Sampled:
         )
         if found.outcome == "failed":
             raise FailedMotionError(found.message)
-        # one that fell down ends between two samples
+        # one that fell down ends between two samples, and may go on falling when the motion is over
         even = len(found.time) - (found.outcome == "overturned")
-        for piece in range((even - 1) // _PIECE):
+        for piece in range(min((even - 1) // _PIECE, _PIECES)):
             cut = slice(piece * _PIECE, (piece + 1) * _PIECE + 1)
             theta, phi = found.tilt[cut], found.rolling_angle[cut]
             share = np.arange(_PIECE + 1)[:, None] / _PIECE

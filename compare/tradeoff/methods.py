@@ -88,7 +88,7 @@ def _reduced(problem: Problem, quick: bool) -> list[Method]:
     if problem.name != "turn":  # still ground seats nobody
         lines[1:1] = [
             (f"reduced, seating {FINE_SEATING:g}", "recess", FINE_SEATING),
-            ("reduced, seating 0.01", "recess", 1e-2),
+            ("reduced, seating 1e-05", "recess", 1e-5),
             ("reduced, seating 0.1", "recess", 1e-1),
         ]
 

@@ -31,7 +31,7 @@ MODELS = ("recess", "rolling")
 # of the tight solutions, and a seating rule a hundred times finer than the default: without any a cylinder
 # that just uplifts chatters at the apex without end, and there is no solution to hold a method against
 TIGHT = 1e-12
-FINE_SEATING = 1e-7
+FINE_SEATING = 1e-10
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 _TURN_LENGTH = 2.6  # [s] a period of the tilt is 2.39 s

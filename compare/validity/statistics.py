@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Run
 
-from ..ensemble_study import falls_at_the_end
 from ..execution import run_engine
 from ..runs import SUPPORTS, own_model
 from .extent import Extent
@@ -45,11 +43,8 @@ def measure(inputs: Inputs) -> list[Row]:
     point = {name: inputs[name] for name in ("motion", "level", "tan_alpha", "semidiagonal")}
     rows: list[Row] = []
     for method, run in found.items():
-        fell = falls_at_the_end(case, run)
-        peak = (0.5 * math.pi if fell else run.peak_tilt) / case.cylinder.alpha
-        rows.append(
-            {**point, "method": method, "peak": peak, "outcome": "overturned" if fell else run.outcome}
-        )
+        peak = run.peak_tilt / case.cylinder.alpha
+        rows.append({**point, "method": method, "peak": peak, "outcome": run.outcome})
     return rows
 
 

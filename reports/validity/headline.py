@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
+from rockwobble.compare.distributions import MARGIN
 from rockwobble.compare.validity import Limit
 from rockwobble.compare.validity.limits.limit import percent, short
 
 # the engine is no better than this in the peak of a record; worse, and the model is not what it stands for
 _SAME_PEAK = 0.05
-_TOLD_APART = 0.05
 
 
 def headline(limits: Sequence[Limit]) -> str:
@@ -20,25 +20,31 @@ def headline(limits: Sequence[Limit]) -> str:
     doubts = []
     if not peaks["engine"] <= _SAME_PEAK:
         doubts.append(f"the engine's peak tilt is off by {percent(peaks['engine'])} (median)")
-    if not members["guided_p"] >= _TOLD_APART:
-        doubts.append(f"its distribution of peak tilt is another (p = {short(members['guided_p'])})")
+    if members["guided_beyond"]:
+        doubts.append(
+            f"over {members['members']:.0f} records its peaks do not agree within {percent(MARGIN)} "
+            "in the median"
+        )
     if form["contradicted"] > 0.0:
         doubts.append(
             f"it contradicts the models at {form['contradicted']:.0f} of {form['points']:.0f} releases"
         )
     if doubts:
         return f"The reduced model is not established even in an ideal recess: {'; '.join(doubts)}."
-    statistics = (
-        "its distribution of peak tilt cannot be told from that on open ground"
-        if members["open_p"] >= _TOLD_APART
-        else "its distribution of peak tilt can be told from that on open ground"
-    )
+    records = f"over {members['members']:.0f} records"
     return (
         f"In an ideal recess the reduced model is right: the engine has the same peak tilt to "
-        f"{percent(peaks['engine'])} (median) and the same distribution. A cylinder on open ground leaves "
-        "its trace "
-        "after "
-        f"{short(traces['open'])} s, and nine in ten single peaks are within "
-        f"{percent(peaks['nine_in_ten'])}; "
-        f"over {members['members']:.0f} records {statistics}."
+        f"{percent(peaks['engine'])} (median), and {records} {_known(members, 'guided')}. A cylinder on open "
+        f"ground leaves its trace after {short(traces['open'])} s, and nine in ten single peaks are within "
+        f"{percent(peaks['nine_in_ten'])}; {records} {_known(members, 'open')}."
     )
+
+
+def _known(members: Mapping[str, float], place: str) -> str:
+    """Return what is known of the median ratio of the peaks of a record."""
+    known = f"agree within {percent(MARGIN)} in the median"
+    if members[f"{place}_within"]:
+        return f"peaks {known}"
+    if members[f"{place}_beyond"]:
+        return f"peaks do not {known}"
+    return f"it is undecided whether peaks {known}"

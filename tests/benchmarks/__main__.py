@@ -15,6 +15,7 @@ SCRIPTS = (
     "engine_extremes",
     "engine_horizons",
     "engine_settings",
+    "ensemble_intervals",
     "ring_losses",
     "run_overhead",
     "scene_cost",

@@ -1,11 +1,11 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
 import pandas as pd
 import pytest
-from scipy.stats import ks_2samp
 
 from rockwobble.compare import (
     ensemble,
@@ -13,85 +13,18 @@ from rockwobble.compare import (
     execution,
     far_field_motions,
     perturbed_starts,
+    read_ensemble,
     synthetic_motions,
 )
-from rockwobble.compare.distributions import (
-    contrast,
-    ks_distance,
-    median_ratio,
-    member_factor,
-    smallest_distance,
-    standing_wasserstein,
-)
+from rockwobble.compare.describe_ensemble import describe_ensemble
+from rockwobble.compare.ensemble_study import ensemble_of
 from rockwobble.compare.execution import Job
+from rockwobble.compare.parquet_file import pack
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 ROUNDING = 1e-12
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case("release", PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0)
-UP = np.zeros(200, dtype=bool)
-
-
-def sample(seed: int, scale: float = 1.0, count: int = 200) -> np.ndarray:
-    return scale * np.random.default_rng(seed).lognormal(sigma=0.3, size=count)
-
-
-def test_one_distribution_is_told_from_itself_by_chance_only():
-    found = contrast(sample(1), sample(2), UP, UP, draws=200)
-    assert found.ks_p > 0.05
-    assert found.median_ratio.low < 1.0 < found.median_ratio.high
-
-
-def test_a_fifth_more_is_told():
-    found = contrast(sample(1, 1.2), sample(2), UP, UP, draws=200)
-    assert found.ks_p < 1e-3
-    assert found.median_ratio.low > 1.0
-    assert found.median_ratio.low < 1.2 < found.median_ratio.high
-
-
-def test_known_distances():
-    ours, theirs = np.array([1.0, 2.0, 3.0, math.inf]), np.array([2.0, 3.0, 4.0, 5.0])
-    assert ks_distance(ours, theirs) == 0.25
-    assert standing_wasserstein(ours[:3], theirs[:3]) == pytest.approx(1.0, abs=ROUNDING)
-    assert median_ratio(ours, theirs) == pytest.approx(2.0 / 3.0, abs=ROUNDING)
-    a, b = sample(3), sample(4)
-    assert ks_distance(a, b) == pytest.approx(ks_2samp(a, b).statistic, abs=ROUNDING)
-
-
-def test_factor_between_the_peaks_of_a_member():
-    ours, theirs = np.array([1.0, 4.0, 3.0, math.inf, 0.0]), np.array([2.0, 1.0, 3.0, 1.0, 1.0])
-    # 2, 4 and 1: what falls or stays at rest has no factor
-    assert member_factor(ours, theirs) == pytest.approx(2.0, abs=ROUNDING)
-    assert math.isnan(member_factor(ours[3:], theirs[3:]))
-
-
-def test_a_distance_within_chance_is_where_its_probability_is_a_twentieth():
-    count = 400
-    shift = round(smallest_distance(count) * count)
-    values = np.arange(float(count))
-    # the limit for large samples: a step of the distance is 1/400, which moves p by less than 0.005
-    assert ks_2samp(values, values + shift, method="asymp").pvalue == pytest.approx(0.05, abs=0.005)
-
-
-def test_an_overturned_run_is_the_largest_and_a_failed_one_does_not_count():
-    peaks, against = np.array([0.1, 8.0, 0.3, math.nan]), np.array([0.1, 0.2, 0.3, 0.4])
-    fell = np.array([False, True, False, False])
-    found = contrast(peaks, against, fell, np.zeros(4, dtype=bool), draws=50)
-    assert (found.count, found.overturned, found.against_overturned, found.both_overturned) == (3, 1, 0, 0)
-    assert found.ks.value == pytest.approx(1.0 / 3.0, abs=ROUNDING)
-    assert found.wasserstein.value < 0.1  # the tilt of a fall is no distance
-
-
-def test_intervals_repeat_with_their_seed():
-    first, again, other = (contrast(sample(1), sample(2), UP, UP, draws=50, seed=s) for s in (3, 3, 4))
-    assert first == again
-    assert first.ks != other.ks
-    assert first.ks.value == other.ks.value
-
-
-def test_two_members_are_the_least():
-    with pytest.raises(ValueError, match="two members"):
-        contrast(np.array([1.0, math.nan]), np.ones(2), UP[:2], UP[:2])
 
 
 def test_starts_are_perturbed_by_the_stated_size():
@@ -122,39 +55,84 @@ def test_failed_runs_are_counted_and_named(monkeypatch, make_trace):
         return make_trace(time, job.case.initial.tilt * time)
 
     monkeypatch.setattr(execution, "simulate", simulate)
-    found = ensemble(CASE, runs=[], size=4, draws=20, workers=1)
+    found = ensemble(CASE, runs=[], size=4, workers=1)
     methods = found.methods.set_index("method")
     assert methods["failed"].to_dict() == {"recess": 0, "rolling": 1}
     assert methods.loc["rolling", "failed_members"] == "release #2"
     assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [3, "release #2"]
     assert len(found.members) == 8
-    assert found.contrasts.loc[0, "ks"] == 0.0
+    # of three members that do not differ; what failed has no part in the counts and quantiles of its method
+    assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [3, 1.0]
+    assert methods.loc["rolling", ["runs", "rocked", "overturned"]].tolist() == [4, 3, 0]
+    assert math.isfinite(methods.loc["rolling", "peak_median"])
 
 
-@pytest.mark.parametrize(
-    ("rate", "length", "outcome"),
-    [(0.1, 1.0, "overturned"), (-0.1, 1.0, "completed"), (0.1, 0.5, "completed")],
-)
-def test_what_falls_when_its_motion_ends_has_overturned(monkeypatch, make_trace, rate, length, outcome):
-    motion = GroundMotion(np.ones((11, 2)), 0.1, "shaking")
-    cases = [Case(name, PIER, motion, duration=length) for name in "ab"]
+def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch, make_trace):
     time = np.arange(11) * 0.1
-    trace = make_trace(time, 1.5 * PIER.alpha * time, tilt_rate=np.full(11, rate))
-    monkeypatch.setattr(execution, "simulate", lambda job: trace)
-    found = ensemble(cases, runs=[], draws=20, workers=1)
-    assert set(found.members["outcome"]) == {outcome}
-    tilt = 0.5 * math.pi if outcome == "overturned" else 1.5 * PIER.alpha
-    assert found.members["peak_tilt"].tolist() == pytest.approx([tilt / PIER.alpha] * 4, abs=ROUNDING)
-    assert (
-        found.methods["peak_median"].tolist()
-        == [math.inf if outcome == "overturned" else pytest.approx(1.5, abs=ROUNDING)] * 2
+    # past its balance and falling at the end: what that is called is the matter of who ran it
+    runs = {
+        "recess": make_trace(time, 1.5 * PIER.alpha * time, tilt_rate=np.ones(11), message="still falling"),
+        "rolling": make_trace(time, time, outcome="overturned", peak_tilt=0.5 * math.pi),
+    }
+    cases = [dataclasses.replace(CASE, name=name) for name in "ab"]
+    monkeypatch.setattr(execution, "simulate", lambda job: runs[job.label])
+    found = ensemble(cases, runs=[], workers=1)
+    for method, run in runs.items():
+        rows = found.members[found.members["method"] == method]
+        assert rows["outcome"].tolist() == [run.outcome] * 2
+        assert rows["message"].tolist() == [run.message] * 2
+        assert rows["peak_tilt"].tolist() == pytest.approx([run.peak_tilt / PIER.alpha] * 2, abs=ROUNDING)
+    assert found.methods["overturned"].tolist() == [0, 2]
+    assert found.methods["peak_median"].tolist() == [pytest.approx(1.5, abs=ROUNDING), math.inf]
+
+
+def test_members_are_paired_by_name_and_not_by_row(monkeypatch, make_trace):
+    time = np.arange(11) * 0.1
+    monkeypatch.setattr(
+        execution, "simulate", lambda job: make_trace(time, job.case.initial.tilt * (time + 0.1))
     )
+    found = ensemble(CASE, runs=[], size=8, workers=1)
+    shuffled = found.members.sample(frac=1.0, random_state=1)
+    assert ensemble_of(shuffled, found.about).contrasts.loc[0, "ratio_95_low"] == 1.0
+    with pytest.raises(ValueError, match="one run by each method"):
+        ensemble_of(pd.concat([found.members, found.members[:1]]), found.about)
+
+
+def test_stored_members_that_say_too_little_are_too_old(tmp_path):
+    found = ensemble(CASE, runs=[], size=3, workers=1)
+    file = tmp_path / "members.parquet"
+    file.write_bytes(pack(found.members, found.about))
+    assert read_ensemble(tmp_path).contrasts.equals(found.contrasts)
+    about = {name: value for name, value in found.about.items() if name != "methods"}
+    file.write_bytes(pack(found.members, about))
+    with pytest.raises(ValueError, match="too old: it does not hold methods; run the ensemble again"):
+        read_ensemble(tmp_path)
+
+
+def test_a_failed_run_is_no_member_that_stands(tmp_path):
+    found = ensemble(CASE, runs=[], size=4, workers=1)
+    members = found.members
+    recess = members["method"] == "recess"
+    members.loc[recess, "outcome"] = ["overturned", "overturned", "completed", "failed"]
+    # the last is how far it came before it failed: no peak
+    members.loc[recess, "peak_tilt"] = [8.0, 8.0, 0.3, 0.4]
+    again = ensemble_of(members, found.about)
+    assert again.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
+    turned = ensemble_of(members, {**found.about, "methods": {"rolling": "", "recess": ""}})
+    assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
+    assert again.methods.loc[0, ["runs", "rocked", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
+    (tmp_path / "members.parquet").write_bytes(pack(members, found.about))
+    figure = describe_ensemble(tmp_path)["figures"][0]
+    assert (figure["rows"], figure["failed"]) == (4, 1)
+    assert figure["overturned [%]"] == pytest.approx(200.0 / 3.0)
+    assert figure["median peak tilt / alpha"] == "overturned"
+    assert figure["largest where not overturned"] == 0.3
 
 
 def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):
-    first = ensemble(CASE, runs=[], size=3, draws=20, workers=1, resume=tmp_path)
+    first = ensemble(CASE, runs=[], size=3, workers=1, resume=tmp_path)
     monkeypatch.setattr(execution, "simulate", lambda job: pytest.fail("ran again"))
-    again = ensemble(CASE, runs=[], size=3, draws=20, workers=1, resume=tmp_path)
+    again = ensemble(CASE, runs=[], size=3, workers=1, resume=tmp_path)
     assert first.members.equals(again.members)
     assert first.contrasts.equals(again.contrasts)
     assert first.about == again.about
@@ -163,7 +141,7 @@ def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monk
 
 def test_every_input_is_in_the_hash_of_an_ensemble():
     hashes = [
-        ensemble(CASE, runs=[], draws=2, workers=1, **options).about["inputs"]
+        ensemble(CASE, runs=[], workers=1, **options).about["inputs"]
         for options in ({"size": 2}, {"size": 3}, {"size": 2, "seed": 1}, {"size": 2, "models": ["recess"]})
     ]
     assert len(set(hashes)) == 4

@@ -7,6 +7,7 @@ import json
 import math
 
 import numpy as np
+import pandas as pd
 import pytest
 
 from rockwobble.compare.validity import PARTS, QUICK, limits_of, measure_all
@@ -101,6 +102,34 @@ def test_another_constant_in_the_reduced_model_changes_the_conclusions(tables, h
     changed = [ours.subject for ours, theirs in zip(right, wrong, strict=True) if ours != theirs]
     # what each limit rests on is the reduced model, in part at least
     assert set(changed) == {limit.subject for limit in right}
+
+
+@pytest.mark.parametrize(
+    ("factor", "scatter", "words"),
+    [
+        (1.001, 0.0, "they agree within 5 % in the median (95 %: a ratio from 1.001 to 1.001)"),
+        (1.1, 0.0, "they do not agree within 5 % in the median (95 %: a ratio from 1.100 to 1.100)"),
+        (1.0, 0.3, "it is undecided whether they agree within 5 % in the median"),
+    ],
+)
+def test_over_records_agreement_is_said_where_the_interval_shows_it(tables, factor, scatter, words):
+    random, count = np.random.default_rng(1), 22
+    peaks = random.lognormal(-1.2, 0.8, count)
+    scattered = factor * peaks * np.exp(scatter * random.standard_normal(count))
+    members = pd.DataFrame(
+        [
+            {"motion": f"record {i}", "level": 2.0, "method": method, "peak": peak, "outcome": "completed"}
+            for method, values in (("recess", peaks), ("engine, guided", scattered), ("engine, free", peaks))
+            for i, peak in enumerate(values)
+        ]
+    )
+    limits = limits_of({**tables, "statistics": members})
+    use = next(limit.use for limit in limits if limit.subject == "Distributions of peak tilt")
+    assert f"in an ideal recess {words}" in use
+    assert "on open ground they agree within 5 % in the median (95 %: a ratio from 1.000 to 1.000)" in use
+    said = headline(limits)
+    assert said.startswith("The reduced model is not established") is (factor == 1.1)
+    assert ("over 22 records it is undecided whether peaks agree within 5 %" in said) is (scatter > 0.0)
 
 
 def test_engine_does_not_know_of_the_constant(tables, heavier_tables):

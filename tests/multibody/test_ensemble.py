@@ -17,7 +17,7 @@ PULSE = GroundMotion([[0.0, 0.0], [4.0, 1.0], [-1.0, 2.0], [0.0, 0.0]], 0.2)
 
 @pytest.fixture
 def cases() -> list[Case]:
-    """Released and standing, of several sizes, frictions and lengths, one that overturns."""
+    """Released and standing, of several sizes, frictions and lengths, two that overturn."""
     found = [
         Case(f"start {n}", PIER, None, InitialState(0.05 + 0.02 * n, rolling_rate=0.4), 0.4 + 0.3 * n)
         for n in range(3)
@@ -51,7 +51,9 @@ def test_each_run_is_that_of_its_own_bit_for_bit(cases: list[Case], engine: str)
         assert (run.outcome, run.message, run.time_step) == (alone.outcome, alone.message, alone.time_step)
         np.testing.assert_array_equal(run.peak_tilt, alone.peak_tilt)
     if engine == "mujoco":
-        assert [run.outcome for run in runs].count("overturned") == 1
+        # the last one rises with the energy to pass its balance when its time is over
+        assert [run.outcome for run in runs[5:]] == ["overturned", "overturned"]
+        assert runs[6].time[-1] > 0.5
         assert "slipped" in runs[4].message
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,8 @@ from rockwobble.models import Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.engine import Steps
 from rockwobble.multibody.guard import energy_scale, first_breach
-from rockwobble.multibody.kinematics import kinematics
+from rockwobble.multibody.kinematics import Kinematics, kinematics
+from rockwobble.multibody.start import starting_state
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)
@@ -99,6 +101,28 @@ def test_passes_too_close_to_the_apex_are_marked(engine: str) -> None:
     assert "passes are closer to the apex than" in near.message
     # the tilt rate just before the apex, in steps; samples miss its largest value by a little
     assert near.contact_resolution == pytest.approx(1e-4 * np.abs(near.tilt_rate).max(), rel=0.02)
+
+
+def test_a_gain_is_held_against_the_energy_of_the_motion() -> None:
+    scale, n = energy_scale(BODY, 9.81), 10
+    start = starting_state(BODY, RELEASE, 1.0)
+    steps = Steps(*(np.tile(part, (n, 1)) for part in
+                    (start.position, start.quaternion, start.velocity, start.angular_velocity)))  # fmt: skip
+    moving = kinematics(steps, steps, BODY, 9.81)
+    still = dataclasses.replace(moving, energy=1e-3 * moving.energy)
+    assert moving.energy[0] == pytest.approx(0.8 * scale, rel=0.01)
+
+    def fails(state: Kinematics, gain: float, largest: float = 0.0) -> bool:
+        breach = first_breach(
+            state, np.full(n, gain * scale), BODY, 9.81, guided=False, largest=largest * scale
+        )
+        return breach is not None
+
+    # two percent of the energy of the motion, and of a twentieth of its balance where that is more
+    assert (fails(moving, 0.0155), fails(moving, 0.0165)) == (False, True)
+    assert (fails(still, 9e-4), fails(still, 1.1e-3)) == (False, True)
+    # what it had before counts
+    assert (fails(still, 0.015, 0.8), fails(still, 0.0165, 0.8)) == (False, True)
 
 
 def test_the_first_breach_counts() -> None:

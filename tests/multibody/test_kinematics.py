@@ -136,6 +136,18 @@ def test_the_angle_waits_while_the_cylinder_stands() -> None:
     np.testing.assert_allclose(found, [0.5, 0.5, 0.5, 0.5, -1.0, 0.7])
 
 
+@pytest.mark.parametrize("edge", [1, 3, 4, 5])
+def test_the_angle_goes_on_over_chunks(edge: int) -> None:
+    # it stands, leans to the other side, and turns by more than a quarter at the upright position
+    azimuth = np.array([0.5, 2.0, -2.9, 1.0, -2.4, 2.6, 2.7])
+    leans = np.array([True, False, False, False, True, True, True])
+    whole = unwrap(azimuth, _forward, leans, 0.4)
+    np.testing.assert_allclose(whole[3:], [0.5, -2.4, 2.6 - 2.0 * np.pi, 2.7 - 2.0 * np.pi])
+    first = unwrap(azimuth[:edge], _forward, leans[:edge], 0.4)
+    second = unwrap(azimuth[edge:], _forward, leans[edge:], first[-1], bool(leans[edge - 1]))
+    np.testing.assert_allclose(np.append(first, second), whole)
+
+
 def _forward(at: Any) -> Any:
     """Positive momentum at every index."""
     return np.full(len(at), 1.0)

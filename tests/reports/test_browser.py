@@ -57,7 +57,7 @@ def ensemble() -> str:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     case = Case("release", pier, initial=release, duration=1.0)
-    return ensemble_page(compare.ensemble(case, runs=[], size=4, draws=100, workers=1))
+    return ensemble_page(compare.ensemble(case, runs=[], size=8, workers=1))
 
 
 PAGES: dict[str, tuple[Callable[[], str], int]] = {
@@ -65,7 +65,7 @@ PAGES: dict[str, tuple[Callable[[], str], int]] = {
     "tradeoff": (lambda: tradeoff_page(read_tradeoff(PUBLISHED / "tradeoff")), 6),
     "extremes": (lambda: extremes_page(read_extremes(PUBLISHED / "extremes")), 0),
     "advice": (advice, 4),
-    "ensemble": (ensemble, 1),
+    "ensemble": (ensemble, 2),
 }
 
 
@@ -92,7 +92,7 @@ def test_a_page_with_a_broken_figure_is_found(tmp_path: Path):
     whole = ensemble()
     broken = whole.replace("Plotly.newPlot(", "Plotly.noPlot(")
     assert broken != whole
-    said = complaints(broken, tmp_path, figures=1)
+    said = complaints(broken, tmp_path, figures=2)
     assert "screen: ensemble: not drawn" in said
     assert "phone: ensemble: not drawn" in said
     assert any("Plotly.noPlot is not a function" in line for line in said)
@@ -105,9 +105,9 @@ def test_what_a_reader_would_stumble_over_is_found(tmp_path: Path):
     wrong = wrong.replace(
         "<header>", '<div style="width: 700px">wide</div><img src="https://example.org/a.png"><header>'
     )
-    said = complaints(wrong, tmp_path, figures=2)
+    said = complaints(wrong, tmp_path, figures=3)
     assert any(line.startswith("phone: ensemble: yaxis without a unit") for line in said)
     assert any(line.startswith("phone: ensemble: text cut off") for line in said)
     assert any(line.startswith("phone: the page scrolls sideways") for line in said)
-    assert "screen: 1 figures, expected 2" in said
+    assert "screen: 2 figures, expected 3" in said
     assert "screen: asks for https://example.org/a.png" in said

@@ -74,7 +74,7 @@ def test_a_failure_names_the_part_and_ends_with_1(
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        (["--only", "equation"], "--only must be one of equations, conserved, "),
+        (["--only", "equation"], "--only must be one of records, equations, conserved, "),
         (["--suite", "nothing"], "cannot read the suite nothing: "),
         (["--reason", "because"], "--reason belongs to --update-baseline"),
         (["--update-baseline", "--only", "exact"], "--update-baseline goes with neither --suite nor --only"),

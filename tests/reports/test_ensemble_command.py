@@ -13,14 +13,18 @@ import pytest
 
 from rockwobble.compare import Ensemble
 from rockwobble.compare.describe_store import describe_store
+from rockwobble.compare.ensemble_study import ensemble_of
 from rockwobble.models import p695
+from rockwobble.reports.ensemble_chart import curves, ratio_chart
 from rockwobble.reports.ensemble_figure import ensemble_figure
 from rockwobble.reports.ensemble_output import print_ensemble
 from rockwobble.reports.ensemble_page import ensemble_page
+from rockwobble.reports.ensemble_ratios import ratio_rows, ratio_span, ratio_ticks
 from rockwobble.reports.ensemble_words import contrast_rows, method_rows, overturning_rows, statements
 from rockwobble.reports.main import main
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "ensemble"
+FALLEN = 7.9  # [alpha]
 RELEASE = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--members", "3"]
 
 
@@ -31,94 +35,108 @@ def call(*arguments: str) -> int:
     return ended.value.code
 
 
-def made_up(*, probability: float = 0.5) -> Ensemble:
-    """Four members by a model and its engine: one falls in both, one in the engine alone."""
-    peaks = {"recess": [0.1, 0.2, 0.3, 7.9], "mujoco guided": [0.1, 0.4, 7.9, 7.9]}
+def made_up(factor: float = 1.1, model: str = "recess", engine: str = "mujoco guided") -> Ensemble:
+    """Ten members by a model and an engine: one overturns by both, one by the engine alone."""
+    first = np.array([*np.arange(1, 9) / 10.0, 0.9, FALLEN])
+    peaks = {model: first, engine: np.array([*factor * first[:8], FALLEN, FALLEN])}
     rows = [
         {
             "member": f"record {i + 1}",
             "method": method,
             "peak_tilt": peak,
-            "outcome": "overturned" if peak > 7.0 else "completed",
+            "outcome": "overturned" if peak == FALLEN else "completed",
             "message": "",
             "wall_time": 1.0,
         }
         for method, values in peaks.items()
         for i, peak in enumerate(values)
     ]
-    methods = [
-        {
-            "method": method,
-            "own_model": "recess" if method != "recess" else "",
-            "runs": 4,
-            "rocked": 4,
-            "overturned": int(np.sum(np.array(values) > 7.0)),
-            "failed": 0,
-            "failed_members": "",
-            "peak_16": values[0],
-            "peak_median": values[1],
-            "peak_84": math.inf,
-        }
-        for method, values in peaks.items()
-    ]
-    contrast = {
-        "method": "mujoco guided",
-        "against": "recess",
-        "count": 4,
-        **{f"{name}{end}": 0.25 for name in ("ks", "wasserstein") for end in ("", "_low", "_high")},
-        **{f"median_ratio{end}": math.nan for end in ("", "_low", "_high")},
-        "ks_p": probability,
-        "member_factor": 1.5,
-        "overturned": 2,
-        "against_overturned": 1,
-        "both_overturned": 1,
-        "overturned_p": 1.0,
-        "masked": "",
-    }
     span = {"from": 6.0, "to": 6.0, "count": 1}
     about = {
         "members": "records",
-        "draws": 1000,
+        "methods": {model: "", engine: model},
         "seeds": {"ensemble": 3},
         "versions": {"mujoco": "4.0.0"},
         "semidiagonal": span,
         "tan_alpha": span,
     }
-    return Ensemble(
-        members=pd.DataFrame(rows),
-        methods=pd.DataFrame(methods),
-        contrasts=pd.DataFrame([contrast]),
-        about=about,
-    )
+    return ensemble_of(pd.DataFrame(rows), about)
 
 
-def test_tables_say_what_falls_instead_of_its_tilt():
+def test_tables_say_what_overturns_instead_of_its_tilt():
     found = made_up()
-    assert method_rows(found)[1] == ("mujoco guided", "4", "4", "2", "0", "0.400", "0.100 to falls")
-    assert contrast_rows(found)[0][2:5] == ("0.25 (0.25 to 0.25)", "0.50", "0.25 (0.25 to 0.25)")
-    assert contrast_rows(found)[0][5] == "-"  # the median of one side falls
-    assert overturning_rows(found) == [("mujoco guided", "recess", "1", "1", "0", "2", "1.00")]
-
-
-def test_sentences_say_what_is_told_apart_and_what_cannot_be_seen():
-    headline, chance, engine = statements(made_up())
-    assert headline.startswith("No method is told from another")
-    assert "With 4 members a KS distance below 0.96 is within chance" in chance
-    assert "mujoco guided against recess, its own model" in engine
-    assert "2 and 1 of 4 overturn" in engine
-    assert statements(made_up(probability=1e-4))[0] == (
-        "The distributions of peak tilt tell mujoco guided from recess (p = 0.0001)."
+    # of ten the median is between the fifth and the sixth, of which 95 % exclude the largest two on each side
+    assert method_rows(found)[1] == (
+        *("mujoco guided", "10", "10", "2", "0"),
+        "0.605 (0.272 to overturned)",
+        "0.194 to overturned",
     )
-    assert contrast_rows(made_up(probability=1e-4))[0][3] == "<0.01"
+    (row,) = contrast_rows(found)
+    assert row[:6] == ("mujoco guided", "recess", "9", "9", "0", "1.100 (1.100 to 1.100)")
+    assert row[6:] == ("1.100 to ∞", "0.004", "0.004", "no", "-")
+    assert overturning_rows(found) == [
+        ("mujoco guided", "recess", "1", "1", "0", "8", "+10 (-20 to +36)", "1.00")
+    ]
+
+
+def test_sentences_say_what_agrees_what_is_told_and_what_cannot_be_seen():
+    headline, pair, told, falls = statements(made_up())
+    assert headline == (
+        "Peaks of the same member do not agree within 5 % in the median: mujoco guided with recess."
+    )
+    assert pair == (
+        "mujoco guided against recess: median ratio 1.100 (1.100 to 1.100), higher in 9 and lower in 0 of 9 "
+        "members (p = 0.004); 9 members so scattered tell no ratio on one side of 1; 2 and 1 of 10 "
+        "overturn, 1 by both (p = 1.00)."
+    )
+    assert told == "Told apart (p below 0.05): mujoco guided from recess (higher in 9, lower in 0)."
+    assert "it takes at least 6 that overturn by one of two methods alone" in falls
+
+
+def test_what_is_told_apart_may_agree_and_what_is_not_need_not():
+    close = statements(made_up(1.001))
+    assert close[0] == "Peaks of the same member agree within 5 % in the median: mujoco guided with recess."
+    assert close[2].startswith("Told apart")
+    # the first five: so few bound no median, and nothing overturns
+    found = made_up()
+    few = found.members[found.members["member"].isin([f"record {i}" for i in range(1, 6)])]
+    open_ = statements(ensemble_of(few, found.about))
+    assert open_[0].startswith("It is undecided whether peaks of the same member agree within 5 %")
+    assert "1.100 (0 to ∞)" in open_[1]
+    assert "5 members so scattered tell no ratio on one side of 1" in open_[1]
+    assert open_[2] == "No peaks are told apart (p below 0.05), which does not make them the same."
+    assert open_[3] == "No member overturns by any method: the share that would is below 45 % (95 %)."
+
+
+def test_the_picture_marks_who_overturns_by_one_method_alone():
+    found = made_up(1.2)
+    (row,) = ratio_rows(found)
+    assert row.label == ("mujoco guided", "/ recess, n = 9")
+    assert row.members == [f"record {i}" for i in range(1, 10)]
+    assert row.ratios.tolist() == pytest.approx([*[1.2] * 8, math.inf])
+    low, high = ratio_span([row])
+    assert low < 1.0 / 1.2 < 1.2 < high == pytest.approx(1.0 / low)
+    ticks = ratio_ticks(low, high)
+    assert 1.0 in ticks
+    assert low <= min(ticks) < max(ticks) <= high
+    assert ratio_ticks(0.07, 14.0) == [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0]
+    figure = ratio_chart(found)
+    assert figure is not None
+    counts = [trace.text for trace in figure.data if trace.mode == "markers+text"]
+    assert counts == [("1",)]
+    fallen = [curve.overturned for curve in curves(found)]
+    assert fallen == [1, 2]
+    assert [curve.share[-1] for curve in curves(found)] == [0.9, 0.8]
+    assert [curve.label for curve in curves(found)][1] == "mujoco guided (2 of 10 overturn)"
 
 
 @pytest.mark.parametrize(("columns", "intervals"), [(200, True), (80, False)])
 def test_a_narrow_terminal_leaves_out_the_intervals_and_cuts_nothing(monkeypatch, capsys, columns, intervals):
     monkeypatch.setenv("COLUMNS", str(columns))
     monkeypatch.setenv("FORCE_COLOR", "1")
-    print_ensemble(made_up())
+    print_ensemble(made_up(model="pybullet free", engine="pybullet guided"))
     printed = capsys.readouterr().out
-    assert ("0.25 (0.25 to 0.25)" in printed) is intervals
+    assert ("0.605 (0.272 to overturned)" in printed) is intervals
     assert "…" not in printed
 
 
@@ -136,7 +154,7 @@ def test_files_of_a_small_ensemble(tmp_path, capsys):
     printed = capsys.readouterr().out
     assert "alpha = 11.31 deg" in printed
     assert "Members: 3, starts perturbed by 1 %" in printed
-    assert "single peaks" in printed
+    assert "rolling against recess: median ratio 1.000" in printed
     table = pd.read_parquet(tmp_path / "members.parquet")
     assert table["peak_tilt"].to_numpy() == pytest.approx(
         pd.read_csv(tmp_path / "members.csv")["peak_tilt"].to_numpy(), rel=1e-12

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
+from mutation.listed import Mutation, failures, mutations, names_it, run
+from mutation.mutant import Fault, mutated
+from mutation.places import Change, after_assignment, appended, before_assignment, scaled_argument, wrapped
+from mutation.term_faults import SUMS, term_faults
 from rockwobble import reduced
 from rockwobble.compare.check import LAYERS, Bench, Finding, first_failure
-from rockwobble.compare.check.mutant import Fault, mutated
-from rockwobble.compare.check.mutations import Mutation, failures, main, mutations, names_it
-from rockwobble.compare.check.term_faults import SUMS, term_faults
 from rockwobble.models import read_suite
 
 ALL = mutations()
@@ -50,24 +53,61 @@ def test_every_sum_has_faults_in_both_senses() -> None:
     assert all(any(f" of {target}," in name for name in names) for target in SUMS)
 
 
-def test_a_fault_that_no_longer_fits_is_an_error() -> None:
-    gone = Fault(file="taylor.py", before="no such text", after="")
-    with (
-        pytest.raises(ValueError, match=r"'no such text' must occur once in reduced/taylor.py, got 0 times"),
-        mutated(gone),
-    ):
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            before_assignment("body_of", "no_such", "pass"),
+            "reduced/body.py: the source must have an assignment to 'no_such' in body_of, got b, h, height, "
+            "I1, I2, A, R, p2",
+        ),
+        (
+            after_assignment("no_such", "A", "pass"),
+            "reduced/body.py: the source must have a function 'no_such', got Body, body_of",
+        ),
+        (
+            scaled_argument("body_of", "Body", "no_such", 1.01),
+            "reduced/body.py: the source must have an argument 'no_such' of Body in body_of, got b, h, I1",
+        ),
+    ],
+)
+def test_a_fault_whose_place_is_gone_is_an_error(change: Change, message: str) -> None:
+    with pytest.raises(ValueError, match=re.escape(message)), mutated(Fault(file="body.py", change=change)):
         pass
 
 
-def test_a_fault_that_nothing_finds_is_said(capsys: pytest.CaptureFixture[str], monkeypatch) -> None:
+@pytest.mark.parametrize(
+    ("change", "expected"),
+    [
+        (before_assignment("f.g", "y", "x += 1"), ["x += 1", "y = x"]),
+        (after_assignment("f.g", "y", "y += 1"), ["y = x", "y += 1"]),
+        (scaled_argument("f", "dict", "a", 2.0), ["dict(a=2.0 * x)"]),
+        (
+            wrapped("f", "def f(x): return -without_fault(x)"),
+            ["def without_fault", "def f", "-without_fault(x)"],
+        ),
+        (appended("f = abs"), ["return g(x)", "f = abs"]),
+    ],
+)
+def test_a_change_finds_its_place_by_names(change: Change, expected: list[str]) -> None:
+    source = "def f(x):\n    def g(x):\n        y = x\n        return dict(a=x), y\n    return g(x)\n"
+    changed = Fault(file="any.py", change=change).applied(source)
+    places = [changed.find(text) for text in expected]
+    assert -1 not in places, changed
+    assert places == sorted(places), changed
+
+
+def test_a_fault_that_nothing_finds_is_said(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     harmless = Mutation(
         name="nothing wrong",
-        faults=(Fault(file="taylor.py", before="_SAFETY = 0.9 ", after="_SAFETY = 0.8 "),),
+        faults=(Fault(file="taylor.py", change=appended("_SAFETY = 0.8")),),
         layer="invariance",
         named=("",),
     )
-    monkeypatch.setattr("rockwobble.compare.check.mutations.mutations", lambda: (harmless,))
-    assert main(["--first"]) == 1
+    monkeypatch.setattr("mutation.listed.mutations", lambda: (harmless,))
+    assert run(first=True) == 1
     assert "MISSED   nothing wrong" in capsys.readouterr().out
 
 

@@ -1,12 +1,13 @@
 """Copies of the reduced models with one fault in them, run by the interpreter.
 
-A copy is imported from the sources of `rockwobble.reduced` under a name of its own, with one piece of
-text replaced. Compiling it would take ten seconds; the interpreter takes milliseconds for the short
-runs in which a fault shows. Nothing is written.
+A copy is imported from the sources of `rockwobble.reduced` under a name of its own, with a change in the
+tree of one of its files. Compiling it would take ten seconds; the interpreter takes milliseconds for the
+short runs in which a fault shows. Nothing is written.
 """
 
 from __future__ import annotations
 
+import ast
 import importlib
 import sys
 from collections.abc import Iterator
@@ -19,6 +20,8 @@ from itertools import count
 from pathlib import Path
 from types import CodeType
 from typing import Any
+
+from .places import Change
 
 _NUMBERS = count(1)
 _MOST_STEPS = 4000  # what the longest run of a check takes, twice
@@ -40,19 +43,18 @@ def on_disk(entry):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Fault:
-    """A replacement in the sources of the reduced models.
+    """A change in the sources of the reduced models.
 
     Parameters
     ----------
     file : str
         Path in the package, such as "taylor.py".
-    before, after : str
-        The text, which must occur exactly once, and what takes its place; "" for the whole file.
+    change : callable
+        Changes the tree of that file in place; a ValueError says that the place of the change is gone.
     """
 
     file: str
-    before: str
-    after: str
+    change: Change
 
     def applied(self, text: str) -> str:
         """Return the text of the file with the fault in it.
@@ -60,13 +62,14 @@ class Fault:
         Raises
         ------
         ValueError
-            If the text does not occur exactly once: the sources have changed, and the fault must follow.
+            If the sources no longer have what is changed: the fault must follow them.
         """
-        if not self.before:
-            return self.after
-        if (times := text.count(self.before)) != 1:
-            raise ValueError(f"{self.before!r} must occur once in reduced/{self.file}, got {times} times")
-        return text.replace(self.before, self.after)
+        tree = ast.parse(text)
+        try:
+            self.change(tree)
+        except ValueError as error:
+            raise ValueError(f"reduced/{self.file}: {error}") from error
+        return ast.unparse(ast.fix_missing_locations(tree))
 
 
 def source_folder() -> Path:

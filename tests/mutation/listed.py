@@ -1,7 +1,7 @@
-"""The checks, checked: one fault at a time in a copy of the reduced models, or in the engines' settings.
+"""Faults chosen by hand: one at a time in a copy of the reduced models, or in the engines' settings.
 
-    python -m rockwobble.compare.check.mutations            # every fault against every layer
-    python -m rockwobble.compare.check.mutations --first    # each against its own layer, to the first failure
+    python tests/mutation listed            # every fault against every layer
+    python tests/mutation listed --first    # each against its own layer, to the first failure
 
 A fault that no layer finds, or whose first failure names another part than the one that is wrong, makes
 the exit code 1.
@@ -9,7 +9,6 @@ the exit code 1.
 
 from __future__ import annotations
 
-import argparse
 import sys
 import time
 from collections.abc import Callable, Sequence
@@ -20,12 +19,11 @@ from typing import Any
 import numpy as np
 
 import rockwobble.reduced
+from rockwobble.compare.check import LAYERS, Bench, Finding, run_checks
 from rockwobble.models import Run, read_suite
 
-from .bench import Bench
-from .finding import LAYERS, Finding
-from .layers import run_checks
 from .mutant import Fault, mutated
+from .places import after_assignment, appended, before_assignment, scaled_argument, wrapped
 from .term_faults import FILE, term_faults
 
 
@@ -74,81 +72,70 @@ def _terms(factor: float, word: str) -> list[Mutation]:
 
 def _constants() -> list[Mutation]:
     """Constants of the body 1 % off, wherever they are used; R off through the cylinder itself."""
-    places = [
-        ("b", "    A = I1 + h * h", "    b *= 1.01\n    A = I1 + h * h"),
-        ("h", "    A = I1 + h * h", "    h *= 1.01\n    A = I1 + h * h"),
-        ("I1", "    A = I1 + h * h", "    I1 *= 1.01\n    A = I1 + h * h"),
-        ("I2", "    A = I1 + h * h", "    I2 *= 1.01\n    A = I1 + h * h"),
-        ("A", "        A=A,", "        A=1.01 * A,"),
-        ("J", "        J=I1 +", "        J=1.01 * I1 + 1.01 *"),
-        ("C", "        C=I2 +", "        C=1.01 * I2 + 1.01 *"),
-        ("E", "        E=h", "        E=1.01 * h"),
-        ("g", "        g=gravity", "        g=1.01 * gravity"),
-        ("p^2", "        p2=p2,", "        p2=1.01 * p2,"),
-        ("sin(alpha)", "        sin_alpha=b", "        sin_alpha=1.01 * b"),
-        ("cos(alpha)", "        cos_alpha=h", "        cos_alpha=1.01 * h"),
-    ]
+    # those of which others are made are changed before A, the first that is made of them
+    made_of = {"b": "b", "h": "h", "I1": "I1", "I2": "I2"}
+    changes = {
+        name: before_assignment("body_of", "A", f"{symbol} *= 1.01") for name, symbol in made_of.items()
+    }
+    fields = ("A", "J", "C", "E", "g", "p2", "sin_alpha", "cos_alpha")
+    changes |= {name: scaled_argument("body_of", "Body", name, 1.01) for name in fields}
     found = [
         Mutation(
             name=f"1 % off everywhere: {name}",
-            faults=(Fault(file="body.py", before=before, after=after),),
+            faults=(Fault(file="body.py", change=change),),
             layer="equations",
             named=("(18)", "(19)"),
         )
-        for name, before, after in places
+        for name, change in changes.items()
     ]
-    size = Fault(
-        file="problem.py",
-        before="        cylinder=cylinder,\n        motion=motion,",
-        after="        cylinder=Cylinder(semidiagonal=1.01 * cylinder.semidiagonal, "
-        "tan_alpha=cylinder.tan_alpha),\n        motion=motion,",
-    )
     # through the whole cylinder every term keeps its place: only scales of time and length tell
+    size = _around(
+        "problem.py",
+        "make_problem(model, cylinder, *arguments, **options)",
+        "size = 1.01 * cylinder.semidiagonal\n"
+        "other = Cylinder(semidiagonal=size, tan_alpha=cylinder.tan_alpha)\n"
+        "return without_fault(model, other, *arguments, **options)",
+    )
     return [
         *found,
         Mutation(name="R 1 % off", faults=(size,), layer="exact", named=("size R", "start after the uplift")),
     ]
 
 
+def _around(file: str, head: str, body: str) -> Fault:
+    """Return the fault of a function that calls the one of its name as `without_fault`."""
+    text = f"def {head}:\n" + "".join(f"    {line}\n" for line in body.splitlines())
+    return Fault(file=file, change=wrapped(head.split("(")[0], text))
+
+
 def _structure() -> list[Mutation]:
     # the pieces keep their times, but from the 21st on they are those of the next
-    skipped = (
-        Fault(
-            file="driver.py",
-            before="    end = index + 1\n",
-            after="    skipped = 1 if 20 < index < len(record) - 2 else 0\n"
-            "    index += skipped\n    end = index + 1\n",
-        ),
-        Fault(file="driver.py", before="slope, end * time_step", after="slope, (end - skipped) * time_step"),
+    skipped = _around(
+        "driver.py",
+        "piece_of_record(record, scale, time_step, index)",
+        "skipped = 1 if 20 < index < len(record) - 2 else 0\n"
+        "a, slope, end = without_fault(record, scale, time_step, index + skipped)\n"
+        "return a, slope, end - skipped * time_step",
     )
-    exchanged = Fault(
-        file="problem.py",
-        before="    record[:, : motion.acceleration.shape[1]] = motion.acceleration\n",
-        after="    record[:, : motion.acceleration.shape[1]] = motion.acceleration\n"
-        "    record = record[:, [1, 0, 2]]\n",
+    exchanged = _around("problem.py", "_three_columns(motion)", "return without_fault(motion)[:, [1, 0, 2]]")
+    late = _around(
+        "uplift.py",
+        "uplift_in(*arguments)",
+        "return 0.0 if without_fault(*arguments) == 0.0 else -1.0",
     )
-    late = Fault(
-        file="driver.py",
-        before="                    lift = elapsed + wait\n",
-        after="                    wait = 0.0 if wait == 0.0 else -1.0\n"
-        "                    lift = elapsed + wait\n",
+    rolling = Fault(
+        file="kernels.py", change=appended('MARCHES["recess"], SIZES["recess"] = march_rolling, 8')
     )
-    rolling = (
-        Fault(file="kernels.py", before='"recess": march_recess', after='"recess": march_rolling'),
-        Fault(file="kernels.py", before='"recess": 4', after='"recess": 8'),
-    )
-    leak = Fault(
-        file=FILE,
-        before="momentum_1 = -h * D0 * t0\n",
-        after="momentum_1 = -h * D0 * t0 - 1e-6 * h * L\n",
-    )
+    leak = Fault(file=FILE, change=after_assignment("expand", "momentum_1", "momentum_1 -= 1e-6 * h * L"))
     return [
         Mutation(
-            name="a sample of the record skipped", faults=skipped, layer="conserved", named=("forcing",)
+            name="a sample of the record skipped", faults=(skipped,), layer="conserved", named=("forcing",)
         ),
         Mutation(name="components exchanged", faults=(exchanged,), layer="exact", named=("components",)),
         Mutation(name="uplift at the next sample", faults=(late,), layer="exact", named=("uplift",)),
-        Mutation(name="no-twist constraint dropped", faults=rolling, layer="residual", named=("no twist",)),
+        Mutation(
+            name="no-twist constraint dropped", faults=(rolling,), layer="residual", named=("no twist",)
+        ),
         Mutation(name="L decays", faults=(leak,), layer="conserved", named=("L",)),
     ]
 
@@ -221,21 +208,19 @@ def names_it(mutation: Mutation, finding: Finding) -> bool:
     return any(word in finding.part for word in mutation.named)
 
 
-def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the table, and return the exit code."""
-    parser = argparse.ArgumentParser(prog="python -m rockwobble.compare.check.mutations", description=__doc__)
-    parser.formatter_class = argparse.RawDescriptionHelpFormatter
-    parser.add_argument("--first", action="store_true", help="own layer only, to the first failure")
-    parser.add_argument("--only", default="", help="faults whose name holds this text")
-    options = parser.parse_args(arguments)
+def run(*, only: str = "", first: bool = False) -> int:
+    """Try the faults whose name holds the text `only`, print the table, and return the exit code.
+
+    With `first`, each is held against its own layer alone, to the first failure.
+    """
     missed = 0
     kept: dict[str, Any] = {}
     begun = time.monotonic()
-    chosen = [mutation for mutation in mutations() if options.only in mutation.name]
+    chosen = [mutation for mutation in mutations() if only in mutation.name]
     for mutation in chosen:
         started = time.monotonic()
-        layers = [mutation.layer] if options.first else LAYERS
-        found = failures(mutation, layers, first=options.first, kept=kept)
+        layers = [mutation.layer] if first else LAYERS
+        found = failures(mutation, layers, first=first, kept=kept)
         own = [finding for finding in found if finding.layer == mutation.layer]
         right = bool(own) and names_it(mutation, own[0])
         missed += not right
@@ -244,14 +229,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         print(f"{verdict:8} {mutation.name} ({time.monotonic() - started:.1f} s)")
         if own:
             print(f"         {own[0].layer}: {own[0].part}; {own[0].note}")
-        if not options.first:
+        if not first:
             print(f"         in {len(found)} checks of {', '.join(hit) or 'no layer'}")
         sys.stdout.flush()
     print(
         f"{len(chosen) - missed} of {len(chosen)} faults found and named, in {time.monotonic() - begun:.0f} s"
     )
     return 1 if missed else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

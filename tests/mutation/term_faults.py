@@ -8,11 +8,11 @@ rewritten kernel keeps its faults, as long as it keeps these names.
 from __future__ import annotations
 
 import ast
-import copy
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from .mutant import Fault, source_folder
+from .places import Change
 
 FILE = "recurrences.py"
 # name of a sum, and the equations that a wrong term shows in; B of (19) is the one whose B' stands in (18)
@@ -67,11 +67,9 @@ def term_faults(factor: float) -> Iterator[TermFault]:
             if target in SUMS:
                 missing.discard(target)
                 for place, term in enumerate(_terms(value)):
-                    text = _with_factor(tree, index, target, place, factor)
                     name = f"{ast.unparse(term)} of {target}, times {factor:g}"
-                    yield TermFault(
-                        name=name, equations=SUMS[target], fault=Fault(file=FILE, before="", after=text)
-                    )
+                    fault = Fault(file=FILE, change=_scaled_term(index, target, place, factor))
+                    yield TermFault(name=name, equations=SUMS[target], fault=fault)
     if missing:
         raise ValueError(
             f"reduced/{FILE} must have the sums {', '.join(SUMS)}, got none of {sorted(missing)}"
@@ -105,14 +103,16 @@ def _is_sum(node: ast.expr) -> bool:
     return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
 
 
-def _with_factor(tree: ast.Module, index: int, target: str, place: int, factor: float) -> str:
-    """Return the source with one term of one sum multiplied by a factor."""
-    changed = copy.deepcopy(tree)
-    value = dict(_assignments(changed)[index])[target]
-    wanted = _terms(value)[place]
-    for node in ast.walk(value):
-        if isinstance(node, ast.BinOp):
-            for side in ("left", "right"):
-                if getattr(node, side) is wanted:
-                    setattr(node, side, ast.BinOp(ast.Constant(factor), ast.Mult(), wanted))
-    return ast.unparse(ast.fix_missing_locations(changed))
+def _scaled_term(index: int, target: str, place: int, factor: float) -> Change:
+    """Return the change that multiplies one term of one sum by a factor."""
+
+    def change(tree: ast.Module) -> None:
+        value = dict(_assignments(tree)[index])[target]
+        wanted = _terms(value)[place]
+        for node in ast.walk(value):
+            if isinstance(node, ast.BinOp):
+                for side in ("left", "right"):
+                    if getattr(node, side) is wanted:
+                        setattr(node, side, ast.BinOp(ast.Constant(factor), ast.Mult(), wanted))
+
+    return change

@@ -1,0 +1,165 @@
+"""Layer metrics, second part: predicted agreement times, and distributions of peaks."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import numpy as np
+
+from rockwobble.models import Case, Cylinder, InitialState
+
+from ..distributions import contrast, ks_distance, median_ratio, member_factor, standing_wasserstein
+from ..predicted_horizon import Prediction, close_pass, estimated_error, predict_horizon, verdict
+from .bench import Bench
+from .finding import Finding, worst_of
+from .made_traces import Array, MadeTrace, made, passes
+
+LAYER = "metrics"
+CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+ALPHA = CYLINDER.alpha
+STEP = 0.01
+TIME: Array = STEP * np.arange(2001, dtype=np.float64)
+LENGTH = 20.0
+ROUNDING = 1e-12
+GROWTH, ERROR = 0.8, 1e-5  # of a perturbed copy [1/s], of an engine in its first second [alpha]
+
+
+def check(bench: Bench) -> Iterator[Finding]:
+    """Yield the findings of this part."""
+    del bench
+    part = "predicted agreement time (compare/predicted_horizon.py)"
+    yield worst_of(
+        LAYER,
+        "predicted agreement times",
+        _predictions(),
+        STEP * (1.0 + 1e-9),
+        reason="a difference that grows as an exponential reaches 1 % where it must; samples 0.01 s apart",
+        part=part,
+        unit="s",
+    )
+    yield worst_of(
+        LAYER,
+        "words on a prediction, and scale of an estimated error",
+        _verdicts(),
+        ROUNDING,
+        reason="within a factor of two; in proportion to the step, at any size",
+        part=part,
+    )
+    yield worst_of(
+        LAYER,
+        "distances of distributions of peaks",
+        _distances(),
+        ROUNDING,
+        reason="counted value by value",
+        part="distributions (compare/distributions.py)",
+    )
+
+
+def _predictions() -> dict[str, float]:
+    case = Case("made", CYLINDER, None, InitialState(0.5 * ALPHA, rolling_rate=0.1), LENGTH)
+    table = passes([3.0, 7.0, 11.0], [2e-3, 3e-4, 1e-5])
+    reference = _trace(0.0, passes=table)
+    landed = 1.0 + np.where(TIME >= 5.0, math.pi, 0.0)
+    lands = _trace(0.0, rolling_angle=landed)
+    late = _trace(0.0, passes=table, uplift_time=2.0)
+
+    def perturbed(disturbed: Case, model: str) -> MadeTrace:
+        # a copy of the recess model moves with the change of its gravity, any other one not at all
+        return _trace((disturbed.gravity / case.gravity - 1.0) * (model == "recess"))
+
+    def predicted(own: MadeTrace, resolution: float, error: float = ERROR) -> Prediction:
+        return predict_horizon(
+            case,
+            reference=reference,
+            own=own,
+            own_model="recess",
+            contact_resolution=resolution,
+            error=error,
+            simulate=perturbed,
+        )
+
+    # RMS of 7 d exp(k t) over the first second, sample by sample; d such that it is the error
+    first = np.exp(GROWTH * TIME[:101])
+    rms = float(np.sqrt(np.mean(first**2)))
+    grown = math.log(0.01 * rms / ERROR) / GROWTH
+    form = predicted(_trace(0.02 / 7.0 / math.exp(GROWTH * 4.0)), 0.0)
+    growth, near = predicted(reference, 0.0), predicted(reference, 1e-3)
+    other = predicted(reference, 0.0, error=1e-12)
+    return {
+        "first pass below the resolution": close_pass(reference, 1e-3, LENGTH).length - 7.0,
+        "from the uplift": close_pass(late, 1e-4, LENGTH).length - 9.0,
+        "no such pass": close_pass(reference, 1e-6, LENGTH).length - LENGTH,
+        "a pass through the upright position": close_pass(lands, 1e-6, LENGTH).length - 5.0,
+        "growth": growth.length - grown + _unlike(growth.reason, "growth"),
+        "a pass before it": near.length - 7.0 + _unlike(near.reason, "pass"),
+        "model form": form.length - (4.0 - math.log(2.0) / GROWTH) + _unlike(form.reason, "model form"),
+        "nothing": other.length - LENGTH + _unlike(other.reason, ""),
+    }
+
+
+def _trace(strength: float, **fields: object) -> MadeTrace:
+    """A standing lean of alpha/2 and 7 times `strength` alpha that grows."""
+    tilt = 0.5 * ALPHA + 7.0 * strength * ALPHA * np.exp(GROWTH * TIME)
+    return made(TIME, tilt, **fields)  # type: ignore[arg-type]
+
+
+def _verdicts() -> dict[str, float]:
+    words = {
+        (5.0, True, 9.0, "pass"): "in time",
+        (4.0, True, 9.0, "pass"): "earlier",
+        (19.0, True, 9.0, "pass"): "later",
+        (20.0, False, 9.0, "pass"): "later",
+        (20.0, False, 20.0, ""): "never, as foretold",
+        (4.0, True, 20.0, ""): "earlier",
+    }
+    errors = {f"{given}": _unlike(verdict(*given), word) for given, word in words.items()}
+    small = Cylinder(semidiagonal=0.06, tan_alpha=0.2)
+    shaken = Case("made", CYLINDER, None, None, 1.0), Case("made", small, None, None, 1.0)
+    leaning = InitialState(0.1)
+    released = [Case("made", Cylinder(semidiagonal=6.0, tan_alpha=a), None, leaning, 1.0) for a in (0.2, 0.6)]
+    error = estimated_error(shaken[0], "mujoco", 1e-4)
+    return errors | {
+        "twice the step": estimated_error(shaken[0], "mujoco", 2e-4) / error - 2.0,
+        "a hundredth of the size": estimated_error(shaken[1], "mujoco", 1e-5) / error - 1.0,
+        "three times as squat, released": estimated_error(released[1], "pybullet", 1e-4)
+        / estimated_error(released[0], "pybullet", 1e-4)
+        - 9.0,
+    }
+
+
+def _distances() -> dict[str, float]:
+    drawn = np.random.default_rng(3)
+    ours, theirs = drawn.lognormal(-1.0, 0.5, 21), drawn.lognormal(-0.8, 0.6, 21)
+    ours[[2, 9]], theirs[[9, 13, 17]] = math.inf, math.inf
+    theirs[4] = ours[7]  # a tie
+    distance = max(
+        abs(sum(a <= x for a in ours) - sum(a <= x for a in theirs)) / 21.0 for x in (*ours, *theirs)
+    )
+    standing, moved = np.sort(ours[np.isfinite(ours)]), 0.3
+    middles = sorted(ours)[10] / sorted(theirs)[10]
+    both = np.isfinite(ours) & np.isfinite(theirs)
+    factors = sorted(max(a / b, b / a) for a, b in zip(ours[both], theirs[both], strict=True))
+    count = len(factors)
+    middle = math.sqrt(factors[(count - 1) // 2] * factors[count // 2])
+    fell, fell_there = np.isinf(ours), np.isinf(theirs)
+    # a run that falls has a peak of its own, and counts as larger than any other
+    fallen, failed = np.where(fell_there, 8.0, theirs), np.where(fell, 8.0, ours)
+    failed[0] = math.nan
+    found = contrast(failed, fallen, fell, fell_there, draws=10)
+    return {
+        "Kolmogorov-Smirnov": ks_distance(ours, theirs) - distance,
+        "the same the other way round": ks_distance(theirs, ours) - distance,
+        "Wasserstein of a shift": standing_wasserstein(ours, standing + moved) - moved,
+        "ratio of medians": median_ratio(ours, theirs) - middles,
+        "factor of a member": member_factor(ours, theirs) - middle,
+        "members that count": found.count - 20.0,
+        "overturned": found.overturned - 2.0,
+        "overturned in the other": found.against_overturned - 3.0,
+        "overturned in both": found.both_overturned - 1.0,
+        "distance of those that count": found.ks.value - ks_distance(ours[1:], theirs[1:]),
+    }
+
+
+def _unlike(found: str, expected: str) -> float:
+    return 0.0 if found == expected else math.inf

@@ -1,0 +1,127 @@
+"""Steps an engine through a run, and on from there where its end does not say whether it overturns.
+
+A run may end while the cylinder falls, or moves with the energy to pass its balance. It is then carried on,
+over still ground, until the tilt turns back or the side is on the ground. In the first case the run stands,
+and nothing of the time after its end is kept; in the second it has overturned, and goes on to there.
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .body import Body
+from .engine import Engine, Scene, Stepper
+from .excitation import StepMeans
+from .guard import energy_scale
+from .passes import TurningPoint, true_swings
+from .recorder import Recorder
+
+Array = NDArray[np.float64]
+Progress = Callable[[float], None]
+
+_CHUNK = 10_000  # steps between two looks at the run: a second of the reference scene, 3 MB of states
+_CHUNK_BEYOND = 2_000  # the same after the end, where most falls are decided within a second
+# Times of growth by e next to the balance that a fall is followed for: from 1e-9 rad off it takes 21 to fall,
+# and as many to come back from the other side.
+LONGEST_FALL = 40.0
+# [rad] by which the tilt turns back; contact that lets go for a step and comes back makes 1e-7
+_TURN = 1e-6
+
+
+def run_steps(
+    backend: Engine,
+    scene: Scene,
+    settings: Mapping[str, Any],
+    recorder: Recorder,
+    means: StepMeans,
+    sample_step: float,
+    progress: Progress | None,
+) -> Recorder:
+    """Step a run to its end, and return what recorded it: `recorder`, or one that saw it overturn.
+
+    `sample_step` is that of samples after the end [s], in the scene.
+    """
+    # one step past the end: the velocity at a pose is the mean of those before and after it
+    total = math.ceil(recorder.end / scene.time_step - 1e-6) + 1
+    with backend.open(scene, settings) as stepper:
+        done = 0
+        while done < total and not recorder.ended:
+            count = min(_CHUNK, total - done)
+            acceleration = means(done, count, stepper.hold_centre)
+            # the force belongs to the pose, wherever the engine holds it
+            at_pose = means(done, count) if stepper.hold_centre else acceleration
+            _advance(stepper, recorder, acceleration, at_pose)
+            done += count
+            if progress is not None:
+                progress(done / total)
+        if recorder.ended or not may_overturn(recorder, scene.body, scene.gravity):
+            return recorder
+        return _carried_on(stepper, scene, recorder, means, total, sample_step, progress)
+
+
+def may_overturn(recorder: Recorder, body: Body, gravity: float) -> bool:
+    """Return whether a run ends beyond its balance, or with the energy to pass it."""
+    tilt, energy = (recorder.last_value(name) for name in ("tilt", "energy"))
+    return tilt > math.atan(body.tan_alpha) or energy > energy_scale(body, gravity)
+
+
+def growth_time(body: Body, gravity: float) -> float:
+    """Return the time in which a small distance from the balance grows by e, 1/p [s]."""
+    b, h = body.base_radius, body.mass_centre_height
+    return math.sqrt((body.transverse_inertia + h * h + b * b) / (gravity * math.hypot(b, h)))
+
+
+def _carried_on(
+    stepper: Stepper,
+    scene: Scene,
+    recorder: Recorder,
+    means: StepMeans,
+    done: int,
+    sample_step: float,
+    progress: Progress | None,
+) -> Recorder:
+    end, longest = recorder.end, LONGEST_FALL * growth_time(scene.body, scene.gravity)
+    ahead = copy.deepcopy(recorder)
+    first = math.floor(end / sample_step + 1e-9) + 1
+    ahead.extend(sample_step * np.arange(first, math.ceil((end + longest) / sample_step) + 1, dtype=float))
+    start = TurningPoint(end, recorder.last_value("tilt"), 0.0, recorder.last_value("tilt_rate") < 0.0)
+    last = done + math.ceil(longest / scene.time_step)
+    acceleration, at_pose = np.zeros((2, _CHUNK_BEYOND, 3))
+    acceleration[0], at_pose[0] = means.stop(end, done, stepper.hold_centre), means.stop(end, done)
+    while done < last:
+        _advance(stepper, ahead, acceleration, at_pose)
+        done += _CHUNK_BEYOND
+        if progress is not None:
+            progress(1.0)
+        if ahead.ended:
+            return ahead
+        if _turned_back(start, ahead):
+            return recorder
+        acceleration[0] = at_pose[0] = 0.0
+    recorder.undecided = True
+    return recorder
+
+
+def _advance(stepper: Stepper, recorder: Recorder, acceleration: Array, at_pose: Array) -> None:
+    recorder.take(stepper.advance(acceleration), at_pose)
+    warning = stepper.warnings()
+    if warning and not recorder.ended:
+        recorder.fail(f"the engine warned: {warning}")
+    elif warning and recorder.ended == "failed":
+        recorder.reason += f"; the engine warned: {warning}"
+
+
+def _turned_back(start: TurningPoint, recorder: Recorder) -> bool:
+    """Return whether the tilt has reached a maximum after `start` and fallen from it."""
+    later = [point for point in recorder.points if point.time > start.time]
+    tilt = recorder.last_value("tilt")
+    return any(
+        point.is_maximum and point.time > start.time and tilt < point.tilt - _TURN
+        for point in true_swings([start, *later], _TURN)
+    )

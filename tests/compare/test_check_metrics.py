@@ -1,0 +1,169 @@
+"""The layers records, metrics and studies hold, and find metrics and readers that are wrong."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare.check import (
+    LAYERS,
+    Bench,
+    external_trajectories,
+    ground_motions,
+    metrics,
+    predicted_times,
+    record_files,
+    suites,
+    sweeps,
+)
+from rockwobble.compare.check.finding import NOT_RUN
+from rockwobble.models import Case, GroundMotion, read_record, read_suite
+
+BENCH = Bench(reduced=reduced, suite=read_suite("quick"))
+PARTS = (record_files, ground_motions, metrics, predicted_times, external_trajectories, suites, sweeps)
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.__name__.rsplit(".", 1)[-1])
+def test_what_is_installed_holds(part: Any) -> None:
+    findings = list(part.check(BENCH))
+    assert findings
+    assert all(finding.layer in LAYERS and finding.part for finding in findings)
+    assert not [f"{f.name}: {f.value}, {f.note}" for f in findings if f.failed]
+
+
+def failed_parts(part: Any) -> list[str]:
+    return [finding.part for finding in part.check(BENCH) if finding.failed]
+
+
+def changed(monkeypatch: pytest.MonkeyPatch, place: Any, name: str, change: Any) -> None:
+    """Put what `change` makes of the result of a function in its place."""
+    true = getattr(place, name)
+    monkeypatch.setattr(place, name, lambda *given, **options: change(true(*given, **options)))
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "part"),
+    [
+        ("tilt_rms", lambda value: 1.001 * value, "RMS of the tilt"),
+        ("tilt_rms_relative", lambda value: value * math.sqrt(2.0), "RMS of the tilt"),
+        ("contact_rms", lambda value: value / 5.1, "RMS of the contact"),
+        ("turn_difference", lambda value: math.remainder(value, 2.0 * math.pi), "turning"),
+        ("direction_difference", lambda value: -value, "turning"),
+        ("first_unresolved_pass", lambda value: value + 1.0, "turning"),
+        ("agreed_passes", lambda value: value + 1, "agreement time"),
+        ("closest_pass", lambda value: 0.001, "agreement time"),
+        ("energy_loss", lambda value: -value, "energy lost"),
+    ],
+)
+def test_a_wrong_metric_is_found(monkeypatch: pytest.MonkeyPatch, name: str, change: Any, part: str) -> None:
+    changed(monkeypatch, metrics, name, change)
+    assert any(part in each for each in failed_parts(metrics))
+
+
+@pytest.mark.parametrize(
+    "column", ["peak_tilt_difference", "turn_difference", "residual_twist", "time_ratio"]
+)
+def test_a_wrong_column_of_the_summary_is_found(monkeypatch: pytest.MonkeyPatch, column: str) -> None:
+    changed(monkeypatch, metrics, "summary_row", lambda row: row | {column: -row[column]})
+    assert failed_parts(metrics) == ["columns of the summary (compare/summary.py)"]
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("close_pass", lambda found: type(found)(length=found.length + 0.05, reason=found.reason)),
+        ("predict_horizon", lambda found: type(found)(length=1.01 * found.length, reason=found.reason)),
+        ("predict_horizon", lambda found: type(found)(length=found.length, reason="growth")),
+        ("verdict", lambda word: "in time"),
+        ("ks_distance", lambda value: value - 1.0 / 21.0),
+        ("median_ratio", lambda value: 1.0 / value),
+        ("member_factor", lambda value: 1.0 / value),
+        ("standing_wasserstein", lambda value: 2.0 * value),
+    ],
+)
+def test_a_wrong_prediction_or_distribution_is_found(
+    monkeypatch: pytest.MonkeyPatch, name: str, change: Any
+) -> None:
+    changed(monkeypatch, predicted_times, name, change)
+    assert len(failed_parts(predicted_times)) == 1
+
+
+@pytest.mark.parametrize("field", ["tilt", "rolling_angle", "contact_point", "centre_of_mass", "passes"])
+def test_a_wrong_field_of_an_external_trajectory_is_found(
+    monkeypatch: pytest.MonkeyPatch, field: str
+) -> None:
+    from dataclasses import replace
+
+    changed(
+        monkeypatch,
+        external_trajectories,
+        "read_trajectory",
+        lambda found: replace(found, **{field: getattr(found, field) * 1.001}),
+    )
+    assert failed_parts(external_trajectories)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda motion: motion.scaled(9.80665 / 9.81),
+        lambda motion: GroundMotion(motion.acceleration[:, ::-1], motion.time_step),
+        lambda motion: GroundMotion(motion.acceleration[:-1], motion.time_step),
+        lambda motion: GroundMotion(motion.acceleration, 1.001 * motion.time_step),
+    ],
+    ids=["another g", "components exchanged", "a sample short", "another time step"],
+)
+def test_a_record_that_is_read_wrong_is_found(monkeypatch: pytest.MonkeyPatch, change: Any) -> None:
+    changed(monkeypatch, record_files, "read_record", change)
+    assert failed_parts(record_files)
+
+
+def test_a_reader_that_takes_damaged_files_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def lenient(*paths: Any, units: str | None = None) -> GroundMotion:
+        try:
+            return read_record(*paths, units=units)
+        except ValueError:
+            return GroundMotion(np.zeros((2, 2)), 0.01)
+
+    monkeypatch.setattr(record_files, "read_record", lenient)
+    assert failed_parts(record_files) == ["record files: what must be refused"]
+
+
+@pytest.mark.parametrize("name", ["el_centro_1940", "p695_far_field", "pulse"])
+def test_a_wrong_ground_motion_is_found(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    changed(monkeypatch, ground_motions, name, lambda motion: motion.scaled(1.05))
+    assert failed_parts(ground_motions)
+
+
+def test_records_that_are_not_installed_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    def missing(*_: Any, **__: Any) -> Any:
+        raise ValueError("not installed here")
+
+    monkeypatch.setattr(ground_motions, "p695_far_field", missing)
+    assert [f.note for f in ground_motions.check(BENCH) if f.outcome == NOT_RUN] == ["not installed here"]
+
+
+def test_a_suite_that_is_expanded_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def without(case: Case) -> Case:
+        return Case(case.name, case.cylinder, case.motion, case.initial, case.duration, 9.81, case.friction)
+
+    changed(
+        monkeypatch,
+        suites,
+        "read_suite",
+        lambda suite: type(suite)(map(without, suite.cases[1:]), suite.runs),
+    )
+    parts = failed_parts(suites)
+    assert [part.split(":")[1].strip() for part in parts] == [
+        "ranges, names or order of the cases",
+        "keys of a case, or their units",
+    ]
+
+
+def test_a_sweep_that_mixes_its_rows_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    changed(monkeypatch, sweeps, "sweep", lambda table: table.iloc[::-1])
+    assert len(failed_parts(sweeps)) == 3

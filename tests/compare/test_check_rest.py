@@ -1,0 +1,143 @@
+"""The layers rest, properties and studies hold, and find models that are wrong in what they watch."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare.check import Bench, after_record, batch, landing, properties, rest, turning_points
+from rockwobble.compare.check.finding import Finding
+from rockwobble.models import GroundMotion, read_suite
+
+SUITE = read_suite("quick")
+PARTS = (rest, landing, after_record, properties, turning_points, batch)
+Change = Callable[[GroundMotion | None, dict[str, Any]], GroundMotion | None]
+
+
+def bench_with(change: Change | None = None, answer: Callable[[Any], Any] = lambda found: found) -> Bench:
+    """A bench whose model is asked another question, or gives another answer."""
+
+    def simulate(cylinder: Any, motion: Any = None, **options: Any) -> Any:
+        motion = motion if change is None else change(motion, options)
+        return answer(reduced.simulate(cylinder, motion, **options))
+
+    def peak_tilts(sizes: Any, tan_alpha: float, motion: Any, scales: Any, **options: Any) -> Any:
+        motion = motion if change is None else change(motion, options)
+        options.pop("duration", None)
+        return reduced.peak_tilts(sizes, tan_alpha, motion, scales, **options)
+
+    return Bench(reduced=SimpleNamespace(simulate=simulate, peak_tilts=peak_tilts), suite=SUITE)
+
+
+def failed(part: Any, bench: Bench) -> list[Finding]:
+    return [finding for finding in part.check(bench) if finding.failed]
+
+
+@pytest.mark.parametrize("part", PARTS, ids=lambda part: part.__name__.rsplit(".", 1)[-1])
+def test_the_model_holds(part: Any) -> None:
+    findings = list(part.check(bench_with()))
+    assert findings
+    assert len({finding.name for finding in findings}) == len(findings)
+    assert not [f"{f.name}: {f.value}, {f.note}" for f in findings if f.failed]
+
+
+def vertical_reversed(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+    if motion is None or not motion.has_vertical:
+        return motion
+    return GroundMotion(motion.acceleration * [1.0, 1.0, -1.0], motion.time_step)
+
+
+def held_after_the_end(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+    if motion is None:
+        return None
+    options["duration"] = options.get("duration") or motion.duration
+    last = np.tile(motion.acceleration[-1:], (round(20.0 / motion.time_step) + 1, 1))
+    return GroundMotion(np.vstack([motion.acceleration, last]), motion.time_step)
+
+
+def ends_a_sample_early(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+    if motion is None or len(motion.acceleration) < 3:
+        return motion
+    options["duration"] = options.get("duration") or motion.duration
+    return GroundMotion(motion.acceleration[:-1], motion.time_step)
+
+
+def half_a_sample_late(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+    if motion is None:
+        return None
+    a = motion.acceleration
+    return GroundMotion(np.vstack([a[:1], 0.5 * (a[1:] + a[:-1])]), motion.time_step)
+
+
+def lossier(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+    if isinstance(options.get("restitution"), float):
+        options["restitution"] **= 2
+    return motion
+
+
+def rests_early(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+    options["seating"] = 1.3 * options.get("seating", 0.0)
+    return motion
+
+
+@pytest.mark.parametrize(
+    ("part", "change", "word"),
+    [
+        (rest, vertical_reversed, "vertical"),
+        (rest, rests_early, "rest threshold"),
+        (landing, lossier, "landing"),
+        (after_record, held_after_the_end, "end of the record"),
+        (after_record, vertical_reversed, "end of the record"),
+        (properties, half_a_sample_late, "samples of the record"),
+        (properties, vertical_reversed, "vertical acceleration"),
+        (properties, ends_a_sample_early, "end of the record"),
+    ],
+)
+def test_a_wrong_question_is_found(part: Any, change: Change, word: str) -> None:
+    parts = [finding.part for finding in failed(part, bench_with(change))]
+    assert any(word in each for each in parts), parts
+
+
+def forgets_the_peak(found: Any) -> Any:
+    every_fifth = found.tilt[:: max(1, len(found.tilt) // 40)]
+    return dataclasses.replace(found, peak_tilt=float(every_fifth.max()))
+
+
+def turns_late(found: Any) -> Any:
+    rows = found.extrema.copy()
+    rows[:, 0] += 1e-6
+    return dataclasses.replace(found, extrema=rows)
+
+
+def slower(found: Any) -> Any:
+    return dataclasses.replace(found, tilt_rate=1.0001 * found.tilt_rate)
+
+
+@pytest.mark.parametrize(
+    ("part", "answer", "word"),
+    [
+        (turning_points, forgets_the_peak, "peak tilt"),
+        (turning_points, turns_late, "turning points"),
+        (properties, slower, "rates of the response"),
+        (landing, slower, "landing"),
+        (batch, forgets_the_peak, "batch kernel"),
+    ],
+)
+def test_a_wrong_answer_is_found(part: Any, answer: Callable[[Any], Any], word: str) -> None:
+    parts = [finding.part for finding in failed(part, bench_with(answer=answer))]
+    assert any(word in each for each in parts), parts
+
+
+def test_an_early_end_of_a_fall_that_is_not_certain_is_found() -> None:
+    def hasty(sizes: Any, tan_alpha: float, *given: Any, **options: Any) -> Any:
+        peaks = reduced.peak_tilts(sizes, tan_alpha, *given, **options)
+        return np.where(peaks > np.arctan(tan_alpha), 0.5 * np.pi, peaks)
+
+    bench = Bench(reduced=SimpleNamespace(simulate=reduced.simulate, peak_tilts=hasty), suite=SUITE)
+    assert [finding.part for finding in failed(after_record, bench) if "certain" in finding.part]

@@ -1,0 +1,103 @@
+"""The layer traces holds, and finds traces of engines that are wrong in one field."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare import runs
+from rockwobble.compare.check import Bench, bench, run_checks, traces
+from rockwobble.compare.check.finding import NOT_RUN
+from rockwobble.compare.execution import run_engine
+from rockwobble.compare.fingerprint import fingerprint
+from rockwobble.models import Case, GroundMotion, Run, read_suite
+
+KEPT: dict[str, Any] = {}
+TRACES: dict[str, Any] = {}  # made once, and given to every test with another fault in them
+
+
+def made() -> Bench:
+    return Bench(reduced=reduced, suite=read_suite("quick"), workers=1, kept=KEPT)
+
+
+def once(case: Case, run: Run, **options: Any) -> Any:
+    key = fingerprint([case, run, options])
+    if key not in TRACES:
+        TRACES[key] = run_engine(case, run, **options)
+    return TRACES[key]
+
+
+def failed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    monkeypatch.setattr(bench, "ENGINES", ("mujoco",))
+    return [finding.part for finding in traces.check(made()) if finding.failed]
+
+
+@pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
+def test_traces_of_an_engine_hold(monkeypatch: pytest.MonkeyPatch, engine: str) -> None:
+    if engine not in runs.installed_engines():
+        pytest.skip(f"{engine} has no wheel for this Python")
+    monkeypatch.setattr(bench, "ENGINES", (engine,))
+    monkeypatch.setattr(traces, "run_engine", once)
+    findings = list(traces.check(made()))
+    assert len(findings) == 33
+    assert not [f"{f.name}: {f.value}" for f in findings if f.failed]
+
+
+def test_an_engine_that_is_not_installed_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bench, "installed_engines", lambda: ())
+    found = list(run_checks(made(), ["traces"]))
+    assert [(f.outcome, f.part) for f in found] == [(NOT_RUN, "mujoco"), (NOT_RUN, "pybullet")]
+    assert found[1].note == "pybullet is not installed here"
+
+
+@pytest.mark.parametrize(
+    ("field", "change"),
+    [
+        ("tilt_rate", lambda values: 1.001 * values),
+        ("twist", lambda values: values + 1e-4),
+        ("contact_force", lambda values: values * [1.0, 1.0, 0.9]),
+        ("contact_offset", lambda values: values - 1e-4),
+        ("energy", lambda values: 1.001 * values),
+        ("energy_error", lambda values: values + 1e-3),
+        ("slip", lambda values: values + 1e-3),
+        ("residual_displacement", lambda value: value + 1e-3),
+        ("residual_twist", lambda value: value + 1e-3),
+        ("uplift_time", lambda value: value + 1e-4),
+        ("uplift_direction", lambda value: -value),
+    ],
+)
+def test_a_wrong_field_is_found(monkeypatch: pytest.MonkeyPatch, field: str, change: Any) -> None:
+    def wrong(case: Case, run: Run, **options: Any) -> Any:
+        trace = once(case, run, **options)
+        return dataclasses.replace(trace, **{field: change(getattr(trace, field))})
+
+    monkeypatch.setattr(traces, "run_engine", wrong)
+    assert any(field.replace("_", " ").split()[0] in part.replace("_", " ") for part in failed(monkeypatch))
+
+
+@pytest.mark.parametrize("sign", [0.0, -1.0])
+def test_a_wrong_vertical_component_is_found(monkeypatch: pytest.MonkeyPatch, sign: float) -> None:
+    def wrong(case: Case, run: Run, **options: Any) -> Any:
+        motion = case.motion
+        if motion is not None and motion.has_vertical:
+            motion = GroundMotion(motion.acceleration * [1.0, 1.0, sign], motion.time_step)
+        return run_engine(dataclasses.replace(case, motion=motion), run, **options)
+
+    monkeypatch.setattr(traces, "run_engine", wrong)
+    parts = failed(monkeypatch)
+    assert "uplift of a trace of mujoco, or its vertical component" in parts
+    assert "tilt of a trace of mujoco" in parts
+
+
+def test_samples_at_the_nearest_step_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def nearest(case: Case, run: Run, **options: Any) -> Any:
+        trace = once(case, run, **options)
+        off = trace.time - np.round(trace.time / trace.time_step) * trace.time_step
+        return dataclasses.replace(trace, rolling_angle=trace.rolling_angle - off * trace.rolling_rate)
+
+    monkeypatch.setattr(traces, "run_engine", nearest)
+    assert "rolling_angle of a trace of mujoco" in failed(monkeypatch)

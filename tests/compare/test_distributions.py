@@ -1,0 +1,273 @@
+"""Two methods on the same members: tests keep their level, intervals their coverage, both find what is there.
+
+The simulations have fixed seeds and 2000 ensembles each: a share of 0.95 is known to 0.005 (one standard
+deviation). `python tests/benchmarks ensemble_intervals` prints a wider table.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from scipy.special import betainc, betaincinv
+from scipy.stats import PermutationMethod, binom, binomtest, norm, wilcoxon
+
+from rockwobble.compare.distributions import (
+    CONFIDENCE,
+    MARGIN,
+    POWER,
+    adjusted,
+    contrast,
+    fewest_to_tell,
+    largest_share_unseen,
+    log_ratios,
+    mcnemar_p,
+    paired_difference,
+    ratio_within_reach,
+    signed_rank_p,
+)
+from rockwobble.compare.order_statistics import Interval, end_index, quantile_interval
+
+ROUNDING = 1e-12
+COUNT = 22  # far-field pairs of FEMA P-695
+TRIALS = 2000
+# coverage asked of an interval of 95 %, and the level asked of a test at 5 %
+COVERAGE, LEVEL = (0.92, 0.97), 0.06
+UP = np.zeros(COUNT, dtype=bool)
+
+
+def sample(seed: int) -> np.ndarray:
+    return np.random.default_rng(seed).lognormal(sigma=0.8, size=COUNT)
+
+
+def ensembles(
+    *,
+    shift: float,
+    scatter: float,
+    limit: float = math.inf,
+    tied: float = 0.0,
+    count: int = COUNT,
+    seed: int = 0,
+):
+    """Peaks by two methods, shape (TRIALS, count): the same records, half of the scatter in each method.
+
+    What exceeds the limit overturns, and of a share `tied` both peaks are the same.
+    """
+    random = np.random.default_rng(seed)
+    shape = (TRIALS, count)
+    record = random.lognormal(-1.2, 0.8, shape)
+    first, second = (np.exp(scatter / math.sqrt(2.0) * random.standard_normal(shape)) for _ in range(2))
+    first *= math.exp(shift)
+    first[random.random(shape) < tied] = 1.0
+    second[first == 1.0] = 1.0
+    peaks, against = record * first, record * second
+    return peaks, against, peaks > limit, against > limit
+
+
+def ratios_of(made) -> list[np.ndarray]:
+    """Log ratios of each ensemble, of the members that have one."""
+    return [row[~np.isnan(row)] for row in log_ratios(*made)]
+
+
+def coverage(samples: list[np.ndarray], share: float, truth: float) -> float:
+    found = [quantile_interval(values, share) for values in samples]
+    assert all(item.low <= item.value <= item.high for item in found if not math.isnan(item.value))
+    return float(np.mean([item.low <= truth <= item.high for item in found]))
+
+
+def test_every_member_a_tenth_larger_is_found():
+    peaks = sample(1)
+    found = contrast(1.1 * peaks, peaks, UP, UP)
+    assert (found.compared, found.higher, found.lower) == (COUNT, COUNT, 0)
+    assert found.ratio_p < 1e-4
+    for value in (found.ratio.low, found.ratio.value, found.ratio.high):
+        assert value == pytest.approx(1.1, abs=ROUNDING)
+    assert found.verdict == "beyond"
+    assert contrast(peaks, 1.1 * peaks, UP, UP).ratio_p == pytest.approx(found.ratio_p, rel=1e-9)
+
+
+def test_signed_ranks_are_those_of_scipy_where_it_is_exact():
+    ours, theirs = sample(1), sample(2)
+    expected = wilcoxon(np.log(ours), np.log(theirs), method="exact").pvalue
+    assert contrast(ours, theirs, UP, UP).ratio_p == pytest.approx(expected, abs=ROUNDING)
+    # of ties, every choice of signs is tried; what overturns is larger than everything
+    tied = np.array([0.1, -0.1, 0.2, 0.2, -0.3, 9.0, 9.0, 9.0])
+    expected = wilcoxon(tied, method=PermutationMethod(n_resamples=np.inf)).pvalue
+    assert signed_rank_p(tied) == pytest.approx(expected, abs=ROUNDING)
+    assert signed_rank_p(np.where(tied == 9.0, math.inf, tied)) == pytest.approx(expected, abs=ROUNDING)
+    assert signed_rank_p(np.zeros(4)) == signed_rank_p(np.array([])) == 1.0
+
+
+@pytest.mark.parametrize("limit", [math.inf, 0.6], ids=["standing", "a quarter overturned"])
+@pytest.mark.parametrize("tied", [0.0, 0.3])
+def test_the_tests_keep_their_level_where_there_is_no_difference(limit, tied):
+    made = ensembles(shift=0.0, scatter=0.3, limit=limit, tied=tied, seed=3)
+    assert np.mean([signed_rank_p(values) < 0.05 for values in ratios_of(made)]) <= LEVEL
+    fell, there = made[2:]
+    only, only_there = (fell & ~there).sum(axis=1), (there & ~fell).sum(axis=1)
+    told = [mcnemar_p(int(a), int(b)) < 0.05 for a, b in zip(only, only_there, strict=True)]
+    assert np.mean(told) <= LEVEL
+
+
+@pytest.mark.parametrize("shift", [0.0, 0.1], ids=["same", "a tenth larger"])
+def test_the_interval_of_the_median_has_its_coverage(shift):
+    samples = ratios_of(ensembles(shift=shift, scatter=0.3, seed=4))
+    assert COVERAGE[0] <= coverage(samples, 0.5, shift) <= COVERAGE[1]
+
+
+@pytest.mark.parametrize(("shift", "limit"), [(0.0, 0.6), (0.1, 0.6), (0.1, 0.4)])
+def test_the_interval_of_the_median_has_its_coverage_with_overturned_members(shift, limit):
+    made = ensembles(shift=shift, scatter=0.3, limit=limit, seed=5)
+    # the truth is of the members that stand by one method at least, in all 2000 ensembles together
+    truth = float(np.median(np.concatenate(ratios_of(made))))
+    assert COVERAGE[0] <= coverage(ratios_of(made), 0.5, truth) <= COVERAGE[1]
+
+
+def test_the_interval_of_the_median_has_its_coverage_with_ties():
+    away = ensembles(shift=0.3, scatter=0.3, tied=0.2, seed=6)
+    truth = float(np.median(np.concatenate(ratios_of(away))))
+    assert abs(truth) > 0.1  # ties beside the median
+    assert COVERAGE[0] <= coverage(ratios_of(away), 0.5, truth) <= COVERAGE[1]
+    at_it = ratios_of(ensembles(shift=0.0, scatter=0.3, tied=0.2, seed=6))
+    # an interval that ends at a tie contains it: more than its coverage, for every interval of this kind
+    assert coverage(at_it, 0.5, 0.0) >= COVERAGE[0]
+
+
+@pytest.mark.parametrize("share", [0.05, 0.16, 0.84, 0.95])
+@pytest.mark.parametrize("shape", ["normal", "laplace"])
+def test_intervals_of_other_quantiles_have_their_coverage(share, shape):
+    drawn = getattr(np.random.default_rng(7), shape)(size=(TRIALS, COUNT))
+    truth = {
+        "normal": {0.05: -1.644854, 0.16: -0.994458},
+        "laplace": {0.05: math.log(0.1), 0.16: math.log(0.32)},
+    }[shape][min(share, 1.0 - share) if share < 0.5 else round(1.0 - share, 2)]
+    truth = truth if share < 0.5 else -truth
+    assert COVERAGE[0] <= coverage(list(drawn), share, truth) <= COVERAGE[1]
+
+
+def test_an_interval_ends_where_the_binomial_distribution_says():
+    values = np.arange(1.0, 31.0)
+    for index in (8, 9, 10):  # at a whole index the probability is that of a sum
+        left_out = 2.0 * binom.cdf(index - 1, 30, 0.5)
+        inside = quantile_interval(values, 0.5)
+        assert (inside.low < index) == (left_out > 1.0 - CONFIDENCE)
+    assert inside.low + inside.high == pytest.approx(31.0, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("values", "share", "expected"),
+    [
+        ([], 0.5, (math.nan, -math.inf, math.inf)),
+        ([1.0, 2.0, 3.0], 0.5, (2.0, -math.inf, math.inf)),  # three members bound nothing
+        ([1.0, 1.0, 1.0, 1.0, 1.0], 0.5, (1.0, -math.inf, math.inf)),  # nor do five
+        ([1.0, 1.0, 1.0, 1.0, 1.0, 1.0], 0.5, (1.0, 1.0, 1.0)),
+        ([2.0] * COUNT, 0.5, (2.0, 2.0, 2.0)),
+        ([-math.inf, math.inf], 0.5, (math.nan, -math.inf, math.inf)),
+        ([1.0, math.inf], 0.5, (math.inf, -math.inf, math.inf)),
+        ([*[1.0] * 20, math.inf, math.inf], 0.5, (1.0, 1.0, 1.0)),
+    ],
+)
+def test_quantiles_of_few_and_infinite_values(values, share, expected):
+    found = quantile_interval(np.array(values), share)
+    np.testing.assert_equal((found.value, found.low, found.high), expected)
+
+
+def test_agreement_is_claimed_by_the_interval_alone():
+    # at the margin itself it would be wrong, and is claimed no more often than an interval is wrong
+    edge = math.log(1.0 + MARGIN)
+    claimed = []
+    for values in ratios_of(ensembles(shift=edge, scatter=0.03, seed=8)):
+        found = quantile_interval(values, 0.5)
+        claimed.append(found.inside(-edge, edge))
+    assert np.mean(claimed) <= LEVEL
+    peaks = sample(1)
+    scattered = peaks * np.exp(0.3 * np.random.default_rng(2).standard_normal(COUNT))
+    found = contrast(scattered, peaks, UP, UP)
+    assert found.ratio_p > 0.05  # not told apart,
+    assert found.verdict == "undecided"  # which is no agreement
+    assert contrast(1.001 * peaks, peaks, UP, UP).verdict == "within"
+    assert contrast(1.001 * peaks, peaks, UP, UP).ratio_p < 0.05  # nor is what is told apart far apart
+
+
+@pytest.mark.parametrize("count", [COUNT, 201])
+def test_a_ratio_within_reach_is_told_with_its_power(count):
+    # the members that the reach is taken from are as many as in each ensemble, and scattered as the law
+    scatter = 0.3 * norm.ppf((np.arange(count) + 0.5) / count)
+    reach = ratio_within_reach(scatter)
+    made = ensembles(shift=math.log(reach), scatter=0.3, count=count, seed=10)
+    told = np.mean([quantile_interval(values, 0.5).low > 0.0 for values in ratios_of(made)])
+    index = end_index(count, 0.5, 0.5 * (1.0 - CONFIDENCE))
+    assert index is not None
+    needed = betaincinv(count + 1 - index, index, POWER)
+    # the reach is that of a member, at most one step of their shares beyond what is needed; three standard
+    # deviations of 2000 trials
+    most = betainc(count + 1 - index, index, needed + 1.0 / count)
+    assert POWER - 0.027 <= told <= most + 0.027
+    for same in (-scatter, scatter + 0.5):
+        assert ratio_within_reach(same) == pytest.approx(reach, abs=ROUNDING)
+
+
+def test_no_ratio_is_within_reach_of_too_few():
+    assert ratio_within_reach(np.array([0.1, 0.2, 0.3, 0.4, 0.5])) == math.inf
+    assert ratio_within_reach(np.array([])) == math.inf
+    # half of them overturn by one method alone: there is no median to be told from 1
+    assert ratio_within_reach(np.array([0.1] * 11 + [math.inf] * 12)) == math.inf
+    # more scatter on one side: the ratio on the other side has to make up for it
+    assert ratio_within_reach(np.array([*np.zeros(14), *-np.ones(8)])) == pytest.approx(math.e, rel=1e-12)
+
+
+def test_overturned_members_are_larger_than_all_and_failed_ones_do_not_count():
+    peaks = np.array([8.0, 8.0, 0.2, 0.0, 0.3, math.nan])
+    against = np.array([8.0, 0.2, 8.0, 0.0, 0.2, 0.4])
+    fell, fell_there = peaks == 8.0, against == 8.0
+    np.testing.assert_allclose(
+        log_ratios(peaks, against, fell, fell_there),
+        [math.nan, math.inf, -math.inf, math.nan, math.log(1.5), math.nan],
+        atol=ROUNDING,
+    )
+    found = contrast(peaks, against, fell, fell_there)
+    assert (found.count, found.compared, found.higher, found.lower) == (5, 3, 2, 1)
+    assert (found.overturned, found.against_overturned, found.both_overturned) == (2, 2, 1)
+    with pytest.raises(ValueError, match="two members"):
+        contrast(peaks[4:], against[4:], fell[4:], fell_there[4:])
+
+
+def test_who_overturns_by_one_method_alone_decides():
+    assert mcnemar_p(6, 0) == pytest.approx(2.0**-5, abs=ROUNDING)
+    assert mcnemar_p(0, 0) == 1.0
+    assert mcnemar_p(3, 8) == pytest.approx(binomtest(3, 11).pvalue, abs=ROUNDING)
+    few = fewest_to_tell()
+    assert mcnemar_p(few, 0) < 0.05 <= mcnemar_p(few - 1, 0)
+    # as many fall by each method, but never the same: no test of two samples would ask who they are
+    fell = np.arange(COUNT) < 8
+    assert contrast(sample(1), sample(2), fell, np.roll(fell, 8)).overturned_p == 1.0
+    assert contrast(sample(1), sample(2), fell, UP).overturned_p == pytest.approx(2.0**-7, abs=ROUNDING)
+
+
+@pytest.mark.parametrize(("only", "only_there"), [(0.1, 0.1), (0.3, 0.1), (0.4, 0.3)])
+def test_the_interval_of_a_difference_of_shares_has_its_coverage(only, only_there):
+    rest = 1.0 - only - only_there
+    counts = np.random.default_rng(11).multinomial(COUNT, [only, only_there, rest], size=TRIALS)
+    found = [paired_difference(int(first), int(second), COUNT) for first, second, _ in counts]
+    inside = np.mean([item.low <= only - only_there <= item.high for item in found])
+    # counts are whole: no interval of a share has exactly its coverage; this one leans to the safe side
+    assert COVERAGE[0] <= inside <= 0.99
+
+
+def test_the_interval_of_a_difference_of_shares_contains_it():
+    for count in (2, 5, COUNT):
+        for only in range(count + 1):
+            for only_there in range(count + 1 - only):
+                found = paired_difference(only, only_there, count)
+                assert -1.0 <= found.low <= found.value <= found.high <= 1.0
+    assert paired_difference(0, 0, COUNT) == Interval(
+        value=0.0, low=pytest.approx(-0.1155, abs=1e-4), high=pytest.approx(0.1155, abs=1e-4)
+    )
+    assert largest_share_unseen(COUNT) == pytest.approx(0.1273, abs=1e-4)
+
+
+def test_several_probabilities_are_corrected_for_their_number():
+    np.testing.assert_allclose(adjusted(np.array([0.04, 0.01, 0.03])), [0.06, 0.03, 0.06], atol=ROUNDING)
+    assert adjusted(np.array([0.6, 0.7])).tolist() == [1.0, 1.0]
+    assert adjusted(np.array([0.03])).tolist() == [0.03]

@@ -1,0 +1,168 @@
+"""A run that ends in the middle of a fall overturns, and one that stands is none the worse for the look."""
+
+from __future__ import annotations
+
+import dataclasses
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import multibody
+from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.multibody import stepping
+from rockwobble.multibody.excitation import StepMeans
+from rockwobble.multibody.froude import froude_scale
+from rockwobble.multibody.passes import TurningPoint
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+PERIOD = 1.2  # [s]
+UPLIFT = 9.81 * PIER.tan_alpha  # [m/s^2]
+
+
+def one_sine(times_uplift: float, still: float = 0.0) -> GroundMotion:
+    """One period of a sine, and still ground for a time after it [s]."""
+    time = 0.01 * np.arange(round((PERIOD + still) / 0.01) + 1)
+    push = times_uplift * UPLIFT * np.sin(2.0 * np.pi * time / PERIOD) * (time < PERIOD - 1e-9)
+    return GroundMotion(np.column_stack([push, 0.0 * push]), 0.01)
+
+
+def test_a_fall_that_the_record_cuts_off_overturns(engine: str) -> None:
+    short = multibody.simulate(PIER, one_sine(4.0), engine=engine)
+    whole = multibody.simulate(PIER, one_sine(4.0, still=6.0), engine=engine)
+    for run in (short, whole):
+        assert run.outcome == "overturned"
+        assert run.peak_tilt == run.tilt[-1] == 0.5 * np.pi
+    # the same ground, and the same run to the last sample: the record's own end is exact
+    assert short.time[-1] > PERIOD + 1.0
+    np.testing.assert_allclose(short.time, whole.time, rtol=1e-12)
+    np.testing.assert_allclose(short.tilt, whole.tilt, atol=1e-9)
+    np.testing.assert_allclose(short.contact_force, whole.contact_force, atol=1e-6)
+    assert short.passes["time"].tolist() == pytest.approx(whole.passes["time"].tolist())
+    # how fast the side comes down says nothing of the passes before
+    within = short.tilt < PIER.alpha
+    fastest = float(np.abs(short.tilt_rate[within]).max())
+    assert short.contact_resolution == pytest.approx(short.time_step * fastest, rel=0.05)
+    assert np.abs(short.tilt_rate).max() > 2.0 * fastest
+
+
+@pytest.mark.parametrize("duration", [1.3, 1.6, 2.4, 5.69])
+def test_wherever_still_ground_is_cut_the_fall_ends_alike(duration: float) -> None:
+    # at 1.3 s the base still comes down on the side from which it will rise and fall
+    whole = multibody.simulate(PIER, one_sine(4.0, still=6.0))
+    cut = multibody.simulate(PIER, one_sine(4.0, still=6.0), duration=duration)
+    assert (cut.outcome, cut.time[-1]) == ("overturned", pytest.approx(whole.time[-1], abs=1e-9))
+
+
+def test_a_run_that_stands_ends_at_its_duration_and_keeps_its_peak(engine: str) -> None:
+    # at its end the tilt rises, but without the energy to pass the balance
+    run = multibody.simulate(PIER, one_sine(2.0), engine=engine)
+    later = multibody.simulate(PIER, one_sine(2.0, still=2.0), engine=engine)
+    assert (run.outcome, run.time[-1]) == ("completed", PERIOD)
+    assert run.tilt_rate[-1] > 0.0
+    assert run.peak_tilt == run.tilt[-1] < 0.5 * later.peak_tilt
+
+
+def test_a_look_ahead_leaves_no_trace(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    # it wobbles with more energy than that of its balance, and turns back after the end
+    start = InitialState(0.55 * PIER.alpha, tilt_rate=0.02, rolling_rate=0.95)
+    given: dict[str, Any] = {"initial": start, "duration": 0.51303}
+    looked = multibody.simulate(PIER, engine=engine, **given)
+    later = multibody.simulate(PIER, engine=engine, **given | {"duration": 3.0})
+    monkeypatch.setattr(stepping, "may_overturn", lambda *_: False)
+    alone = multibody.simulate(PIER, engine=engine, **given)
+    assert looked.energy[-1] > 9.81 * (PIER.semidiagonal - PIER.mass_centre_height)
+    for field in dataclasses.fields(looked):
+        one, other = getattr(looked, field.name), getattr(alone, field.name)
+        if field.name == "passes":
+            assert one.equals(other)
+        elif field.name != "wall_time":
+            np.testing.assert_equal(one, other)
+    assert looked.outcome == later.outcome == "completed"
+    # the peak is that of the time asked for, between two steps: the tilt still rises
+    assert looked.peak_tilt == looked.tilt[-1]
+    assert looked.peak_tilt < later.peak_tilt
+
+
+def test_ground_that_is_cut_off_keeps_still(engine: str) -> None:
+    # the push would turn round after the cut, which is at a sample
+    push = np.zeros((400, 3))
+    push[:60, 0], push[60:, 0], push[60:, 2] = 3.0 * UPLIFT, -6.0 * UPLIFT, 3.0
+    cut = multibody.simulate(PIER, GroundMotion(push, 0.01), duration=0.59, engine=engine)
+    push[60:] = 0.0
+    ended = multibody.simulate(PIER, GroundMotion(push, 0.01), duration=0.59, engine=engine)
+    assert cut.outcome == ended.outcome == "overturned"
+    np.testing.assert_array_equal(cut.time[:-1], ended.time[:-1])
+    # until the rim leaves the ground and comes back, which multiplies rounding
+    low = ended.tilt < 1.0
+    assert low.sum() > 200
+    np.testing.assert_allclose(cut.tilt[low], ended.tilt[low], atol=1e-9)
+
+
+@pytest.mark.parametrize("centre", [0.0, 0.5, 1.0])
+def test_the_step_after_a_cut_takes_back_what_goes_beyond_it(centre: float) -> None:
+    motion = GroundMotion([[0.0, 1.0], [2.0, -1.0], [1.0, 3.0], [4.0, 1.0]], 0.02)
+    step, end = 1e-3, 0.0314
+    means = StepMeans(motion, froude_scale(6.0, 9.81), step)
+    taken = 33  # one past the first pose at the end or after it
+    total = step * (means(0, taken, centre).sum(axis=0) + means.stop(end, taken, centre))
+    # of the straight lines between samples, from the start of the first step (the ground kept still before)
+    time = np.linspace(0.0, end, 20001)
+    exact = [
+        np.trapezoid(np.interp(time, 0.02 * np.arange(4), component), time)
+        for component in motion.acceleration.T
+    ]
+    before = step * means(0, 1, 0.0)[0, :2] if centre == 1.0 else 0.0
+    lost = means.ground_velocity(np.array([(centre - 0.5) * step]))[0, :2]
+    assert np.abs(before).max() < 1.0
+    np.testing.assert_allclose(total[:2], np.array(exact) - lost, atol=1e-7)
+    assert total[2] == 0.0
+
+
+def test_what_is_not_decided_in_time_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(stepping, "LONGEST_FALL", 0.5)
+    run = multibody.simulate(PIER, one_sine(4.0))
+    assert (run.outcome, run.time[-1]) == ("completed", PERIOD)
+    assert "it ends in the middle of a fall, and whether that overturns it is not decided" in run.message
+    assert "not decided" not in multibody.simulate(PIER, one_sine(2.0)).message
+
+
+def test_a_cylinder_beyond_its_balance_falls_without_energy_to_spare(engine: str) -> None:
+    # less energy than that of the balance, on its far side
+    run = multibody.simulate(PIER, initial=InitialState(1.05 * PIER.alpha), duration=0.05, engine=engine)
+    assert run.outcome == "overturned"
+    short = multibody.simulate(PIER, initial=InitialState(0.95 * PIER.alpha), duration=0.05, engine=engine)
+    assert (short.outcome, short.time[-1]) == ("completed", 0.05)
+
+
+def test_noise_of_a_slow_rise_is_no_turn() -> None:
+    start = TurningPoint(1.0, 0.1, 0.0, False)
+    noise = [TurningPoint(1.1, 0.1 + 3e-7, 0.0, True), TurningPoint(1.2, 0.1 + 2e-7, 0.0, False)]
+    top = [TurningPoint(1.3, 0.12, 0.0, True)]
+
+    def turned(points: list[TurningPoint], tilt: float) -> bool:
+        seen: Any = SimpleNamespace(points=points, last_value=lambda name: tilt)
+        return stepping._turned_back(start, seen)
+
+    assert not turned(noise, 0.1 + 4e-7)
+    assert not turned(noise[:1], 0.1)
+    assert not turned(noise + top, 0.12)
+    assert turned(noise + top, 0.119)
+    # a maximum before the end is none after it, and a descent has yet to rise again
+    assert not turned([TurningPoint(0.9, 0.2, 0.0, True)], 0.11)
+
+
+def test_progress_stays_at_one_while_it_is_carried_on() -> None:
+    seen: list[float] = []
+    multibody.simulate(PIER, one_sine(4.0), progress=seen.append)
+    assert seen == sorted(seen)
+    assert seen.count(1.0) > 2
+
+
+def test_a_fall_after_the_end_is_sampled_as_the_rest(engine: str) -> None:
+    run = multibody.simulate(PIER, one_sine(4.0), duration=1.2034, sample_step=0.02, engine=engine)
+    grid = 0.02 * np.arange(61)
+    np.testing.assert_allclose(run.time[:61], grid, rtol=1e-12)
+    assert run.time[61] == 1.2034
+    np.testing.assert_allclose(run.time[62:-1], 0.02 * np.arange(61, len(run.time) - 2), rtol=1e-12)

@@ -1,0 +1,78 @@
+"""Rests between two motions."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from rockwobble import multibody
+from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.multibody.passes import TurningPoint, passes_between
+from rockwobble.multibody.rests import SHORTEST, RestWatch
+
+STEP = 1e-3
+
+
+@pytest.mark.parametrize("chunks", [[], [1], [150, 1, 60], [7] * 60])
+def test_a_rest_is_a_tilt_that_stays_below_the_level(chunks: list[int]) -> None:
+    tilt = np.full(500, 0.1)
+    tilt[100:150] = 1e-9  # 50 ms
+    tilt[200:203] = 1e-9  # it goes past upright
+    tilt[400:] = 1e-9
+    watch = RestWatch(1e-6)
+    for at in np.split(np.arange(500), np.cumsum(chunks)):
+        watch.take(STEP * at, tilt[at])
+    assert SHORTEST > 3 * STEP
+    np.testing.assert_allclose(watch.rests(), [(0.1, 0.15), (0.4, 0.499)])
+    assert watch.resting
+
+
+def test_a_base_that_has_just_closed_does_not_rest_yet() -> None:
+    watch = RestWatch(1e-6)
+    watch.take(STEP * np.arange(100), np.where(np.arange(100) < 95, 0.1, 0.0))
+    assert not watch.resting
+    assert watch.rests() == []
+    watch.take(STEP * np.arange(100, 130), np.zeros(30))
+    assert watch.resting
+
+
+def test_a_pass_belongs_to_one_motion() -> None:
+    def point(time: float, tilt: float, angle: float, maximum: bool) -> TurningPoint:
+        return TurningPoint(time, tilt, angle, maximum)
+
+    points = [
+        point(1.0, 0.10, 0.0, True),
+        point(2.0, 0.02, 2.0, False),
+        point(3.0, 0.09, 3.3, True),
+        point(4.5, 1e-7, 3.9, False),  # the noise of a base that stands
+        point(4.6, 1e-6, 4.0, True),
+        point(4.7, 1e-7, 4.1, False),
+        point(6.0, 0.05, 5.0, True),
+        point(7.0, 0.01, 7.0, False),
+        point(8.0, 0.04, 8.5, True),
+    ]
+    joined = [(found.time, found.angle_of_turn) for found in passes_between(points, 1e-9)]
+    assert 4.7 in [time for time, _ in joined]
+    parted = passes_between(points, 1e-9, [(4.0, 5.0)])
+    assert [found.time for found in parted] == [2.0, 7.0]
+    assert [found.angle_of_turn for found in parted] == pytest.approx([3.3, 3.5])
+    # a rest before, between or after that separates nothing
+    assert len(passes_between(points[:3], 1e-9, [(0.0, 0.5), (9.0, 9.5)])) == 1
+
+
+def test_between_a_release_that_lands_and_a_later_pulse_there_is_no_pass(engine: str) -> None:
+    # planar rocking loses almost everything in each landing: it stands from 1 s until the ground moves
+    squat = Cylinder(semidiagonal=6.0, tan_alpha=1.2)
+    time = 0.01 * np.arange(61)
+    push = np.zeros((201, 2))
+    push[140:, 0], push[140:, 1] = 16.5 * np.sin(np.pi * time / 0.3), 11.8 * np.sin(np.pi * time / 0.3) ** 2
+    run = multibody.simulate(
+        squat, GroundMotion(push, 0.01), initial=InitialState(0.2 * squat.alpha), engine=engine
+    )
+    standing = (run.time > 1.0) & (run.time < 1.4)
+    assert run.tilt[standing].max() < 1e-7
+    assert not run.passes["time"].between(0.96, 1.4).any()
+    # every pass is one of the first swings, planar, or one of the second motion
+    first = run.passes[run.passes["time"] < 1.0]
+    np.testing.assert_allclose(np.abs(first["angle_of_turn"]), np.pi, atol=1e-6)
+    assert len(run.passes) < 20

@@ -1,0 +1,146 @@
+"""Places in a source file by the names that stand there: a function, an assignment in it, an argument.
+
+What is changed is the tree of the parsed source, never its text: layout, comments and line numbers may
+change, and a place that is gone is an error that lists what there is.
+"""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Callable, Iterator
+from typing import TypeVar
+
+Change = Callable[[ast.Module], None]
+Named = TypeVar("Named")
+
+ORIGINAL = "without_fault"
+
+
+def function_in(tree: ast.AST, name: str) -> ast.FunctionDef:
+    """Return a function by its dotted name, such as "make_driver.march".
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    found: ast.AST = tree
+    for part in name.split("."):
+        inside = {each.name: each for each in _below(found)}
+        found = _of(inside, part, f"a function {name!r}")
+    assert isinstance(found, ast.FunctionDef)
+    return found
+
+
+def assignment_in(function: ast.FunctionDef, target: str) -> tuple[list[ast.stmt], int]:
+    """Return the block and the place in it of the first assignment to `target`, written as in the source.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    found: dict[str, tuple[list[ast.stmt], int]] = {}
+    for block in _blocks(function):
+        for index, statement in enumerate(block):
+            if isinstance(statement, ast.Assign):
+                for each in statement.targets:
+                    parts = each.elts if isinstance(each, ast.Tuple) else [each]
+                    for part in parts:
+                        found.setdefault(ast.unparse(part), (block, index))
+    return _of(found, target, f"an assignment to {target!r} in {function.name}")
+
+
+def argument_in(function: ast.FunctionDef, call: str, keyword: str) -> ast.keyword:
+    """Return an argument given by keyword in the first call of `call`.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    calls = [node for node in ast.walk(function) if isinstance(node, ast.Call)]
+    given = {each.arg: each for node in calls if ast.unparse(node.func) == call for each in node.keywords}
+    named = {name: each for name, each in given.items() if name is not None}
+    return _of(named, keyword, f"an argument {keyword!r} of {call} in {function.name}")
+
+
+def before_assignment(function: str, target: str, statement: str) -> Change:
+    """Return the change that puts a statement in front of the first assignment to `target`."""
+
+    def change(tree: ast.Module) -> None:
+        block, index = assignment_in(function_in(tree, function), target)
+        block[index:index] = ast.parse(statement).body
+
+    return change
+
+
+def after_assignment(function: str, target: str, statement: str) -> Change:
+    """Return the change that puts a statement behind the first assignment to `target`."""
+
+    def change(tree: ast.Module) -> None:
+        block, index = assignment_in(function_in(tree, function), target)
+        block[index + 1 : index + 1] = ast.parse(statement).body
+
+    return change
+
+
+def scaled_argument(function: str, call: str, keyword: str, factor: float) -> Change:
+    """Return the change that multiplies an argument of a call."""
+
+    def change(tree: ast.Module) -> None:
+        argument = argument_in(function_in(tree, function), call, keyword)
+        argument.value = ast.BinOp(ast.Constant(factor), ast.Mult(), argument.value)
+
+    return change
+
+
+def wrapped(function: str, text: str) -> Change:
+    """Return the change that puts a function of the same name around one of the module.
+
+    Parameters
+    ----------
+    function : str
+        Its name.
+    text : str
+        Its new definition, which calls the one that it replaces as `without_fault`.
+    """
+
+    def change(tree: ast.Module) -> None:
+        original = function_in(tree, function)
+        original.name = ORIGINAL
+        place = tree.body.index(original) + 1
+        tree.body[place:place] = ast.parse(text).body
+
+    return change
+
+
+def appended(text: str) -> Change:
+    """Return the change that adds statements to the end of the module."""
+
+    def change(tree: ast.Module) -> None:
+        tree.body += ast.parse(text).body
+
+    return change
+
+
+def _of(found: dict[str, Named], name: str, wanted: str) -> Named:
+    if name not in found:
+        raise ValueError(f"the source must have {wanted}, got {', '.join(found) or 'none'}")
+    return found[name]
+
+
+def _below(node: ast.AST) -> Iterator[ast.FunctionDef | ast.ClassDef]:
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.FunctionDef | ast.ClassDef):
+            yield child
+        else:
+            yield from _below(child)
+
+
+def _blocks(function: ast.FunctionDef) -> Iterator[list[ast.stmt]]:
+    for node in ast.walk(function):
+        for name in ("body", "orelse", "finalbody"):
+            block = getattr(node, name, None)
+            if isinstance(block, list):
+                yield block

@@ -1,0 +1,73 @@
+"""Run in a copy of the checkout with a fault: ask the layers of the check one by one, to the first failure.
+
+Takes one argument, a JSON object: "layers" that are asked first, "allowances" of processor time by layer
+[s], beyond which the process is ended by the system, "other", the allowance of the rest and of the import,
+"root" of the copy, and "report", a file of one JSON object a line. Nothing in it comes from the package of
+the faults: what is on trial is only what the copy holds.
+"""
+
+from __future__ import annotations
+
+import json
+import resource
+import sys
+from pathlib import Path
+from typing import Any
+
+
+def main(wanted: dict[str, Any]) -> None:
+    """Ask, and write what was found."""
+    with Path(wanted["report"]).open("a", encoding="utf-8", buffering=1) as report:
+        _allow(wanted["other"])
+        print(json.dumps({"event": "started", "layer": "import"}), file=report)
+        from rockwobble import multibody, reduced
+        from rockwobble.compare.check import LAYERS, Bench, run_checks
+        from rockwobble.models import Suite, read_suite
+
+        _require_copy(Path(wanted["root"]))
+        quick = read_suite("quick")
+        # as the command does it: an engine without a wheel for this Python is left out
+        runs = [run for run in quick.runs if run.engine in multibody.available_engines()]
+        bench = Bench(reduced=reduced, suite=Suite(quick.cases, runs, quick.bounds), workers=1)
+        order = [name for name in wanted["layers"] if name in LAYERS]
+        for layer in order + [name for name in LAYERS if name not in order]:
+            begun = _used()
+            _allow(wanted["allowances"].get(layer, wanted["other"]))
+            print(json.dumps({"event": "started", "layer": layer}), file=report)
+            for finding in run_checks(bench, [layer]):
+                if finding.failed:
+                    told = {"event": "failed", "layer": layer, "check": finding.name, "note": finding.note}
+                    print(json.dumps(told), file=report)
+                    return
+            print(json.dumps({"event": "passed", "layer": layer, "seconds": _used() - begun}), file=report)
+        print(json.dumps({"event": "finished"}), file=report)
+
+
+def _used() -> float:
+    own, below = resource.getrusage(resource.RUSAGE_SELF), resource.getrusage(resource.RUSAGE_CHILDREN)
+    return own.ru_utime + own.ru_stime + below.ru_utime + below.ru_stime
+
+
+def _allow(seconds: float) -> None:
+    own = resource.getrusage(resource.RUSAGE_SELF)
+    _, most = resource.getrlimit(resource.RLIMIT_CPU)
+    soft = int(own.ru_utime + own.ru_stime + seconds) + 1
+    resource.setrlimit(
+        resource.RLIMIT_CPU, (soft if most == resource.RLIM_INFINITY else min(soft, most), most)
+    )
+
+
+def _require_copy(root: Path) -> None:
+    """Refuse to try another package than that of the copy, such as one that is installed."""
+    for name, module in sorted(sys.modules.items()):
+        file = getattr(module, "__file__", None)
+        if (
+            name.startswith("rockwobble.")
+            and file
+            and not Path(file).resolve().is_relative_to(root.resolve())
+        ):
+            raise RuntimeError(f"{name} must come from the copy {root}, got {file}")
+
+
+if __name__ == "__main__":
+    main(json.loads(sys.argv[1]))
