@@ -1,8 +1,8 @@
 """Coverage of the intervals and level of the tests of an ensemble, by simulation.
 
 `python tests/benchmarks ensemble_intervals` prints one line for each kind of ensemble: shares of many
-simulated ensembles, so that 0.95 is known to 0.002 with the default of 10,000. Beside the interval of the median from
-order statistics stands that of a percentile bootstrap over the members, which is not used.
+simulated ensembles, so that 0.95 is known to 0.002 with the default of 10,000. Beside the interval of the
+median from order statistics stands that of a percentile bootstrap over the members, which is not used.
 """
 
 from __future__ import annotations
