@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from . import options
-from .paper.provenance import command_line
+from .provenance import command_line
 from .terminal import FAILED, complain, interruptible, user_input
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from rockwobble.compare.advice.scales import FELL
 from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SPATIAL
 
 from .advise_charts import FALLS, NAMES, STANDS
+from .drawing import drawn, line, with_grid
 from .palette import DASHES, Style, model_style, run_styles
-from .paper.drawing import drawn, line, with_grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

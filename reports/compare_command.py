@@ -13,7 +13,7 @@ import typer
 from . import options
 from .comparison_pages import SINGLY, comparison_pages
 from .method_values import settings
-from .paper.provenance import command_line
+from .provenance import command_line
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 from .terminal import complain, interruptible, user_input
 

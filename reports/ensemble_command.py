@@ -106,8 +106,8 @@ def ensemble(
                 print(f"Members: {len(motions) or members}, {_source(synthetic, far_field, perturbation)}")
             runs = _runs(engine, support, time_step, stated=suite is not None)
         from .ensemble_output import ensemble_files, print_ensemble
-        from .paper.provenance import command_line
         from .progress import shown_progress
+        from .provenance import command_line
 
         with user_input(), shown_progress(many=True) as tell:
             found = compare.ensemble(

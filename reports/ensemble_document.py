@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from .ensemble_words import CAPTION, INTRODUCTION, LEGEND, WORDS, facts, statements, tables
-from .paper.provenance import made_by
+from .provenance import made_by
 
 if TYPE_CHECKING:
     from rockwobble.compare import Ensemble

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from .ensemble_chart import ensemble_chart, ratio_chart
 from .ensemble_words import CAPTION, INTRODUCTION, LEGEND, WORDS, facts, statements, tables
-from .paper.provenance import made_by
+from .provenance import made_by
 from .template import PLOT_CONFIG, render
 
 if TYPE_CHECKING:

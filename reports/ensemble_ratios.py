@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.compare.distributions import MARGIN
 from rockwobble.compare.ensemble_tables import pairs
-
-from .ensemble_words import main_pairs
 
 if TYPE_CHECKING:
     from rockwobble.compare import Ensemble
@@ -50,6 +48,15 @@ class RatioRow:
     def label(self) -> tuple[str, str]:
         """What stands beside the line, in two lines: a phone has no room for one."""
         return self.method, f"/ {self.against}, n = {len(self.ratios)}"
+
+
+def main_pairs(found: Ensemble) -> list[dict[Any, Any]]:
+    """Return the rows of the contrasts that are asked for first: engines by their own model, then models."""
+    rows = found.contrasts.to_dict("records")
+    own = {row["method"]: row["own_model"] for row in found.methods.to_dict("records")}
+    engines = [row for row in rows if own[row["method"]] and own[row["method"]] == row["against"]]
+    models = [row for row in rows if not own[row["method"]] and not own[row["against"]]]
+    return engines + models or rows
 
 
 def ratio_rows(found: Ensemble) -> list[RatioRow]:

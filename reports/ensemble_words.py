@@ -13,6 +13,8 @@ from rockwobble.compare.distributions import (
     largest_share_unseen,
 )
 
+from .ensemble_ratios import main_pairs
+
 if TYPE_CHECKING:
     from rockwobble.compare import Ensemble
 
@@ -109,15 +111,6 @@ def overturning_rows(found: Ensemble) -> list[tuple[str, ...]]:
             )
         )
     return rows if found.methods["overturned"].any() else []
-
-
-def main_pairs(found: Ensemble) -> list[dict[Any, Any]]:
-    """Return the rows of the contrasts that are asked for first: engines by their own model, then models."""
-    rows = found.contrasts.to_dict("records")
-    own = {row["method"]: row["own_model"] for row in found.methods.to_dict("records")}
-    engines = [row for row in rows if own[row["method"]] and own[row["method"]] == row["against"]]
-    models = [row for row in rows if not own[row["method"]] and not own[row["against"]]]
-    return engines + models or rows
 
 
 def statements(found: Ensemble) -> list[str]:

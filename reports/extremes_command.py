@@ -47,7 +47,7 @@ def extremes(
         from rockwobble.compare.origin import origin_now
 
         from .extremes.page import extremes_pages
-        from .paper.provenance import command_line
+        from .provenance import command_line
         from .spectrum_progress import shown_fraction
 
         print("Cylinder: R = 6 m, tan alpha = 0.2, one thing at a time at its extreme")

@@ -66,7 +66,7 @@ def paper_files(sections: list[Section]) -> dict[str, bytes]:
     from rockwobble.compare.provenance import reduced_makers
 
     from .paper.page import claims_frame, paper_page
-    from .paper.provenance import parquet
+    from .provenance import parquet
 
     contents = {"paper.md": paper_page(sections).encode()}
     for section in sections:

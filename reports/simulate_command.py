@@ -170,7 +170,7 @@ def _contents(job: Job, trace: Any) -> dict[str, bytes]:
     from rockwobble.compare.provenance import about_results
     from rockwobble.compare.run_store import job_fingerprint
 
-    from .paper.provenance import command_line
+    from .provenance import command_line
 
     case, samples = job.case, trace.to_frame()
     made = about_results("rockwobble run", job_fingerprint(job)) | {"command": command_line()}

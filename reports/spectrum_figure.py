@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from rockwobble.compare.lowest_overturning import Island, safe_islands
 from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, OverturningSpectrum
 
+from .drawing import drawn, with_grid
 from .palette import model_style, run_styles
-from .paper.drawing import drawn, with_grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

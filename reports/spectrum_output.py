@@ -18,7 +18,7 @@ from rockwobble.compare.provenance import reduced_makers
 from rockwobble.compare.spectrum import SERIES, OverturningSpectrum, overturning_spectrum
 from rockwobble.models import Cylinder, GroundMotion
 
-from .paper.provenance import parquet
+from .provenance import parquet
 from .spectrum_figure import TITLES, spectrum_figure
 from .spectrum_page import spectrum_page
 from .spectrum_progress import shown_fraction

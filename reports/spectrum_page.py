@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rockwobble.compare.planar_contrast import planar_contrast
 from rockwobble.compare.spectrum import OverturningSpectrum
 
-from .paper.provenance import made_by
+from .provenance import made_by
 from .spectrum_words import HEADINGS, LEGEND, check_statement, statements, table_cells
 
 if TYPE_CHECKING:

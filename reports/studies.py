@@ -33,7 +33,7 @@ def _comparison(folder: Path) -> Draw:
     from rockwobble.compare import Comparison
 
     from .comparison_pages import comparison_pages
-    from .paper.provenance import command_line
+    from .provenance import command_line
 
     found = Comparison.load(folder)
     return lambda: comparison_pages(found, command_line())

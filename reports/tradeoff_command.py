@@ -54,8 +54,8 @@ def _measured(quick: bool) -> Tradeoff:
     from rockwobble.compare.tradeoff.problem import PIER
     from rockwobble.models import Case
 
-    from .paper.provenance import command_line
     from .problem import describe
+    from .provenance import command_line
     from .spectrum_progress import shown_fraction
 
     print(describe(Case("", PIER, duration=1.0))[0])

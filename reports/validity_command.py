@@ -51,7 +51,7 @@ def validity(
             validity_tables,
         )
 
-        from .paper.provenance import command_line
+        from .provenance import command_line
         from .validity.about import about
         from .validity.output import print_limits, validity_pages
         from .validity.progress import shown_campaign

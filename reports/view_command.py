@@ -10,7 +10,7 @@ import typer
 
 from . import options
 from .method_values import settings
-from .paper.provenance import command_line
+from .provenance import command_line
 from .terminal import complain, interruptible, user_input
 
 if TYPE_CHECKING:

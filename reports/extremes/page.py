@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from ..drawing import drawn
 from ..origin_words import made_by
-from ..paper.drawing import drawn
 from ..spectrum_page import markdown_table
 from ..study_tables import grouped
 from ..template import render

@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Cylinder, InitialState
 
+from ..drawing import drawn, drawn_samples, line, path, with_grid
 from ..thinning import kept_samples
 from .claim import Claim, verdict_of
-from .drawing import drawn, drawn_samples, line, path, with_grid
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from ..provenance import made_by
 from .claim import Claim
-from .provenance import made_by
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Cylinder
 
+from ..drawing import drawn, with_grid
 from .claim import Claim, verdict_of
-from .drawing import drawn, with_grid
 
 if TYPE_CHECKING:
     import pandas as pd

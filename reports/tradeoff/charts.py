@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ..charts.layout import new_figure, reserve_legend
-from ..paper.drawing import drawn, with_grid
+from ..drawing import drawn, with_grid
 from .marks import Mark, marks
 
 if TYPE_CHECKING:

@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..drawing import drawn, with_grid
 from ..palette import DASHES
-from ..paper.drawing import drawn, with_grid
 from .picture import LinePicture, MapPanel, MapPicture, Picture, series_styles
 
 if TYPE_CHECKING:

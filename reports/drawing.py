@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..thinning import kept_samples
+from .thinning import kept_samples
 
 if TYPE_CHECKING:
     import pandas as pd
