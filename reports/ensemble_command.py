@@ -1,4 +1,4 @@
-"""`rockwobble ensemble`: distributions of peak tilt, for what lies beyond the agreement of traces."""
+"""`rockwobble ensemble`: peak tilts of many members, for what lies beyond the agreement of traces."""
 
 from __future__ import annotations
 
@@ -64,7 +64,7 @@ def ensemble(
     time_step: options.TimeStep = None,
     out: options.Out = Path("rockwobble-ensemble"),
 ) -> None:
-    """Hold the distributions of peak tilt by each method against each other.
+    """Hold the peak tilts of many members by each method against each other, member by member.
 
     Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly different starts. With
     --synthetic or --p695 the members are ground motions, with a SUITE its cases. --engine none runs the
