@@ -81,8 +81,10 @@ def _apart(case: Case, run: Any, model: Any) -> tuple[float, float]:
     if crashed(run):
         return math.nan, math.nan
     size = case.gravity / case.cylinder.semidiagonal
-    time = model.time
+    # one that falls at the end goes on until its side is on the ground
+    count = int(np.searchsorted(model.time, case.length * (1.0 + 1e-9), side="right"))
+    time = model.time[:count]
     return tuple(
-        abs(float(2.0 * ((own - other) * time**2).sum() / (time**4).sum())) / size
+        abs(float(2.0 * ((own[:count] - other[:count]) * time**2).sum() / (time**4).sum())) / size
         for own, other in ((run.tilt, model.tilt), (run.rolling_angle, model.rolling_angle))
     )  # type: ignore[return-value]
