@@ -13,6 +13,7 @@ import numpy as np
 from rockwobble.models import Case, Run
 
 from ..execution import Job, Progress, ProgressCallback, simulate
+from ..lowest_overturning import uplift_factor
 from ..predicted_horizon import Prediction
 from ..provenance import package_versions
 from ..runs import own_model, require_runnable
@@ -20,7 +21,7 @@ from .advice import Advice
 from .demands import demands_of
 from .grades import Trust, trust_of
 from .planar import planar_view
-from .scales import scan_scales, uplift_factor
+from .scales import scan_scales
 from .spread import COUNT, PERTURBATION, SEED, Spread, spread_of_starts
 from .verification import Verification, predicted, verified
 
@@ -113,7 +114,7 @@ def advise(
         other=_OTHER[model],
         response=response,
         other_response=other_response,
-        uplift_factor=uplift_factor(case),
+        uplift_factor=_uplift_factor(case),
         peak_time=peak_time,
         demands=demands,
         prediction=prediction,
@@ -144,6 +145,12 @@ class _Stages:
             self._progress(
                 Progress(case=self._name, label=label, state=state, done=self._done, total=self._total)
             )
+
+
+def _uplift_factor(case: Case) -> float:
+    if case.motion is None:
+        return math.inf
+    return uplift_factor(case.motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
 
 
 def _until_the_fall(case: Case, response: Any, model: str) -> Any:
