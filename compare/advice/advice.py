@@ -35,6 +35,8 @@ class Advice:
     Attributes
     ----------
     case : Case
+        As it was run: where it falls after the end of what was asked, until its side is down, over still
+        ground.
     support : str
         What holds the cylinder in place.
     model, other : str

@@ -29,6 +29,7 @@ from rockwobble.compare.tilt import overturned
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+SAME_RUN = 1e-9  # of two runs that differ in what comes after their end
 
 STILL = Demands(
     moving_time=10.0,
@@ -218,6 +219,67 @@ def test_a_cylinder_at_rest_needs_nothing():
     assert found.spread is None
     assert found.uplift_factor == pytest.approx(2.0 * uplift_factor(el_centro_1940(), 0.2, 9.81))
     assert found.lowest_overturning > found.uplift_factor
+
+
+def pulse(still: float) -> GroundMotion:
+    """One sine of 4 g tan(alpha) and 1.2 s, and still ground after it for so long [s]."""
+    time = np.arange(121) * 0.01
+    wave = 4.0 * 9.81 * 0.2 * np.sin(2.0 * np.pi * time / 1.2)
+    along = np.concatenate([wave, np.zeros(round(100.0 * still))])
+    return GroundMotion(np.column_stack([along, np.zeros_like(along)]), 0.01)
+
+
+@pytest.fixture(scope="module")
+def fallen():
+    return advise(Case("pulse", PIER, pulse(0.0)), count=20)
+
+
+def test_a_fall_that_the_record_does_not_see_is_a_fall(fallen):
+    followed = advise(Case("pulse", PIER, pulse(20.0)), count=20)
+    for found in (fallen, followed):
+        assert found.overturned
+        assert found.overturning_share == 1.0
+        assert found.lowest_overturning == pytest.approx(0.506, abs=0.001)
+        assert found.grades["overturning"] == "bad"
+    assert fallen.peak_time == pytest.approx(followed.peak_time, rel=SAME_RUN)
+    assert fallen.trust.kind == followed.trust.kind
+    assert fallen.trust.until == pytest.approx(followed.trust.until, abs=0.011)  # a sample
+    assert fallen.demands.friction_needed == pytest.approx(followed.demands.friction_needed, rel=1e-6)
+
+
+def test_a_case_lasts_until_its_fall_and_so_does_all_that_is_run_for_it(fallen):
+    assert fallen.case.length == pytest.approx(fallen.peak_time, abs=0.011)
+    assert fallen.case.motion.duration == pytest.approx(1.2)
+    assert fallen.spread.time[-1] > 5.0
+    # every start lies on its side at the end
+    assert fallen.spread.low[-1] > 1.0
+    # the pass that no engine resolves comes after the pulse
+    assert 1.2 < fallen.prediction.length + fallen.response.uplift_time < fallen.case.length
+
+
+def test_a_run_cut_short_falls_over_ground_that_is_still_from_there():
+    found = advise(case(4.0, duration=5.0), count=20)
+    assert found.overturned
+    assert found.case.motion.duration == pytest.approx(5.0)
+    assert found.response.time[-1] == pytest.approx(found.case.length, abs=0.011)
+    assert found.overturning_share == 1.0
+
+
+def test_what_stands_ends_when_it_was_asked_to():
+    found = advise(case(1.0, duration=5.0), count=20)
+    assert found.case.length == found.response.time[-1] == 5.0
+
+
+def test_demands_of_samples_are_those_of_the_solution():
+    response = reduced.simulate(PIER, el_centro_1940(), duration=8.0, friction=0.21, sample_step=4e-5)
+    whole, sampled = demands_of(response), demands_of(response, until=8.0)
+    for name in ("friction_needed", "couple", "least_normal_force", "largest_normal_force", "slip_from"):
+        assert getattr(sampled, name) == pytest.approx(getattr(whole, name), rel=1e-3), name
+    assert sampled.slip_time == pytest.approx(whole.slip_time, abs=1e-3)
+    assert whole.slip_time > 0.01
+    first = demands_of(response, until=0.5 * (response.uplift_time + whole.slip_from))
+    assert (first.slip_time, first.friction_needed < 0.21) == (0.0, True)
+    assert first.moving_time < whole.moving_time
 
 
 def test_what_a_falling_cylinder_asks_is_no_demand():

@@ -198,3 +198,27 @@ def test_what_overturns_again_is_confirmed_and_what_stands_is_not(spectrum):
     lower = {name: lowest - 2.0 * spectrum.search_step for name, lowest in spectrum.lowest.items()}
     forged = dataclasses.replace(spectrum, lowest=lower)
     assert not confirm_lowest(forged)["confirmed"].to_numpy().reshape(3, -1)[0, 2:].any()
+
+
+def test_what_falls_after_the_record_has_overturned_in_every_cell():
+    # a sine whose one cycle leaves the cylinder short of its balance, and on its way to it
+    time = np.arange(121) * 0.01
+    pulse = np.column_stack([np.sin(2.0 * np.pi * time / 1.2), np.zeros(121)])
+    still = np.zeros((2000, 2))
+    cut, followed = (
+        overturning_spectrum(
+            0.2,
+            GroundMotion(acceleration, 0.01),
+            semidiagonals=[6.0],
+            intensities=[1.5, 2.5, 4.0],
+        )
+        for acceleration in (pulse, np.vstack([pulse, still]))
+    )
+    for series in (SPATIAL, PLANAR_X):
+        assert (
+            cut.overturned(series).tolist() == followed.overturned(series).tolist() == [[False, True, True]]
+        )
+        assert cut.lowest[series] == pytest.approx(followed.lowest[series], rel=SAME_RUN)
+    # a component that does not move is searched nowhere
+    assert math.isnan(cut.lowest[PLANAR_Y][0])
+    assert cut.searched_from[PLANAR_Y] > 1e10
