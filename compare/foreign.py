@@ -12,9 +12,11 @@ import numpy as np
 
 from rockwobble.models import Case
 
-from .foreign_file import Array, read_columns
-from .foreign_measures import passes, peak, places, resampled, sample_times, uplift
-from .foreign_pose import SAME_TIME, STANDS, Poses, poses_of
+from .external_motion import Motion, motion_of
+from .external_uplift import uplift
+from .foreign_file import Array, Columns, read_columns
+from .foreign_measures import passes, peak, places, resampled, sample_times
+from .foreign_pose import SAME_TIME, Poses, poses_of
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -38,7 +40,8 @@ class Foreign:
     time_offset : float, optional
         Added to the times of the file [s], so that the run starts at 0 with the ground motion or the release.
     noise : float, optional
-        Tilt below which the cylinder counts as standing [rad]. Default: 1e-4 alpha, for computed ones.
+        Tilt below which the cylinder counts as standing [rad]. Default: what the scatter of the samples
+        asks for, 5 standard deviations, and at least 1e-4 alpha.
 
     Raises
     ------
@@ -66,8 +69,14 @@ class ForeignTrajectory:
     """A foreign trajectory at the sample times of the reduced models; fields as of an engine's trajectory.
 
     What the file does not tell is NaN: energy, computing time, contact resolution; the twist without
-    quaternions; the residual displacement without positions, where contact point and mass centre are those
-    of a cylinder in a recess with the same tilt and azimuth, equations (8) and (10).
+    quaternions; rolling angle, contact point and mass centre with the tilt alone; the residual displacement
+    without positions, where contact point and mass centre are those of a cylinder in a recess with the same
+    tilt and azimuth, equations (8) and (10).
+
+    Its own fields: `first_lean`, the first of its own samples that leans [s]; `told`, what the file tells of
+    "tilt", "azimuth" and "path"; `noise` and `position_noise`, the standard deviations of its scatter [rad],
+    [m]; `stands`, the tilt below which it stands [rad]; `uplift_time_uncertainty` [s] and
+    `uplift_direction_uncertainty` [rad]; `given` and `columns`, the file that it was read from.
     """
 
     engine: str
@@ -87,10 +96,30 @@ class ForeignTrajectory:
     time_step: float
     residual_displacement: float
     residual_twist: float
+    uplift_time_uncertainty: float
+    uplift_direction_uncertainty: float
+    first_lean: float
+    told: tuple[str, ...]
+    noise: float
+    position_noise: float
+    stands: float
+    given: Foreign
+    columns: Columns
     support: str = SUPPORT
     engine_version: str = ""
     wall_time: float = math.nan
     contact_resolution: float = math.nan
+
+    @property
+    def motion(self) -> Motion:
+        """What is compared: the tilt, the azimuth, also where it follows from the path, and the path."""
+        known = bool(np.isfinite(self.rolling_angle).any())
+        return motion_of(
+            self,
+            (*(("azimuth",) if known else ()), *self.told),
+            noise=self.noise,
+            path_noise=self.position_noise,
+        )
 
     def to_frame(self) -> pd.DataFrame:
         """Return the sampled fields as a table with one row for each sample; SI units and radians."""
@@ -127,17 +156,26 @@ def read_trajectory(foreign: Foreign | str | Path, case: Case) -> ForeignTraject
         the run; the message names the file and the line.
     """
     given = foreign if isinstance(foreign, Foreign) else Foreign(path=Path(foreign))
-    columns = read_columns(given.path, given.angle_unit)
-    stands = STANDS * case.cylinder.alpha if given.noise is None else given.noise
-    poses = _from_start_to_end(poses_of(columns, stands, given.time_offset), case.length)
-    uplift_time, first = uplift(poses, stands)
+    return trajectory_of(read_columns(given.path, given.angle_unit), given, case)
+
+
+def trajectory_of(columns: Columns, given: Foreign, case: Case) -> ForeignTrajectory:
+    """Return the trajectory that the columns of a file hold; see `read_trajectory`."""
+    poses = poses_of(columns, case, noise=given.noise, time_offset=given.time_offset)
+    start = int(np.argmax(poses.time > -0.5 * float(poses.time[1] - poses.time[0])))
+    if poses.tilt[start] >= _FALLEN:
+        raise columns.refuse(
+            start,
+            f"it must not lie at the start, got a tilt of {poses.tilt[start]:.4g} rad; is it in degrees?",
+        )
+    poses = _from_start_to_end(poses, start, case.length)
+    stands = poses.stands
+    begin = uplift(poses.time, poses.tilt, poses.rolling_angle, stands=stands, noise=poses.noise)
     fell = bool(poses.tilt[-1] >= _FALLEN)
-    time = sample_times(min(float(poses.time[-1]), case.length))
+    time = sample_times(float(poses.time[-1]) if fell else min(float(poses.time[-1]), case.length))
     tilt, angle, axis = resampled(poses, time)
-    angle = np.where((tilt > stands) & (time >= uplift_time - SAME_TIME), angle, np.nan)
+    angle = np.where((tilt > stands) & (time >= begin.time - SAME_TIME), angle, np.nan)
     contact, centre, moved = places(poses, time, axis, angle, case.cylinder)
-    if fell:
-        tilt[-1] = 0.5 * math.pi
     twist = np.full(len(time), np.nan) if poses.twist is None else np.interp(time, poses.time, poses.twist)
     return ForeignTrajectory(
         engine=given.label,
@@ -148,15 +186,28 @@ def read_trajectory(foreign: Foreign | str | Path, case: Case) -> ForeignTraject
         contact_point=contact,
         centre_of_mass=centre,
         energy=np.full(len(time), np.nan),
-        passes=passes(poses, uplift_time, stands),
+        passes=passes(poses, begin.time, stands),
         peak_tilt=0.5 * math.pi if fell else peak(poses),
         outcome="overturned" if fell else "rest" if bool((tilt[-100:] < stands).all()) else "completed",
-        message=_message(poses, first),
-        uplift_time=uplift_time,
-        uplift_direction=math.nan if first is None else float(poses.rolling_angle[first]),
+        message=_message(poses),
+        uplift_time=begin.time,
+        uplift_direction=begin.direction,
         time_step=float(np.median(np.diff(poses.time))),
         residual_displacement=moved,
         residual_twist=float(twist[-1]),
+        uplift_time_uncertainty=begin.time_uncertainty,
+        uplift_direction_uncertainty=begin.direction_uncertainty,
+        first_lean=math.nan
+        if begin.first is None
+        else float(poses.time[begin.first])
+        if begin.first
+        else 0.0,
+        told=poses.told,
+        noise=poses.noise,
+        position_noise=poses.position_noise,
+        stands=stands,
+        given=given,
+        columns=columns,
     )
 
 
@@ -194,29 +245,21 @@ def read_trajectories(
     return found
 
 
-def _from_start_to_end(poses: Poses, length: float) -> Poses:
+def _from_start_to_end(poses: Poses, start: int, length: float) -> Poses:
     """Cut to the run, and at the fall where there is one."""
-    chosen = np.flatnonzero(poses.time > -0.5 * float(poses.time[1] - poses.time[0]))
+    chosen = np.arange(start, len(poses.time))
+    tilt = poses.tilt[chosen]
+    falls = np.flatnonzero((tilt[:-1] >= _FALLEN) & (np.diff(tilt) <= 0.0))
+    landed = int(falls[0]) if len(falls) else len(chosen) - 1
     # one sample beyond the end, to interpolate up to it
-    chosen = chosen[: int(np.searchsorted(poses.time[chosen], length - SAME_TIME)) + 1]
-    fallen = np.flatnonzero(poses.tilt[chosen] >= _FALLEN)
-    if len(fallen):
-        chosen = chosen[: fallen[0] + 1]
-    return Poses(
-        poses.time[chosen],
-        poses.tilt[chosen],
-        poses.axis[chosen],
-        poses.rolling_angle[chosen],
-        poses.followed[chosen],
-        None if poses.twist is None else poses.twist[chosen],
-        None if poses.position is None else poses.position[chosen],
-    )
+    last = min(int(np.searchsorted(poses.time[chosen], length - SAME_TIME)), len(chosen) - 1)
+    # a fall that began before the end is followed to the ground
+    falling = tilt[landed] >= _FALLEN and bool((np.diff(tilt[last : landed + 1]) > 0.0).all())
+    return poses.taken(chosen[: (landed if landed < last or falling else last) + 1])
 
 
-def _message(poses: Poses, first: int | None) -> str:
-    notes = []
-    if first is not None and poses.position is None:
-        notes.append("contact points and paths are those of a recess with this tilt and azimuth")
+def _message(poses: Poses) -> str:
+    notes = list(poses.notes)
     guessed = int(np.count_nonzero(~poses.followed))
     if guessed:
         notes.append(f"{guessed} near pass{'es' if guessed > 1 else ''} fell between two samples")

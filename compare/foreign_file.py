@@ -7,23 +7,25 @@ begin with # are comments. Units stand behind a name in brackets: "time [s], til
 column         unit         meaning
 ============== ============ =======================================================================
 time           s, ms        s where the header is silent
-tilt           rad, deg     angle of the axis from the vertical
+tilt           rad, deg     angle of the axis from the vertical; a negative one, as of a planar test,
+                            leans to the side opposite to its azimuth
 azimuth        rad, deg     direction of the lean, counter-clockwise from x (east) as seen from above;
                             may be empty where the cylinder stands
 qw, qx, qy, qz none         turn from the upright cylinder to its pose, scalar first, z up
-x, y, z        m, mm        mass centre from the original base centre, which moves with the ground;
-                            may be left out, m where the header is silent
+x, y, z        m, cm, mm    mass centre from the original base centre, which moves with the ground;
+                            m where the header is silent
 ============== ============ =======================================================================
 
-There must be time, and tilt with azimuth, or the quaternions, or both. Other columns are ignored.
+There must be time, and one of: tilt, with or without azimuth; the quaternions; x, y and z. What is not there
+is not compared. Other columns are ignored. A line with a time and nothing else is a sample that was lost.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -37,7 +39,7 @@ _UNITS = {
     "tilt": ANGLE_UNITS,
     "azimuth": ANGLE_UNITS,
     **{name: {"-": 1.0, "": 1.0} for name in ("qw", "qx", "qy", "qz")},
-    **{name: {"m": 1.0, "mm": 1e-3} for name in ("x", "y", "z")},
+    **{name: {"m": 1.0, "cm": 1e-2, "mm": 1e-3} for name in ("x", "y", "z")},
 }
 _SILENT = {"time": "s", "x": "m", "y": "m", "z": "m", "qw": "", "qx": "", "qy": "", "qz": ""}
 QUATERNION = ("qw", "qx", "qy", "qz")
@@ -56,15 +58,26 @@ class Columns:
         Line of each of the n samples.
     values : dict
         Array of shape (n,) of each known column; an empty cell is NaN.
+    ignored : tuple of str
+        Titles of the other columns.
+    lost : int
+        Number of lines with a time and nothing else, which are left out.
     """
 
     path: Path
     lines: list[int]
     values: dict[str, Array]
+    ignored: tuple[str, ...] = ()
+    lost: int = 0
 
     def refuse(self, sample: int, reason: str) -> ValueError:
         """Return the error for a sample, with the number of its line."""
         return ValueError(f"{self.path.name}, line {self.lines[sample]}: {reason}")
+
+    def scaled(self, factors: Mapping[str, float]) -> Columns:
+        """Return the file as if its columns were in other units: values times the factor of their name."""
+        values = {name: column * factors.get(name, 1.0) for name, column in self.values.items()}
+        return replace(self, values=values)
 
 
 def read_columns(path: Path, angle_unit: str | None = None) -> Columns:
@@ -97,10 +110,22 @@ def read_columns(path: Path, angle_unit: str | None = None) -> Columns:
             )
         lines.append(number)
         table.append([_number(path, number, header[at], cells[at]) for at, _, _ in factors])
-    if len(table) < 3:
-        raise ValueError(f"{path.name} must hold at least three samples, got {len(table)}")
-    values = np.array(table, dtype=np.float64).T
-    return Columns(path, lines, {name: values[i] * scale for i, (_, name, scale) in enumerate(factors)})
+    values = np.array(table, dtype=np.float64).reshape(len(table), len(factors)).T
+    own = [name for _, name, _ in factors]
+    lost = np.isnan(values[[name != "time" for name in own]]).all(axis=0) & ~np.isnan(
+        values[own.index("time")]
+    )
+    lines = [line for line, left_out in zip(lines, lost, strict=True) if not left_out]
+    if len(lines) < 3:
+        raise ValueError(f"{path.name} must hold at least three samples, got {len(lines)}")
+    known = {at for at, _, _ in factors}
+    return Columns(
+        path,
+        lines,
+        {name: values[i, ~lost] * scale for i, (_, name, scale) in enumerate(factors)},
+        tuple(title for at, title in enumerate(header) if title and at not in known),
+        int(np.count_nonzero(lost)),
+    )
 
 
 def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
@@ -144,14 +169,16 @@ def _known_columns(path: Path, header: list[str], angle_unit: str | None) -> lis
 
 
 def _require_enough(path: Path, names: list[str], header: list[str]) -> None:
-    for group in (QUATERNION, POSITION, ("tilt", "azimuth")):
+    for group in (QUATERNION, POSITION):
         given = [name for name in group if name in names]
         missing = [name for name in group if name not in names]
         if given and missing:
             raise ValueError(f"{path.name} must have {', '.join(group)} together, got no {missing[0]}")
-    if "time" not in names or not {"tilt", "qw"} & set(names):
+    if "azimuth" in names and "tilt" not in names:
+        raise ValueError(f"{path.name} must have tilt where it has azimuth, got no tilt")
+    if "time" not in names or not {"tilt", "qw", "x"} & set(names):
         raise ValueError(
-            f"{path.name} must have columns time, and tilt and azimuth or qw, qx, qy and qz, "
+            f"{path.name} must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x, y and z, "
             f"got {', '.join(title for title in header if title)[:80] or 'none'}"
         )
 

@@ -1,4 +1,4 @@
-"""What a comparison needs of a foreign trajectory, from its poses."""
+"""What a comparison needs of an external trajectory, from its poses."""
 
 from __future__ import annotations
 
@@ -46,25 +46,6 @@ def _interpolated(own: Array, values: Array, time: Array) -> Array:
     return np.asarray(Akima1DInterpolator(own, values)(inside))
 
 
-def uplift(poses: Poses, stands: float) -> tuple[float, int | None]:
-    """Time of the uplift, and the first sample that leans.
-
-    The tilt begins as the cube of time where the ground acceleration rises through the threshold: its cube
-    root is continued back to zero.
-    """
-    leaning = np.flatnonzero(poses.tilt > stands)
-    if not len(leaning):
-        return math.nan, None
-    first = int(leaning[0])
-    if first == 0:
-        return 0.0, 0
-    if first + 1 == len(poses.time):
-        return float(poses.time[first]), first
-    (t0, t1), (s0, s1) = poses.time[first : first + 2], np.cbrt(poses.tilt[first : first + 2])
-    begin = t0 - s0 * (t1 - t0) / (s1 - s0) if s1 > s0 else t0
-    return float(max(begin, 0.0)), first
-
-
 def peak(poses: Poses) -> float:
     """Vertex of the parabola through the largest sample and its neighbours [rad]."""
     at = int(np.argmax(poses.tilt))
@@ -109,4 +90,7 @@ def places(
         return contact, centre, float(np.hypot(base[-1, 0], base[-1, 1]))
     rise = 1.0 - axis[:, 2:]
     base = np.column_stack([np.where(rests, 0.0, b * rise * outward), b * lean])
-    return np.where(rests, np.nan, b * outward), base + h * axis, math.nan
+    centre = base + h * axis
+    if not np.isfinite(poses.rolling_angle).any():
+        centre[:, :2] = np.nan  # the tilt alone tells how high it is, not where
+    return np.where(rests, np.nan, b * outward), centre, math.nan

@@ -1,4 +1,4 @@
-"""From the columns of a foreign trajectory to poses at its own samples: checked, and unwrapped.
+"""From the columns of an external trajectory to poses at its own samples: checked, and unwrapped.
 
 theta  tilt: angle of the axis from the vertical        [rad]
 phi    azimuth of the lean, hence of the contact point  [rad]
@@ -6,22 +6,39 @@ phi    azimuth of the lean, hence of the contact point  [rad]
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rockwobble.models import Case, Cylinder
+
+from .external_azimuth import unwrapped
+from .external_scatter import scatter
 from .foreign_file import POSITION, QUATERNION, Array, Columns
 
 # tilt below which the cylinder stands, in units of alpha; a measured azimuth means nothing there
 STANDS = 1e-4
+# and in standard deviations of the noise: of 10,000 samples at rest not one is expected above it
+_ABOVE_NOISE = 5.0
 # samples at one time up to rounding [s]
 SAME_TIME = 1e-9
 # a step this much longer than the usual one is a gap
 _GAP = 2.5
+# longest step, over the time scale of rocking sqrt(R/g): a quarter period of small tilts is longer
+_COARSE = 0.5
 # of the length of a quaternion; digits printed, not another convention
 _UNIT_LENGTH = 1e-2
 # tilts of both kinds that differ by more come from two conventions, not from rounding [rad]
 _SAME_TILT = 0.01
+# twist at the start beyond which the last number of the quaternion must be its first [rad]
+_ANOTHER_ORDER = 0.75 * math.pi
+# share of R by which the distance of mass centre and rim may be off: rolled out, or measured roughly
+_FROM_RIM = 0.2
+# scatter that is no noise any more, in units of alpha: the samples are of no smooth motion
+_ROUGH = 0.02
+# twist at the start that is worth a word [rad]
+_TWISTED = math.radians(1.0)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -35,7 +52,7 @@ class Poses:
     tilt : ndarray
         [rad]
     axis : ndarray, shape (n, 3)
-        Axis of revolution, a unit vector.
+        Axis of revolution, a unit vector; in the x z plane where no azimuth is known.
     rolling_angle : ndarray
         Azimuth of the lean without jumps, kept where the cylinder stands [rad].
     followed : ndarray of bool
@@ -44,6 +61,16 @@ class Poses:
         [rad]; None without quaternions.
     position : ndarray, shape (n, 3), or None
         Of the mass centre from O [m].
+    stands : float
+        Tilt below which the cylinder stands [rad].
+    noise : float
+        Standard deviation of the noise of the axis [rad].
+    position_noise : float
+        The same of the position [m].
+    told : tuple of str
+        What the file tells of "tilt", "azimuth" and "path".
+    notes : tuple of str
+        What there is to know of the reading, in words.
     """
 
     time: Array
@@ -53,10 +80,38 @@ class Poses:
     followed: np.ndarray[tuple[int], np.dtype[np.bool_]]
     twist: Array | None
     position: Array | None
+    stands: float
+    noise: float
+    position_noise: float
+    told: tuple[str, ...]
+    notes: tuple[str, ...]
+
+    def taken(self, chosen: np.ndarray[tuple[int], np.dtype[np.int64]]) -> Poses:
+        """Return the chosen samples alone."""
+        return replace(
+            self,
+            time=self.time[chosen],
+            tilt=self.tilt[chosen],
+            axis=self.axis[chosen],
+            rolling_angle=self.rolling_angle[chosen],
+            followed=self.followed[chosen],
+            twist=None if self.twist is None else self.twist[chosen],
+            position=None if self.position is None else self.position[chosen],
+        )
 
 
-def poses_of(columns: Columns, stands: float, time_offset: float) -> Poses:
-    """Return the poses of a file, its clock moved by `time_offset` [s]; below the tilt `stands` it stands.
+def poses_of(columns: Columns, case: Case, *, noise: float | None = None, time_offset: float = 0.0) -> Poses:
+    """Return the poses of a file.
+
+    Parameters
+    ----------
+    columns : Columns
+    case : Case
+    noise : float, optional
+        Tilt below which the cylinder stands [rad]. Default: 5 standard deviations of the noise of the
+        samples, as they tell it, and at least 1e-4 alpha.
+    time_offset : float, optional
+        Added to the times [s].
 
     Raises
     ------
@@ -64,30 +119,64 @@ def poses_of(columns: Columns, stands: float, time_offset: float) -> Poses:
         If the time does not rise, has a gap or begins too late, a value is missing or impossible; with
         the number of the line.
     """
-    time = _checked_time(columns, time_offset)
-    twist = None
-    if "qw" in columns.values:
-        axis, twist = _from_quaternions(columns)
-        tilt = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
-        if "tilt" in columns.values:
-            apart = np.abs(tilt - columns.values["tilt"])
-            if not bool((apart <= _SAME_TILT).all()):
-                at = int(np.argmax(~(apart <= _SAME_TILT)))
-                raise columns.refuse(
-                    at,
-                    f"tilt and quaternion must agree, got tilts of {columns.values['tilt'][at]:.4g} and "
-                    f"{tilt[at]:.4g} rad; the quaternion must be qw, qx, qy, qz with z up",
-                )
-    else:
-        tilt, axis = _from_angles(columns, stands)
+    time = _checked_time(columns, time_offset, case)
     position = None
     if "x" in columns.values:
         position = np.column_stack([_complete(columns, name) for name in POSITION])
-    angle, followed = unwrapped(axis, tilt > stands)
-    return Poses(time, tilt, axis, angle, followed, twist, position)
+    twist, notes = None, []
+    told = ["tilt", "azimuth"] if {"qw", "azimuth"} & set(columns.values) else ["tilt"]
+    if "qw" in columns.values:
+        axis, twist, note = _from_quaternions(columns)
+        notes += note
+        _require_same_tilt(columns, axis)
+    elif "tilt" in columns.values:
+        axis, note = _from_angles(columns)
+        notes += note
+    else:
+        assert position is not None  # the file has at least one of the three
+        told = []
+        axis = _from_positions(columns, position, case.cylinder)
+        notes.append("tilt and azimuth are those of a cylinder in a recess with this mass centre")
+    own_noise = scatter(time, axis[:, :2])
+    if own_noise > _ROUGH * case.cylinder.alpha:
+        notes.append(
+            f"the samples scatter by {own_noise / case.cylinder.alpha:.2g} alpha, which is no smooth motion"
+        )
+        own_noise = 0.0
+    stands = noise
+    if stands is None:
+        stands = max(STANDS * case.cylinder.alpha, _ABOVE_NOISE * own_noise)
+    if "azimuth" in columns.values and "qw" not in columns.values:
+        _require_azimuth(columns, stands)
+    axis = np.where(np.isnan(axis), 0.0, axis)
+    tilt = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])
+    if told == ["tilt"]:
+        angle, followed = np.full(len(time), np.nan), np.ones(len(time), dtype=bool)
+    else:
+        angle, followed = unwrapped(axis, tilt > stands)
+    if position is not None:
+        told.append("path")
+    if columns.lost:
+        notes.append(f"{columns.lost} lost sample{'s are' if columns.lost > 1 else ' is'} left out")
+    if columns.ignored:
+        notes.append(f"columns not read: {', '.join(columns.ignored)[:80]}")
+    return Poses(
+        time,
+        tilt,
+        axis,
+        angle,
+        followed,
+        twist,
+        position,
+        stands=stands,
+        noise=own_noise,
+        position_noise=0.0 if position is None else scatter(time, position),
+        told=tuple(told),
+        notes=tuple(notes),
+    )
 
 
-def _checked_time(columns: Columns, offset: float) -> Array:
+def _checked_time(columns: Columns, offset: float, case: Case) -> Array:
     time = _complete(columns, "time") + offset
     steps = np.diff(time)
     if bool((steps <= 0.0).any()):
@@ -96,6 +185,11 @@ def _checked_time(columns: Columns, offset: float) -> Array:
             at, f"time must rise [s], got {time[at] - offset:g} after {time[at - 1] - offset:g}"
         )
     usual = float(np.median(steps))
+    longest = _COARSE * math.sqrt(case.cylinder.semidiagonal / case.gravity)
+    if usual > longest:
+        raise columns.refuse(
+            1, f"samples must be at most {longest:.2g} s apart for this cylinder, got {usual:g} s; is it ms?"
+        )
     if bool((steps > _GAP * usual).any()):
         at = int(np.argmax(steps > _GAP * usual)) + 1
         raise columns.refuse(at, f"a gap of {steps[at - 1]:g} s where the usual step is {usual:g} s")
@@ -103,28 +197,42 @@ def _checked_time(columns: Columns, offset: float) -> Array:
         raise columns.refuse(
             0,
             f"the trajectory begins {time[0]:g} s after the start of the run, where its pose is not known; "
-            "an offset of its time may be given",
+            f"if that is the start, give its time an offset of {offset - time[0]:g} s",
         )
     if time[-1] <= usual:
         raise columns.refuse(len(time) - 1, f"the trajectory ends {time[-1]:g} s after the start of the run")
     return time
 
 
-def _from_angles(columns: Columns, stands: float) -> tuple[Array, Array]:
-    tilt, azimuth = _complete(columns, "tilt"), columns.values["azimuth"]
-    if bool((tilt < 0.0).any()):
-        at = int(np.argmax(tilt < 0.0))
-        raise columns.refuse(at, f"tilt must not be negative, got {tilt[at]:.4g} rad")
-    unknown = np.isnan(azimuth) & (tilt > stands)
+def _from_angles(columns: Columns) -> tuple[Array, list[str]]:
+    """Axis, NaN where it leans to nobody knows where, and what there is to know of it."""
+    tilt = _complete(columns, "tilt")
+    beyond = np.abs(tilt) > math.pi
+    if bool(beyond.any()):
+        at = int(np.argmax(beyond))
+        raise columns.refuse(
+            at,
+            f"tilt must be between -pi and pi, got {tilt[at]:.4g} rad; "
+            "is it in degrees, or wrapped at 360 deg?",
+        )
+    azimuth = columns.values.get("azimuth", np.zeros_like(tilt))
+    azimuth = np.where(np.isnan(azimuth) & (tilt == 0.0), 0.0, azimuth)
+    negative = int(np.count_nonzero(tilt < 0.0))
+    notes = [f"{negative} negative tilts are read as a lean to the other side"] if negative else []
+    # a lean by -theta at phi is one by theta at phi + pi: the axis knows only one of them
+    sine = np.sin(tilt)
+    return np.column_stack([sine * np.cos(azimuth), sine * np.sin(azimuth), np.cos(tilt)]), notes
+
+
+def _require_azimuth(columns: Columns, stands: float) -> None:
+    tilt = columns.values["tilt"]
+    unknown = np.isnan(columns.values["azimuth"]) & (np.abs(tilt) > stands)
     if bool(unknown.any()):
         at = int(np.argmax(unknown))
         raise columns.refuse(at, f"azimuth must be given where the tilt is {tilt[at]:.4g} rad")
-    azimuth = np.where(np.isnan(azimuth), 0.0, azimuth)
-    sine = np.sin(tilt)
-    return tilt, np.column_stack([sine * np.cos(azimuth), sine * np.sin(azimuth), np.cos(tilt)])
 
 
-def _from_quaternions(columns: Columns) -> tuple[Array, Array]:
+def _from_quaternions(columns: Columns) -> tuple[Array, Array, list[str]]:
     w, x, y, z = (_complete(columns, name) for name in QUATERNION)
     length = np.sqrt(w * w + x * x + y * y + z * z)
     if bool((np.abs(length - 1.0) > _UNIT_LENGTH).any()):
@@ -134,7 +242,54 @@ def _from_quaternions(columns: Columns) -> tuple[Array, Array]:
     axis = np.column_stack([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])
     # q and -q are one pose: both change the half angle by half a turn
     twist = np.unwrap(2.0 * np.arctan2(z, w))
-    return axis, twist - 2.0 * np.pi * round(float(twist[0]) / (2.0 * np.pi))
+    twist -= 2.0 * np.pi * round(float(twist[0]) / (2.0 * np.pi))
+    if abs(twist[0]) > _ANOTHER_ORDER:
+        raise columns.refuse(
+            0,
+            f"the quaternion is turned by {math.degrees(abs(twist[0])):.0f} deg about the axis at the start, "
+            "where it must be near 0; are its numbers in the order qx, qy, qz, qw?",
+        )
+    if axis[0, 2] < 0.0:
+        raise columns.refuse(0, "the quaternion holds the cylinder upside down at the start; is z down?")
+    note = f"turned by {math.degrees(float(twist[0])):.3g} deg about its axis at the start"
+    return axis, twist, [note] if abs(twist[0]) > _TWISTED else []
+
+
+def _require_same_tilt(columns: Columns, axis: Array) -> None:
+    if "tilt" not in columns.values:
+        return
+    tilt, given = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2]), columns.values["tilt"]
+    same = np.abs(tilt - np.abs(given)) <= _SAME_TILT
+    if not bool(same.all()):
+        at = int(np.argmax(~same))
+        raise columns.refuse(
+            at,
+            f"tilt and quaternion must agree, got tilts of {given[at]:.4g} and {tilt[at]:.4g} rad; "
+            "the quaternion must be qw, qx, qy, qz with z up",
+        )
+
+
+def _from_positions(columns: Columns, position: Array, cylinder: Cylinder) -> Array:
+    """Axis of the cylinder in a recess whose mass centre is there.
+
+    Its distance D(theta) from the vertical through O, and its height, are by equations (8) and (10)
+    D - b = R sin(theta - alpha) and z = R cos(theta - alpha).
+    """
+    outward = np.hypot(position[:, 0], position[:, 1]) - cylinder.base_radius
+    height, radius = position[:, 2], cylinder.semidiagonal
+    from_rim = np.hypot(outward, height)
+    wrong = (np.abs(from_rim / radius - 1.0) > _FROM_RIM) | (height < 0.0)
+    if bool(wrong.any()):
+        at = int(np.argmax(wrong))
+        raise columns.refuse(
+            at,
+            f"the mass centre must be R = {radius:.4g} m from the rim and above the ground, got "
+            f"{from_rim[at]:.4g} m and z = {height[at]:.4g} m; without a tilt x, y and z must be from the "
+            "original base centre, z up, in the unit of the header",
+        )
+    tilt = np.maximum(cylinder.alpha + np.arctan2(outward, height), 0.0)
+    azimuth = np.arctan2(position[:, 1], position[:, 0])
+    return np.column_stack([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
 
 
 def _complete(columns: Columns, name: str) -> Array:
@@ -142,41 +297,3 @@ def _complete(columns: Columns, name: str) -> Array:
     if bool(np.isnan(values).any()):
         raise columns.refuse(int(np.argmax(np.isnan(values))), f"{name} is missing")
     return values
-
-
-def unwrapped(
-    axis: Array, leans: np.ndarray[tuple[int], np.dtype[np.bool_]]
-) -> tuple[Array, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
-    """Return the azimuth of the axis without jumps, and whether each change is known without a guess.
-
-    Between two samples the azimuth takes the shorter way round, unless that is more than a quarter turn:
-    then the apex was passed between them, and which way is told by the sense in which the axis went round
-    before and after (the area that its projection sweeps, which the passage of the apex conserves).
-
-    Parameters
-    ----------
-    axis : ndarray, shape (n, 3)
-    leans : ndarray of bool, shape (n,)
-        Where the azimuth means something; elsewhere the angle waits.
-    """
-    count = len(axis)
-    followed = np.ones(count, dtype=bool)
-    tilted = np.flatnonzero(leans)
-    if not len(tilted):
-        return np.zeros(count), followed
-    x, y = axis[tilted, 0], axis[tilted, 1]
-    azimuth = np.arctan2(y, x)
-    change = np.diff(azimuth)
-    change -= 2.0 * np.pi * np.round(change / (2.0 * np.pi))
-    swept = x[:-1] * y[1:] - x[1:] * y[:-1]
-    guessed = np.abs(change) > 0.5 * np.pi
-    for at in np.flatnonzero(guessed):
-        around = [i for i in (at - 2, at - 1, at + 1, at + 2) if 0 <= i < len(change) and not guessed[i]]
-        way = np.sign(swept[around].sum())
-        if way and way != np.sign(change[at]):
-            change[at] += 2.0 * np.pi * way
-    followed[tilted[1:][guessed]] = False
-    angles = azimuth[0] + np.concatenate([[0.0], np.cumsum(change)])
-    # standing, the angle is that of the last lean; before the first, of the first
-    last = np.searchsorted(tilted, np.arange(count), side="right") - 1
-    return angles[np.maximum(last, 0)], followed

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .spectrum import PLANAR_X, PLANAR_Y, SPATIAL, OverturningSpectrum
+from .series import PLANAR_X, PLANAR_Y, SPATIAL
+from .spectrum import OverturningSpectrum
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,9 +30,9 @@ CONTRAST_COLUMNS: dict[str, str] = {
     "missed": "share in which the 3D model overturns and neither planar run does",
     "overcalled": "share in which at least one planar run overturns and the 3D model does not",
     "larger_tilt": "share in which the 3D model tilts more than both planar runs",
-    "lower_edge": "share of sizes whose lowest overturning intensity is lower in 3D than in both planes",
-    "higher_edge": "share of sizes whose lowest overturning intensity is higher in 3D than in a plane",
-    "lowest": "median of the lowest overturning intensity in 3D [g tan alpha], inf where most do not fall",
+    "lower_edge": "share of sizes whose lowest found to overturn is lower in 3D than in both planes",
+    "higher_edge": "share of sizes whose lowest found to overturn is higher in 3D than in a plane",
+    "lowest": "median of the lowest overturning intensity found in 3D [g tan alpha], inf: most do not fall",
     "planar_x_lowest": "the same of the planar east-west runs",
     "planar_y_lowest": "the same of the planar north-south runs",
 }
@@ -81,14 +82,14 @@ def contrast_by_size(spectrum: OverturningSpectrum) -> pd.DataFrame:
 def edge_difference(spectrum: OverturningSpectrum) -> Array:
     """Return how much higher the lowest overturning intensity is in 3D than in the worse plane, (n_R,) [-].
 
-    Negative where the planar analysis is unconservative; infinite where only one of them overturns
-    on the grid, 0 where none does or the two are no further apart than `lowest_width`.
+    Negative where the planar analysis is unconservative; infinite where only one of them was found to
+    overturn, 0 where none was or the two are no further apart than `search_step`.
     """
     space, x, y = (_or_infinite(spectrum.lowest[name]) for name in (SPATIAL, PLANAR_X, PLANAR_Y))
     plane = np.minimum(x, y)
     both = np.isinf(space) & np.isinf(plane)
     difference = np.where(both, 0.0, space) - np.where(both, 0.0, plane)
-    return np.where(np.abs(difference) > spectrum.lowest_width, difference, 0.0)
+    return np.where(np.abs(difference) > spectrum.search_step, difference, 0.0)
 
 
 def unconservative_from(spectrum: OverturningSpectrum) -> float:

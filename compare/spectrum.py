@@ -1,8 +1,4 @@
-"""Overturning spectra: peak tilts over size and intensity, in three dimensions and in two planes.
-
-The three runs of a cell share one factor on the record: the planar runs take the east-west or the
-north-south component of the same shaking and leave the other out, as a planar analysis does.
-"""
+"""Overturning spectra: peak tilts over size and intensity, in three dimensions and in two planes."""
 
 from __future__ import annotations
 
@@ -18,24 +14,21 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble import reduced
 from rockwobble.models import GroundMotion
 
-from .lowest_overturning import lowest_overturning, refined
+from .lowest_overturning import STEP, lowest_intensities, lowest_on_grid
+from .series import SERIES, SPATIAL, SPATIAL_MODELS, intensity_unit, series_options, uplift_of_series
+from .tilt import overturned
 
 if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
+Progress = Callable[[float], None]
 ProgressCallback = Callable[[str, float], None]
 
-SPATIAL, PLANAR_X, PLANAR_Y = "3d", "planar_x", "planar_y"
-SERIES = (SPATIAL, PLANAR_X, PLANAR_Y)
-_AZIMUTH = {PLANAR_X: 0.0, PLANAR_Y: 0.5 * math.pi}  # of the plane [rad]
 # Steps end at each sample of the record, so a tenth of the tolerance of `reduced.peak_tilts` costs only
 # 4 % of the time, and the cells that it moves by 2 % of their tilt fall from 2 in 1000 to none.
 RTOL = 1e-8
-SPATIAL_MODELS = ("recess", "rolling")
-# Halvings of the grid interval that holds the lowest overturning intensity: a 32nd of its width,
-# less than the width of the line that draws it, for 5 % of the runs of a grid of 100 intensities.
-REFINEMENTS = 5
+_GRID_SHARE = 0.25  # of the time that a series takes, on a grid of 100 intensities; the rest is the search
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -63,10 +56,14 @@ class OverturningSpectrum:
         For each of `SERIES` an ndarray, shape (n_R, n_I) [rad]: 0 without uplift, pi/2 if overturned,
         NaN if the run failed.
     lowest : mapping
-        For each of `SERIES` an ndarray, shape (n_R,): the minimum overturning acceleration, over
-        g tan(alpha) [-]; NaN where no intensity of the grid overturns.
-    lowest_width : float
-        Bound of what `lowest` may lie above the edge of overturning that it approaches [-].
+        For each of `SERIES` an ndarray, shape (n_R,): the lowest intensity found to overturn [-]; NaN
+        where none was found.
+    searched_from : mapping
+        For each of `SERIES` the intensity at which it uplifts [-], from which `lowest` was searched: up to
+        where something overturns, or to the last of the grid. inf where it uplifts at none.
+    search_step : float
+        Largest step of that search [-]: see `search_lowest`. A window of overturning that is narrower may
+        lie below `lowest`.
     """
 
     tan_alpha: float
@@ -78,7 +75,8 @@ class OverturningSpectrum:
     intensities: Array
     peak_tilt: Mapping[str, Array]
     lowest: Mapping[str, Array]
-    lowest_width: float
+    searched_from: Mapping[str, float]
+    search_step: float
 
     @property
     def alpha(self) -> float:
@@ -99,7 +97,7 @@ class OverturningSpectrum:
 
     def overturned(self, series: str) -> NDArray[np.bool_]:
         """Whether each cell overturns (n_R, n_I); False where the run failed."""
-        return np.asarray(self.peak_tilt[series] >= 0.5 * math.pi, dtype=np.bool_)
+        return overturned(self.peak_tilt[series])
 
     def failed(self) -> NDArray[np.bool_]:
         """Whether any run of a cell failed (n_R, n_I): such cells are left out of every share."""
@@ -134,10 +132,11 @@ class OverturningSpectrum:
         return pd.concat(tables, ignore_index=True)
 
     def lowest_frame(self) -> pd.DataFrame:
-        """Return the minimum overturning accelerations, one row for each size and series.
+        """Return the lowest intensities found to overturn, one row for each size and series.
 
         Columns: series, semidiagonal [m], intensity [-], peak_acceleration [m/s^2] (of what drives the
-        series), both NaN where nothing overturns, and on_edge: the grid begins above the minimum.
+        series), on_grid [-], the lowest intensity of the grid that overturns, each NaN where nothing does;
+        searched_from and search_step [-].
         """
         import pandas as pd
 
@@ -152,7 +151,9 @@ class OverturningSpectrum:
                         "semidiagonal": self.semidiagonals,
                         "intensity": lowest,
                         "peak_acceleration": acceleration,
-                        "on_edge": self.overturned(series)[:, 0],
+                        "on_grid": lowest_on_grid(self.intensities, self.peak_tilt[series]),
+                        "searched_from": self.searched_from[series],
+                        "search_step": self.search_step,
                     }
                 )
             )
@@ -169,7 +170,7 @@ def overturning_spectrum(
     rtol: float = RTOL,
     seating: float = reduced.SEATING,
     gravity: float = 9.81,
-    refinements: int = REFINEMENTS,
+    search_step: float = STEP,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
 ) -> OverturningSpectrum:
@@ -188,8 +189,8 @@ def overturning_spectrum(
         The model in three dimensions.
     rtol, seating, gravity
         As in `reduced.simulate`.
-    refinements : int, optional
-        Halvings of the interval that holds the lowest overturning intensity.
+    search_step : float, optional
+        Largest step of the search for the lowest overturning intensity [-].
     workers : int, optional
         Number of threads; default: that of the cores. It does not influence the result.
     progress : callable, optional
@@ -208,7 +209,7 @@ def overturning_spectrum(
     --------
     >>> from rockwobble.models import el_centro_1940
     >>> spectrum = overturning_spectrum(
-    ...     0.1, el_centro_1940(), semidiagonals=[1.0, 20.0], intensities=[0.9, 4.0], refinements=0
+    ...     0.1, el_centro_1940(), semidiagonals=[1.0, 20.0], intensities=[0.9, 4.0]
     ... )
     >>> spectrum.overturned("3d").tolist()
     [[False, True], [False, False]]
@@ -216,11 +217,12 @@ def overturning_spectrum(
     sizes, levels = _axis("semidiagonals", semidiagonals), _axis("intensities", intensities)
     if model not in SPATIAL_MODELS:
         raise ValueError(f"model must be one of {', '.join(SPATIAL_MODELS)}, got {model!r}")
-    if refinements < 0:
-        raise ValueError(f"refinements must not be negative, got {refinements!r}")
+    if not 0.0 < search_step < math.inf:
+        raise ValueError(f"search_step must be positive and finite, got {search_step!r}")
     unit = intensity_unit(tan_alpha, motion, gravity)
     peaks: dict[str, Array] = {}
     lowest: dict[str, Array] = {}
+    searched_from: dict[str, float] = {}
     for series in SERIES:
         run: Callable[..., Array] = partial(
             _run,
@@ -231,14 +233,22 @@ def overturning_spectrum(
             gravity=gravity,
             **series_options(series, model),
         )
-        tell = None if progress is None else partial(progress, series)
-        peaks[series] = run(sizes, unit * levels, workers=workers, progress=tell)
-        on_grid = lowest_overturning(peaks[series] >= 0.5 * math.pi)
-        lowest[series] = refined(
-            sizes, unit * levels, on_grid, partial(run, workers=1), refinements=refinements, workers=workers
+        grid_done, search_done = _parts(series, progress)
+        peaks[series] = run(sizes, unit * levels, workers=workers, progress=grid_done)
+        uplift = uplift_of_series(series, motion, tan_alpha, gravity)
+        searched_from[series] = uplift / unit
+        lowest[series] = lowest_intensities(
+            sizes,
+            unit * levels,
+            peaks[series],
+            partial(run, workers=1),
+            start=uplift,
+            step=unit * search_step,
+            alpha=math.atan(tan_alpha),
+            workers=workers,
+            progress=search_done,
         )
         lowest[series] /= unit
-    width = float(np.diff(levels).max(initial=0.0)) / 2**refinements
     return OverturningSpectrum(
         tan_alpha=tan_alpha,
         motion=motion,
@@ -249,7 +259,8 @@ def overturning_spectrum(
         intensities=levels,
         peak_tilt=peaks,
         lowest=lowest,
-        lowest_width=width,
+        searched_from=searched_from,
+        search_step=search_step,
     )
 
 
@@ -259,24 +270,14 @@ def _run(
     return reduced.peak_tilts(semidiagonals, tan_alpha, motion, scales, **options)
 
 
-def series_options(series: str, model: str) -> dict[str, Any]:
-    """Return the options of a reduced run that make it one of a series; `model` is that in 3D."""
-    if series == SPATIAL:
-        return {"model": model}
-    return {"model": "planar", "plane": _AZIMUTH[series]}
-
-
-def intensity_unit(tan_alpha: float, motion: GroundMotion, gravity: float) -> float:
-    """Return the factor that brings the peak horizontal resultant of `motion` to g tan(alpha).
-
-    Raises
-    ------
-    ValueError
-        If the motion has no horizontal component to scale.
-    """
-    if motion.peak == 0.0:
-        raise ValueError("motion must have a horizontal acceleration to scale, got none")
-    return gravity * tan_alpha / motion.peak
+def _parts(series: str, progress: ProgressCallback | None) -> tuple[Progress | None, Progress | None]:
+    """Return what tells of the grid, and of the search after it, as parts of one series."""
+    if progress is None:
+        return None, None
+    return (
+        lambda done: progress(series, _GRID_SHARE * done),
+        lambda done: progress(series, _GRID_SHARE + (1.0 - _GRID_SHARE) * done),
+    )
 
 
 def _axis(name: str, values: ArrayLike) -> Array:

@@ -14,6 +14,7 @@ from rockwobble.models import GroundMotion
 
 from .fingerprint import fingerprint
 from .provenance import reduced_makers
+from .tilt import overturned
 
 MODELS = ("recess", "rolling", "planar")
 # The runs of a chunk take about a second together: little is lost with it, and keeping it takes a few
@@ -217,7 +218,7 @@ def _outcome(peak: float) -> str:
         return "failed"
     if peak == 0.0:
         return "stood"
-    return "overturned" if peak >= 0.5 * math.pi else "rocked"
+    return "overturned" if overturned(peak) else "rocked"
 
 
 def _axis(name: str, values: ArrayLike, *, above_zero: bool) -> tuple[float, ...]:

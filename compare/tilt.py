@@ -1,14 +1,23 @@
-"""Differences of the tilt."""
+"""What a peak tilt says, and differences of the tilt."""
 
 from __future__ import annotations
 
 import math
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Cylinder
 
 from .traces import Pair, Trace, make_pair
+
+
+def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
+    """Return where a run of a reduced model overturned, by its peak tilt [rad]; False where it failed.
+
+    The models decide, also where a run ends in the middle of a fall, and then give pi/2 and no less.
+    """
+    return np.asarray(peak_tilts, dtype=np.float64) >= 0.5 * math.pi
 
 
 def tilt_rms(pair: Pair) -> float:

@@ -27,9 +27,9 @@ Progress = Callable[[float], None]
 
 _CHUNK = 10_000  # steps between two looks at the run: a second of the reference scene, 3 MB of states
 _CHUNK_BEYOND = 2_000  # the same after the end, where most falls are decided within a second
-# Times of growth by e next to the balance that a fall is followed for: from 1e-9 rad off it takes 21 to fall,
-# and as many to come back from the other side.
-LONGEST_FALL = 40.0
+# Times of growth by e next to the balance that a fall is followed for: what turns or falls no sooner is
+# nearer to the balance than 3e-7, where an engine knows it no better.
+LONGEST_FALL = 15.0
 # [rad] by which the tilt turns back; contact that lets go for a step and comes back makes 1e-7
 _TURN = 1e-6
 

@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.compare.advice.scales import FELL
-from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.series import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.tilt import overturned
 
 from .charts.layout import TIME_TITLE, add_line, new_figure, reserve_legend, small
 from .palette import Style, model_style, run_styles
@@ -157,7 +157,7 @@ def scales_chart(advice: Advice) -> go.Figure:
     planes = run_styles([PLANAR_X, PLANAR_Y])
     for name, peaks in scan.peaks.items():
         style = model_style(advice.model) if name == SPATIAL else planes[name]
-        tilt = np.where(peaks >= FELL, FALLS, np.minimum(peaks / alpha, STANDS))
+        tilt = np.where(overturned(peaks), FALLS, np.minimum(peaks / alpha, STANDS))
         figure.add_trace(
             go.Scatter(
                 x=small(scan.factors),

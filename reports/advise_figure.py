@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.compare.advice.scales import FELL
-from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.series import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.tilt import overturned
 
 from .advise_charts import FALLS, NAMES, STANDS
 from .drawing import drawn, line, with_grid
@@ -129,7 +129,7 @@ def _scales(axes: Axes, advice: Advice) -> None:
     planes = run_styles([PLANAR_X, PLANAR_Y])
     for name, peaks in scan.peaks.items():
         style = model_style(advice.model) if name == SPATIAL else planes[name]
-        tilt = np.where(peaks >= FELL, FALLS, np.minimum(peaks / alpha, STANDS))
+        tilt = np.where(overturned(peaks), FALLS, np.minimum(peaks / alpha, STANDS))
         axes.plot(scan.factors, tilt, marker="o", markersize=2.0, label=NAMES[name], **_style(style))
     axes.axvline(1.0, color="#222222", linestyle=":", linewidth=1.0)
     axes.set_xscale("log")

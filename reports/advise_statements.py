@@ -6,7 +6,9 @@ import math
 from typing import TYPE_CHECKING
 
 from rockwobble.compare.advice.grades import GRADES
+from rockwobble.compare.series import SPATIAL
 
+from . import advise_scale_words as scale_words
 from . import advise_words as words
 from .advise_words import Statement
 from .findings import seconds
@@ -98,14 +100,16 @@ def _what_happens(advice: Advice) -> str:
     lowest = advice.lowest_overturning
     if math.isfinite(lowest) and advice.grades["overturning"] != "good":
         tilt += f"; {'already ' if lowest < 1.0 else ''}{lowest:.3g} times this shaking overturns it"
+        assert advice.scan is not None
+        if not advice.scan.confirmed[SPATIAL]:
+            tilt += ", by chance"
     return tilt
 
 
 def _range(advice: Advice) -> str:
     assert advice.spread is not None
     low, high = (advice.spread.quantile(share) for share in (0.05, 0.95))
-    fell = 0.5 * math.pi / advice.case.cylinder.alpha
-    top = "overturning" if high >= fell else f"{high:.3g} α"
+    top = "overturning" if high >= advice.overturned_peak else f"{high:.3g} α"
     return f"{low:.3g} to {top}"
 
 
@@ -196,7 +200,7 @@ def _of_scales(advice: Advice) -> list[Statement]:
             Statement(
                 topic="Uplift",
                 grade="",
-                text=words.uplift_words(advice.uplift_factor),
+                text=scale_words.uplift_words(advice.uplift_factor),
                 run="none: the condition of uplift at every sample of the record",
             )
         )
@@ -206,13 +210,15 @@ def _of_scales(advice: Advice) -> list[Statement]:
             Statement(
                 topic="Overturning",
                 grade=advice.grades.get("overturning", ""),
-                text=words.overturning_words(
-                    overturned=advice.overturned,
+                text=scale_words.overturning_words(
+                    falls=advice.overturned,
                     fall=float(advice.response.time[-1]),
                     lowest=advice.lowest_overturning,
                     planar=math.nan if advice.planar is None else advice.planar.lowest_planar,
                     chance=advice.overturning_share,
                     highest=math.nan if scan is None else float(scan.factors[-1]),
+                    search=math.nan if scan is None else scan.search_step,
+                    confirmed=scan is not None and scan.confirmed[SPATIAL],
                 ),
                 run=runs,
             )
@@ -222,7 +228,7 @@ def _of_scales(advice: Advice) -> list[Statement]:
             Statement(
                 topic="Planar analysis",
                 grade="care" if advice.planar.kind == "unconservative" else "",
-                text=words.planar_words(advice.planar, advice.case.cylinder.alpha),
+                text=scale_words.planar_words(advice.planar, advice.case.cylinder.alpha),
                 run=f"{_scan_run(advice)}; planar model of each component, without loss at impact",
             )
         )
@@ -238,5 +244,8 @@ def _of_scales(advice: Advice) -> list[Statement]:
 
 def _scan_run(advice: Advice) -> str:
     assert advice.scan is not None
-    factors = advice.scan.factors
-    return f"{advice.model} model at {len(factors)} scales, {factors[0]:g} to {factors[-1]:g} times"
+    factors, start = advice.scan.factors, advice.scan.searched_from[SPATIAL]
+    return (
+        f"{advice.model} model at {len(factors)} scales, {factors[0]:g} to {factors[-1]:g} times, and from "
+        f"{start:.3g} times up to the lowest that overturns"
+    )

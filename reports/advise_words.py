@@ -8,16 +8,13 @@ from typing import TYPE_CHECKING
 
 from rockwobble.compare.advice.demands import Demands
 from rockwobble.compare.advice.grades import Trust
-from rockwobble.compare.advice.planar import NEIGHBOURS, PlanarView
 from rockwobble.compare.horizon import AGREEMENT
 
-from .findings import seconds, small
+from .findings import seconds
 
 if TYPE_CHECKING:
     from rockwobble.compare.advice import Verification
 
-# a factor that planar analysis is off by is told only where the planar tilt is worth the name [alpha]
-_WORTH_A_RATIO = 1e-3
 # a difference in the largest tilt that is none
 _TINY = 1e-3
 # a couple that is rounding [weight x b]
@@ -197,85 +194,6 @@ def _trust(trust: Trust, peak_time: float, count: int, percent: float, what: str
     )
 
 
-def planar_words(view: PlanarView, alpha: float) -> str:
-    """Say whether planar analysis of each component would be unconservative."""
-    fell = [peak >= 0.5 * math.pi for peak in (view.spatial, view.planar)]
-    components = f"{_tilt(view.planar_x, alpha)} (x) and {_tilt(view.planar_y, alpha)} (y)"
-    space = _tilt(view.spatial, alpha)
-    if view.kind == "unknown":
-        here = "At this scale nothing uplifts, in 3D or in a plane."
-    elif fell[0] and not fell[1]:
-        here = f"Planar analysis is unconservative: 3D overturns, the components alone tilt to {components}."
-    elif fell[0]:
-        here = "At this scale 3D overturns, and so does planar analysis of a component."
-    elif fell[1]:
-        here = f"Planar analysis is conservative at this scale: a component overturns, 3D tilts to {space}."
-    elif view.kind == "equal":
-        here = f"At this scale planar analysis gives the same: {components}, {space} in 3D."
-    else:
-        factor = f", {view.ratio:.2g} times as much" if view.ratio > 1.0 else ""
-        if not view.planar > _WORTH_A_RATIO * alpha:
-            factor = ""
-        here = f"Planar analysis is {view.kind} at this scale: {components}, {space} in 3D{factor}."
-    if not view.neighbours:
-        return here
-    more, alone = (f"{100.0 * share:.0f} %" for share in (view.larger, view.missed))
-    near = (
-        f"Of {view.neighbours} scales from 1/{NEIGHBOURS:g} to {NEIGHBOURS:g} times this one, 3D tilts more "
-        f"than both planes at {more}, and overturns alone at {alone}."
-    )
-    return f"{here} {near}"
-
-
-def uplift_words(factor: float) -> str:
-    """Say how far the shaking is from the uplift of a cylinder at rest; `factor` on it reaches that."""
-    if factor <= 1.0:
-        return f"{factor:.3g} times this shaking is enough to uplift the cylinder from rest."
-    return f"It takes {factor:.3g} times this shaking to uplift the cylinder from rest."
-
-
-def overturning_words(
-    *, overturned: bool, fall: float, lowest: float, planar: float, chance: float, highest: float
-) -> str:
-    """Say whether the cylinder overturns, and how far it is from it.
-
-    Parameters
-    ----------
-    overturned : bool
-    fall : float
-        When its side reaches the ground [s].
-    lowest : float
-        Lowest factor on the ground motion that overturns; NaN if none does.
-    planar : float
-        The same by planar analysis.
-    chance : float
-        Share of the perturbed members that overturn.
-    highest : float
-        Largest factor that was run; NaN without a ground motion.
-    """
-    of_members = "" if math.isnan(chance) else f"; {100.0 * chance:.0f} % of the perturbed starts overturn"
-    if overturned:
-        said = f"It overturns: its side reaches the ground at {seconds(fall)}{of_members}."
-    else:
-        said = f"It does not overturn{of_members}."
-    if math.isnan(highest):
-        return said
-    if math.isnan(lowest):
-        return f"{said} No scale up to {highest:g} times this shaking overturns it."
-    if lowest < 1.0 and not overturned:
-        said += (
-            f" But it stands in a gap: {lowest:.3g} times this shaking, which is weaker, overturns it, so "
-            "that this run proves no margin."
-        )
-    elif overturned:
-        said += f" The lowest scale that overturns it is {lowest:.3g} times this shaking."
-    else:
-        said += f" The lowest scale that does is {lowest:.3g} times this shaking."
-    if math.isfinite(planar):
-        said += f" Planar analysis would say {planar:.3g} times."
-    return said
-
-
 def error_words(data: float, form: float, low: float, high: float, percent: float, *, single: bool) -> str:
     """Say what error in the largest tilt to expect, and where it comes from.
 
@@ -313,15 +231,6 @@ def error_words(data: float, form: float, low: float, high: float, percent: floa
             f"larger of the two is due to {main}."
         )
     return said
-
-
-def _tilt(tilt: float, alpha: float) -> str:
-    if math.isnan(tilt):
-        return "unsolved"
-    if tilt >= 0.5 * math.pi:
-        return "overturned"
-    ratio = tilt / alpha
-    return f"{small(ratio)} α" if 0.0 < ratio < _WORTH_A_RATIO else f"{ratio:.3g} α"
 
 
 def _brief(value: float) -> str:

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _GRID = "Grid"
 # a map of more cells than a screen has pixels is a slip of the hand
 _MOST_POINTS = 2000
+# a search in smaller steps would take a day
+_FINEST = 1e-5
 
 Smallest = Annotated[
     float, typer.Option("--smallest", help="Smallest semidiagonal R, in m.", rich_help_panel=_GRID)
@@ -43,6 +45,14 @@ Strongest = Annotated[
 Intensities = Annotated[
     int, typer.Option("--intensities", help="Number of intensities.", rich_help_panel=_GRID)
 ]
+SearchStep = Annotated[
+    float,
+    typer.Option(
+        "--search-step",
+        help="Largest step of the search for the lowest intensity that overturns, in g tan alpha.",
+        rich_help_panel="Method",
+    ),
+]
 SpatialModel = Annotated[
     str,
     typer.Option("--model", help="Model in three dimensions: recess or rolling.", rich_help_panel="Method"),
@@ -62,6 +72,7 @@ def spectrum(
     strongest: Strongest = 12.0,
     intensities: Intensities = 100,
     model: SpatialModel = "recess",
+    search_step: SearchStep = 0.01,
     out: options.Out = Path("rockwobble-out"),
 ) -> None:
     """Map the peak tilt over size and intensity, in 3D and by planar analysis of each component.
@@ -72,9 +83,12 @@ def spectrum(
     Without options: figure 6 of the paper, the 1940 El Centro record on
     cylinders of tan alpha = 0.1.
 
+    The lowest intensity that overturns each size is searched below the grid,
+    too, in steps that are stated.
+
     Writes spectrum.svg and spectrum.md, and as Parquet the cells (spectrum),
-    the minimum overturning accelerations (lowest), the safe islands above them
-    (islands), the shares by size (contrast), and some cells run again to a
+    the lowest intensities found to overturn (lowest), the safe islands above
+    them (islands), the shares by size (contrast), and some cells run again to a
     tighter tolerance (checked).
     """
     with interruptible():
@@ -86,9 +100,9 @@ def spectrum(
                 "intensities": _axis("weakest", weakest, "strongest", strongest, "intensities", intensities),
             }
             motion = _motion(tan_alpha, largest, record_x, record_y, record_z, units)
-            _require_spatial(model)
+            _require_method(model, search_step)
             require_writable(out)
-        from rockwobble.compare.spectrum_check import check_cells
+        from rockwobble.compare.spectrum_check import check_cells, confirm_lowest
 
         from .spectrum_output import (
             CHECKED_CELLS,
@@ -100,10 +114,10 @@ def spectrum(
 
         for line in describe_grid(tan_alpha, motion, **grid):
             print(line)
-        result = run_spectrum(tan_alpha, motion, model=model, **grid)
-        checked = check_cells(result, CHECKED_CELLS)
-        print_spectrum(result, checked)
-        contents = spectrum_files(result, checked)
+        result = run_spectrum(tan_alpha, motion, model=model, search_step=search_step, **grid)
+        checked, lowest = check_cells(result, CHECKED_CELLS), confirm_lowest(result)
+        print_spectrum(result, checked, lowest)
+        contents = spectrum_files(result, checked, lowest)
         with user_input():
             replace_files(out, contents)
     print(f"\nWritten to {out}: {', '.join(contents)}")
@@ -117,7 +131,7 @@ def _motion(
     record_z: Path | None,
     units: str | None,
 ) -> GroundMotion:
-    from rockwobble.compare.spectrum import intensity_unit
+    from rockwobble.compare.series import intensity_unit
 
     from .problem import case_from_options
 
@@ -135,11 +149,13 @@ def _motion(
     return case.motion
 
 
-def _require_spatial(model: str) -> None:
-    from rockwobble.compare.spectrum import SPATIAL_MODELS
+def _require_method(model: str, search_step: float) -> None:
+    from rockwobble.compare.series import SPATIAL_MODELS
 
     if model not in SPATIAL_MODELS:
         raise ValueError(f"--model must be one of {', '.join(SPATIAL_MODELS)}, got {model!r}")
+    if not _FINEST <= search_step < math.inf:
+        raise ValueError(f"--search-step must be at least {_FINEST:g} and finite, got {search_step:g}")
 
 
 def _axis(first: str, low: float, last: str, high: float, number: str, count: int) -> Array:

@@ -1,4 +1,4 @@
-"""Maps of peak tilt over size and intensity, and the minimum overturning accelerations."""
+"""Maps of peak tilt over size and intensity, and the lowest intensities found to overturn."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.compare.lowest_overturning import Island, safe_islands
-from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, OverturningSpectrum
+from rockwobble.compare.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
+from rockwobble.compare.spectrum import OverturningSpectrum
 
 from .drawing import drawn, with_grid
 from .palette import model_style, run_styles
@@ -35,7 +36,7 @@ _DASHES: dict[str, Any] = {SPATIAL: "-", PLANAR_X: (0, (5, 1.5)), PLANAR_Y: (0, 
 
 
 def spectrum_figure(spectrum: OverturningSpectrum) -> bytes:
-    """Return three maps of peak tilt and the minimum overturning accelerations as SVG."""
+    """Return three maps of peak tilt and the lowest intensities found to overturn, as SVG."""
 
     def draw(figure: Figure) -> None:
         panels = figure.subplots(2, 2)
@@ -44,7 +45,7 @@ def spectrum_figure(spectrum: OverturningSpectrum) -> bytes:
             colours = _map(axes, spectrum, series)
             axes.set_title(f"({letter}) {TITLES[series]}")
         _curves(panels[1, 1], spectrum)
-        panels[1, 1].set_title("(d) minimum overturning acceleration")
+        panels[1, 1].set_title(f"(d) lowest found to overturn, steps of {spectrum.search_step:g}")
         bar = figure.colorbar(
             colours, ax=panels, location="bottom", shrink=0.75, aspect=45, pad=0.01, extend="max"
         )
@@ -96,9 +97,7 @@ def _curves(axes: Axes, spectrum: OverturningSpectrum) -> None:
     styles = run_styles([PLANAR_X, PLANAR_Y])
     for place, series in zip((0.0, -0.3, 0.3), SERIES, strict=True):
         colour = model_style(spectrum.model).colour if series == SPATIAL else styles[series].colour
-        islands = safe_islands(
-            sizes, levels, spectrum.overturned(series), np.isnan(spectrum.peak_tilt[series])
-        )
+        islands = safe_islands(sizes, levels, spectrum.peak_tilt[series], spectrum.lowest[series])
         _islands(axes, [island for island in islands if island.closed], place * spacing, levels, colour)
         axes.plot(
             sizes,

@@ -12,17 +12,26 @@ from rich.console import Console
 from rich.table import Table
 
 from rockwobble.compare.fingerprint import fingerprint
-from rockwobble.compare.lowest_overturning import islands_frame
+from rockwobble.compare.lowest_overturning import STEP, islands_frame
 from rockwobble.compare.planar_contrast import planar_contrast
 from rockwobble.compare.provenance import reduced_makers
-from rockwobble.compare.spectrum import SERIES, OverturningSpectrum, overturning_spectrum
+from rockwobble.compare.series import SERIES
+from rockwobble.compare.spectrum import OverturningSpectrum, overturning_spectrum
 from rockwobble.models import Cylinder, GroundMotion
 
 from .provenance import parquet
 from .spectrum_figure import TITLES, spectrum_figure
 from .spectrum_page import spectrum_page
 from .spectrum_progress import shown_fraction
-from .spectrum_words import HEADINGS, LEGEND, check_statement, islands_of, statements, table_cells
+from .spectrum_words import (
+    HEADINGS,
+    LEGEND,
+    check_statement,
+    islands_of,
+    search_statement,
+    statements,
+    table_cells,
+)
 from .summary_table import MINIMUM_WIDTH
 
 if TYPE_CHECKING:
@@ -53,7 +62,13 @@ def describe_grid(
 
 
 def run_spectrum(
-    tan_alpha: float, motion: GroundMotion, *, semidiagonals: Array, intensities: Array, model: str = "recess"
+    tan_alpha: float,
+    motion: GroundMotion,
+    *,
+    semidiagonals: Array,
+    intensities: Array,
+    model: str = "recess",
+    search_step: float = STEP,
 ) -> OverturningSpectrum:
     """Run a spectrum with progress shown."""
     with shown_fraction([TITLES[series] for series in SERIES]) as tell:
@@ -63,11 +78,12 @@ def run_spectrum(
             semidiagonals=semidiagonals,
             intensities=intensities,
             model=model,
+            search_step=search_step,
             progress=lambda series, fraction: tell(TITLES[series], fraction),
         )
 
 
-def print_spectrum(result: OverturningSpectrum, checked: pd.DataFrame) -> None:
+def print_spectrum(result: OverturningSpectrum, checked: pd.DataFrame, lowest: pd.DataFrame) -> None:
     """Print the table by size, and what the spectrum says in words."""
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     for i, heading in enumerate(HEADINGS):
@@ -85,21 +101,24 @@ def print_spectrum(result: OverturningSpectrum, checked: pd.DataFrame) -> None:
     console.print()
     for i, sentence in enumerate(statements(result)):
         console.print(sentence, style="bold" if i == 0 else "", highlight=False, markup=False)
-    console.print(check_statement(checked), highlight=False, markup=False)
+    for sentence in (search_statement(result, lowest), check_statement(checked)):
+        console.print(sentence, highlight=False, markup=False)
 
 
-def spectrum_files(result: OverturningSpectrum, checked: pd.DataFrame) -> dict[str, bytes]:
+def spectrum_files(
+    result: OverturningSpectrum, checked: pd.DataFrame, lowest: pd.DataFrame
+) -> dict[str, bytes]:
     """Return the files of a spectrum by name."""
     tables = {
         "spectrum": result.to_frame(),
-        "lowest": result.lowest_frame(),
+        "lowest": lowest,
         "islands": islands_frame(islands_of(result)),
         "contrast": planar_contrast(result),
         "checked": checked,
     }
     inputs = _inputs(result)
     return {
-        "spectrum.md": spectrum_page(result, checked).encode(),
+        "spectrum.md": spectrum_page(result, checked, lowest).encode(),
         "spectrum.svg": spectrum_figure(result),
         **{f"{name}.parquet": parquet(table, f"rockwobble {name}", inputs) for name, table in tables.items()},
     }
@@ -107,7 +126,7 @@ def spectrum_files(result: OverturningSpectrum, checked: pd.DataFrame) -> dict[s
 
 def _inputs(result: OverturningSpectrum) -> str:
     """Return the hash of all that a spectrum depends on."""
-    names = ("tan_alpha", "gravity", "model", "seating", "semidiagonals", "intensities")
+    names = ("tan_alpha", "gravity", "model", "seating", "semidiagonals", "intensities", "search_step")
     return fingerprint(
         {
             "motion": (result.motion.acceleration, result.motion.time_step),

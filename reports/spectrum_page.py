@@ -8,14 +8,21 @@ from rockwobble.compare.planar_contrast import planar_contrast
 from rockwobble.compare.spectrum import OverturningSpectrum
 
 from .provenance import made_by
-from .spectrum_words import HEADINGS, LEGEND, check_statement, statements, table_cells
+from .spectrum_words import HEADINGS, LEGEND, check_statement, search_statement, statements, table_cells
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-def spectrum_page(spectrum: OverturningSpectrum, checked: pd.DataFrame) -> str:
-    """Return picture, table and sentences; the picture is spectrum.svg beside the page."""
+def spectrum_page(spectrum: OverturningSpectrum, checked: pd.DataFrame, lowest: pd.DataFrame) -> str:
+    """Return picture, table and sentences; the picture is spectrum.svg beside the page.
+
+    Parameters
+    ----------
+    spectrum : OverturningSpectrum
+    checked, lowest : DataFrame
+        From `check_cells` and `confirm_lowest`.
+    """
     motion = spectrum.motion.name or "the record"
     sizes, levels = spectrum.semidiagonals, spectrum.intensities
     return "\n\n".join(
@@ -25,13 +32,14 @@ def spectrum_page(spectrum: OverturningSpectrum, checked: pd.DataFrame) -> str:
             f"{len(levels)} peaks of the horizontal resultant from {levels[0]:g} to {levels[-1]:g} g tan α. "
             f"3D is the {spectrum.model} model under both components; a planar run takes one component of "
             "the same shaking alone, without loss at impact.",
-            "![Peak tilt over size and intensity, and minimum overturning acceleration](spectrum.svg)",
+            "![Peak tilt over size and intensity, and the lowest intensity found to overturn](spectrum.svg)",
             *statements(spectrum),
+            search_statement(spectrum, lowest),
             markdown_table(HEADINGS, table_cells(planar_contrast(spectrum))),
             LEGEND,
             check_statement(checked),
-            "The cells are in spectrum.parquet, the minimum overturning accelerations in lowest.parquet, the "
-            "safe islands in islands.parquet, this table in contrast.parquet, the cells run again in "
+            "The cells are in spectrum.parquet, the lowest intensities found to overturn in lowest.parquet, "
+            "the safe islands in islands.parquet, this table in contrast.parquet, the cells run again in "
             f"checked.parquet. {made_by()}",
             "",
         )

@@ -9,7 +9,8 @@ import numpy as np
 
 from rockwobble.compare.lowest_overturning import Island, safe_islands
 from rockwobble.compare.planar_contrast import planar_contrast, unconservative_from
-from rockwobble.compare.spectrum import SERIES, SPATIAL, OverturningSpectrum
+from rockwobble.compare.series import SERIES, SPATIAL
+from rockwobble.compare.spectrum import OverturningSpectrum
 from rockwobble.compare.spectrum_check import AGREEMENT, CHECK_RTOL, NUDGE
 
 if TYPE_CHECKING:
@@ -26,9 +27,9 @@ HEADINGS = (
     "3D tilts more [%]",
 )
 LEGEND = (
-    "lowest: median over the sizes of the lowest overturning intensity, in g tan alpha (-: most stand). "
-    "missed: the 3D model overturns and neither planar run does. overcalled: a planar run overturns and "
-    "the 3D model does not. 3D tilts more: than both planar runs."
+    "lowest: median over the sizes of the lowest intensity found to overturn, in g tan alpha (-: most "
+    "stand). missed: the 3D model overturns and neither planar run does. overcalled: a planar run "
+    "overturns and the 3D model does not. 3D tilts more: than both planar runs."
 )
 
 
@@ -52,10 +53,7 @@ def islands_of(spectrum: OverturningSpectrum) -> dict[str, list[Island]]:
     """Return the safe islands of each series."""
     return {
         series: safe_islands(
-            spectrum.semidiagonals,
-            spectrum.intensities,
-            spectrum.overturned(series),
-            np.isnan(spectrum.peak_tilt[series]),
+            spectrum.semidiagonals, spectrum.intensities, spectrum.peak_tilt[series], spectrum.lowest[series]
         )
         for series in SERIES
     }
@@ -68,7 +66,7 @@ def statements(spectrum: OverturningSpectrum) -> list[str]:
     if not every.cells:
         return ["No cell could be solved."]
     said = [_headline(every)]
-    if every.falls > 0.0 or every.planar_falls > 0.0:
+    if any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()):
         said += [_by_size(contrast), _edges(spectrum, every), _islands(spectrum)]
     failed = int(spectrum.failed().sum())
     if failed:
@@ -90,6 +88,40 @@ def check_statement(checked: pd.DataFrame) -> str:
             f", {chance} {_is(chance)} a matter of chance (a record nudged by {NUDGE:.0e} changes as much)"
         )
     return f"{said}, {wrong} {'does' if wrong == 1 else 'do'} not." if wrong else f"{said}."
+
+
+def search_statement(spectrum: OverturningSpectrum, lowest: pd.DataFrame) -> str:
+    """Return how the lowest intensities were found, and what they are worth.
+
+    Parameters
+    ----------
+    spectrum : OverturningSpectrum
+    lowest : DataFrame
+        From `confirm_lowest`.
+    """
+    said = (
+        "The lowest intensities were searched from the threshold of uplift up "
+        f"({spectrum.searched_from[SPATIAL]:.3g} g tan alpha in 3D), in steps of {spectrum.search_step:g}, "
+        "down to a sixteenth of it where the tilt changes fast. All that was run below the lowest stands; a "
+        "narrower window of overturning may lie in between."
+    )
+    found = lowest[(lowest["series"] == SPATIAL) & np.isfinite(lowest["intensity"])]
+    if not len(found):
+        return said
+    spacing = float(np.diff(spectrum.intensities).max(initial=0.0))
+    missed = int((found["intensity"] < found["on_grid"].fillna(math.inf) - spacing).sum())
+    said += (
+        f" Of {_count(len(found), 'size')} that overturn in 3D {missed} {'does' if missed == 1 else 'do'} so "
+        "more than a step of the grid below the lowest cell of the grid that does."
+    )
+    chance = found[~found["confirmed"]]
+    if not len(chance):
+        return f"{said} All overturn again at a tolerance of {CHECK_RTOL:.0e}."
+    return (
+        f"{said} {len(chance)}, with R from {chance['semidiagonal'].min():.3g} to "
+        f"{chance['semidiagonal'].max():.3g} m, {_is(len(chance))} a matter of chance: they stand there at a "
+        f"tolerance of {CHECK_RTOL:.0e} or under a record nudged by {NUDGE:.0e}."
+    )
 
 
 def _headline(every: Any) -> str:
@@ -117,7 +149,7 @@ def _by_size(contrast: pd.DataFrame) -> str:
 def _edges(spectrum: OverturningSpectrum, every: Any) -> str:
     start = unconservative_from(spectrum)
     sentence = (
-        f"The lowest overturning intensity is lower in 3D than in both planes at "
+        f"The lowest intensity found to overturn is lower in 3D than in both planes at "
         f"{_percent(every.lower_edge)} of the sizes, and higher than in one of them at "
         f"{_percent(every.higher_edge)}"
     )

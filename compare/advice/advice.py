@@ -23,7 +23,7 @@ from .grades import (
     overall,
 )
 from .planar import PlanarView
-from .scales import FELL, ScaleScan
+from .scales import ScaleScan
 from .spread import HIGH, LOW, Spread
 from .verification import Verification
 
@@ -35,6 +35,8 @@ class Advice:
     Attributes
     ----------
     case : Case
+        As it was run: where it falls after the end of what was asked, until its side is down, over still
+        ground.
     support : str
         What holds the cylinder in place.
     model, other : str
@@ -100,8 +102,13 @@ class Advice:
         return float(self.response.peak_tilt / self.case.cylinder.alpha)
 
     @property
+    def overturned_peak(self) -> float:
+        """What stands for the largest tilt of a run that overturned [alpha]."""
+        return 0.5 * math.pi / self.case.cylinder.alpha
+
+    @property
     def lowest_overturning(self) -> float:
-        """Lowest factor on the ground motion that overturns; NaN if none of the scan does."""
+        """Lowest factor on the ground motion that was found to overturn; NaN if none was."""
         return math.nan if self.scan is None else self.scan.lowest["3d"]
 
     @property
@@ -118,7 +125,7 @@ class Advice:
         if self.spread is None or self.overturned or not self.peak > 0.0:
             return math.nan
         low, high = (self.spread.quantile(share) for share in (LOW, HIGH))
-        if high >= FELL / self.case.cylinder.alpha:
+        if high >= self.overturned_peak:
             return math.inf
         return max(abs(low / self.peak - 1.0), abs(high / self.peak - 1.0))
 
@@ -135,9 +142,8 @@ class Advice:
             if self.other_response.outcome in ("failed", "overturned"):
                 return math.nan
             return float(self.other_response.peak_tilt / self.case.cylinder.alpha / self.peak - 1.0)
-        fell = FELL / self.case.cylinder.alpha
         medians = [self.spread.quantile(0.5, other=other) for other in (True, False)]
-        return medians[0] / medians[1] - 1.0 if max(medians) < fell else math.nan
+        return medians[0] / medians[1] - 1.0 if max(medians) < self.overturned_peak else math.nan
 
     @property
     def grades(self) -> dict[str, str]:

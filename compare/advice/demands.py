@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from rockwobble.reduced import Response
+
+Array = NDArray[np.float64]
 
 # share of the moving time that the "usual" demands leave out: the spikes of the nearest passes
 SPIKES = 0.01
@@ -61,29 +64,87 @@ class Demands:
     lost_time: float
 
 
-def demands_of(response: Response) -> Demands:
-    """Return the demands of a response: extremes from every step, the usual ones from its samples."""
-    review = response.assumptions
-    breaches = {breach.assumption: breach for breach in review.breaches}
-    lost, slips = breaches.get("contact"), breaches.get("friction")
-    moving = response.tilt > 0.0
-    lengths = np.diff(response.time, append=response.time[-1])
+def demands_of(response: Response, *, until: float = math.inf) -> Demands:
+    """Return the demands of a response: extremes of the continuous solution, the usual ones of its samples.
+
+    Parameters
+    ----------
+    response : Response
+    until : float, optional
+        End of the time that counts [s]; the extremes are then those of the samples, too.
+    """
+    kept = response.time <= until
+    time, moving = response.time[kept], response.tilt[kept] > 0.0
+    friction, couple = response.friction_needed[kept], np.abs(response.recess_couple[kept])
+    lengths = np.diff(time, append=time[-1])
+    if math.isinf(until):
+        found = _of_solution(response)
+    else:
+        found = _of_samples(
+            time, response.contact_force[kept, 2], friction, couple, moving, response.friction
+        )
     from_rest = response.uplift_time > 0.0
     return Demands(
         moving_time=float(lengths[moving].sum()),
         friction=response.friction,
-        friction_needed=review.largest_friction_needed,
-        friction_usual=_usual(response.friction_needed[moving]),
-        slip_from=slips.first_time if slips else math.nan,
-        slip_time=slips.duration if slips else 0.0,
+        friction_usual=_usual(friction[moving]),
         slides=from_rest and response.friction < response.cylinder.tan_alpha,
-        couple=review.largest_couple * response.gravity,
-        couple_usual=_usual(np.abs(response.recess_couple[moving])) * response.gravity,
-        couple_in_radii=review.largest_couple / response.cylinder.base_radius,
-        least_normal_force=review.least_normal_force,
-        largest_normal_force=review.largest_normal_force,
-        lost_from=lost.first_time if lost else math.nan,
-        lost_time=lost.duration if lost else 0.0,
+        couple=found.largest_couple * response.gravity,
+        couple_usual=_usual(couple[moving]) * response.gravity,
+        couple_in_radii=found.largest_couple / response.cylinder.base_radius,
+        friction_needed=found.friction_needed,
+        slip_from=found.slip_from,
+        slip_time=found.slip_time,
+        least_normal_force=found.least_normal_force,
+        largest_normal_force=found.largest_normal_force,
+        lost_from=found.lost_from,
+        lost_time=found.lost_time,
+    )
+
+
+class _Extremes(NamedTuple):
+    """Extremes, in the units of `Demands`; the couple over the weight [m]."""
+
+    friction_needed: float
+    largest_couple: float
+    least_normal_force: float
+    largest_normal_force: float
+    slip_from: float
+    slip_time: float
+    lost_from: float
+    lost_time: float
+
+
+def _of_solution(response: Response) -> _Extremes:
+    review = response.assumptions
+    breaches = {breach.assumption: breach for breach in review.breaches}
+    lost, slips = breaches.get("contact"), breaches.get("friction")
+    return _Extremes(
+        review.largest_friction_needed,
+        review.largest_couple,
+        review.least_normal_force,
+        review.largest_normal_force,
+        *((slips.first_time, slips.duration) if slips else (math.nan, 0.0)),
+        *((lost.first_time, lost.duration) if lost else (math.nan, 0.0)),
+    )
+
+
+def _of_samples(
+    time: Array, normal: Array, friction: Array, couple: Array, moving: NDArray[np.bool_], available: float
+) -> _Extremes:
+    lengths = np.diff(time, append=time[-1])
+
+    def breach(where: NDArray[np.bool_]) -> tuple[float, float]:
+        return (float(time[where.argmax()]), float(lengths[where].sum())) if where.any() else (math.nan, 0.0)
+
+    lost = moving & (normal <= 0.0)
+    return _Extremes(
+        float(friction[moving].max(initial=0.0)),
+        float(couple[moving].max(initial=0.0)),
+        float(normal[moving].min()) if moving.any() else 1.0,
+        float(normal[moving].max()) if moving.any() else 1.0,
+        *breach(moving & ~lost & (friction > available)),
+        *breach(lost),
     )
 
 

@@ -10,22 +10,25 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case, Run
+from rockwobble import reduced
+from rockwobble.models import Case, GroundMotion, Run
 
-from ..execution import Job, Progress, ProgressCallback, simulate
+from ..execution import SAMPLE_STEP, Job, Progress, ProgressCallback, simulate
+from ..lowest_overturning import uplift_factor
 from ..predicted_horizon import Prediction
 from ..provenance import package_versions
 from ..runs import own_model, require_runnable
 from .advice import Advice
-from .demands import demands_of
+from .demands import Demands, demands_of
 from .grades import Trust, trust_of
 from .planar import planar_view
-from .scales import scan_scales, uplift_factor
+from .scales import scan_scales
 from .spread import COUNT, PERTURBATION, SEED, Spread, spread_of_starts
 from .verification import Verification, predicted, verified
 
 SUPPORTS = ("guided", "free", "ring")
 FEWEST, MOST = 20, 10_000  # members: one run stands for 5 % of them, and ten thousand take a minute
+_SAMPLES = 200_000  # of a run until its fall: closer than a near pass lasts, and computed in a second
 _OTHER = {"recess": "rolling", "rolling": "recess"}
 
 
@@ -82,8 +85,11 @@ def advise(
     stages = _Stages(case.name, progress, total=3 if run is None else 4)
     with stages.one("recess and rolling models (compiled on their first run)"):
         response = simulate(Job(case=case, method=model, label=model))
+        if response.time[-1] > case.length:
+            case = _to_the_fall(case, float(response.time[-1]))
+            response = simulate(Job(case=case, method=model, label=model))
         other_response = simulate(Job(case=case, method=_OTHER[model], label=_OTHER[model]))
-        demands = demands_of(_until_the_fall(case, response, model))
+        demands = _demands(case, response, model)
     moves = math.isfinite(response.uplift_time) and response.outcome != "failed"
     spread = None
     with stages.one(f"{count} perturbed starts"):
@@ -113,7 +119,7 @@ def advise(
         other=_OTHER[model],
         response=response,
         other_response=other_response,
-        uplift_factor=uplift_factor(case),
+        uplift_factor=_uplift_factor(case),
         peak_time=peak_time,
         demands=demands,
         prediction=prediction,
@@ -146,15 +152,45 @@ class _Stages:
             )
 
 
-def _until_the_fall(case: Case, response: Any, model: str) -> Any:
-    """The run until it last passes alpha, if it overturns: what a falling cylinder asks is no demand."""
+def _to_the_fall(case: Case, end: float) -> Case:
+    """Return a case that takes until its fall at `end` [s], after what was asked for, over still ground.
+
+    All that is run for it then sees the fall: the engine, the members, and when two methods part.
+    """
+    motion = case.motion
+    if motion is not None and case.length < motion.duration:
+        kept = math.floor(case.length / motion.time_step * (1.0 + 1e-12)) + 1
+        motion = GroundMotion(motion.acceleration[: max(kept, 2)], motion.time_step, motion.name)
+    duration = math.ceil(end / SAMPLE_STEP) * SAMPLE_STEP
+    return dataclasses.replace(case, motion=motion, duration=duration)
+
+
+def _uplift_factor(case: Case) -> float:
+    if case.motion is None:
+        return math.inf
+    return uplift_factor(case.motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
+
+
+def _demands(case: Case, response: Any, model: str) -> Demands:
+    """Demands until the run last passes alpha, if it overturns: what a falling cylinder asks is none."""
     if response.outcome != "overturned":
-        return response
+        return demands_of(response)
     below = np.flatnonzero(response.tilt <= case.cylinder.alpha)
     fall = float(response.time[below[-1]]) if len(below) else 0.0
     if not fall > 0.0:
-        return response
-    return simulate(Job(case=dataclasses.replace(case, duration=fall), method=model, label=model))
+        return demands_of(response)
+    # a run that ended here would be followed to the ground, too: the samples of the whole have to tell
+    fine = reduced.simulate(
+        case.cylinder,
+        case.motion,
+        initial=case.initial,
+        duration=case.duration,
+        sample_step=min(SAMPLE_STEP, fall / _SAMPLES),
+        gravity=case.gravity,
+        friction=case.friction,
+        model=model,
+    )
+    return demands_of(fine, until=fall)
 
 
 def _peak_time(response: Any) -> float:

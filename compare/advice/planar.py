@@ -7,8 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..spectrum import PLANAR_X, PLANAR_Y, SPATIAL
-from .scales import FELL, ScaleScan
+from ..series import PLANAR_X, PLANAR_Y, SPATIAL
+from ..tilt import overturned
+from .scales import ScaleScan
 
 # scales next to the case: a designer knows the intensity of shaking no better than to a factor of two
 NEIGHBOURS = 2.0
@@ -31,7 +32,7 @@ class PlanarView:
     missed : float
         Share at which 3D overturns and no planar run does.
     lowest_spatial, lowest_planar : float
-        Lowest overturning factor on the ground motion, in 3D and in the worse plane [-]; NaN if none does.
+        Lowest factor on the ground motion found to overturn, in 3D and in the worse plane [-]; NaN if none.
     """
 
     spatial: float
@@ -83,7 +84,7 @@ def planar_view(scan: ScaleScan | None) -> PlanarView | None:
         planar_y=float(y[here]),
         neighbours=int(counts.sum()),
         larger=_share(spatial[counts] > LARGER * planar[counts]),
-        missed=_share((spatial[counts] >= FELL) & (planar[counts] < FELL)),
+        missed=_share(overturned(spatial[counts]) & ~overturned(planar[counts])),
         lowest_spatial=scan.lowest[SPATIAL],
         lowest_planar=min(known) if known else math.nan,
     )

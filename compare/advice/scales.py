@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 import os
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
@@ -15,15 +14,16 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion
 
-from ..spectrum import PLANAR_X, PLANAR_Y, SPATIAL, series_options
+from ..lowest_overturning import STEP, lowest_on_grid, search_lowest
+from ..series import SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
+from ..spectrum import RTOL
+from ..spectrum_check import CHECK_RTOL, NUDGE
+from ..tilt import overturned
 
 Array = NDArray[np.float64]
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given
 _PER_OCTAVE, _FIRST, _LAST = 12, -2, 4
-# halvings of the interval that holds the lowest overturning scale: to 0.2 %
-_REFINEMENTS = 5
-FELL = 0.5 * math.pi  # [rad]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -38,12 +38,23 @@ class ScaleScan:
         Peak tilt (n,) of each series [rad]: "3d", and "planar_x" and "planar_y" unless the case is a
         release. pi/2 if overturned, NaN if failed.
     lowest : mapping
-        Lowest factor that overturns, of each series; NaN where none of these does.
+        Lowest factor found to overturn, of each series; NaN where none is.
+    confirmed : mapping
+        Whether it overturns to a tighter tolerance and under a record that differs by a hair, too.
+    searched_from : mapping
+        Factor at which each series uplifts, from which `lowest` was searched: up to where something
+        overturns, or to the last factor. 0 for a release, inf where it uplifts at none.
+    search_step : float
+        Largest step of that search: see `search_lowest`. A narrower window of overturning may lie below
+        `lowest`.
     """
 
     factors: Array
     peaks: Mapping[str, Array]
     lowest: Mapping[str, float]
+    confirmed: Mapping[str, bool]
+    searched_from: Mapping[str, float]
+    search_step: float
 
     @property
     def here(self) -> int:
@@ -61,40 +72,45 @@ def scan_scales(case: Case, model: str = "recess") -> ScaleScan | None:
     model : str, optional
         Model in three dimensions.
     """
-    if case.motion is None or case.motion.peak == 0.0:
+    motion = case.motion
+    if motion is None or motion.peak == 0.0:
         return None
+    tan_alpha, gravity = case.cylinder.tan_alpha, case.gravity
     factors = 2.0 ** (np.arange(_FIRST * _PER_OCTAVE, _LAST * _PER_OCTAVE + 1) / _PER_OCTAVE)
     released = case.initial is not None and case.initial.tilt > 0.0
-    series = (SPATIAL,) if released else (SPATIAL, PLANAR_X, PLANAR_Y)
-    peaks, lowest = {}, {}
+    series = (SPATIAL,) if released else SERIES
+    step = STEP * intensity_unit(tan_alpha, motion, gravity)
+    peaks, lowest, confirmed, start = {}, {}, {}, {}
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         for name in series:
 
-            def peak(factor: float, name: str = name) -> float:
-                return _peak(case, factor, name, model)
+            def run(scales: Array, name: str = name, rtol: float = RTOL) -> Array:
+                return np.array(list(pool.map(lambda scale: _peak(case, scale, name, model, rtol), scales)))
 
-            peak(1.0)  # compiles, where that is due, once and not in each thread
-            peaks[name] = np.array(list(pool.map(peak, factors)))
-            lowest[name] = _lowest(case, factors, peaks[name], name, model)
-    return ScaleScan(factors=factors, peaks=peaks, lowest=lowest)
+            run(factors[:1])  # compiles, where that is due, once and not in each thread
+            peaks[name] = run(factors)
+            start[name] = (
+                0.0 if released else uplift_of_series(name, motion, tan_alpha, gravity, until=case.length)
+            )
+            known = float(lowest_on_grid(factors, peaks[name][None])[0])
+            stop = float(np.fmin(known, factors[-1]))
+            found = search_lowest(run, start[name], stop, step, case.cylinder.alpha)
+            lowest[name] = float(np.fmin(found, known))
+            again = lowest[name] * np.array([1.0, 1.0 - NUDGE, 1.0 + NUDGE])
+            confirmed[name] = bool(
+                np.isfinite(lowest[name]) and overturned(run(again, rtol=CHECK_RTOL)).all()
+            )
+    return ScaleScan(
+        factors=factors,
+        peaks=peaks,
+        lowest=lowest,
+        confirmed=confirmed,
+        searched_from=start,
+        search_step=step,
+    )
 
 
-def uplift_factor(case: Case) -> float:
-    """Return the factor on the ground motion at which a cylinder at rest uplifts [-]; inf if none does.
-
-    Exact: f of equation (25) is convex between samples.
-    """
-    motion = case.motion
-    if motion is None:
-        return math.inf
-    horizontal = np.hypot(motion.acceleration[:, 0], motion.acceleration[:, 1])
-    vertical = motion.acceleration[:, 2] if motion.has_vertical else np.zeros(len(horizontal))
-    tan_alpha = case.cylinder.tan_alpha
-    drive = float((horizontal - vertical * tan_alpha).max())
-    return case.gravity * tan_alpha / drive if drive > 0.0 else math.inf
-
-
-def _peak(case: Case, factor: float, series: str, model: str) -> float:
+def _peak(case: Case, factor: float, series: str, model: str, rtol: float) -> float:
     motion: GroundMotion | None = case.motion
     scaled = dataclasses.replace(case, motion=motion.scaled(factor) if motion is not None else None)
     return reduced.simulate(
@@ -102,23 +118,8 @@ def _peak(case: Case, factor: float, series: str, model: str) -> float:
         scaled.motion,
         initial=scaled.initial,
         duration=scaled.duration,
+        rtol=rtol,
         sample_step=scaled.length,
         gravity=scaled.gravity,
         **series_options(series, model),
     ).peak_tilt
-
-
-def _lowest(case: Case, factors: Array, peaks: Array, series: str, model: str) -> float:
-    fell = np.flatnonzero(peaks >= FELL)
-    if not len(fell):
-        return math.nan
-    high = float(factors[fell[0]])
-    # the factor 1 is what the user asked about: it is not refined away
-    low = float(factors[fell[0] - 1]) if fell[0] > 0 else high
-    for _ in range(_REFINEMENTS if low < high else 0):
-        middle = math.sqrt(low * high)
-        if _peak(case, middle, series, model) >= FELL:
-            high = middle
-        else:
-            low = middle
-    return high

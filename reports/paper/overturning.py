@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from rockwobble.compare.planar_contrast import edge_difference, planar_contrast, unconservative_from
-from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SPATIAL, OverturningSpectrum
+from rockwobble.compare.series import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.spectrum import OverturningSpectrum
 from rockwobble.models import el_centro_1940
 
 from .claim import Claim, verdict_of
@@ -46,12 +47,12 @@ def _large_claim(spectrum: OverturningSpectrum) -> Claim:
         f"does in {_percent(band.missed)} of the cells, the reverse in {_percent(band.overcalled)}. "
     )
     if math.isnan(start):
-        found += "At the largest size the lowest overturning intensity is not lower in 3D. "
+        found += "At the largest size the lowest intensity found to overturn is not lower in 3D. "
         large = False
     else:
         large = bool((sizes >= start).mean() >= _LARGE)
         found += (
-            f"From R = {start:.3g} m up the lowest overturning intensity is lower in 3D than in both planes "
+            f"From R = {start:.3g} m up the lowest found to overturn is lower in 3D than in both planes "
             f"at every size, by {_percent(_margin(spectrum, start))} in the median. "
         )
     found += _own_scale(spectrum)
@@ -88,7 +89,7 @@ def _general_claim(spectrum: OverturningSpectrum) -> Claim:
     where = ", ".join(f"{row.smallest:.3g} to {row.largest:.3g} m" for _, row in opposite.iterrows())
     return Claim(
         says="the 2D model generally gives unconservative estimates of the overturning intensity.",
-        found=f"the lowest overturning intensity is lower in 3D than in both planes at "
+        found=f"the lowest intensity found to overturn is lower in 3D than in both planes at "
         f"{_percent(every.lower_edge)} of the sizes and higher than in one at {_percent(every.higher_edge)}; "
         f"over all cells planar analysis misses {_percent(every.missed)} and overcalls "
         f"{_percent(every.overcalled)}"

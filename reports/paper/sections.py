@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from rockwobble.compare.lowest_overturning import islands_frame
 from rockwobble.compare.planar_contrast import planar_contrast
-from rockwobble.compare.spectrum_check import check_cells
+from rockwobble.compare.spectrum_check import check_cells, confirm_lowest
 
 from ..spectrum_figure import spectrum_figure
 from ..spectrum_output import CHECKED_CELLS, run_spectrum
-from ..spectrum_words import check_statement, islands_of, statements
+from ..spectrum_words import check_statement, islands_of, search_statement, statements
 from . import earthquake, earthquake_claims, free, overturning, period
 from .page import Section
 
@@ -63,20 +63,26 @@ def earthquake_section() -> Section:
 def overturning_section(grid: int = overturning.GRID) -> Section:
     """Run figure 6 on a grid of `grid` sizes and as many intensities."""
     spectrum = run_spectrum(**overturning.problem(grid))
-    checked = check_cells(spectrum, CHECKED_CELLS)
+    checked, lowest = check_cells(spectrum, CHECKED_CELLS), confirm_lowest(spectrum)
     return Section(
         number=6,
         title="overturning spectra of the 1940 El Centro record",
         text=f"Peak tilt of {grid} sizes under {grid} intensities, tan α = {overturning.TAN_ALPHA:g}, in 3D "
-        "and of each component alone, undamped; in black the minimum overturning acceleration. "
+        "and of each component alone, undamped; in black the lowest intensity found to overturn. "
         "The three runs of a cell share one factor on the record, so that cells correspond; the scale on the "
         "right of a planar map is the peak of its own component. "
-        + " ".join([*statements(spectrum), check_statement(checked)]),
+        + " ".join(
+            [
+                *statements(spectrum),
+                search_statement(spectrum, lowest),
+                check_statement(checked),
+            ]
+        ),
         claims=overturning.overturning_claims(spectrum),
         svg=spectrum_figure(spectrum),
         tables={
             "figure-6.parquet": spectrum.to_frame(),
-            "figure-6-lowest.parquet": spectrum.lowest_frame(),
+            "figure-6-lowest.parquet": lowest,
             "figure-6-islands.parquet": islands_frame(islands_of(spectrum)),
             "figure-6-contrast.parquet": planar_contrast(spectrum),
             "figure-6-checked.parquet": checked,

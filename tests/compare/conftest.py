@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -77,3 +78,15 @@ def make_trace(cylinder: Cylinder) -> Callable[..., Any]:
         return MadeUpTrace(time=time, tilt=tilt, **(values | fields))
 
     return make
+
+
+@pytest.fixture
+def save(tmp_path: Path) -> Callable[..., Path]:
+    """Write the file of an external trajectory."""
+
+    def write(table: pd.DataFrame | str, name: str = "table.csv") -> Path:
+        path = tmp_path / name
+        path.write_text(table if isinstance(table, str) else table.to_csv(index=False))
+        return path
+
+    return write

@@ -22,12 +22,14 @@ from rockwobble.compare.advice.grades import (
     trust_of,
 )
 from rockwobble.compare.advice.planar import PlanarView
-from rockwobble.compare.advice.scales import uplift_factor
+from rockwobble.compare.lowest_overturning import uplift_factor
+from rockwobble.compare.series import SERIES, intensity_unit
+from rockwobble.compare.spectrum import overturning_spectrum
+from rockwobble.compare.tilt import overturned
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-UPLIFT = 1e-6  # relative: either side of the exact threshold, far above rounding
-EDGE = 2.0 ** (1.0 / 12.0 / 32.0)  # five halvings of a twelfth of an octave
+SAME_RUN = 1e-9  # of two runs that differ in what comes after their end
 
 STILL = Demands(
     moving_time=10.0,
@@ -119,15 +121,6 @@ def test_an_engine_that_parts_early_rules_out_and_the_worst_grade_counts():
     assert overall([]) == "good"
 
 
-@pytest.mark.parametrize("vertical", [False, True])
-def test_the_uplift_factor_is_the_threshold(vertical):
-    motion = el_centro_1940(vertical=vertical)
-    factor = uplift_factor(Case("x", PIER, motion))
-    assert math.isnan(reduced.simulate(PIER, motion.scaled(factor * (1.0 - UPLIFT))).uplift_time)
-    assert math.isfinite(reduced.simulate(PIER, motion.scaled(factor * (1.0 + UPLIFT))).uplift_time)
-    assert uplift_factor(Case("x", PIER, duration=1.0)) == math.inf
-
-
 def test_scales_hold_what_single_runs_give():
     motion = GroundMotion(el_centro_1940().acceleration[:1000], 0.01)
     scan = scan_scales(Case("x", PIER, motion))
@@ -135,13 +128,37 @@ def test_scales_hold_what_single_runs_give():
     assert scan.peaks["3d"][scan.here] == reduced.simulate(PIER, motion).peak_tilt
     in_y = reduced.simulate(PIER, motion, model="planar", plane=0.5 * math.pi).peak_tilt
     assert scan.peaks["planar_y"][scan.here] == in_y
-    for lowest, options in (
-        (scan.lowest["3d"], {}),
-        (scan.lowest["planar_x"], {"model": "planar", "plane": 0.0}),
-    ):
+    for series, options in (("3d", {}), ("planar_x", {"model": "planar", "plane": 0.0})):
+        lowest = scan.lowest[series]
         assert reduced.simulate(PIER, motion.scaled(lowest), **options).outcome == "overturned"
-        assert reduced.simulate(PIER, motion.scaled(lowest / EDGE), **options).outcome != "overturned"
+        # nothing lower that a scan beside its steps would see
+        start, step = scan.searched_from[series], scan.search_step
+        scales = np.arange(start + 0.2 * step, lowest - step / 16.0, 0.5 * step)
+        beside = reduced.peak_tilts([6.0], 0.2, motion, scales, rtol=1e-8, **options)
+        assert not overturned(beside).any()
+        assert lowest < scan.factors[overturned(scan.peaks[series]).argmax()]
     assert scan_scales(Case("x", PIER, GroundMotion(np.zeros((9, 2)), 0.1))) is None
+
+
+def test_advice_and_spectrum_find_the_same_lowest():
+    motion = GroundMotion(el_centro_1940().acceleration[:1000], 0.01)
+    scan = scan_scales(Case("x", PIER, motion))
+    spectrum = overturning_spectrum(0.2, motion, semidiagonals=[6.0], intensities=[1.0, 2.0, 3.0])
+    unit = intensity_unit(0.2, motion, 9.81)
+    for series in SERIES:
+        if math.isfinite(spectrum.lowest[series][0]):
+            assert scan.lowest[series] == pytest.approx(unit * spectrum.lowest[series][0], rel=1e-12)
+        assert scan.searched_from[series] == pytest.approx(unit * spectrum.searched_from[series], rel=1e-12)
+    assert math.isfinite(spectrum.lowest["3d"][0])
+
+
+def test_the_lowest_of_a_release_is_searched_from_still_ground():
+    motion = GroundMotion(el_centro_1940().acceleration[:300], 0.01)
+    held = scan_scales(Case("x", PIER, motion, InitialState(tilt=0.9 * PIER.alpha)))
+    assert held.searched_from == {"3d": 0.0}
+    assert held.confirmed["3d"]
+    gone = scan_scales(Case("x", PIER, motion, InitialState(tilt=1.05 * PIER.alpha)))
+    assert gone.lowest == {"3d": 0.0}
 
 
 def test_a_release_has_no_planar_analysis():
@@ -200,8 +217,69 @@ def test_a_cylinder_at_rest_needs_nothing():
     assert not found.moves
     assert found.grades == {}
     assert found.spread is None
-    assert found.uplift_factor == pytest.approx(2.0 * uplift_factor(case()))
+    assert found.uplift_factor == pytest.approx(2.0 * uplift_factor(el_centro_1940(), 0.2, 9.81))
     assert found.lowest_overturning > found.uplift_factor
+
+
+def pulse(still: float) -> GroundMotion:
+    """One sine of 4 g tan(alpha) and 1.2 s, and still ground after it for so long [s]."""
+    time = np.arange(121) * 0.01
+    wave = 4.0 * 9.81 * 0.2 * np.sin(2.0 * np.pi * time / 1.2)
+    along = np.concatenate([wave, np.zeros(round(100.0 * still))])
+    return GroundMotion(np.column_stack([along, np.zeros_like(along)]), 0.01)
+
+
+@pytest.fixture(scope="module")
+def fallen():
+    return advise(Case("pulse", PIER, pulse(0.0)), count=20)
+
+
+def test_a_fall_that_the_record_does_not_see_is_a_fall(fallen):
+    followed = advise(Case("pulse", PIER, pulse(20.0)), count=20)
+    for found in (fallen, followed):
+        assert found.overturned
+        assert found.overturning_share == 1.0
+        assert found.lowest_overturning == pytest.approx(0.506, abs=0.001)
+        assert found.grades["overturning"] == "bad"
+    assert fallen.peak_time == pytest.approx(followed.peak_time, rel=SAME_RUN)
+    assert fallen.trust.kind == followed.trust.kind
+    assert fallen.trust.until == pytest.approx(followed.trust.until, abs=0.011)  # a sample
+    assert fallen.demands.friction_needed == pytest.approx(followed.demands.friction_needed, rel=1e-6)
+
+
+def test_a_case_lasts_until_its_fall_and_so_does_all_that_is_run_for_it(fallen):
+    assert fallen.case.length == pytest.approx(fallen.peak_time, abs=0.011)
+    assert fallen.case.motion.duration == pytest.approx(1.2)
+    assert fallen.spread.time[-1] > 5.0
+    # every start lies on its side at the end
+    assert fallen.spread.low[-1] > 1.0
+    # the pass that no engine resolves comes after the pulse
+    assert 1.2 < fallen.prediction.length + fallen.response.uplift_time < fallen.case.length
+
+
+def test_a_run_cut_short_falls_over_ground_that_is_still_from_there():
+    found = advise(case(4.0, duration=5.0), count=20)
+    assert found.overturned
+    assert found.case.motion.duration == pytest.approx(5.0)
+    assert found.response.time[-1] == pytest.approx(found.case.length, abs=0.011)
+    assert found.overturning_share == 1.0
+
+
+def test_what_stands_ends_when_it_was_asked_to():
+    found = advise(case(1.0, duration=5.0), count=20)
+    assert found.case.length == found.response.time[-1] == 5.0
+
+
+def test_demands_of_samples_are_those_of_the_solution():
+    response = reduced.simulate(PIER, el_centro_1940(), duration=8.0, friction=0.21, sample_step=4e-5)
+    whole, sampled = demands_of(response), demands_of(response, until=8.0)
+    for name in ("friction_needed", "couple", "least_normal_force", "largest_normal_force", "slip_from"):
+        assert getattr(sampled, name) == pytest.approx(getattr(whole, name), rel=1e-3), name
+    assert sampled.slip_time == pytest.approx(whole.slip_time, abs=1e-3)
+    assert whole.slip_time > 0.01
+    first = demands_of(response, until=0.5 * (response.uplift_time + whole.slip_from))
+    assert (first.slip_time, first.friction_needed < 0.21) == (0.0, True)
+    assert first.moving_time < whole.moving_time
 
 
 def test_what_a_falling_cylinder_asks_is_no_demand():

@@ -1,17 +1,11 @@
-"""Lowest overturning intensities, islands and shares, from grids made by hand."""
+"""Islands and shares, from grids made by hand."""
 
 import math
 
 import numpy as np
 import pytest
 
-from rockwobble.compare.lowest_overturning import (
-    Island,
-    islands_frame,
-    lowest_overturning,
-    refined,
-    safe_islands,
-)
+from rockwobble.compare.lowest_overturning import Island, islands_frame, lowest_on_grid, safe_islands
 from rockwobble.compare.planar_contrast import (
     contrast_by_size,
     edge_difference,
@@ -19,7 +13,8 @@ from rockwobble.compare.planar_contrast import (
     size_bands,
     unconservative_from,
 )
-from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SPATIAL, OverturningSpectrum
+from rockwobble.compare.series import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.spectrum import OverturningSpectrum
 from rockwobble.models import GroundMotion
 
 FALL = 0.5 * math.pi
@@ -34,10 +29,6 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> OverturningSpectrum
         for name, rows in ((SPATIAL, space), (PLANAR_X, x), (PLANAR_Y, y))
     }
     levels = LEVELS[: len(space[0])]
-    lowest = {}
-    for name, tilt in peaks.items():
-        index = lowest_overturning(tilt >= FALL)
-        lowest[name] = np.where(index >= 0, levels[index], math.nan)
     return OverturningSpectrum(
         tan_alpha=0.1,
         motion=GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.1),
@@ -47,45 +38,16 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> OverturningSpectrum
         semidiagonals=np.arange(1.0, len(space) + 1.0),
         intensities=levels,
         peak_tilt=peaks,
-        lowest=lowest,
-        lowest_width=0.1,
+        lowest={name: lowest_on_grid(levels, tilt) for name, tilt in peaks.items()},
+        searched_from=dict.fromkeys(peaks, 1.0),
+        search_step=0.1,
     )
-
-
-def test_the_lowest_overturning_intensity_is_the_first():
-    falls = np.array([[False, True, False, True], [False, False, False, False], [True, True, False, False]])
-    assert lowest_overturning(falls).tolist() == [1, -1, 0]
-
-
-def test_bisection_comes_down_to_the_edge_and_stays_on_the_side_that_falls():
-    edges = np.array([2.3, 9.0, 0.4])  # within the grid, above it, below it
-
-    def peaks(sizes, levels):
-        return np.where(levels[None, :] >= edges[sizes.astype(int)][:, None], FALL, 0.0)
-
-    sizes = np.arange(3.0)
-    on_grid = lowest_overturning(peaks(sizes, LEVELS) >= FALL)
-    found = refined(sizes, LEVELS, on_grid, peaks, refinements=10)
-    assert 2.3 <= found[0] < 2.3 + 2.0**-10
-    assert math.isnan(found[1])
-    assert found[2] == 1.0
-    assert refined(sizes, LEVELS, on_grid, peaks, refinements=0)[0] == 3.0
-
-
-def test_an_interruption_passes_through_a_bisection():
-    def peaks(sizes, levels):
-        raise KeyboardInterrupt
-
-    with pytest.raises(KeyboardInterrupt):
-        refined(np.array([1.0]), LEVELS, np.array([2]), peaks, refinements=3)
 
 
 def test_islands_are_what_stands_above_the_lowest_overturning_intensity():
     spectrum = made_up(["ooXoOX", "XooXX?", "oooooo", "oXo?oX"], ["......"] * 4, ["......"] * 4)
-    tilt = spectrum.peak_tilt[SPATIAL]
-    islands = safe_islands(
-        spectrum.semidiagonals, spectrum.intensities, spectrum.overturned(SPATIAL), np.isnan(tilt)
-    )
+    tilt, lowest = spectrum.peak_tilt[SPATIAL], spectrum.lowest[SPATIAL]
+    islands = safe_islands(spectrum.semidiagonals, spectrum.intensities, tilt, lowest)
     assert islands == [
         Island(semidiagonal=1.0, lower=4.0, upper=5.0, closed=True),
         Island(semidiagonal=2.0, lower=2.0, upper=3.0, closed=True),
@@ -98,10 +60,19 @@ def test_islands_are_what_stands_above_the_lowest_overturning_intensity():
 
 
 def test_an_island_open_above_is_not_closed():
-    falls = np.array([[False, True, False]])
-    (island,) = safe_islands(np.array([1.0]), LEVELS[:3], falls, np.zeros_like(falls))
+    tilts = np.array([[0.1, FALL, 0.1]])
+    (island,) = safe_islands(np.array([1.0]), LEVELS[:3], tilts, np.array([2.0]))
     assert not island.closed
     assert island.upper == 3.0
+
+
+def test_an_island_begins_above_a_window_that_the_grid_does_not_see():
+    tilts = np.array([[0.1, 0.1, 0.1, FALL, 0.1]])
+    islands = safe_islands(np.array([1.0]), LEVELS[:5], tilts, np.array([1.5]))
+    assert [(island.lower, island.upper, island.closed) for island in islands] == [
+        (2.0, 3.0, True),
+        (5.0, 5.0, False),
+    ]
 
 
 def test_shares_count_cells_and_leave_out_failed_ones():

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import pytest
 
 from rockwobble.compare.advice import Demands, PlanarView, Trust
+from rockwobble.reports.advise_scale_words import overturning_words, planar_words, uplift_words
 from rockwobble.reports.advise_words import (
     contact_words,
     couple_words,
@@ -15,10 +16,7 @@ from rockwobble.reports.advise_words import (
     error_words,
     friction_words,
     horizon_words,
-    overturning_words,
-    planar_words,
     trust_words,
-    uplift_words,
 )
 
 ALPHA = 0.2
@@ -164,17 +162,28 @@ def test_planar(found, words):
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({}, "It does not overturn; 0 % of the perturbed starts overturn. The lowest scale that does is 1.4"),
+        ({}, "0 % of the perturbed starts overturn. The lowest scale found that does is 1.4 times"),
+        ({}, "All below it that was run stands, in steps of 0.007 times and less; a narrower window"),
         ({"lowest": 0.8}, "But it stands in a gap: 0.8 times this shaking, which is weaker, overturns it"),
-        ({"overturned": True, "lowest": 0.8, "chance": 0.91}, "at 37.5 s; 91 % of the perturbed starts"),
-        ({"lowest": math.nan}, "No scale up to 16 times this shaking overturns it."),
+        ({"falls": True, "lowest": 0.8, "chance": 0.91}, "at 37.5 s; 91 % of the perturbed starts"),
+        ({"lowest": math.nan}, "No scale up to 16 times this shaking was found to overturn it, in steps of"),
         ({"planar": 2.2}, "Planar analysis would say 2.2 times."),
+        ({"confirmed": False}, "It is a matter of chance: at a tolerance of 1e-09"),
     ],
 )
 def test_overturning(values, words):
-    given = {"overturned": False, "fall": 37.5, "lowest": 1.4, "planar": math.nan, "chance": 0.0} | values
+    given = {
+        "falls": False,
+        "fall": 37.5,
+        "lowest": 1.4,
+        "planar": math.nan,
+        "chance": 0.0,
+        "search": 0.007,
+        "confirmed": True,
+    } | values
     assert words in overturning_words(**given, highest=16.0)
     assert overturning_words(**(given | {"chance": math.nan}), highest=math.nan).endswith(".")
+    assert "chance" not in overturning_words(**(given | {"confirmed": True}), highest=16.0)
 
 
 def test_the_larger_error_is_named():

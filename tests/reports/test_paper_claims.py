@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.spectrum import PLANAR_X, PLANAR_Y, SPATIAL, OverturningSpectrum
+from rockwobble.compare.series import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.spectrum import OverturningSpectrum
 from rockwobble.models import Cylinder, InitialState, el_centro_1940
 from rockwobble.reports.paper import earthquake, earthquake_claims, free, overturning, period
 from rockwobble.reports.paper.claim import DOES_NOT_HOLD, HOLDS, HOLDS_IN_PART, Claim, in_words, verdict_of
@@ -201,7 +202,8 @@ def spectrum(space: list[float], x: list[float]) -> OverturningSpectrum:
         intensities=intensities,
         peak_tilt=tilt,
         lowest=lowest,
-        lowest_width=0.1,
+        searched_from=dict.fromkeys(lowest, 1.0),
+        search_step=0.1,
     )
 
 

@@ -10,12 +10,20 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare.planar_contrast import planar_contrast
-from rockwobble.compare.spectrum import PLANAR_X, SERIES, SPATIAL, OverturningSpectrum, overturning_spectrum
+from rockwobble.compare.series import PLANAR_X, SERIES, SPATIAL
+from rockwobble.compare.spectrum import OverturningSpectrum, overturning_spectrum
+from rockwobble.compare.spectrum_check import confirm_lowest
 from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.reports.spectrum_figure import spectrum_figure
 from rockwobble.reports.spectrum_page import spectrum_page
 from rockwobble.reports.spectrum_progress import shown_fraction
-from rockwobble.reports.spectrum_words import HEADINGS, check_statement, statements, table_cells
+from rockwobble.reports.spectrum_words import (
+    HEADINGS,
+    check_statement,
+    search_statement,
+    statements,
+    table_cells,
+)
 
 SVG_LIMIT = 500_000  # bytes; the smallest page that a slow line still loads at once
 
@@ -27,7 +35,7 @@ def spectrum() -> OverturningSpectrum:
         el_centro_1940(),
         semidiagonals=np.linspace(0.5, 30.0, 12),
         intensities=np.linspace(1.0, 12.0, 12),
-        refinements=1,
+        search_step=0.2,
     )
 
 
@@ -60,7 +68,8 @@ def test_failed_cells_are_named_and_left_out(spectrum):
 
 def test_a_spectrum_without_overturning_says_no_more_than_that(spectrum):
     still = {name: np.zeros_like(tilt) for name, tilt in spectrum.peak_tilt.items()}
-    said = statements(forged(spectrum, **still))
+    none = {name: np.full_like(lowest, np.nan) for name, lowest in spectrum.lowest.items()}
+    said = statements(dataclasses.replace(forged(spectrum, **still), lowest=none))
     assert len(said) == 1
     assert "overturns in 0.0 % of 144 cells" in said[0]
 
@@ -91,6 +100,31 @@ def test_the_check_tells_chance_from_error():
     assert mixed.endswith("1 does not.")
 
 
+def test_the_search_says_its_steps_and_what_is_chance(spectrum):
+    table = spectrum.lowest_frame()
+    space = table["series"] == SPATIAL
+    table["on_grid"] = table["intensity"] + 0.5  # less than a step of the grid, 1
+    table.loc[table.index[space][:2], "on_grid"] = np.nan
+    table["confirmed"] = True
+    said = search_statement(spectrum, table)
+    assert (
+        "from the threshold of uplift up (1 g tan alpha in 3D), in steps of 0.2, down to a sixteenth" in said
+    )
+    assert "a narrower window of overturning may lie in between" in said
+    found = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())
+    assert f"Of {found} sizes that overturn in 3D 2 do so more than a step of the grid below" in said
+    assert said.endswith("All overturn again at a tolerance of 1e-09.")
+    table.loc[table.index[space][[0, 3]], "confirmed"] = False
+    sizes = spectrum.semidiagonals[[0, 3]]
+    said = search_statement(spectrum, table)
+    assert f"2, with R from {sizes[0]:.3g} to {sizes[1]:.3g} m, are a matter of chance" in said
+
+
+def test_a_spectrum_in_which_nothing_overturns_says_how_it_was_searched(spectrum):
+    table = spectrum.lowest_frame().assign(intensity=np.nan, confirmed=False)
+    assert search_statement(spectrum, table).endswith("window of overturning may lie in between.")
+
+
 def test_the_picture_is_small_valid_and_the_same_each_time(spectrum):
     picture = spectrum_figure(spectrum)
     assert ET.fromstring(picture).tag.endswith("svg")
@@ -110,11 +144,11 @@ def test_a_record_of_one_component_has_a_picture_and_a_page(still):
     acceleration[:, still] = 0.0
     motion = GroundMotion(acceleration, 0.01, "one component")
     spectrum = overturning_spectrum(
-        0.1, motion, semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], refinements=0
+        0.1, motion, semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0
     )
     assert not spectrum.peak_tilt[SERIES[1 + still]].any()
     assert ET.fromstring(spectrum_figure(spectrum)).tag.endswith("svg")
-    page = spectrum_page(spectrum, checked([True], [False]))
+    page = spectrum_page(spectrum, checked([True], [False]), confirm_lowest(spectrum))
     # the planar run is the 3D run
     assert "unconservative in 0.0 % of the cells" in page
     assert page.count("|") > 40

@@ -1,0 +1,168 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare import Foreign, read_trajectory
+from rockwobble.models import Case, Cylinder, InitialState
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+START = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.3, rolling_angle=1.0)
+RELEASE = Case("release", PIER, initial=START, duration=4.0)
+ROUNDING = 1e-9  # of degrees and quaternions in double precision [rad]
+
+TURN = "time,qw,qx,qy,qz"
+GOOD = "time [s],tilt [deg],azimuth [deg]\n0,1,0\n0.01,2,1\n0.02,3,2\n0.03,2,3\n"
+BAD = {
+    "": "is empty",
+    "# only\n": "is empty",
+    GOOD.replace("0.02,", "0.005,"): "line 4: time must rise [s], got 0.005 after 0.01",
+    GOOD.replace("0.02,", "0.01,"): "line 4: time must rise [s], got 0.01 after 0.01",
+    GOOD + "0.2,1,2\n": "line 6: a gap of 0.17 s where the usual step is 0.01 s",
+    "# table 3\n" + GOOD.replace("3,2\n", "much,2\n"): "line 5: tilt [deg] must be a number, got 'much'",
+    GOOD.replace("3,2\n", ",2\n"): "line 4: tilt is missing",
+    GOOD.replace("3,2\n", "3,\n"): "line 4: azimuth must be given where the tilt is 0.05236 rad",
+    GOOD.replace("3,2\n", "357,2\n"): "tilt must be between -pi and pi, got 6.231 rad; is it in degrees, or",
+    GOOD.replace("0,1,0", "0,120,0"): "line 2: it must not lie at the start, got a tilt of 2.094 rad",
+    GOOD.replace("0.0", ""): "line 3: samples must be at most 0.39 s apart for this cylinder, got 1 s",
+    f"{TURN}\n0,0,0,0,1\n0.01,0,0,0,1\n0.02,0,0,0,1\n": (
+        "line 2: the quaternion is turned by 180 deg about the axis at the start, where it must be near 0; "
+        "are its numbers in the order qx, qy, qz, qw?"
+    ),
+    f"{TURN}\n0,0,1,0,0\n0.01,0,1,0,0\n0.02,0,1,0,0\n": "the quaternion holds the cylinder upside down",
+    "time,x [mm],y [mm],z [mm]\n0,0,0,5.88\n0.01,0,0,5.88\n0.02,0,0,5.88\n": (
+        "line 2: the mass centre must be R = 6 m from the rim and above the ground, got 1.177 m"
+    ),
+    "time,x,y,z\n0,0,0,-5.88\n0.01,0,0,-5.88\n0.02,0,0,-5.88\n": "got 5.997 m and z = -5.88 m; without",
+    GOOD.replace("3,2\n", "inf,2\n"): "line 4: tilt [deg] must be finite, got 'inf'",
+    GOOD.replace("3,2\n", "3\n"): "line 4: expected 3 cells as in the header, got 2",
+    GOOD.replace("tilt [deg]", "tilt"): "does not say the unit of tilt: name the column 'tilt [deg]'",
+    GOOD.replace("tilt [deg]", "tilt [grad]"): "tilt must be in rad or deg, got 'grad'",
+    GOOD.replace("tilt [deg]", "lean [deg]"): "must have tilt where it has azimuth, got no tilt",
+    GOOD.replace("time [s]", "t"): "must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x",
+    GOOD.replace("azimuth", "tilt"): "must have each column once, got tilt twice",
+    GOOD.split("0.01")[0]: "must hold at least three samples, got 1",
+    f"{TURN}\n0,1,0,0,0\n0.01,2,0,0,0\n0.02,1,0,0,0\n": "line 3: a quaternion must have the length 1, got 2",
+    f"{TURN},tilt [rad],azimuth [rad]\n0,1,0,0,0,0,0\n.01,.99875,.04998,0,0,.1,0\n.02,0,0,0,1,.1,0\n": (
+        "line 4: tilt and quaternion must agree, got tilts of 0.1 and 0 rad"
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("text", BAD)
+def test_whatever_is_wrong_with_a_file_is_one_line_with_its_number(save, text):
+    with pytest.raises(ValueError, match=r"table\.csv") as caught:
+        read_trajectory(save(text), RELEASE)
+    assert BAD[text] in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("mark", [";", "\t"])
+def test_other_marks_between_cells_and_units_by_option(save, mark):
+    silent = GOOD.replace(" [deg]", "").replace(" [s]", "").replace(",", mark)
+    trajectory = read_trajectory(Foreign(path=save(silent), angle_unit="deg"), RELEASE)
+    same = read_trajectory(save(GOOD), RELEASE)
+    assert trajectory.tilt.tolist() == same.tilt.tolist()
+    assert trajectory.tilt.max() == pytest.approx(math.radians(3.0))
+
+
+def test_a_file_that_is_not_there_and_options_out_of_range(tmp_path):
+    with pytest.raises(ValueError, match=r"cannot read the trajectory .*none\.csv: No such file"):
+        read_trajectory(tmp_path / "none.csv", RELEASE)
+    with pytest.raises(ValueError, match="time_offset must be finite"):
+        Foreign(path=tmp_path / "x.csv", time_offset=math.nan)
+    with pytest.raises(ValueError, match="noise must be above 0"):
+        Foreign(path=tmp_path / "x.csv", noise=0.0)
+
+
+@pytest.fixture(scope="module")
+def response():
+    return reduced.simulate(PIER, initial=START, duration=4.0)
+
+
+def columns(response, **others) -> pd.DataFrame:
+    return pd.DataFrame({"time": response.time, **others})
+
+
+def test_an_azimuth_may_be_wrapped_in_any_way(save, response):
+    tilt, azimuth = response.tilt, np.degrees(response.rolling_angle)
+    for wrapped in (azimuth, azimuth % 360.0, (azimuth + 180.0) % 360.0 - 180.0):
+        table = columns(response, **{"tilt [rad]": tilt, "azimuth [deg]": wrapped})
+        trajectory = read_trajectory(save(table), RELEASE)
+        assert trajectory.rolling_angle == pytest.approx(response.rolling_angle, abs=ROUNDING)
+
+
+def test_a_signed_tilt_leans_to_the_other_side(save):
+    start = InitialState(tilt=0.5 * PIER.alpha, rolling_angle=0.4)
+    planar = reduced.simulate(PIER, initial=start, duration=4.0)
+    assert planar.signed_tilt.min() < -0.4 * PIER.alpha
+    table = columns(planar, **{"tilt [rad]": planar.signed_tilt, "azimuth [rad]": 0.4})
+    case = Case("planar", PIER, initial=start, duration=4.0)
+    trajectory = read_trajectory(save(table), case)
+    assert trajectory.tilt == pytest.approx(planar.tilt, abs=ROUNDING)
+    apart = np.exp(1j * trajectory.rolling_angle) - np.exp(1j * planar.rolling_angle)
+    assert np.abs(apart[planar.tilt > 1e-3]).max() < ROUNDING
+    assert f"{(planar.signed_tilt < 0.0).sum()} negative tilts are read as a lean to" in trajectory.message
+    alone = read_trajectory(save(table.drop(columns="azimuth [rad]")), case)
+    assert alone.tilt == pytest.approx(planar.tilt, abs=ROUNDING)
+    assert np.isnan(alone.rolling_angle).all()
+    assert np.isnan(alone.contact_point).all()
+
+
+def test_a_mass_centre_alone_tells_the_pose_of_a_cylinder_in_a_recess(save, response):
+    x, y, z = 100.0 * response.centre_of_mass.T
+    trajectory = read_trajectory(save(columns(response, **{"x [cm]": x, "y [cm]": y, "z [cm]": z})), RELEASE)
+    assert trajectory.told == ("path",)
+    assert trajectory.tilt == pytest.approx(response.tilt, abs=ROUNDING)
+    assert trajectory.rolling_angle == pytest.approx(response.rolling_angle, abs=ROUNDING)
+    assert "tilt and azimuth are those of a cylinder in a recess" in trajectory.message
+
+
+def test_lost_samples_are_left_out_and_counted(save, response):
+    table = columns(response, **{"tilt [rad]": response.tilt, "azimuth [rad]": response.rolling_angle})
+    table.iloc[[50, 120], 1:] = np.nan
+    trajectory = read_trajectory(save(table), RELEASE)
+    # a local cubic over 0.02 s: (phi' dt)^3/24 of the tilt of 0.018 rad at the pass, where phi' is 9 rad/s
+    assert trajectory.tilt == pytest.approx(response.tilt, abs=5e-6)
+    assert "2 lost samples are left out" in trajectory.message
+    table.iloc[51:53, 1:] = np.nan
+    with pytest.raises(ValueError, match=r"a gap of 0\.04 s where the usual step is 0\.01 s"):
+        read_trajectory(save(table), RELEASE)
+
+
+def test_uneven_samples_and_a_clock_that_does_not_start_at_zero(save):
+    fine = reduced.simulate(PIER, initial=START, duration=4.0, sample_step=0.001)
+    uneven = np.cumsum(np.tile([8, 13, 9, 12], 95))
+    table = columns(fine, **{"tilt [rad]": fine.tilt, "azimuth [rad]": fine.rolling_angle}).iloc[[0, *uneven]]
+    table["time"] += 7.0
+    with pytest.raises(ValueError, match="if that is the start, give its time an offset of -7 s"):
+        read_trajectory(save(table), RELEASE)
+    trajectory = read_trajectory(Foreign(path=save(table), time_offset=-7.0), RELEASE)
+    wanted = np.interp(trajectory.time, fine.time, fine.tilt)
+    # a local cubic through samples up to 0.013 s apart, times p^3 of the tilt
+    assert trajectory.tilt == pytest.approx(wanted, abs=2e-5)
+    assert trajectory.noise < 1e-4 * PIER.alpha
+
+
+@pytest.mark.parametrize("share", [0.001, 0.005])
+def test_the_noise_is_told_by_the_samples(save, response, share):
+    generator = np.random.default_rng(2)
+    lean = np.sin(response.tilt) * np.exp(1j * response.rolling_angle)
+    lean = lean + share * PIER.alpha * (
+        generator.normal(size=len(lean)) + 1j * generator.normal(size=len(lean))
+    )
+    table = columns(response, **{"tilt [rad]": np.arcsin(np.abs(lean)), "azimuth [rad]": np.angle(lean)})
+    trajectory = read_trajectory(save(table), RELEASE)
+    # the median of 400 normal numbers, to three of its standard deviations
+    assert trajectory.noise == pytest.approx(share * PIER.alpha, rel=0.2)
+    assert trajectory.stands == pytest.approx(5.0 * trajectory.noise)
+
+
+def test_columns_that_are_not_read_are_said(save):
+    trajectory = read_trajectory(save(GOOD.replace("azimuth", "heading")), RELEASE)
+    assert trajectory.told == ("tilt",)
+    assert "columns not read: heading [deg]" in trajectory.message
