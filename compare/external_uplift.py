@@ -4,30 +4,21 @@ Where the ground acceleration rises through the threshold the tilt begins as the
 seen only some time after the uplift: after the cube root of 6 theta/K, and at a sample. The cube root of the
 first two leans is continued back to zero. Where the ground jumps over the threshold the tilt begins as t^2,
 where its direction turns it has a term t^4: how much the answer depends on that is part of its uncertainty.
-
-A cylinder may rock for a while below the tilt that its samples can show. So what is held against a model is
-when both lean that far, and the model, which knows all, tells how well noise and samples tell that time.
 """
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .external_part import Part
 from .foreign_file import Array
-from .traces import Trace
-
-if TYPE_CHECKING:
-    from .foreign import ForeignTrajectory
 
 # power of time with which the tilt begins: expected, and those it may have
 _POWER, _OTHERS = 3.0, (2.0, 4.0)
 # standard deviations of the noise: the first of some hundred samples that is above a tilt is sought
-_CONFIDENCE = 4.0
+CONFIDENCE = 4.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -75,7 +66,7 @@ def uplift(time: Array, tilt: Array, angle: Array, *, stands: float, noise: floa
             first=None,
         )
     first = int(leaning[0])
-    blurred = _CONFIDENCE * noise / float(tilt[first])
+    blurred = CONFIDENCE * noise / float(tilt[first])
     if first == 0 or first + 1 == len(time):
         step = 0.0 if first == 0 else float(time[first] - time[first - 1])
         return Uplift(
@@ -101,52 +92,6 @@ def uplift(time: Array, tilt: Array, angle: Array, *, stands: float, noise: floa
         direction_uncertainty=turning * (since + uncertainty) + blurred,
         first=first,
     )
-
-
-def uplift_differences(trajectory: ForeignTrajectory, reference: Trace) -> tuple[Part | None, Part | None]:
-    """Return time [s] and azimuth [rad] at which a trajectory leans first, minus those of a model.
-
-    The size of each is the difference and its bound the uncertainty; both are None for a release, or where
-    one of the two never leans.
-    """
-    stands, blur = trajectory.stands, _CONFIDENCE * trajectory.noise
-    seen = trajectory.first_lean
-    passed = [first_passage(reference, tilt) for tilt in (stands - blur, stands, stands + blur)]
-    if not (seen > 0.0 and passed[1] > 0.0):
-        return None, None
-    early, middle, late = passed
-    # a tilt that the model only just reaches may be missed: until its largest, nobody knows
-    late = late if math.isfinite(late) else float(reference.time[int(np.argmax(reference.tilt))])
-    half = 0.5 * trajectory.time_step
-    apart = seen - half - middle
-    uncertainty = half + max(late - middle, middle - early)
-    time = Part(first_time=seen if abs(apart) > uncertainty else math.nan, size=apart, bound=uncertainty)
-    if not math.isfinite(trajectory.uplift_direction):
-        return time, None
-    around = seen + uncertainty * np.linspace(-1.0, 1.0, 9)
-    angle = np.interp(
-        [seen, *around],
-        reference.time,
-        np.nan_to_num(reference.rolling_angle, nan=reference.uplift_direction),
-    )
-    turned = float(np.abs(angle[1:] - angle[0]).max())
-    off = math.remainder(trajectory.uplift_direction - float(angle[0]), 2.0 * math.pi)
-    bound = turned + blur / stands
-    return time, Part(first_time=seen if abs(off) > bound else math.nan, size=off, bound=bound)
-
-
-def first_passage(trace: Trace, tilt: float) -> float:
-    """Return when a trace leans first by this tilt [s]; NaN if never. Its cube root is linear in between."""
-    beyond = np.flatnonzero(trace.tilt > tilt)
-    if not len(beyond):
-        return math.nan
-    at = int(beyond[0])
-    if at == 0:
-        return float(trace.time[0])
-    before, after = np.cbrt(trace.tilt[at - 1 : at + 1])
-    # from rest the growth begins at the uplift, not at the sample before it
-    begin = max(float(trace.time[at - 1]), trace.uplift_time if before == 0.0 else 0.0)
-    return begin + (float(trace.time[at]) - begin) * float((np.cbrt(tilt) - before) / (after - before))
 
 
 def _begin(time: Array, tilt: Array, first: int, power: float) -> float:

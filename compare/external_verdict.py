@@ -15,7 +15,7 @@ from .external_explanation import Explanation, explain
 from .external_mistake import Mistake
 from .external_motion import motion_of
 from .external_part import Part
-from .external_uplift import uplift_differences
+from .external_uplift_difference import uplift_differences
 from .foreign import ForeignTrajectory
 from .traces import Trace
 

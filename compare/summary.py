@@ -185,7 +185,7 @@ def foreign_row(
 ) -> dict[str, Any]:
     """Return the row of an external trajectory: nothing is known of its steps and errors.
 
-    Its uplift is compared as its samples show it: see `rockwobble.compare.external_uplift`.
+    Its uplift is compared as its samples show it: see `rockwobble.compare.external_uplift_difference`.
     """
     verdict = judge(trial, reference, case)
     row = summary_row(
