@@ -45,7 +45,11 @@ def playback(view: CaseView) -> dict[str, Any] | None:
     return {
         "base_radius": cylinder.base_radius,
         "height": 2.0 * cylinder.half_height,
-        "length": view.case.length,
+        # what falls after the end of the case is played until its side is down
+        "length": max(
+            view.case.length,
+            *(float(trace.time[-1]) for _, trace, _ in view.lines()),
+        ),
         "runs": runs,
         "models": models,
         # the model that each run is shown with at first

@@ -52,6 +52,18 @@ def test_each_run_is_shown_with_the_model_of_its_support(comparison):
     assert spec["models"][spec["partners"][0]]["label"] == "rolling model"
 
 
+def test_a_fall_after_the_end_of_the_case_is_played():
+    gone = Case("gone", PIER, initial=InitialState(tilt=1.1 * PIER.alpha, rolling_rate=0.1), duration=0.5)
+    found = compare(gone, runs=[Run("mujoco", "guided", 1e-3)], workers=1)
+    ends = [float(trace.time[-1]) for trace in (*found.responses.values(), *found.trajectories.values())]
+    assert max(ends) > 1.0
+    assert playback(case_views(found)[0])["length"] == max(ends)
+    # traces of different length are compared as far as both reach
+    row = found.summary.iloc[0]
+    assert (row["outcome"], row["reference_outcome"]) == ("overturned", "overturned")
+    assert 0.0 < row["agreement_horizon"] <= max(ends)
+
+
 def test_nothing_is_played_where_nothing_moves():
     still = GroundMotion(np.zeros((20, 2)), 0.01, "still")
     comparison = compare(Case("still", PIER, still), runs=[Run("mujoco", "guided", 1e-3)], workers=1)

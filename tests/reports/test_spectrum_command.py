@@ -55,7 +55,12 @@ def test_it_prints_a_table_and_sentences_and_writes_what_it_names(tmp_path: Path
         rtol=1e-8,
     )
     assert space["peak_tilt"].to_numpy().reshape(6, 8) == pytest.approx(peaks, rel=SAME_RUN)
-    assert len(pd.read_parquet(tmp_path / "lowest.parquet")) == 3 * 6
+    lowest = pd.read_parquet(tmp_path / "lowest.parquet")
+    assert len(lowest) == 3 * 6
+    assert lowest["search_step"].tolist() == [0.01] * 18
+    assert lowest["confirmed"].any()
+    assert (lowest["intensity"] <= lowest["on_grid"].fillna(np.inf)).sum() >= 6
+    assert "in steps of 0.01, down to a sixteenth of it" in " ".join(printed.split())
     page = (tmp_path / "spectrum.md").read_text()
     assert "(spectrum.svg)" in page
     assert f"numpy {np.__version__}" in page
@@ -83,6 +88,8 @@ def test_any_record_will_do(tmp_path: Path, capsys):
         (["--smallest", "-1"], "must be positive and increasing, got -1 and 30"),
         (["--weakest", "nan"], "must be positive and increasing, got nan and 12"),
         (["--model", "planar"], "--model must be one of recess, rolling, got 'planar'"),
+        (["--search-step", "0"], "--search-step must be at least 1e-05 and finite, got 0"),
+        (["--search-step", "inf"], "--search-step must be at least 1e-05 and finite, got inf"),
         (["--tan-alpha", "0"], "tan_alpha must be positive"),
         (["--record-x", "x.csv"], "both horizontal components are needed"),
         (["--out", "taken"], "the output folder must be a folder"),
