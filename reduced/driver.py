@@ -150,8 +150,9 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                 if resting:
                     wait = uplift_in(body, ground(a, slope, elapsed), slope, length - elapsed)
                     lift = elapsed + wait
-                    # one within a hair of the next sample is taken up there, already above the threshold
-                    stays = wait < 0.0 or length - lift < _HAIR / body.p
+                    # one within a hair of the next sample is taken up there, already above the threshold,
+                    # however short that sample is
+                    stays = wait < 0.0 or (lift > 0.0 and length - lift < _HAIR / body.p)
                     now = finish if stays else begin + lift
                     while sample < len(times) and times[sample] <= now:
                         write(y, samples[sample])
@@ -252,15 +253,16 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     opposite = y[2] + (-pi if y[2] > 0.0 else pi)  # the other end of the diameter
                     y = placed(y, 0.0, options.restitution * abs(y[1]), opposite, 0.0)
                     restart = True
+                    resting = y[1] == 0.0  # no speed is left: it stands, or lifts off again by (25) and (26)
                 if options.record_steps:
                     steps.append((now, *y))
                 if options.seating > 0.0 and not falls:
                     L, S = momenta(y)
                     a_now = ground(a, slope, elapsed)
-                    if may_sit_down(body, options.seating, y[0], y[1], L, S, a_now):
-                        resting = True
-                        rests.append((now, np.nan))
-                        y = placed(y, 0.0, 0.0, y[2], 0.0)
+                    resting = resting or may_sit_down(body, options.seating, y[0], y[1], L, S, a_now)
+                if resting:
+                    rests.append((now, np.nan))
+                    y = placed(y, 0.0, 0.0, y[2], 0.0)
             piece += 1
 
         if deciding and status == COMPLETED:
