@@ -2,8 +2,8 @@
 
 Synthetic motions of the project (seed 3), interpolated by their own straight lines: 20 motions, 30 sizes,
 30 intensities. A cell counts where a perturbed copy (1e-9 of the record) gives it alike. The finest sampling
-is the reference; an array that was kept by another version takes its place: ``resampling.py other.npz``
-compares with it, ``resampling.py --keep other.npz`` keeps it.
+is the reference; an array that was kept by another version takes its place: ``resampling.py other.npy``
+compares with it, ``resampling.py --keep other.npy`` keeps it.
 """
 
 from __future__ import annotations
@@ -45,15 +45,17 @@ def main() -> None:
     motions = synthetic_motions(20, peak=9.81 * TAN_ALPHA, seed=3)
     found = {str(parts): peaks(motions, parts) for parts in PARTS}
     if "--keep" in sys.argv:
-        np.savez(sys.argv[-1], **found)
+        np.save(sys.argv[-1], np.stack([found[str(parts)] for parts in PARTS]))
         return
     perturbed = peaks([motion.scaled(1.0 + 1e-9) for motion in motions], 1)
-    kept = np.load(sys.argv[1]) if len(sys.argv) > 1 else None
+    tables = {"now": found}
+    if len(sys.argv) > 1:
+        tables["kept"] = dict(zip(map(str, PARTS), np.load(sys.argv[1]), strict=True))
     reference = found[str(PARTS[-1])]
     firm = (np.abs(perturbed - found["1"]) <= 1e-3 * found["1"]) & np.isfinite(reference)
     print(f"{firm.size} cells, {firm.sum()} of them not sensitive")
-    for name, cells in (("now", found), ("kept", kept)):
-        for parts in PARTS if cells is not None else ():
+    for name, cells in tables.items():
+        for parts in PARTS:
             peak = np.nan_to_num(cells[str(parts)], nan=np.inf)
             off = firm & (np.abs(peak - reference) > DIFFERENT * reference)
             turned = off & ((peak == 0.5 * np.pi) != (reference == 0.5 * np.pi))
