@@ -195,6 +195,9 @@ def test_what_overturns_again_is_confirmed_and_what_stands_is_not(spectrum):
     assert table.loc[(SPATIAL, 24.0), "confirmed"]
     assert math.isnan(spectrum.lowest[PLANAR_Y][3])
     assert not table.loc[(PLANAR_Y, 24.0), "confirmed"]
+    # one that a slightly weaker record does not overturn is not
+    wide = 2.0 * spectrum.search_step / spectrum.lowest[SPATIAL][3]
+    assert not confirm_lowest(spectrum, nudge=wide).set_index(table.index).loc[(SPATIAL, 24.0), "confirmed"]
     lower = {name: lowest - 2.0 * spectrum.search_step for name, lowest in spectrum.lowest.items()}
     forged = dataclasses.replace(spectrum, lowest=lower)
     assert not confirm_lowest(forged)["confirmed"].to_numpy().reshape(3, -1)[0, 2:].any()
