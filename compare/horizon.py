@@ -36,12 +36,13 @@ class Horizon:
     parted: bool
 
 
-def agreement_horizon(pair: Pair, *, broken: bool = False) -> Horizon:
+def agreement_horizon(pair: Pair, *, broken: bool = False, allowance: float = 0.0) -> Horizon:
     """Return the time from uplift or release to the first |tilt difference| > 1 % of alpha.
 
-    Where one of the two traces is `broken` off by a failure, agreement ends with it at the latest.
+    Where one of the two traces is `broken` off by a failure, agreement ends with it at the latest. The
+    `allowance` for the noise of a measurement is added to the bound [alpha].
     """
-    beyond = np.flatnonzero(np.abs(pair.tilt_difference) > AGREEMENT)
+    beyond = np.flatnonzero(np.abs(pair.tilt_difference) > AGREEMENT + allowance)
     if not len(beyond) and broken:
         return Horizon(length=max(0.0, pair.end - pair.start), end=pair.end, parted=True)
     if not len(beyond):

@@ -14,6 +14,9 @@ from rockwobble.models import Case, Run
 from .contact import contact_rms
 from .energy import energy_loss
 from .error_budget import BUDGET_COLUMNS, ErrorBudget
+from .external_difference import allowance as noise_allowance
+from .external_verdict import VERDICT_COLUMNS, judge, no_verdict
+from .foreign import ForeignTrajectory
 from .horizon import Horizon, agreed_passes, agreement_horizon, closest_pass
 from .predicted_horizon import Prediction, close_pass, verdict
 from .tilt import tilt_rms, tilt_rms_relative
@@ -68,6 +71,7 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "limit_error": ("alpha", "uncertainty of the extrapolation"),
         "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
         "finest_step": ("s", "smallest time step that the extrapolation rests on"),
+        **VERDICT_COLUMNS,
     }
 )
 
@@ -83,6 +87,7 @@ def summary_row(
     estimated_error: float = math.nan,
     budget: ErrorBudget | None = None,
     until: float | None = None,
+    allowance: float = 0.0,
 ) -> dict[str, Any]:
     """Return all columns of the summary for one engine run and one reduced model.
 
@@ -106,12 +111,15 @@ def summary_row(
     until : float, optional
         End of the window of tilt_rms, tilt_rms_relative and contact_rms, in the time of the run
         [s]. Default: the whole run.
+    allowance : float, optional
+        For the noise of a measurement: added to the tilt difference that ends the agreement [alpha].
     """
     cylinder = case.cylinder
     alpha, radius = cylinder.alpha, cylinder.base_radius
     whole = make_pair(cylinder, reference, trial)
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
-    horizon = agreement_horizon(whole, broken="failed" in (trial.outcome, reference.outcome))
+    broken = "failed" in (trial.outcome, reference.outcome)
+    horizon = agreement_horizon(whole, broken=broken, allowance=allowance)
     direction = direction_difference(reference, trial)
     turned_until = min(horizon.end, first_unresolved_pass(trial, start=whole.start))
     row = {
@@ -154,6 +162,7 @@ def summary_row(
         "predicted_by": prediction.reason,
         "parting": _parting(trial, horizon, prediction),
         "estimated_error": estimated_error,
+        **no_verdict(),
     }
     return row | (dict.fromkeys(BUDGET_COLUMNS, math.nan) if budget is None else budget.columns())
 
@@ -166,11 +175,33 @@ def _parting(trial: EngineTrace, horizon: Horizon, prediction: Prediction) -> st
 
 
 def foreign_row(
-    case: Case, model: str, reference: Trace, label: str, trial: EngineTrace, *, until: float | None = None
+    case: Case,
+    model: str,
+    reference: Trace,
+    label: str,
+    trial: ForeignTrajectory,
+    *,
+    until: float | None = None,
 ) -> dict[str, Any]:
-    """Return the row of a trajectory from elsewhere: nothing is known of its steps and errors."""
-    prediction = close_pass(reference, trial.contact_resolution, case.length)
-    return summary_row(case, model, reference, label, trial, prediction=prediction, until=until)
+    """Return the row of an external trajectory: nothing is known of its steps and errors.
+
+    Its uplift is compared as its samples show it: see `rockwobble.compare.external_uplift`.
+    """
+    verdict = judge(trial, reference, case)
+    row = summary_row(
+        case,
+        model,
+        reference,
+        label,
+        trial,
+        prediction=close_pass(reference, trial.contact_resolution, case.length),
+        until=until,
+        allowance=noise_allowance(trial.noise, case.cylinder.alpha),
+    )
+    for name, part in (("uplift_time", verdict.uplift_time), ("uplift_direction", verdict.uplift_direction)):
+        if part is not None:
+            row[f"{name}_difference"] = part.size
+    return row | verdict.columns()
 
 
 def crashed_row(
@@ -196,7 +227,7 @@ def crashed_row(
         "predicted_by": "",
         "parting": "",
     }
-    return row
+    return row | no_verdict()
 
 
 def _undefined(row: dict[str, Any]) -> list[str]:

@@ -1,0 +1,110 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from rockwobble.compare.external_clock import fitted_delays
+from rockwobble.compare.external_difference import AZIMUTH, difference
+from rockwobble.compare.external_frame import Frame, fitted_frames
+from rockwobble.compare.external_mistake import explains
+from rockwobble.compare.external_motion import Motion
+from rockwobble.compare.external_part import Part
+from rockwobble.models import Cylinder
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+TIME = np.linspace(0.0, 4.0, 401)
+
+
+def motion(tilt, azimuth, *, noise=0.0, time=TIME):
+    return Motion(time=time, tilt=tilt, lean=np.sin(tilt) * np.exp(1j * azimuth), path=None, noise=noise)
+
+
+def swings(*peaks):
+    """Tilt of swings of one second each, each of its own peak, nearly upright in between."""
+    each = np.minimum(TIME.astype(int), len(peaks) - 1)
+    return 1e-4 + np.array(peaks)[each] * np.sin(np.pi * TIME) ** 2
+
+
+def held(reference, other):
+    return difference(reference, other, cylinder=PIER, start=0.0)
+
+
+TILT = swings(0.1, 0.08, 0.06, 0.1)
+
+
+@pytest.mark.parametrize("degrees", [2.0, 4.0])
+def test_an_azimuth_differs_by_its_bound_and_from_its_first_sample(degrees):
+    found = held(motion(TILT, TIME), motion(TILT, TIME + math.radians(degrees)))
+    assert found.azimuth.size == pytest.approx(math.radians(degrees))
+    assert found.azimuth.differs == (math.radians(degrees) > AZIMUTH)
+    if found.azimuth.differs:
+        # 5 % of the largest tilt
+        assert found.azimuth.first_time == pytest.approx(math.asin(math.sqrt(0.05)) / math.pi, abs=0.01)
+
+
+def test_an_azimuth_near_the_upright_position_and_after_the_agreement_means_nothing():
+    upright = motion(TILT, TIME + np.where(TILT < 0.003, 2.0, 0.0))
+    assert not held(motion(TILT, TIME), upright).azimuth.differs
+    parting = TILT + np.where(TIME > 3.5, 0.01 * PIER.alpha * 1.5, 0.0)
+    after = motion(parting, TIME + np.where(TIME > 3.5, 2.0, 0.0))
+    assert held(motion(TILT, TIME), after).differs_in == ("tilt",)
+    # what is about to part is off already: the last fifth does not count
+    before = motion(parting, TIME + np.where(TIME > 2.9, 2.0, 0.0))
+    assert held(motion(TILT, TIME), before).differs_in == ("tilt",)
+    # without a parting all of it does
+    assert held(motion(TILT, TIME), motion(TILT, TIME + np.where(TIME > 2.9, 2.0, 0.0))).differs_in == (
+        "azimuth",
+    )
+
+
+def test_a_turn_that_comes_with_a_pass_is_none_of_the_axes():
+    azimuth, angle = TIME.copy(), math.radians(25.0)
+    lean = motion(TILT, azimuth)
+
+    def fits(reference, other):
+        found = fitted_frames(reference, other, start=0.0, end=4.0)
+        return [(fit.code, fit.value) for fit in found]
+
+    assert fits(lean, motion(TILT, azimuth + angle)) == [("turned", pytest.approx(25.0))]
+    assert fits(lean, motion(TILT, azimuth + angle * (TIME > 1.0))) == []
+    # the first swing drowns in noise, and there is but one after it
+    small = np.where(TIME < 2.0, swings(0.1, 0.1), 1e-4)
+    small[TIME < 1.0] *= 0.005
+    late = motion(small, azimuth + angle * (TIME > 1.0), noise=1e-3)
+    assert fits(motion(small, azimuth), late) == []
+    # nor is one more enough
+    two = np.where(TIME < 1.0, 0.005 * TILT, TILT)
+    two = np.where(TIME > 3.0, 1e-4, two)
+    assert fits(motion(two, azimuth), motion(two, azimuth + angle * (TIME > 1.0), noise=1e-3)) == []
+
+
+def test_a_frame_takes_back_what_it_names():
+    azimuth = 0.3 + 0.8 * TIME
+    reference = motion(TILT, azimuth)
+    for frame in (Frame(angle=0.4), Frame(angle=1.1, mirrored=True), Frame(angle=math.pi)):
+        wrong = motion(TILT, (frame.angle - azimuth) if frame.mirrored else azimuth - frame.angle)
+        (found,) = fitted_frames(reference, wrong, start=0.0, end=4.0)
+        assert found.mirrored == frame.mirrored
+        assert found.angle == pytest.approx(frame.angle)
+        assert np.abs(found.apply(wrong).lean - reference.lean).max() < 1e-12
+
+
+@pytest.mark.parametrize("delay", [0.2, 0.7, -0.4])
+def test_an_offset_is_found_where_the_beginning_is_missing(delay):
+    tilt = 0.05 * (1.0 - np.cos(2.0 * TIME)) + 0.02 * TIME
+    began = TIME >= 0.6
+    file = motion(tilt[began], TIME[began], time=TIME[began] - delay)
+    found = fitted_delays(motion(tilt, TIME), file, start=0.0, scale=0.78)
+    assert found == [pytest.approx(delay, abs=1e-3)]  # linear between samples
+
+
+def test_a_difference_that_is_only_just_gone_is_not_explained():
+    def part(size):
+        return Part(first_time=math.nan if size < 1.0 else 0.0, size=size, bound=1.0)
+
+    assert explains(part(3.0), part(0.5))
+    assert not explains(part(1.1), part(0.9))
+    assert not explains(part(9.0), part(1.5))
+    assert not explains(part(9.0), None)

@@ -1,0 +1,104 @@
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare import compare, read_trajectory
+from rockwobble.compare.external_uplift import first_passage, uplift, uplift_differences
+from rockwobble.models import Case, Cylinder, el_centro_1940
+
+BODIES = [
+    (Cylinder(semidiagonal=6.0, tan_alpha=0.2), 2.0),
+    (Cylinder(semidiagonal=10.0, tan_alpha=0.1), 1.0),
+    (Cylinder(semidiagonal=1.0, tan_alpha=0.35), 2.5),
+    (Cylinder(semidiagonal=3.0, tan_alpha=1.0), 5.0),
+]
+
+
+@pytest.mark.parametrize("power", [2, 3, 4])
+@pytest.mark.parametrize("begin", [0.613, 0.6195, 0.6205])
+def test_the_uplift_of_a_growth_by_a_power_lies_within_its_uncertainty(begin, power):
+    time = 0.02 * np.arange(100)
+    tilt = 0.5 * np.maximum(time - begin, 0.0) ** power
+    found = uplift(time, tilt, 0.3 + time, stands=1e-6)
+    assert abs(found.time - begin) <= found.time_uncertainty
+    assert found.time_uncertainty < 0.04
+    if power == 3:
+        assert found.time == pytest.approx(begin, abs=1e-9)  # the law itself: rounding
+    assert abs(found.direction - (0.3 + begin)) <= found.direction_uncertainty
+
+
+def test_a_release_has_no_uncertain_uplift_and_a_body_at_rest_has_none():
+    time, ones = 0.01 * np.arange(10), np.ones(10)
+    assert uplift(time, 0.1 * ones, ones, stands=1e-3).time_uncertainty == 0.0
+    still = uplift(time, 0.0 * ones, ones, stands=1e-3)
+    assert still.first is None
+    assert math.isnan(still.time)
+
+
+def shaken(body, scale):
+    return Case("shaken", body, el_centro_1940().scaled(scale), duration=6.0)
+
+
+def trace_of(case, sample_step):
+    return reduced.simulate(case.cylinder, case.motion, duration=case.duration, sample_step=sample_step)
+
+
+def file_of(trace, noise=0.0, seed=0):
+    generator = np.random.default_rng(seed)
+    lean = np.sin(trace.tilt) * np.exp(1j * np.nan_to_num(trace.rolling_angle))
+    lean = lean + noise * (generator.normal(size=len(lean)) + 1j * generator.normal(size=len(lean)))
+    return pd.DataFrame(
+        {"time": trace.time, "tilt [rad]": np.arcsin(np.abs(lean)), "azimuth [rad]": np.angle(lean)}
+    )
+
+
+@pytest.mark.parametrize("sample_step", [0.004, 0.01, 0.02])
+@pytest.mark.parametrize(("body", "scale"), BODIES)
+def test_uplifts_of_right_samples_agree_within_their_uncertainty(save, body, scale, sample_step):
+    case = shaken(body, scale)
+    trace, reference = trace_of(case, sample_step), trace_of(case, 0.01)
+    for noise, seeds in ((0.0, 1), (0.001, 4), (0.005, 4)):
+        for seed in range(seeds):
+            trajectory = read_trajectory(save(file_of(trace, noise * body.alpha, seed)), case)
+            time, direction = uplift_differences(trajectory, reference)
+            assert abs(time.size) <= time.bound, (noise, seed)
+            assert not time.differs
+            assert abs(direction.size) <= direction.bound, (noise, seed)
+            if not noise:
+                # half a sample, and what the curvature of coarse samples, taken for noise, leaves open
+                assert time.bound <= 0.5 * sample_step + 0.02
+                assert abs(direction.size) < 0.1
+
+
+@pytest.mark.parametrize("sample_step", [0.01, 0.02])
+def test_a_clock_that_is_late_shows_in_the_uplift(save, sample_step):
+    case = shaken(*BODIES[0])
+    table = file_of(trace_of(case, sample_step))
+    table["time"] += 0.05
+    table.loc[-1] = [0.0, 0.0, 0.0]
+    table = table.sort_index().drop(index=0) if sample_step < 0.01 else table.sort_index()
+    table = table[(table["time"] == 0.0) | (table["time"] > 0.05)]
+    steps = np.arange(sample_step, 0.05, sample_step)
+    rest = pd.DataFrame({"time": steps, "tilt [rad]": 0.0, "azimuth [rad]": 0.0})
+    table = pd.concat([table.iloc[:1], rest, table.iloc[1:]])
+    (row,) = compare(case, runs=[], foreign=[save(table)], workers=1).summary.to_dict("records")
+    assert row["uplift_time_difference"] == pytest.approx(0.05, abs=row["uplift_time_uncertainty"])
+    assert row["uplift_time_uncertainty"] <= 0.5 * sample_step + 0.01
+    assert "uplift_time" in row["differs_in"]
+
+
+def test_the_first_passage_of_a_ramp_is_that_of_its_cube():
+    class Ramp:
+        time = 0.01 * np.arange(200)
+        tilt = 2.0 * np.maximum(time - 0.503, 0.0) ** 3
+        uplift_time = 0.503
+
+    for tilt in (1e-8, 1e-5, 1e-3):
+        passage = 0.503 + (0.5 * tilt) ** (1.0 / 3.0)
+        assert first_passage(Ramp(), tilt) == pytest.approx(passage, abs=1e-9)  # exact but for rounding
+    assert math.isnan(first_passage(Ramp(), 100.0))

@@ -1,0 +1,271 @@
+"""External trajectories with known mistakes, and right ones of all kinds."""
+
+from __future__ import annotations
+
+import dataclasses
+import functools
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare import compare, read_trajectory
+from rockwobble.compare.external_verdict import VERDICT_COLUMNS, judge
+from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+DRUM = Cylinder(semidiagonal=1.0, tan_alpha=0.35)
+SQUAT = Cylinder(semidiagonal=3.0, tan_alpha=1.0)
+
+
+def released(name, body, tilt, rate, azimuth=0.0, length=6.0):
+    time = math.sqrt(body.semidiagonal / 6.0)  # Froude: of a cylinder of 6 m
+    start = InitialState(tilt=tilt * body.alpha, rolling_rate=rate / time, rolling_angle=azimuth)
+    return Case(name, body, initial=start, duration=length * time)
+
+
+CASES = {
+    case.name: case
+    for case in (
+        Case("pier shaken", PIER, el_centro_1940().scaled(2.0), duration=8.0),
+        Case("drum shaken", DRUM, el_centro_1940().scaled(2.5), duration=8.0),
+        Case("squat shaken", SQUAT, el_centro_1940().scaled(5.0), duration=8.0),
+        released("pier wobbles", PIER, 0.5, 0.3, 1.0),
+        released("pier passes", PIER, 0.7, 0.02),
+        released("pier falls", PIER, 0.5, 1.5, -2.0),
+        released("squat wobbles", SQUAT, 0.5, 0.3, 1.0),
+        released("planar", PIER, 0.3, 0.0, 0.5),
+        released("hardly moves", PIER, 0.03, 0.3),
+    )
+}
+NOISE = 0.005  # of alpha
+
+
+@functools.cache
+def response(name, model="recess", sample_step=0.01):
+    case = CASES[name]
+    return reduced.simulate(
+        case.cylinder,
+        case.motion,
+        initial=case.initial,
+        duration=case.duration,
+        model=model,
+        sample_step=sample_step,
+    )
+
+
+def samples(name, kind="both", *, model="recess", sample_step=0.01, noise=0.0, seed=0) -> pd.DataFrame:
+    """A file: "angles", "both" with the path, "mass", which is the path alone, or "tilt"."""
+    trace, body = response(name, model, sample_step), CASES[name].cylinder
+    generator = np.random.default_rng(seed)
+    lean = trace.tilt * np.exp(1j * np.nan_to_num(trace.rolling_angle))
+    path, size = trace.centre_of_mass, noise * body.alpha
+    lean = lean + size * (generator.normal(size=len(lean)) + 1j * generator.normal(size=len(lean)))
+    path = path + size * body.semidiagonal * generator.normal(size=path.shape)
+    table = {"time": trace.time}
+    if kind != "mass":
+        table["tilt [deg]"] = np.degrees(np.abs(lean))
+    if kind in ("angles", "both"):
+        table["azimuth [deg]"] = np.degrees(np.angle(lean)) % 360.0
+    if kind in ("mass", "both"):
+        table |= dict(zip("xyz", path.T, strict=True))
+    return pd.DataFrame(table)
+
+
+def verdict(name, path, model="recess"):
+    return judge(read_trajectory(path, CASES[name]), response(name, model), CASES[name])
+
+
+def named(found):
+    return [(mistake.concerns, mistake.code) for mistake in found.mistakes]
+
+
+# a mass centre alone is read as that of a cylinder in a recess
+KINDS = [("mass", "recess")] + [(k, m) for k in ("angles", "both", "tilt") for m in ("recess", "rolling")]
+
+
+@pytest.mark.parametrize(("kind", "model"), KINDS)
+@pytest.mark.parametrize("name", CASES)
+def test_a_right_trajectory_follows_its_model_and_is_accused_of_nothing(save, name, kind, model):
+    other = {"recess": "rolling", "rolling": "recess"}[model]
+    for sample_step in (0.01, 0.02):
+        for noise in (0.0, NOISE):
+            path = save(samples(name, kind, model=model, sample_step=sample_step, noise=noise))
+            assert verdict(name, path, model).differs_in == (), (sample_step, noise)
+            # the other model is another cylinder: it may differ, but by no mistake of the file
+            assert verdict(name, path, other).mistakes == (), (sample_step, noise)
+
+
+def turned(table, angle=0.0, *, mirrored=False, of=("azimuth [deg]", "x")):
+    table = table.copy()
+    if "azimuth [deg]" in of and "azimuth [deg]" in table:
+        table["azimuth [deg]"] = (-1.0 if mirrored else 1.0) * table["azimuth [deg]"] + angle
+    if "x" in of and "x" in table:
+        flat = (table["x"] + (-1j if mirrored else 1j) * table["y"]).to_numpy()
+        flat = flat * np.exp(1j * math.radians(angle))
+        table["x"], table["y"] = flat.real, flat.imag
+    return table
+
+
+def scaled(table, factor, *names):
+    return table.assign(**{name: factor * table[name] for name in names})
+
+
+def later(table, delay):
+    table = table.assign(time=table["time"] + delay)
+    if delay < 0.0:
+        return table[table["time"] > -1e-9]
+    waits = np.arange(0.0, delay - 1e-9, 0.01)
+    return pd.concat([table.iloc[[0] * len(waits)].assign(time=waits), table])
+
+
+ANGLES, XYZ = ("tilt [deg]", "azimuth [deg]"), ("x", "y", "z")
+DEGREES, RADIAN = math.degrees(1.0), math.radians(1.0)
+# what is done to a file, and what is to be named: what it concerns, code, value (None: there is none)
+MISTAKES = {
+    "turned": (lambda t: turned(t, 10.0), "axes", "turned", 10.0),
+    "turned other way": (lambda t: turned(t, -37.0), "axes", "turned", -37.0),
+    "turned back": (lambda t: turned(t, 180.0), "axes", "turned_back", None),
+    "clockwise": (lambda t: turned(t, mirrored=True), "axes", "y_reversed", None),
+    "x reversed": (lambda t: turned(t, 180.0, mirrored=True), "axes", "x_reversed", None),
+    "exchanged": (lambda t: turned(t, 90.0, mirrored=True), "axes", "axes_exchanged", None),
+    "north east down": (lambda t: turned(t, -90.0, mirrored=True), "axes", "axes_exchanged_reversed", None),
+    "mirrored": (lambda t: turned(t, 50.0, mirrored=True), "axes", "mirrored", 25.0),
+    "azimuth alone": (lambda t: turned(t, 10.0, of=[ANGLES[1]]), "azimuth", "turned", 10.0),
+    "path alone": (lambda t: turned(t, 90.0, mirrored=True, of=["x"]), "path", "axes_exchanged", None),
+    "late": (lambda t: later(t, 0.3), "time", "time_offset", -0.3),
+    "early": (lambda t: later(t, -0.3), "time", "time_offset", 0.3),
+    "radians": (lambda t: scaled(t, RADIAN, *ANGLES), "tilt and azimuth", "angle_unit", RADIAN),
+    "radians of azimuth": (lambda t: scaled(t, RADIAN, ANGLES[1]), "azimuth", "angle_unit", RADIAN),
+    "degrees of azimuth": (lambda t: scaled(t, DEGREES, ANGLES[1]), "azimuth", "angle_unit", DEGREES),
+    "mm": (lambda t: scaled(t, 1e3, *XYZ), "path", "length_unit", 1e3),
+    "cm": (lambda t: scaled(t, 1e2, *XYZ), "path", "length_unit", 1e2),
+    "m for mm": (lambda t: scaled(t, 1e-3, *XYZ), "path", "length_unit", 1e-3),
+    "z down": (lambda t: scaled(t, -1.0, "z"), "path", "z_reversed", None),
+    "from its place at rest": (lambda t: t.assign(z=t["z"] - 5.0), "path", "origin", 5.0),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("noise", [0.0, NOISE])
+@pytest.mark.parametrize("mistake", MISTAKES)
+@pytest.mark.parametrize("name", ["pier wobbles", "pier shaken"])
+def test_a_mistake_is_named_with_its_value(save, name, mistake, noise):
+    change, concerns, code, value = MISTAKES[mistake]
+    found = verdict(name, save(change(samples(name, noise=noise))))
+    assert found.differs_in
+    assert named(found) == [(concerns, code)]
+    if value is None:
+        assert math.isnan(found.mistakes[0].value)
+    else:
+        # the fit: a degree, or a fiftieth
+        assert found.mistakes[0].value == pytest.approx(value, rel=0.02, abs=0.0 if code != "turned" else 1.0)
+    assert found.explanation.left.differs_in == ()
+
+
+def test_two_mistakes_are_both_named(save):
+    table = scaled(turned(samples("pier shaken"), 90.0, mirrored=True), 1e3, *XYZ)
+    found = verdict("pier shaken", save(table))
+    assert named(found) == [("axes", "axes_exchanged"), ("path", "length_unit")]
+    columns = found.columns()
+    assert columns["likely_mistake"] == "axes: axes_exchanged; path: length_unit"
+    assert columns["likely_mistake_value"] == "; 1000"
+    assert columns["differs_without_mistake"] == ""
+    assert columns["agreement_without_mistake"] == pytest.approx(8.0)
+
+
+def test_axes_and_unit_of_a_noisy_path_are_both_named(save):
+    table = turned(samples("pier shaken", noise=NOISE), 90.0, mirrored=True, of=["x"])
+    found = verdict("pier shaken", save(scaled(table, 1e3, *XYZ)))
+    # noise in mm is a thousandth of what it is in m: it must not hide the axes
+    assert named(found) == [("path", "axes_exchanged"), ("path", "length_unit")]
+
+
+@pytest.mark.parametrize("name", ["planar", "hardly moves"])
+def test_a_sign_is_named_before_an_offset(save, name):
+    # while the height hardly changes, twice its value taken off would do as well
+    assert named(verdict(name, save(scaled(samples(name), -1.0, "z")))) == [("path", "z_reversed")]
+
+
+def test_quaternions_of_the_inverse_turn_lean_the_other_way(save):
+    trace = response("pier wobbles")
+    half = 0.5 * trace.tilt
+    quaternion = {
+        "qw": np.cos(half),
+        "qx": np.sin(half) * np.sin(trace.rolling_angle),
+        "qy": -np.sin(half) * np.cos(trace.rolling_angle),
+        "qz": np.zeros_like(half),
+    }
+    found = verdict("pier wobbles", save(pd.DataFrame({"time": trace.time} | quaternion)))
+    assert named(found) == [("azimuth", "turned_back")]
+
+
+def test_planar_motion_cannot_tell_a_turn_from_a_mirror_and_says_so(save):
+    table = samples("planar", "angles")
+    found = verdict("planar", save(turned(table, 90.0, mirrored=True)))
+    assert named(found) == [("azimuth", "turned")]
+    assert found.mistakes[0].value == pytest.approx(90.0 - 2.0 * math.degrees(0.5), abs=1.0)
+    assert [mistake.code for mistake in found.explanation.alternatives] == ["axes_exchanged"]
+    # mirrored in its own plane it is the same motion
+    same = turned(table, 2.0 * math.degrees(0.5), mirrored=True)
+    assert verdict("planar", save(same)).differs_in == ()
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"cylinder": Cylinder(semidiagonal=6.3, tan_alpha=0.2)},
+        {"cylinder": Cylinder(semidiagonal=6.0, tan_alpha=0.21)},
+        {"gravity": 9.3},
+    ],
+)
+@pytest.mark.parametrize("name", ["pier wobbles", "pier shaken"])
+def test_another_body_is_no_mistake_of_the_file(save, name, other):
+    case = dataclasses.replace(CASES[name], **other)
+    trace = reduced.simulate(
+        case.cylinder, case.motion, initial=case.initial, duration=case.duration, gravity=case.gravity
+    )
+    table = pd.DataFrame({"time": trace.time, "tilt [rad]": trace.tilt, "azimuth [rad]": trace.rolling_angle})
+    found = verdict(name, save(table))
+    assert "tilt" in found.differs_in
+    assert found.mistakes == ()
+
+
+def test_what_is_not_told_is_said_and_not_compared(save):
+    alone = verdict("pier shaken", save(samples("pier shaken", "tilt")))
+    assert alone.not_compared == ("azimuth: not given", "path: not given")
+    assert alone.difference.azimuth is None
+    assert verdict("pier shaken", save(samples("pier shaken", "angles"))).not_compared == ("path: not given",)
+    assert verdict("pier shaken", save(samples("pier shaken", "mass"))).not_compared == ()
+    small = scaled(samples("pier shaken"), 1e-3, "tilt [deg]")
+    assert verdict("pier shaken", save(small)).not_compared == ("azimuth: too little motion",)
+
+
+def test_of_a_trajectory_of_another_problem_nothing_is_explained(save):
+    found = verdict("pier wobbles", save(samples("pier shaken")))
+    # one sample that an offset would bring to its place is no path that agrees
+    assert found.differs_in == ("tilt",)
+    assert found.not_compared == ("azimuth: too little motion", "path: too little motion")
+    assert found.mistakes == ()
+
+
+def test_the_columns_of_the_summary_say_the_verdict(save):
+    path = save(turned(samples("pier shaken", "angles"), 10.0))
+    (row,) = compare(CASES["pier shaken"], runs=[], foreign=[path], workers=1).summary.to_dict("records")
+    assert set(VERDICT_COLUMNS) <= set(row)
+    assert not row["parted"]  # the tilts agree
+    assert row["differs_in"] == "azimuth; uplift_direction"
+    assert row["azimuth_rms"] == pytest.approx(10.0, abs=0.1)
+    # from the first lean of more than 5 % of the largest on
+    assert response("pier shaken").uplift_time < row["azimuth_differs_from"] < 3.0
+    assert (row["likely_mistake"], row["not_compared"]) == ("azimuth: turned", "path: not given")
+    assert float(row["likely_mistake_value"]) == pytest.approx(10.0, abs=0.1)
+
+
+def test_noise_is_no_parting(save):
+    path = save(samples("pier wobbles", "angles", noise=NOISE))
+    (row,) = compare(CASES["pier wobbles"], runs=[], foreign=[path], workers=1).summary.to_dict("records")
+    assert not row["parted"]
+    assert row["noise"] == pytest.approx(NOISE, rel=0.2)
+    assert row["tilt_bound"] == pytest.approx(0.01 + 5.0 * row["noise"])
