@@ -6,7 +6,8 @@ from typing import Any
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, findings
 
-from .findings import FOREIGN, small
+from .external_words import FOREIGN
+from .findings import small
 
 _LISTED = 10
 

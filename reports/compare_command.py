@@ -198,6 +198,8 @@ def print_comparison(comparison: Comparison) -> None:
     from rich.console import Console
 
     from .budget_words import budget_lines, parting_lines
+    from .external_words import LEGEND as EXTERNAL_LEGEND
+    from .external_words import external_table
     from .findings import finding, headline
     from .run_remarks import counted_remarks, remark_lines
     from .summary_table import LEGEND, MINIMUM_WIDTH, summary_table
@@ -215,6 +217,10 @@ def print_comparison(comparison: Comparison) -> None:
         console.print()
         console.print(summary_table(rows, console.width))
         console.print(LEGEND, style="dim", highlight=False)
+        if (external := external_table(rows)) is not None:
+            console.print()
+            console.print(external)
+            console.print(EXTERNAL_LEGEND, style="dim", highlight=False)
         console.print()
         console.print(headline(rows, case.length), style="bold", highlight=False)
         for _, row in rows.iterrows():

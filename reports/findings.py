@@ -7,6 +7,8 @@ from typing import Any
 
 from rockwobble.compare import own_model
 
+from .external_words import FOREIGN, external_sentences, mistake_words, scope, within
+
 PEAK_WORTH_A_WORD = 0.01  # difference of peak tilts, relative
 PLACES = {
     "guided": "In an ideal recess (guided)",
@@ -14,7 +16,6 @@ PLACES = {
     "ring": "In a recess of walls (ring)",
     "foreign": "Brought from elsewhere (foreign)",
 }
-FOREIGN = "foreign"  # support of what was not run here: nothing is known of its contact and its errors
 TOUCHED = "touched a wall"  # in the message of a run
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -35,18 +36,19 @@ def finding(row: Any, length: float) -> str:
         return f"{run} against {model}: {row.message}."
     if "neither uplifted" in row.message:
         return f"{run} and {model} both stay at rest: this excitation does not uplift the cylinder."
-    return f"{_agreement(row, run, model, length)} {_peaks(row)}"
+    sentences = f"{_agreement(row, run, model, length)} {_peaks(row)}"
+    return f"{sentences} {external_sentences(row)}".strip() if row.support == FOREIGN else sentences
 
 
 def _agreement(row: Any, run: str, model: str, length: float) -> str:
     passes = f"{row.agreed_passes} pass{'' if row.agreed_passes == 1 else 'es'} by the apex"
     if not row.parted:
         return (
-            f"{run} stays within 1 % of alpha of {model} for the whole run "
+            f"{run} stays within {within(row)} of {model} for the whole run "
             f"({row.agreement_horizon:.1f} s, {passes})."
         )
     return (
-        f"{run} stays within 1 % of alpha of {model} for {seconds(row.agreement_horizon)} from uplift or "
+        f"{run} stays within {within(row)} of {model} for {seconds(row.agreement_horizon)} from uplift or "
         f"release ({passes}), then they part: {_reason(row, length)}."
     )
 
@@ -81,6 +83,8 @@ def _reason(row: Any, length: float) -> str:
 
 
 def _foreign_reason(row: Any) -> str:
+    if mistake_words(row):
+        return "see the likely mistake"
     differs = "the body, its start, the ground motion or the method"
     if math.isfinite(row.closest_pass):
         return (
@@ -93,7 +97,8 @@ def _foreign_reason(row: Any) -> str:
 def _peaks(row: Any) -> str:
     ours, theirs = row.peak_tilt, row.reference_peak_tilt
     if "only" in row.message and "overturned" in row.message:
-        return f"{row.message[0].upper()}{row.message[1:]}."
+        said = [part for part in row.message.split("; ") if part.startswith(("only ", "compared up to "))]
+        return f"{said[0][0].upper()}{'; '.join(said)[1:]}."
     if row.outcome == row.reference_outcome == "overturned":
         return "Both overturn."
     relative = abs(ours - theirs) / theirs if theirs > 0.0 else math.inf
@@ -126,19 +131,32 @@ def headline(summary: Any, length: float) -> str:
         rows = own if len(own) else rows
         if not len(rows):
             continue
+        if support == FOREIGN:
+            # each is something else
+            parts += [
+                f"{_followed(rows[rows.index == at], length)}{scope(row)}." for at, row in rows.iterrows()
+            ]
+            parted = parted or any(row.parted and not mistake_words(row) for _, row in rows.iterrows())
+            continue
         parted = parted or bool(rows["parted"].any())
-        models = " and ".join(rows["reference"].unique())
-        follow = "follow" if len(rows) > 1 else "follows"
-        engines = " and ".join(rows["engine"].unique())
-        parts.append(
-            f"{PLACES.get(support, f'With support {support}')}, {engines} {follow} the {models} model within "
-            f"1 % of alpha {_span(rows, length)}."
-        )
+        parts.append(f"{_followed(rows, length)}.")
     if not parts:
         return "No run could be compared."
     if parted:
         parts.append("Once traces have parted, compare distributions.")
     return " ".join(parts)
+
+
+def _followed(rows: Any, length: float) -> str:
+    support = rows["support"].iloc[0]
+    models = " and ".join(rows["reference"].unique())
+    follow = "follow" if len(rows) > 1 else "follows"
+    engines = " and ".join(rows["engine"].unique())
+    bound = within(rows.iloc[0]) if support == FOREIGN else "1 % of alpha"
+    return (
+        f"{PLACES.get(support, f'With support {support}')}, {engines} {follow} the {models} model within "
+        f"{bound} {_span(rows, length)}"
+    )
 
 
 def _span(rows: Any, length: float) -> str:

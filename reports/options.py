@@ -114,8 +114,8 @@ Trajectories = Annotated[
     list[Path] | None,
     typer.Option(
         "--trajectory",
-        help="CSV of time, tilt and azimuth (or qw, qx, qy, qz) from a shake table or another code; "
-        "may be repeated.",
+        help="CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a "
+        "shake table or another code. What it does not hold is not compared; may be repeated.",
         rich_help_panel=_FOREIGN,
     ),
 ]
@@ -139,7 +139,8 @@ TrajectoryNoise = Annotated[
     float | None,
     typer.Option(
         "--trajectory-noise-deg",
-        help="Tilt below which it counts as standing, in deg. Default: 1e-4 alpha.",
+        help="Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least "
+        "1e-4 alpha.",
         rich_help_panel=_FOREIGN,
     ),
 ]

@@ -1,0 +1,167 @@
+from __future__ import annotations
+
+import math
+from types import SimpleNamespace
+
+import pandas as pd
+import pytest
+from rich.console import Console
+
+from rockwobble.compare.external_verdict import VERDICT_COLUMNS, no_verdict
+from rockwobble.reports.external_words import external_sentences, external_table, mistake_words, scope, within
+from rockwobble.reports.findings import finding, headline
+
+AGREES = {"azimuth_rms": 0.2, "path_rms": 0.001, "tilt_bound": 0.01, "noise": 0.0}
+
+
+def row(**values):
+    common = {
+        "run": "table",
+        "engine": "table",
+        "support": "foreign",
+        "reference": "recess",
+        "outcome": "completed",
+        "reference_outcome": "completed",
+        "message": "",
+        "peak_tilt": 0.25,
+        "reference_peak_tilt": 0.25,
+        "agreement_horizon": 8.0,
+        "parted": False,
+        "agreed_passes": 3,
+        "predicted_horizon": 8.0,
+        "contact_resolution": math.nan,
+        "closest_pass": 0.003,
+        "uplift_time_difference": 0.004,
+        "uplift_direction_difference": -0.5,
+    }
+    return SimpleNamespace(**(common | no_verdict() | AGREES | values))
+
+
+def table(*rows):
+    return pd.DataFrame([vars(each) for each in rows])
+
+
+def test_what_agrees_is_said_to_agree():
+    assert headline(table(row()), 8.0) == (
+        "Brought from elsewhere (foreign), table follows the recess model within 1 % of alpha for the whole "
+        "run (8.0 s), in tilt, azimuth and path."
+    )
+    words = finding(row(), 8.0)
+    assert "The azimuth differs by 0.2 deg (rms while the tilts agree), which is agreement." in words
+    assert "mistake" not in words
+
+
+def test_what_was_not_compared_is_said():
+    alone = row(
+        not_compared="azimuth: not given; path: too little motion", azimuth_rms=math.nan, path_rms=math.nan
+    )
+    assert scope(alone) == ", in tilt (not compared: azimuth and path)"
+    assert external_sentences(alone) == (
+        "Not compared: azimuth (not given) and path of the mass centre (too little motion)."
+    )
+
+
+WRONG = {
+    "differs_in": "azimuth; path",
+    "azimuth_rms": 10.0,
+    "azimuth_differs_from": 2.8,
+    "path_differs_from": 5.96,
+    "likely_mistake": "axes: turned",
+    "likely_mistake_value": "10",
+    "agreement_without_mistake": 8.0,
+}
+
+
+def test_a_mistake_stands_in_the_headline_and_what_is_left_without_it():
+    assert headline(table(row(**WRONG)), 8.0).endswith(
+        "for the whole run (8.0 s), in tilt but not in azimuth and path of the mass centre. Likely mistake: "
+        "its axes are turned by 10.0 deg (counter-clockwise)."
+    )
+    words = finding(row(**WRONG), 8.0)
+    assert "The azimuth differs by 10.0 deg (rms while the tilts agree), from 2.80 s on." in words
+    assert words.endswith("Without it, the tilt follows the model for 8.0 s.")
+    left = external_sentences(row(**WRONG, differs_without_mistake="tilt; path"))
+    assert left.endswith("Without it, the tilt follows the model for 8.0 s, but it differs in tilt and path.")
+    other = external_sentences(
+        row(**WRONG, alternative_mistake="azimuth: mirrored", alternative_mistake_value="25")
+    )
+    assert other.endswith(
+        "Or, which here is the same: its azimuth is mirrored in the line at 25.0 deg, so that it rolls the "
+        "other way round."
+    )
+
+
+def test_a_difference_that_no_mistake_explains_is_said_to_be_none():
+    words = external_sentences(row(differs_in="azimuth", azimuth_differs_from=3.0))
+    assert words.endswith("No mistake of axes, units, clock or origin explains that.")
+
+
+@pytest.mark.parametrize(
+    ("mistake", "value", "words"),
+    [
+        ("time: time_offset", "-0.3", "its clock is 0.300 s late: an offset of -0.300 s takes that back"),
+        ("time: time_offset", "0.3", "its clock is 0.300 s early: an offset of 0.300 s takes that back"),
+        ("azimuth: angle_unit", "57.2958", "its azimuth is in degrees, read as radians"),
+        ("tilt and azimuth: angle_unit", "0.0174533", "its tilt and azimuth are in radians, read as degrees"),
+        ("path: length_unit", "1000", "x, y and z are in mm, read as m"),
+        ("path: z_reversed", "", "z points down"),
+        ("path: origin", "5.88", "x, y and z are counted from a point 5.88 m from the original base centre"),
+        ("axes: axes_exchanged", "", "its axes are mirrored: x and y are exchanged, or azimuths are counted"),
+        ("azimuth: turned_back", "", "its azimuth is turned by 180 deg"),
+        ("path: y_reversed", "", "its path is mirrored: y has the other sign"),
+    ],
+)
+def test_each_code_has_its_words(mistake, value, words):
+    (said,) = mistake_words(row(likely_mistake=mistake, likely_mistake_value=value))
+    assert said.startswith(words)
+
+
+def test_two_mistakes_keep_their_own_values():
+    both = row(likely_mistake="axes: x_reversed; path: length_unit", likely_mistake_value="; 100")
+    assert mistake_words(both) == [
+        "its axes are mirrored: x has the other sign",
+        "x, y and z are in cm, read as m",
+    ]
+
+
+def test_the_uplift_carries_its_uncertainty():
+    early = row(uplift_time_difference=-0.004, uplift_time_uncertainty=0.012)
+    assert external_sentences(early).endswith(
+        "It uplifts 0.004 s before the model, where its samples tell ± 0.012 s."
+    )
+    apart = row(
+        uplift_time_uncertainty=0.012,
+        uplift_direction_uncertainty=0.1,
+        differs_in="uplift_direction",
+    )
+    assert "and 29 deg from its direction, where they tell ± 6 deg." in external_sentences(apart)
+
+
+def test_noise_widens_what_agreement_means_and_says_so():
+    assert within(row()) == "1 % of alpha"
+    assert within(row(tilt_bound=0.034)) == "3.4 % of alpha (1 % and the noise)"
+    assert "within 3.4 % of alpha (1 % and the noise)" in headline(table(row(tilt_bound=0.034)), 8.0)
+
+
+def printed(rows):
+    console = Console(width=160)
+    with console.capture() as caught:
+        console.print(external_table(rows))
+    return caught.get()
+
+
+def test_the_table_has_the_numbers_and_codes_of_each_external_trajectory():
+    engine = row(support="guided", run="mujoco guided")
+    text = printed(table(engine, row(**WRONG, uplift_time_uncertainty=0.012)))
+    assert "mujoco" not in text
+    line = next(line for line in text.splitlines() if line.startswith("table"))
+    cells = line.split()
+    assert cells[:8] == ["table", "10.0", "2.80", "0.001", "5.96", "0.004", "0.012", "-"]
+    assert line.rstrip().endswith("azimuth; path axes: turned")
+    assert external_table(table(engine)) is None
+
+
+def test_results_of_before_there_were_verdicts_are_told_as_they_were():
+    old = {name: value for name, value in vars(row()).items() if name not in VERDICT_COLUMNS}
+    assert external_table(pd.DataFrame([old])) is None
+    assert "for the whole run (8.0 s), in tilt." in headline(pd.DataFrame([old]), 8.0)
