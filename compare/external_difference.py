@@ -32,7 +32,7 @@ PATH = 0.01
 ABOVE_NOISE = 5.0
 # noise along the lean against that across it: that of a mass centre is larger across, by R/h at tan alpha 1
 _OF_BOTH_DIRECTIONS = 1.4
-# samples without which an azimuth is not compared
+# samples without which azimuth and path are not compared
 _FEWEST = 5
 
 
@@ -165,7 +165,7 @@ def _azimuth(model: Motion, trial: Motion, within: Mask) -> Part | None:
 
 
 def _path(model: Motion, trial: Motion, within: Mask, cylinder: Cylinder) -> Part | None:
-    if model.path is None or trial.path is None or not within.any():
+    if model.path is None or trial.path is None or np.count_nonzero(within) < _FEWEST:
         return None
     apart = np.linalg.norm(trial.path[within] - model.path[within], axis=1) / cylinder.base_radius
     size = float(np.sqrt(np.mean(apart**2)))

@@ -26,9 +26,10 @@ _STEADY = math.radians(2.0)
 _SMALL = 1e-3
 # standard deviations of the noise
 _CONFIDENCE = 3.0
-# a tilt minimum below this share of the maxima around it is a pass, which may turn one of two motions
-_PASS = 0.7
-
+# an angle that is known no better than this is not known [rad]
+_OPEN = 0.5
+# two models that a first pass turned apart are off by the same angle in one swing, by chance in two
+_SWINGS = 3
 # samples that lean without which there is no fit
 _FEWEST = 8
 
@@ -97,7 +98,7 @@ def fitted_frames(reference: Motion, motion: Motion, *, start: float, end: float
     if np.count_nonzero(counts) < _FEWEST:
         return []
     moves = np.flatnonzero((model.time >= start) & (model.time <= end + 1e-9) & (np.abs(model.lean) > 0.0))
-    swings = np.split(moves, np.searchsorted(moves, _passes(model.tilt[moves[0] : moves[-1] + 1]) + moves[0]))
+    swings = np.split(moves, np.searchsorted(moves, _minima(model.tilt[moves[0] : moves[-1] + 1]) + moves[0]))
     small = _SMALL * float(reference.tilt.max())
     found = []
     for mirrored in (False, True):
@@ -105,13 +106,16 @@ def fitted_frames(reference: Motion, motion: Motion, *, start: float, end: float
         angle = float(np.angle(products[counts].sum()))
         quarters = np.array_split(np.flatnonzero(counts), 4)
         off = [
-            _off(products[part], angle, model.lean[part], trial.noise, small) for part in (*quarters, *swings)
+            _off(products[part], angle, model.lean[part], trial.noise, small)
+            for part in (*quarters, *swings)
+            if len(part)
         ]
-        told = [doubt < (0.5 if mirrored else 0.5 * abs(angle)) for _, doubt in off[4:]]
-        if any(apart > _STEADY + doubt for apart, doubt in off):
+        # a part whose angle noise leaves open tells nothing either way
+        if any(apart > _STEADY + doubt for apart, doubt in off if doubt < _OPEN):
             continue
-        # before the first pass, or on both sides of one
-        if told and not told[0] and sum(told) < 2:
+        told = [doubt < (_OPEN if mirrored else min(_OPEN, 0.5 * abs(angle))) for _, doubt in off[4:]]
+        # before the first pass, or in so many swings that no pass can be the reason
+        if told and not told[0] and sum(told) < _SWINGS:
             continue
         named = _MIRRORS if mirrored else _TURNS
         near = [exact for exact in named if abs(math.remainder(angle - exact, 2.0 * math.pi)) < _NAMED_WITHIN]
@@ -126,8 +130,6 @@ def _off(products: Complex, angle: float, lean: Complex, noise: float, small: fl
     return abs(float(np.angle(products.sum() * np.exp(-1j * angle)))), doubt
 
 
-def _passes(tilt: Array) -> NDArray[np.intp]:
-    """Return the samples of the passes by the upright position."""
-    low = np.flatnonzero((tilt[1:-1] <= tilt[:-2]) & (tilt[1:-1] < tilt[2:])) + 1
-    swings = [float(part.max(initial=0.0)) for part in np.split(tilt, low)]
-    return low[tilt[low] < _PASS * np.minimum(swings[:-1], swings[1:])]
+def _minima(tilt: Array) -> NDArray[np.intp]:
+    """Return the samples of least tilt: a first pass may hardly be one, and still turn one of two motions."""
+    return np.flatnonzero((tilt[1:-1] <= tilt[:-2]) & (tilt[1:-1] < tilt[2:])) + 1

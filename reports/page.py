@@ -42,7 +42,8 @@ def comparison_page(comparison: Comparison, command: str = "") -> str:
         columns=[
             {"name": name, "unit": unit, "meaning": meaning}
             for name, (unit, meaning) in SUMMARY_COLUMNS.items()
-            if name not in ("case", "run")
+            # results may be older than a column
+            if name in comparison.summary and name not in ("case", "run")
         ],
         versions=comparison.versions,
     )

@@ -74,6 +74,10 @@ def test_a_turn_that_comes_with_a_pass_is_none_of_the_axes():
     small[TIME < 1.0] *= 0.005
     late = motion(small, azimuth + angle * (TIME > 1.0), noise=1e-3)
     assert fits(motion(small, azimuth), late) == []
+    # nor is one more enough
+    two = np.where(TIME < 1.0, 0.005 * TILT, TILT)
+    two = np.where(TIME > 3.0, 1e-4, two)
+    assert fits(motion(two, azimuth), motion(two, azimuth + angle * (TIME > 1.0), noise=1e-3)) == []
 
 
 def test_a_frame_takes_back_what_it_names():

@@ -1,12 +1,16 @@
 from __future__ import annotations
 
+import dataclasses
 import re
 from html.parser import HTMLParser
+
+import pytest
 
 from rockwobble.compare import SUMMARY_COLUMNS, compare
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.reports.figure import comparison_figure
 from rockwobble.reports.page import comparison_page
+from rockwobble.reports.suite_page import suite_page
 
 PAGE_LIMIT = 8_000_000  # [bytes]
 PICTURE_LIMIT = 300_000  # [bytes]
@@ -72,6 +76,14 @@ def test_page_says_what_was_compared_and_found(comparison):
         if name not in ("case", "run"):
             assert name.replace("_", " ") in text
     assert "nan" not in re.findall(r"\w+", text)
+
+
+@pytest.mark.parametrize("page", [comparison_page, suite_page])
+def test_results_that_are_older_than_a_column_can_be_shown(comparison, page):
+    older = comparison.summary.drop(columns=["differs_in", "azimuth_rms"])
+    text = " ".join(Elements(page(dataclasses.replace(comparison, summary=older))).text)
+    assert "path rms" in text
+    assert "azimuth rms" not in text
 
 
 def test_still_ground_has_no_excitation_and_markup_in_a_name_stays_text(no_engines):
