@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -79,10 +80,11 @@ def test_a_wrong_column_of_the_summary_is_found(monkeypatch: pytest.MonkeyPatch,
         ("predict_horizon", lambda found: type(found)(length=1.01 * found.length, reason=found.reason)),
         ("predict_horizon", lambda found: type(found)(length=found.length, reason="growth")),
         ("verdict", lambda word: "in time"),
-        ("ks_distance", lambda value: value - 1.0 / 21.0),
-        ("median_ratio", lambda value: 1.0 / value),
-        ("member_factor", lambda value: 1.0 / value),
-        ("standing_wasserstein", lambda value: 2.0 * value),
+        ("contrast", lambda found: replace(found, ratio_p=0.5 * found.ratio_p)),
+        ("contrast", lambda found: replace(found, overturned_p=1.0)),
+        ("contrast", lambda found: replace(found, compared=found.count)),
+        ("contrast", lambda found: replace(found, ratio=replace(found.ratio, value=1.0 / found.ratio.value))),
+        ("contrast", lambda found: replace(found, ratio=replace(found.ratio, low=found.ratio.value))),
     ],
 )
 def test_a_wrong_prediction_or_distribution_is_found(
@@ -96,8 +98,6 @@ def test_a_wrong_prediction_or_distribution_is_found(
 def test_a_wrong_field_of_an_external_trajectory_is_found(
     monkeypatch: pytest.MonkeyPatch, field: str
 ) -> None:
-    from dataclasses import replace
-
     changed(
         monkeypatch,
         external_trajectories,

@@ -8,8 +8,8 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import compare, read_trajectory
-from rockwobble.compare.external_uplift import first_passage, uplift
-from rockwobble.compare.external_uplift_difference import uplift_differences
+from rockwobble.compare.external_uplift import uplift
+from rockwobble.compare.external_uplift_difference import first_passage, uplift_differences
 from rockwobble.models import Case, Cylinder, el_centro_1940
 
 BODIES = [
@@ -51,10 +51,11 @@ def trace_of(case, sample_step):
 
 def file_of(trace, noise=0.0, seed=0):
     generator = np.random.default_rng(seed)
-    lean = np.sin(trace.tilt) * np.exp(1j * np.nan_to_num(trace.rolling_angle))
+    count = np.count_nonzero(trace.time <= trace.problem.duration)  # not the fall after it
+    lean = (np.sin(trace.tilt) * np.exp(1j * np.nan_to_num(trace.rolling_angle)))[:count]
     lean = lean + noise * (generator.normal(size=len(lean)) + 1j * generator.normal(size=len(lean)))
     return pd.DataFrame(
-        {"time": trace.time, "tilt [rad]": np.arcsin(np.abs(lean)), "azimuth [rad]": np.angle(lean)}
+        {"time": trace.time[:count], "tilt [rad]": np.arcsin(np.abs(lean)), "azimuth [rad]": np.angle(lean)}
     )
 
 
