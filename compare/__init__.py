@@ -7,7 +7,7 @@ from .ensemble_members import far_field_motions, perturbed_starts, synthetic_mot
 from .ensemble_study import Ensemble, ensemble, read_ensemble
 from .error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
 from .execution import Crash, Job, Progress, simulate_all
-from .foreign import Foreign, ForeignTrajectory, read_trajectory
+from .external.trajectory import ExternalTrajectory, Foreign, read_trajectory
 from .horizon import AGREEMENT
 from .runs import (
     default_runs,
@@ -38,8 +38,8 @@ __all__ = [
     "Crash",
     "Ensemble",
     "ErrorBudget",
+    "ExternalTrajectory",
     "Foreign",
-    "ForeignTrajectory",
     "Grid",
     "Job",
     "Pair",

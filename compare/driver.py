@@ -13,7 +13,7 @@ from .case_budgets import case_budgets
 from .comparison import Comparison
 from .error_budget import ErrorBudget
 from .execution import Crash, Job, ProgressCallback, simulate_all
-from .foreign import Foreign, read_trajectories
+from .external.trajectory import Foreign, read_trajectories
 from .predicted_horizon import Simulate, estimated_error, measured_error, predict_horizon
 from .provenance import package_versions
 from .run_store import open_run_store
@@ -58,7 +58,7 @@ def compare(
         call with the same inputs, after whatever ended the first, repeats none that is there.
     foreign : iterable of Foreign, str or Path, optional
         CSV files of trajectories of this case from a shake table or another code, each one more run; what
-        they may hold is said in `rockwobble.compare.foreign_file`. With them, `runs` may be empty.
+        they may hold is said in `rockwobble.compare.external.file`. With them, `runs` may be empty.
     budget : bool, optional
         Whether to repeat each run at finer time steps, as far as traces agree, and split its difference
         into model form, numerics and what stays unexplained: see `ErrorBudget`. Takes some seven times

@@ -14,9 +14,9 @@ from rockwobble.models import Case, Run
 from .contact import contact_rms
 from .energy import energy_loss
 from .error_budget import BUDGET_COLUMNS, ErrorBudget
-from .external_difference import allowance as noise_allowance
-from .external_verdict import VERDICT_COLUMNS, judge, no_verdict
-from .foreign import ForeignTrajectory
+from .external.difference import allowance as noise_allowance
+from .external.trajectory import ExternalTrajectory
+from .external.verdict import VERDICT_COLUMNS, judge, no_verdict
 from .horizon import Horizon, agreed_passes, agreement_horizon, closest_pass
 from .predicted_horizon import Prediction, close_pass, verdict
 from .tilt import tilt_rms, tilt_rms_relative
@@ -179,13 +179,13 @@ def foreign_row(
     model: str,
     reference: Trace,
     label: str,
-    trial: ForeignTrajectory,
+    trial: ExternalTrajectory,
     *,
     until: float | None = None,
 ) -> dict[str, Any]:
     """Return the row of an external trajectory: nothing is known of its steps and errors.
 
-    Its uplift is compared as its samples show it: see `rockwobble.compare.external_uplift_difference`.
+    Its uplift is compared as its samples show it: see `rockwobble.compare.external.uplift_difference`.
     """
     verdict = judge(trial, reference, case)
     row = summary_row(

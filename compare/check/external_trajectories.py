@@ -15,7 +15,7 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder, InitialState
 
-from ..foreign import Foreign, ForeignTrajectory, read_trajectory
+from ..external.trajectory import ExternalTrajectory, Foreign, read_trajectory
 from . import lagrange
 from .bench import Bench
 from .finding import Finding, worst_of
@@ -78,7 +78,7 @@ def _centre(time: Array) -> Array:
     return lagrange.mass_centre(lagrange.shape_of(CYLINDER), tilt, azimuth) + drift
 
 
-def _errors(found: ForeignTrajectory, form: str) -> dict[str, float]:
+def _errors(found: ExternalTrajectory, form: str) -> dict[str, float]:
     tilt, azimuth, twist, drift = _motion(found.time)
     outward = np.column_stack([np.cos(azimuth), np.sin(azimuth)])
     placed = "places" in form
@@ -109,7 +109,7 @@ def _errors(found: ForeignTrajectory, form: str) -> dict[str, float]:
     return errors
 
 
-def _turning(found: ForeignTrajectory) -> dict[str, float]:
+def _turning(found: ExternalTrajectory) -> dict[str, float]:
     """Where the tilt turns: 0.6 sin(2 t - LATE) = -0.02; the two maxima are a period of pi apart."""
     early = math.asin(0.02 / 0.6)
     lowest, highest = 0.5 * (LATE + math.pi + early), 0.5 * (LATE - early)
@@ -152,7 +152,7 @@ def _csv(head: str, rows: Array) -> str:
     return "\n".join([head, *(", ".join(f"{value:.12g}" for value in row) for row in rows.tolist())]) + "\n"
 
 
-def _read(path: Path, text: str, offset: float) -> ForeignTrajectory:
+def _read(path: Path, text: str, offset: float) -> ExternalTrajectory:
     path.write_text(text, encoding="utf-8")
     return read_trajectory(Foreign(path=path, time_offset=offset), CASE)
 

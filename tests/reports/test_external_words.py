@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 from rich.console import Console
 
-from rockwobble.compare.external_verdict import VERDICT_COLUMNS, no_verdict
+from rockwobble.compare.external.verdict import VERDICT_COLUMNS, no_verdict
 from rockwobble.reports.external_words import external_sentences, external_table, mistake_words, scope, within
 from rockwobble.reports.findings import finding, headline
 

@@ -13,9 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .external_difference import leans
-from .external_motion import Complex, Motion, on_samples_of
-from .foreign_file import Array
+from .difference import leans
+from .file import Array
+from .motion import Complex, Motion, on_samples_of
 
 # an axis is meant where the fit comes so close to it, and the rest is another difference [rad]
 _NAMED_WITHIN = math.radians(1.5)

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .foreign_file import Array
+from .file import Array
 
 # power of time with which the tilt begins: expected, and those it may have
 _POWER, _OTHERS = 3.0, (2.0, 4.0)

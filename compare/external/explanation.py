@@ -13,13 +13,13 @@ from dataclasses import dataclass, replace
 
 from rockwobble.models import Case
 
-from .external_clock import fitted_delays
-from .external_difference import Difference, difference
-from .external_frame import Frame, fitted_frames
-from .external_mistake import Mistake, explains, mistake_of
-from .external_motion import Motion
-from .external_path import explain_path, lean_of_path
-from .foreign import ForeignTrajectory, trajectory_of
+from .clock import fitted_delays
+from .difference import Difference, difference
+from .frame import Frame, fitted_frames
+from .mistake import Mistake, explains, mistake_of
+from .motion import Motion
+from .path import explain_path, lean_of_path
+from .trajectory import ExternalTrajectory, trajectory_of
 
 # how much more motion must agree without the mistake, and how far it must lean while it does, in bounds
 _MORE_MOTION, _LEANING = 4.0, 5.0
@@ -49,12 +49,12 @@ class Explanation:
     left: Difference
 
 
-def explain(trajectory: ForeignTrajectory, reference: Motion, case: Case, *, start: float) -> Explanation:
+def explain(trajectory: ExternalTrajectory, reference: Motion, case: Case, *, start: float) -> Explanation:
     """Look for the mistakes that make a trajectory differ from a model.
 
     Parameters
     ----------
-    trajectory : ForeignTrajectory
+    trajectory : ExternalTrajectory
     reference : Motion
         Of the model.
     case : Case
@@ -115,7 +115,7 @@ def _follows_longer(before: Difference, after: Difference, case: Case) -> bool:
     )
 
 
-def _in_other_units(trajectory: ForeignTrajectory, case: Case) -> Iterator[tuple[Mistake, Motion]]:
+def _in_other_units(trajectory: ExternalTrajectory, case: Case) -> Iterator[tuple[Mistake, Motion]]:
     """Yield the trajectory in degrees for radians and the other way, of both angles and of one."""
     values = trajectory.columns.values
     if "tilt" not in values or "qw" in values:
@@ -133,7 +133,7 @@ def _in_other_units(trajectory: ForeignTrajectory, case: Case) -> Iterator[tuple
 
 
 def _at_other_times(
-    trajectory: ForeignTrajectory, reference: Motion, case: Case, start: float
+    trajectory: ExternalTrajectory, reference: Motion, case: Case, start: float
 ) -> Iterator[tuple[Mistake, Motion]]:
     """Yield the trajectory with its clock moved."""
     motion = trajectory.motion

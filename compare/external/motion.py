@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .foreign_file import Array
-from .traces import Trace
+from ..traces import Trace
+from .file import Array
 
 Complex = NDArray[np.complex128]
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from .external_frame import Frame
-from .external_part import Part
+from .frame import Frame
+from .part import Part
 
 # what is left of a difference that is explained, of the difference
 _LEFT = 1.0 / 3.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .foreign_file import Array
+from .file import Array
 
 # of a normal distribution: median of the absolute value over the standard deviation
 _MEDIAN_OF_NORMAL = 0.6745

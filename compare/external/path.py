@@ -8,10 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from .external_difference import Difference
-from .external_frame import Frame
-from .external_mistake import Mistake, explains, mistake_of
-from .external_motion import Motion, on_samples_of
+from .difference import Difference
+from .frame import Frame
+from .mistake import Mistake, explains, mistake_of
+from .motion import Motion, on_samples_of
 
 _LENGTH_UNITS = (1e3, 1e2, 1e-2, 1e-3)
 

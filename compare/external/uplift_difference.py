@@ -10,13 +10,13 @@ import math
 
 import numpy as np
 
-from .external_part import Part
-from .external_uplift import CONFIDENCE
-from .foreign import ForeignTrajectory
-from .traces import Trace
+from ..traces import Trace
+from .part import Part
+from .trajectory import ExternalTrajectory
+from .uplift import CONFIDENCE
 
 
-def uplift_differences(trajectory: ForeignTrajectory, reference: Trace) -> tuple[Part | None, Part | None]:
+def uplift_differences(trajectory: ExternalTrajectory, reference: Trace) -> tuple[Part | None, Part | None]:
     """Return time [s] and azimuth [rad] at which a trajectory leans first, minus those of a model.
 
     The size of each is the difference and its bound the uncertainty; both are None for a release, or where

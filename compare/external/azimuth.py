@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .foreign_file import Array
+from .file import Array
 
 
 def unwrapped(

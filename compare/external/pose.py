@@ -13,9 +13,9 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder
 
-from .external_azimuth import unwrapped
-from .external_scatter import scatter
-from .foreign_file import POSITION, QUATERNION, Array, Columns
+from .azimuth import unwrapped
+from .file import POSITION, QUATERNION, Array, Columns
+from .scatter import scatter
 
 # tilt below which the cylinder stands, in units of alpha; a measured azimuth means nothing there
 STANDS = 1e-4

@@ -10,9 +10,9 @@ import numpy as np
 from rockwobble.models import Cylinder
 from rockwobble.multibody.passes import passes_between, turning_points
 
-from .execution import SAMPLE_STEP
-from .foreign_file import Array
-from .foreign_pose import SAME_TIME, Poses
+from ..execution import SAMPLE_STEP
+from .file import Array
+from .pose import SAME_TIME, Poses
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .external_motion import Motion
+from .motion import Motion
 
 # windows in which the tilts are held against each other, over the time scale of rocking: the first motion
 # agrees best, and may be too little to tell

@@ -10,14 +10,14 @@ from typing import Any
 
 from rockwobble.models import Case
 
-from .external_difference import Difference, difference
-from .external_explanation import Explanation, explain
-from .external_mistake import Mistake
-from .external_motion import motion_of
-from .external_part import Part
-from .external_uplift_difference import uplift_differences
-from .foreign import ForeignTrajectory
-from .traces import Trace
+from ..traces import Trace
+from .difference import Difference, difference
+from .explanation import Explanation, explain
+from .mistake import Mistake
+from .motion import motion_of
+from .part import Part
+from .trajectory import ExternalTrajectory
+from .uplift_difference import uplift_differences
 
 # columns of the summary that only external trajectories have: unit, meaning
 VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
@@ -124,12 +124,12 @@ def _columns_of(name: str, mistakes: tuple[Mistake, ...]) -> dict[str, str]:
     }
 
 
-def judge(trajectory: ForeignTrajectory, reference: Trace, case: Case) -> Verdict:
+def judge(trajectory: ExternalTrajectory, reference: Trace, case: Case) -> Verdict:
     """Hold an external trajectory against a model.
 
     Parameters
     ----------
-    trajectory : ForeignTrajectory
+    trajectory : ExternalTrajectory
     reference : Trace
         Response of the model.
     case : Case

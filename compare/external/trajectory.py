@@ -12,11 +12,11 @@ import numpy as np
 
 from rockwobble.models import Case
 
-from .external_motion import Motion, motion_of
-from .external_uplift import uplift
-from .foreign_file import Array, Columns, read_columns
-from .foreign_measures import passes, peak, places, resampled, sample_times
-from .foreign_pose import SAME_TIME, Poses, poses_of
+from .file import Array, Columns, read_columns
+from .measures import passes, peak, places, resampled, sample_times
+from .motion import Motion, motion_of
+from .pose import SAME_TIME, Poses, poses_of
+from .uplift import uplift
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,7 +28,7 @@ _FALLEN = 0.5 * math.pi - 0.01
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Foreign:
-    """A file of a trajectory, and how to read it; `rockwobble.compare.foreign_file` says what it may hold.
+    """A file of a trajectory, and how to read it; `rockwobble.compare.external.file` says what it may hold.
 
     Parameters
     ----------
@@ -65,7 +65,7 @@ class Foreign:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ForeignTrajectory:
+class ExternalTrajectory:
     """A foreign trajectory at the sample times of the reduced models; fields as of an engine's trajectory.
 
     What the file does not tell is NaN: energy, computing time, contact resolution; the twist without
@@ -140,7 +140,7 @@ class ForeignTrajectory:
         )
 
 
-def read_trajectory(foreign: Foreign | str | Path, case: Case) -> ForeignTrajectory:
+def read_trajectory(foreign: Foreign | str | Path, case: Case) -> ExternalTrajectory:
     """Read a foreign trajectory of a case.
 
     Parameters
@@ -159,7 +159,7 @@ def read_trajectory(foreign: Foreign | str | Path, case: Case) -> ForeignTraject
     return trajectory_of(read_columns(given.path, given.angle_unit), given, case)
 
 
-def trajectory_of(columns: Columns, given: Foreign, case: Case) -> ForeignTrajectory:
+def trajectory_of(columns: Columns, given: Foreign, case: Case) -> ExternalTrajectory:
     """Return the trajectory that the columns of a file hold; see `read_trajectory`."""
     poses = poses_of(columns, case, noise=given.noise, time_offset=given.time_offset)
     start = int(np.argmax(poses.time > -0.5 * float(poses.time[1] - poses.time[0])))
@@ -177,7 +177,7 @@ def trajectory_of(columns: Columns, given: Foreign, case: Case) -> ForeignTrajec
     angle = np.where((tilt > stands) & (time >= begin.time - SAME_TIME), angle, np.nan)
     contact, centre, moved = places(poses, time, axis, angle, case.cylinder)
     twist = np.full(len(time), np.nan) if poses.twist is None else np.interp(time, poses.time, poses.twist)
-    return ForeignTrajectory(
+    return ExternalTrajectory(
         engine=given.label,
         time=time,
         tilt=tilt,
@@ -213,7 +213,7 @@ def trajectory_of(columns: Columns, given: Foreign, case: Case) -> ForeignTrajec
 
 def read_trajectories(
     foreign: Sequence[Foreign | str | Path], cases: Sequence[Case], *, taken: Collection[str] = ()
-) -> dict[tuple[str, str], ForeignTrajectory]:
+) -> dict[tuple[str, str], ExternalTrajectory]:
     """Read all trajectories that belong to the one case of a comparison.
 
     Parameters
@@ -235,7 +235,7 @@ def read_trajectories(
     """
     if foreign and len(cases) > 1:
         raise ValueError(f"a trajectory belongs to one case, got {len(cases)} cases")
-    found: dict[tuple[str, str], ForeignTrajectory] = {}
+    found: dict[tuple[str, str], ExternalTrajectory] = {}
     for item in foreign:
         trajectory = read_trajectory(item, cases[0])
         label = trajectory.engine

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder
 
-from .contact import TILTED
-from .external_motion import Motion, on_samples_of
-from .external_part import Part
-from .horizon import AGREEMENT
+from ..contact import TILTED
+from ..horizon import AGREEMENT
+from .motion import Motion, on_samples_of
+from .part import Part
 
 Mask = NDArray[np.bool_]
 
