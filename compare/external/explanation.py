@@ -68,6 +68,12 @@ def explain(trajectory: ExternalTrajectory, reference: Motion, case: Case, *, st
     def fits(motion: Motion, found: Difference) -> list[Frame]:
         return fitted_frames(reference, motion, start=found.start, end=found.covered)
 
+    def turns(motion: Motion, found: Difference) -> list[Frame]:
+        part = found.azimuth
+        if part is None:
+            return []
+        return [fit for fit in fits(motion, found) if explains(part, hold(fit.apply(motion)).azimuth)]
+
     motion = trajectory.motion
     found = hold(motion)
     mistakes: list[Mistake] = []
@@ -75,17 +81,18 @@ def explain(trajectory: ExternalTrajectory, reference: Motion, case: Case, *, st
         tried = (*_in_other_units(trajectory, case), *_at_other_times(trajectory, reference, case, start))
         for mistake, other in tried:
             left = hold(other)
-            if _follows_longer(found, left, case):
+            if not _follows_longer(found, left, case):
+                continue
+            # two motions that differ may have tilts that agree longer by chance, but not azimuths, too
+            if left.azimuth is None or not left.azimuth.differs or turns(other, left):
                 motion, found, mistakes = other, left, [mistake]
                 break
     frame = Frame()
     alternatives: tuple[Mistake, ...] = ()
     if found.azimuth is not None and found.azimuth.differs:
-        turns = [
-            fit for fit in fits(motion, found) if explains(found.azimuth, hold(fit.apply(motion)).azimuth)
-        ]
-        if turns:
-            frame, *others = turns
+        frames = turns(motion, found)
+        if frames:
+            frame, *others = frames
             alternatives = tuple(mistake_of(other, "azimuth") for other in others)
             mistakes.append(mistake_of(frame, "azimuth"))
         else:

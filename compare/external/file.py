@@ -74,6 +74,19 @@ class Columns:
         """Return the error for a sample, with the number of its line."""
         return ValueError(f"{self.path.name}, line {self.lines[sample]}: {reason}")
 
+    def complete(self, name: str) -> Array:
+        """Return a column that must have a value in each sample.
+
+        Raises
+        ------
+        ValueError
+            If one is missing; with the number of its line.
+        """
+        values = self.values[name]
+        if bool(np.isnan(values).any()):
+            raise self.refuse(int(np.argmax(np.isnan(values))), f"{name} is missing")
+        return values
+
     def scaled(self, factors: Mapping[str, float]) -> Columns:
         """Return the file as if its columns were in other units: values times the factor of their name."""
         values = {name: column * factors.get(name, 1.0) for name, column in self.values.items()}

@@ -29,6 +29,12 @@ def resampled(poses: Poses, time: Array) -> tuple[Array, Array, Array]:
     own = poses.time
     if len(own) == len(time) and bool((np.abs(own - time) < SAME_TIME).all()):
         return poses.tilt.copy(), poses.rolling_angle, poses.axis
+    if not np.isfinite(poses.rolling_angle).any() and bool((poses.axis[:, 0] >= 0.0).all()):
+        # an unsigned tilt alone has a corner at each pass, where its square is a parabola
+        square = _interpolated(own, poses.tilt**2, time)
+        tilt = np.sqrt(np.maximum(square, 0.0))
+        axis = np.column_stack([np.sin(tilt), np.zeros_like(tilt), np.cos(tilt)])
+        return tilt, np.full(len(time), np.nan), axis
     axis = _interpolated(own, poses.axis, time)
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     tilt = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2])

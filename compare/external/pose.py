@@ -37,6 +37,8 @@ _ANOTHER_ORDER = 0.75 * math.pi
 _FROM_RIM = 0.2
 # scatter that is no noise any more, in units of alpha: the samples are of no smooth motion
 _ROUGH = 0.02
+# the tilt alone of a cylinder that stands is the length of two components: what it scatters of what they do
+_OF_A_LENGTH = math.sqrt(2.0 - 0.5 * math.pi)
 # twist at the start that is worth a word [rad]
 _TWISTED = math.radians(1.0)
 
@@ -122,7 +124,7 @@ def poses_of(columns: Columns, case: Case, *, noise: float | None = None, time_o
     time = _checked_time(columns, time_offset, case)
     position = None
     if "x" in columns.values:
-        position = np.column_stack([_complete(columns, name) for name in POSITION])
+        position = np.column_stack([columns.complete(name) for name in POSITION])
     twist, notes = None, []
     told = ["tilt", "azimuth"] if {"qw", "azimuth"} & set(columns.values) else ["tilt"]
     if "qw" in columns.values:
@@ -138,6 +140,8 @@ def poses_of(columns: Columns, case: Case, *, noise: float | None = None, time_o
         axis = _from_positions(columns, position, case.cylinder)
         notes.append("tilt and azimuth are those of a cylinder in a recess with this mass centre")
     own_noise = scatter(time, axis[:, :2])
+    if told == ["tilt"]:
+        own_noise /= _OF_A_LENGTH
     if own_noise > _ROUGH * case.cylinder.alpha:
         notes.append(
             f"the samples scatter by {own_noise / case.cylinder.alpha:.2g} alpha, which is no smooth motion"
@@ -177,7 +181,7 @@ def poses_of(columns: Columns, case: Case, *, noise: float | None = None, time_o
 
 
 def _checked_time(columns: Columns, offset: float, case: Case) -> Array:
-    time = _complete(columns, "time") + offset
+    time = columns.complete("time") + offset
     steps = np.diff(time)
     if bool((steps <= 0.0).any()):
         at = int(np.argmax(steps <= 0.0)) + 1
@@ -206,7 +210,7 @@ def _checked_time(columns: Columns, offset: float, case: Case) -> Array:
 
 def _from_angles(columns: Columns) -> tuple[Array, list[str]]:
     """Axis, NaN where it leans to nobody knows where, and what there is to know of it."""
-    tilt = _complete(columns, "tilt")
+    tilt = columns.complete("tilt")
     beyond = np.abs(tilt) > math.pi
     if bool(beyond.any()):
         at = int(np.argmax(beyond))
@@ -233,7 +237,7 @@ def _require_azimuth(columns: Columns, stands: float) -> None:
 
 
 def _from_quaternions(columns: Columns) -> tuple[Array, Array, list[str]]:
-    w, x, y, z = (_complete(columns, name) for name in QUATERNION)
+    w, x, y, z = (columns.complete(name) for name in QUATERNION)
     length = np.sqrt(w * w + x * x + y * y + z * z)
     if bool((np.abs(length - 1.0) > _UNIT_LENGTH).any()):
         at = int(np.argmax(np.abs(length - 1.0) > _UNIT_LENGTH))
@@ -290,10 +294,3 @@ def _from_positions(columns: Columns, position: Array, cylinder: Cylinder) -> Ar
     tilt = np.maximum(cylinder.alpha + np.arctan2(outward, height), 0.0)
     azimuth = np.arctan2(position[:, 1], position[:, 0])
     return np.column_stack([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
-
-
-def _complete(columns: Columns, name: str) -> Array:
-    values = columns.values[name]
-    if bool(np.isnan(values).any()):
-        raise columns.refuse(int(np.argmax(np.isnan(values))), f"{name} is missing")
-    return values

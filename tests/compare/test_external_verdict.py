@@ -17,6 +17,7 @@ from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 DRUM = Cylinder(semidiagonal=1.0, tan_alpha=0.35)
+LITTLE = Cylinder(semidiagonal=0.3, tan_alpha=0.2)  # of which few samples tell a swing
 SQUAT = Cylinder(semidiagonal=3.0, tan_alpha=1.0)
 
 
@@ -37,6 +38,8 @@ CASES = {
         released("pier falls", PIER, 0.5, 1.5, -2.0),
         released("squat wobbles", SQUAT, 0.5, 0.3, 1.0),
         released("planar", PIER, 0.3, 0.0, 0.5),
+        Case("little shaken", LITTLE, el_centro_1940().scaled(1.5), duration=12.0),
+        released("little planar", LITTLE, 0.6, 0.0, -1.5, length=8.0),
         released("hardly moves", PIER, 0.03, 0.3),
     )
 }
