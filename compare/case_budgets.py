@@ -121,5 +121,5 @@ def _landings(
 def _agreement(case: Case, response: Any, trajectory: Any) -> Horizon | None:
     if response.outcome == "failed" or not math.isfinite(response.uplift_time):
         return None
-    horizon = agreement_horizon(make_pair(case.cylinder, response, trajectory))
+    horizon = agreement_horizon(make_pair(case.cylinder, response, trajectory, until=case.length))
     return horizon if horizon.length > 0.0 else None

@@ -185,7 +185,7 @@ def _start(trace: Trace) -> float:
 
 def _parting(case: Case, reference: Trace, other: Trace) -> float:
     """Time at which two responses part [s]; the length of the run where they do not."""
-    horizon = agreement_horizon(make_pair(case.cylinder, reference, other))
+    horizon = agreement_horizon(make_pair(case.cylinder, reference, other, until=case.length))
     return horizon.end if horizon.parted else case.length
 
 
@@ -198,7 +198,8 @@ def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:
 def _twin_parting(case: Case, own: Trace, model: str, error: float, simulate: Simulate) -> float:
     if not math.isfinite(own.uplift_time):
         return case.length
-    trial = make_pair(case.cylinder, own, simulate(_disturbed(case, _TRIAL), model))
+    disturbed = simulate(_disturbed(case, _TRIAL), model)
+    trial = make_pair(case.cylinder, own, disturbed, until=case.length)
     distance = early_rms(case, trial.time, trial.tilt_difference, _start(own))
     if distance == 0.0:
         return case.length

@@ -116,7 +116,7 @@ def summary_row(
     """
     cylinder = case.cylinder
     alpha, radius = cylinder.alpha, cylinder.base_radius
-    whole = make_pair(cylinder, reference, trial)
+    whole = make_pair(cylinder, reference, trial, until=case.length)  # a fall after it multiplies differences
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
     broken = "failed" in (trial.outcome, reference.outcome)
     horizon = agreement_horizon(whole, broken=broken, allowance=allowance)

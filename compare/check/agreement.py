@@ -100,7 +100,7 @@ def _by_rule(
     until: float | None,
 ) -> Finding:
     """Return the finding where the suite states no bounds."""
-    pair = make_pair(case.cylinder, response, trajectory, until=until)
+    pair = make_pair(case.cylinder, response, trajectory, until=case.length if until is None else until)
     horizon = agreement_horizon(pair)
     # what near passes have magnified says nothing: half of the way to where the traces have to part
     end = min(pair.end, pair.start + 0.5 * prediction.length) if prediction.reason else pair.end
