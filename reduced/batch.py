@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import itertools
 import math
 import os
@@ -98,8 +97,8 @@ def peak_tilts(
     make_ready("planar" if bodies[0].is_planar() else model)
 
     def run_cells(column: int, rows: slice) -> None:
-        scaled = dataclasses.replace(bodies[0], motion=motion.scaled(float(factors[column])))
-        peaks[rows, column] = [_peak(body.march_scaled(scaled)) for body in bodies[rows]]
+        shaking = bodies[0].shaking(float(factors[column]))
+        peaks[rows, column] = [_peak(body.march_under(shaking)) for body in bodies[rows]]
 
     threads = workers or os.cpu_count() or 1
     parts = min(len(sizes), math.ceil(_TASKS * threads / len(factors)))

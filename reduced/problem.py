@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from rockwobble.models import Cylinder, GroundMotion, InitialState, run_duration
 
 from . import kernels
 from .body import Body, body_of
+from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .driver import spin_momentum
 from .march import March, Options
 
@@ -35,8 +37,6 @@ _BUDGET, _BUDGET_PER_SAMPLE, _BUDGET_PER_TIME = 500_000, 50, 100_000
 # A spin (over p) whose passes are as near to the upright position as numbers can be to zero. A weaker one
 # turns by the same angle, that of vanishing spin, and is solved as this one.
 _LEAST_SPIN = 1e-100
-# A motion is in one plane if it leaves it by no more than a few roundings of its peak.
-_PLANE_TOLERANCE = 32.0 * float(np.finfo(float).eps)
 MOST_SEATING = 0.1  # tilt of the seating rule over alpha
 
 
@@ -54,6 +54,13 @@ class SetUp(NamedTuple):
     record: NDArray[np.float64]  # (n, 3) [m/s^2]
     start: tuple[float, ...]  # (size,) state at time zero
     azimuth: float  # from which the angles of the march count [rad]
+
+
+class Shaking(NamedTuple):
+    """What runs from rest under one motion share, whatever the size of the cylinder."""
+
+    set_up: SetUp
+    later: NDArray[np.float64]  # (n, 2) largest |a| and least az from each sample on [m/s^2]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -99,27 +106,36 @@ class Problem:
         )
         return march, set_up.azimuth
 
-    def march_scaled(self, scaled: Problem) -> March:
-        """Return the march of this body under the motion of `scaled`, for the peak only.
+    def shaking(self, factor: float) -> Shaking:
+        """Return what a run from rest under ``motion.scaled(factor)`` is called with, whatever the size."""
+        assert self.motion is not None
+        if self.model == "planar" or not is_spatial(self.motion) or not math.isfinite(factor * self._peak):
+            scaled = dataclasses.replace(self, motion=self.motion.scaled(factor))
+            return Shaking(scaled._set_up, scaled._later)
+        # far from planar, so that the plane need not be looked for: a third of the time of a short run
+        return Shaking(self._set_up._replace(record=self._set_up.record * factor), self._later * factor)
 
-        The two problems differ in their cylinder alone, and both begin at rest: what depends on the
-        motion is prepared once, and the numbers are those of `solve`.
-        """
-        set_up = scaled._set_up
+    def march_under(self, shaking: Shaking) -> March:
+        """Return the march of this body under a motion of another size, for the peak only."""
+        set_up, later = shaking
         march: March = set_up.march(
             self.body,
             self._options(False),
             set_up.record,
-            scaled._time_step,
+            self._time_step,
             set_up.start,
             np.empty(0),
-            scaled._later,
+            later,
         )
         return march
 
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""
         return len(self._set_up.start) == kernels.SIZES["planar"]
+
+    @cached_property
+    def _peak(self) -> float:
+        return 0.0 if self.motion is None else float(np.abs(self.motion.acceleration).max())
 
     @property
     def _time_step(self) -> float:
@@ -136,7 +152,7 @@ class Problem:
 
         Rounding would otherwise choose on which side such motion passes the apex.
         """
-        record = _three_columns(self.motion)
+        record = three_columns(self.motion)
         plane = self._plane(record)
         if plane is not None:
             start = self._start(kernels.SIZES["planar"], plane.azimuth)
@@ -182,10 +198,10 @@ class Problem:
             azimuth = self.plane
         elif self.initial is not None and self.initial.tilt > 0.0:
             azimuth = self.initial.rolling_angle
-            if self.initial.rolling_rate != 0.0 or not _stays_in_plane(record, azimuth):
+            if self.initial.rolling_rate != 0.0 or not stays_in_plane(record, azimuth):
                 return None
         else:
-            shaken = _plane_of_shaking(self.motion)
+            shaken = plane_of_shaking(self.motion)
             if shaken is None:
                 return None
             azimuth = shaken
@@ -196,19 +212,6 @@ class Problem:
 
 def _restored(given: dict[str, Any]) -> Problem:
     return Problem(**given)
-
-
-def ground_at(
-    motion: GroundMotion | None, duration: float, times: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return the ground acceleration (n, 3) [m/s^2] at `times` (n,) [s]; zero outside record and run."""
-    record = _three_columns(motion)
-    if motion is None:
-        return np.zeros((len(times), 3))
-    at = np.arange(len(record)) * motion.time_step
-    # the last instant of a run may round beyond the last sample
-    inside = times <= min(motion.duration, duration) * (1.0 + 1e-12)
-    return np.column_stack([np.where(inside, np.interp(times, at, column), 0.0) for column in record.T])
 
 
 def restitution_from_momentum(cylinder: Cylinder) -> float:
@@ -267,31 +270,3 @@ def make_problem(
         plane=float(plane),
         restitution=factor,
     )
-
-
-@lru_cache(maxsize=4)
-def _plane_of_shaking(motion: GroundMotion | None) -> float | None:
-    """The azimuth [rad] of the vertical plane that holds the whole motion, if there is one."""
-    if motion is None or motion.peak == 0.0:
-        return 0.0
-    record = _three_columns(motion)
-    largest = record[int(np.square(record[:, :2]).sum(axis=1).argmax())]
-    azimuth = math.atan2(largest[1], largest[0])
-    return azimuth if _stays_in_plane(record, azimuth) else None
-
-
-def _stays_in_plane(record: NDArray[np.float64], azimuth: float) -> bool:
-    x, y = record[:, 0], record[:, 1]
-    across = y * math.cos(azimuth) - x * math.sin(azimuth)
-    peak = math.sqrt(float((x * x + y * y).max(initial=0.0)))
-    return float(np.abs(across).max(initial=0.0)) <= _PLANE_TOLERANCE * peak
-
-
-# kept for the runs that follow with the same motion: it takes a tenth of the time of a short one
-@lru_cache(maxsize=4)
-def _three_columns(motion: GroundMotion | None) -> NDArray[np.float64]:
-    if motion is None:
-        return np.empty((0, 3))
-    record = np.zeros((len(motion.acceleration), 3))
-    record[:, : motion.acceleration.shape[1]] = motion.acceleration
-    return record

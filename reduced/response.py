@@ -14,8 +14,9 @@ from rockwobble.models import Cylinder
 
 from . import forces
 from .assumptions import Assumptions, Demands, review
+from .columns import ground_at
 from .march import MAXIMUM, MINIMUM
-from .problem import Problem, ground_at
+from .problem import Problem
 
 if TYPE_CHECKING:
     import pandas as pd

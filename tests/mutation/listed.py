@@ -117,7 +117,7 @@ def _structure() -> list[Mutation]:
         "a, slope, end = without_fault(record, scale, time_step, index + skipped)\n"
         "return a, slope, end - skipped * time_step",
     )
-    exchanged = _around("problem.py", "_three_columns(motion)", "return without_fault(motion)[:, [1, 0, 2]]")
+    exchanged = _around("columns.py", "three_columns(motion)", "return without_fault(motion)[:, [1, 0, 2]]")
     late = _around(
         "uplift.py",
         "uplift_in(*arguments)",
