@@ -47,7 +47,7 @@ def plane_of_shaking(motion: GroundMotion | None) -> float | None:
 
 
 def stays_in_plane(record: NDArray[np.float64], azimuth: float, tolerance: float = _PLANE_TOLERANCE) -> bool:
-    """Return whether a record (n, 3) leaves the plane of an azimuth [rad] by no more than a share of its peak."""
+    """Return whether a record (n, 3) leaves the plane at `azimuth` by at most a share of its peak."""
     x, y = record[:, 0], record[:, 1]
     across = y * math.cos(azimuth) - x * math.sin(azimuth)
     peak = math.sqrt(float((x * x + y * y).max(initial=0.0)))

@@ -111,10 +111,10 @@ def _around(file: str, head: str, body: str) -> Fault:
 def _structure() -> list[Mutation]:
     # the pieces keep their times, but from the 21st on they are those of the next
     skipped = _around(
-        "driver.py",
-        "piece_of_record(record, scale, time_step, index)",
+        "march.py",
+        "piece_of_record(record, time_step, index)",
         "skipped = 1 if 20 < index < len(record) - 2 else 0\n"
-        "a, slope, end = without_fault(record, scale, time_step, index + skipped)\n"
+        "a, slope, end = without_fault(record, time_step, index + skipped)\n"
         "return a, slope, end - skipped * time_step",
     )
     exchanged = _around("columns.py", "three_columns(motion)", "return without_fault(motion)[:, [1, 0, 2]]")

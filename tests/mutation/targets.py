@@ -68,6 +68,7 @@ GROUPS = (
             "reduced/body.py",
             "reduced/driver.py",
             "reduced/endings.py",
+            "reduced/march.py",
             "reduced/recurrences.py",
             "reduced/stepping.py",
             "reduced/systems.py",
@@ -83,6 +84,7 @@ GROUPS = (
         patterns=(
             "reduced/assumptions.py",
             "reduced/batch.py",
+            "reduced/columns.py",
             "reduced/equations.py",
             "reduced/forces.py",
             "reduced/kernels.py",
