@@ -36,6 +36,7 @@ def check(bench: Bench) -> Iterator[Finding]:
     yield _limit(bench, cylinder)
     yield _steady(bench, cylinder)
     yield _planar(bench, cylinder)
+    yield _stated(bench, cylinder)
 
 
 def _free(bench: Bench, cylinder: Cylinder) -> Iterator[Finding]:
@@ -115,6 +116,36 @@ def _steady(bench: Bench, cylinder: Cylinder) -> Finding:
         unit="of the tilt",
         reason="an error in the balance of (18) makes the tilt oscillate by as much",
         part="equation (18): centrifugal term against weight",
+    )
+
+
+def _stated(bench: Bench, cylinder: Cylinder) -> Finding:
+    """The exact solutions of the package against quadratures that share nothing with them."""
+    shape, tilt, spin = shape_of(cylinder, GRAVITY), 0.5 * cylinder.alpha, 0.3
+    time, turn = quadrature.period_and_turn(shape, tilt, spin)
+    quarter = quadrature.planar_quarter(shape, tilt)
+    release = InitialState(tilt=tilt, rolling_rate=spin)
+    stated = bench.reduced.free_response(cylinder, release, gravity=GRAVITY)
+    model = bench.reduced.simulate(cylinder, initial=release, duration=0.1, gravity=GRAVITY, seating=0.0)
+    errors = {
+        "period": stated.period / time - 1.0,
+        "half period": stated.half_period / (0.5 * time) - 1.0,
+        "angle of turn": stated.angle_of_turn - turn,
+        "the same on its own": bench.reduced.angle_of_turn(cylinder, release, gravity=GRAVITY) - turn,
+        "largest tilt": stated.maximum_tilt / tilt - 1.0,
+        "energy": stated.energy / model.energy[0] - 1.0,
+        "rocking period": bench.reduced.rocking_period(cylinder, tilt, gravity=GRAVITY) / (4.0 * quarter)
+        - 1.0,
+    }
+    worst = max(errors, key=lambda name: abs(errors[name]))
+    return at_most(
+        LAYER,
+        f"exact solutions, tan alpha = {cylinder.tan_alpha:g}",
+        abs(errors[worst]),
+        FREE,
+        reason="quadrature of the energies, good to 1e-9",
+        part=f"exact solutions (reduced/exact): {worst}",
+        note=f"worst: {worst}",
     )
 
 
