@@ -42,7 +42,7 @@ def test_a_near_pass_turns_to_the_side_of_the_momentum():
     count = 0
     for seed in range(60):
         given = problem(seed, models=("recess", "rolling"), sizes=(2.0, 50.0), released=seed % 3 == 0)
-        response = given.simulate()
+        response = given.simulate(seating=1e-4)  # less chatter
         passes = response.passes
         solved, _ = response.problem.solve(passes.time.to_numpy())
         maxima = response.extrema[response.extrema[:, 3] > 0.0]
@@ -109,17 +109,17 @@ def test_any_rolling_rate_turns_by_its_exact_angle(tan_alpha):
 
 
 def test_the_default_rest_threshold_keeps_the_peaks():
-    """Of problems that two tolerances give alike with it and without it."""
+    """Of weak shaking that two tolerances give alike with it and with one a hundred times smaller."""
     converged, off = 0, []
-    for seed in range(60):
-        given = problem(seed, sizes=(2.0, 20.0), slenderness=(0.1, 0.5), models=("recess",))
-        given = given._replace(motion=given.motion.scaled(1.2 * given.threshold / given.motion.peak))
+    for seed in range(50):
+        given = problem(seed, sizes=(3.0, 30.0), slenderness=(0.1, 0.5), models=("recess",))
+        given = given._replace(motion=given.motion.scaled(1.05 * given.threshold / given.motion.peak))
         usual, tight = (given.simulate(rtol=rtol).peak_tilt for rtol in (1e-8, 1e-10))
         least, tight_least = (given.simulate(seating=1e-10, rtol=rtol).peak_tilt for rtol in (1e-8, 1e-10))
         if abs(usual - tight) <= 1e-3 * tight and abs(least - tight_least) <= 1e-3 * tight_least:
             converged += 1
             off += [seed] * (abs(usual - least) > 0.02 * least)
-    assert converged > 40
+    assert converged > 25
     # one in two hundred by measurement over 1291 problems
     assert len(off) <= 1
 

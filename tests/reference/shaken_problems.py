@@ -116,15 +116,19 @@ def _between(random: Random, low: float, high: float) -> float:
     return low * (high / low) ** random.random()
 
 
-def sensitivity(given: Problem, response: reduced.Response, **changes: Any) -> float:
+def sensitivity(
+    given: Problem, response: reduced.Response, *, components: slice = slice(None), **options: Any
+) -> float:
     """Return how much of the peak perturbed copies and a tighter tolerance change, inf where the outcome.
 
-    The copies have 1e-7, 1e-8 and 1e-9 more of the record, or the tenth part of the tolerance.
+    The copies have 1e-7, 1e-8 and 1e-9 more of some components of the record, or the tenth part of the
+    tolerance.
     """
-    copies = [
-        given.simulate(**changes, motion=given.motion.scaled(1.0 + share)) for share in (1e-7, 1e-8, 1e-9)
-    ]
-    copies.append(given.simulate(**changes, rtol=0.1 * response.problem.rtol))
+    copies = [given.simulate(**{**options, "rtol": 0.1 * response.problem.rtol})]
+    for share in (1e-7, 1e-8, 1e-9):
+        acceleration = np.array(given.motion.acceleration)
+        acceleration[:, components] *= 1.0 + share
+        copies.append(given.simulate(**options, motion=GroundMotion(acceleration, given.motion.time_step)))
     if any(copy.outcome != response.outcome for copy in copies) or not response.peak_tilt > 0.0:
         return math.inf
     return max(abs(copy.peak_tilt / response.peak_tilt - 1.0) for copy in copies)

@@ -1,0 +1,256 @@
+"""An integration of the same problem that shares nothing with the reduced models but constants of the body.
+
+The state is that of a rigid body in space, its axis and its angular velocity, and the equations are those of
+Newton and Euler in vectors. The base touches the ground at the lowest point of its rim, which does not slip;
+in the recess a couple along z_world + z_body keeps the angular velocity across that direction. Pair of order
+8 of Dormand and Prince. Rules of the contract: uplift at f >= 0 towards the inertia force, rest threshold,
+still ground after the record, on which it is decided whether a run in motion overturns.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+from scipy.integrate._ivp import dop853_coefficients as pair
+from shaken_problems import G, Problem
+
+from rockwobble.reduced.body import body_of
+
+A, B, C = np.ascontiguousarray(pair.A[:12, :12]), np.array(pair.B), np.array(pair.C[:12])
+E3, E5 = np.array(pair.E3), np.array(pair.E5)
+TURN = 4e-3  # of 1/p: a maximum is looked for in steps no longer, by a cubic
+
+Array = NDArray[np.float64]
+jit = numba.njit
+
+
+class Result(NamedTuple):
+    outcome: str
+    peak: float  # rad
+    uplift_time: float  # s, NaN without
+    rests: int
+
+
+@jit
+def cross(a: Array, b: Array) -> Array:
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
+@jit
+def arm_of(P: Array, n: Array) -> Array:
+    """From the contact point to the mass centre."""
+    s = math.sqrt(n[0] * n[0] + n[1] * n[1])
+    return P[1] * n - P[0] * np.array([n[2] * n[0] / s, n[2] * n[1] / s, -s])
+
+
+@jit
+def rates(P: Array, y: Array, a: Array) -> Array:
+    """Derivative of axis (3), angular velocity (3) and azimuth; P is b, h, I1, I2, g and 1 in the recess."""
+    b, h, I1, I2, g, recess = P
+    n, w = y[:3], y[3:6]
+    turn = cross(w, n)
+    s = math.sqrt(n[0] * n[0] + n[1] * n[1])
+    ux, uy = n[0] / s, n[1] / s
+    s_rate = ux * turn[0] + uy * turn[1]
+    ux_rate, uy_rate = (turn[0] - ux * s_rate) / s, (turn[1] - uy * s_rate) / s
+    radius_rate = np.array([turn[2] * ux + n[2] * ux_rate, turn[2] * uy + n[2] * uy_rate, -s_rate])
+    arm = arm_of(P, n)
+    force = cross(w, h * turn - b * radius_rate) + a  # without the angular acceleration
+    force[2] += g
+    momentum = I1 * w + (I2 - I1) * np.dot(w, n) * n
+    right, matrix = np.zeros(4), np.zeros((4, 4))
+    right[:3] = -cross(w, momentum) - cross(arm, force)
+    matrix[3, 3] = 1.0
+    for i in range(3):
+        for j in range(3):
+            matrix[i, j] = (I2 - I1) * n[i] * n[j] - arm[i] * arm[j]
+        matrix[i, i] += I1 + np.dot(arm, arm)
+    if recess > 0.0:
+        matrix[3, 3] = 0.0
+        for i in range(3):
+            matrix[3, i] = n[i] + (i == 2)
+            matrix[i, 3] = -matrix[3, i]
+    out = np.empty(7)
+    out[:3], out[3:6] = turn, np.linalg.solve(matrix, right)[:3]
+    out[6] = (ux * turn[1] - uy * turn[0]) / s
+    return out
+
+
+@jit
+def tilt_of(y: Array) -> tuple[float, float]:
+    """Tilt and its rate."""
+    s = math.sqrt(y[0] * y[0] + y[1] * y[1])
+    turn = cross(y[3:6], y[:3])
+    return math.atan2(s, y[2]), (y[0] * turn[0] + y[1] * turn[1]) / (s * y[2])
+
+
+@jit
+def energy(P: Array, y: Array) -> float:
+    b, h, I1, I2, g, _ = P
+    n, w = y[:3], y[3:6]
+    v = cross(w, arm_of(P, n))
+    s = math.sqrt(n[0] * n[0] + n[1] * n[1])
+    kinetic = np.dot(v, v) + I1 * np.dot(w, w) + (I2 - I1) * np.dot(w, n) ** 2
+    return 0.5 * kinetic + g * (b * s - h * s * s / (1.0 + n[2]))
+
+
+@jit
+def excess(P: Array, a: Array) -> float:
+    return math.hypot(a[0], a[1]) - (P[4] + a[2]) * P[0] / P[1]
+
+
+@jit
+def crossing(P: Array, a: Array, slope: Array, low: float, high: float) -> float:
+    for _ in range(200):
+        middle = 0.5 * (low + high)
+        if excess(P, a + slope * middle) > 0.0:
+            high = middle
+        else:
+            low = middle
+    return low
+
+
+@jit
+def lifted(P: Array, p2: float, a: Array, slope: Array, time: float, last: float, jump: bool) -> Array:
+    """The state so soon after an uplift that the direction need only be that of the inertia force."""
+    size = math.hypot(a[0], a[1])
+    factor = p2 * P[1] / math.hypot(P[0], P[1]) / P[4]
+    F0 = factor * max(excess(P, a), 0.0) if jump else 0.0
+    F1 = factor * ((a[0] * slope[0] + a[1] * slope[1]) / size - slope[2] * P[0] / P[1])
+    tilt = time * time * (F0 / 2.0 + F1 * time / 6.0)
+    rate = time * (F0 + F1 * time / 2.0)
+    turning = (a[0] * slope[1] - a[1] * slope[0]) / (size * size)
+    angle = math.atan2(-a[1] - slope[1] * time, -a[0] - slope[0] * time)
+    angle += 2.0 * math.pi * round((last - angle) / (2.0 * math.pi))
+    s, cos, sin = math.sin(tilt), math.cos(angle), math.sin(angle)
+    fall = 2.0 * math.sin(0.5 * tilt) ** 2
+    spin = np.array([-turning * s * cos - rate * sin, -turning * s * sin + rate * cos, turning * fall])
+    return np.array([s * cos, s * sin, 1.0 - fall, spin[0], spin[1], spin[2], angle])
+
+
+@jit
+def step(P: Array, p: float, y: Array, h: float, a: Array, slope: Array, rtol: float) -> tuple[Array, float]:
+    """New state, and the error over what is allowed."""
+    k = np.empty((13, 7))
+    for i in range(12):
+        k[i] = rates(P, y + h * (A[i, :i] @ k[:i]) if i else y, a + slope * (C[i] * h))
+    new = y + h * (B @ k[:12])
+    k[12] = rates(P, new, a + slope * h)
+    s = math.sqrt(y[0] * y[0] + y[1] * y[1])
+    speed = math.sqrt(y[3] * y[3] + y[4] * y[4]) + p * math.sqrt(s)
+    allowed = rtol * np.array([s, s, 1.0, speed, speed, speed, 1.0])
+    fifth, third = E5 @ k / allowed, E3 @ k / allowed
+    both = np.dot(fifth, fifth) + 0.01 * np.dot(third, third)
+    level = new[0] * new[0] + new[1] * new[1]
+    if level < 0.5:  # the axis stays a unit vector
+        new[2] = math.sqrt(1.0 - level)
+    return new, h * np.dot(fifth, fifth) / math.sqrt(7.0 * both)
+
+
+@jit
+def highest(h: float, tilt: float, rate: float, tilt_new: float, rate_new: float) -> float:
+    """Maximum of the cubic through both ends."""
+    best = max(tilt, tilt_new)
+    for i in range(1, 2000):
+        x = i / 2000
+        hermite = (1 + 2 * x) * (1 - x) ** 2 * tilt + x * x * (3 - 2 * x) * tilt_new
+        best = max(best, hermite + h * x * (1 - x) * ((1 - x) * rate - x * rate_new))
+    return best
+
+
+@jit
+def march(
+    P: Array, alpha: float, record: Array, dt: float, duration: float, y: Array, rest: float, rtol: float
+) -> tuple[int, float, float, int]:
+    """Return 0 rest, 1 completed, 2 overturned or 3 too many steps; peak, time of uplift, number of rests."""
+    b, h, I1, _, g, _ = P
+    p2 = g * math.hypot(b, h) / (I1 + h * h + b * b)
+    p, least = math.sqrt(p2), g * (b * math.sin(rest * alpha) - 2.0 * h * math.sin(0.5 * rest * alpha) ** 2)
+    moving = y[2] < 1.0
+    peak = peak_then = tilt_of(y)[0] if moving else 0.0
+    uplift, rests, piece, now, end, steps = (0.0 if moving else np.nan), 0, 0, 0.0, duration, 0
+    deciding, proposed = False, 1e-4 / p
+    while True:
+        if now >= end * (1.0 - 1e-13):
+            if deciding or not moving:
+                return int(deciding), peak_then if deciding else peak, uplift, rests
+            if energy(P, y) < g * (math.hypot(b, h) - h) and tilt_of(y)[0] < alpha:
+                return 1, peak, uplift, rests
+            deciding, end, peak_then, piece = True, now + 200.0 / p, peak, len(record)
+        a, slope, finish = np.zeros(3), np.zeros(3), end
+        if piece < len(record) - 1:
+            a, slope, finish = (
+                record[piece],
+                (record[piece + 1] - record[piece]) / dt,
+                min(end, (piece + 1) * dt),
+            )
+        length, at = finish - now, 0.0
+        while at < length:
+            if not moving:
+                jump = excess(P, a + slope * at) > 0.0
+                if not jump and excess(P, a + slope * length) <= 0.0:
+                    break
+                lift = at if jump else crossing(P, a, slope, at, length)
+                ground = a + slope * lift
+                unit = 1.0 / max(p, math.hypot(slope[0], slope[1]) / math.hypot(ground[0], ground[1]))
+                early = min((1e-6 if jump else 3e-4) * unit, length - lift)
+                new = lifted(P, p2, ground, slope, early, y[6], jump)
+                at = lift + early if early > 0.0 else length
+                if new[0] == 0.0 and new[1] == 0.0:
+                    continue
+                if np.isnan(uplift):
+                    uplift = now + lift
+                y, moving, proposed = new, True, 0.1 * early
+                continue
+            size = min(proposed, length - at)
+            new, error = step(P, p, y, size, a + slope * at, slope, rtol)
+            steps += 1
+            if steps > 3_000_000:
+                return 3, peak, uplift, rests
+            if not error <= 1.0:
+                proposed = size * max(0.2, 0.9 * error**-0.125) if error < 1e300 else 0.2 * size
+                continue
+            (tilt, rate), (tilt_new, rate_new) = tilt_of(y), tilt_of(new)
+            turns = rate > 0.0 >= rate_new
+            if turns and size * p > TURN:
+                proposed = 0.5 * size
+                continue
+            longer = size * min(5.0, 0.9 * max(error, 1e-9) ** -0.125)
+            proposed = longer if size >= proposed else max(longer, proposed)
+            if tilt_new >= 0.5 * math.pi or new[2] <= 0.0:
+                return 2, 0.5 * math.pi, uplift, rests
+            peak = max(peak, tilt_new)
+            if turns:
+                peak = max(peak, highest(size, tilt, rate, tilt_new, rate_new))
+                if deciding:
+                    return 1, peak_then, uplift, rests
+            y, at = new, length if at + size >= length else at + size
+            f = excess(P, a + slope * at)
+            if f < 0.0 and tilt_new < alpha and energy(P, y) < least * -f * h / (g * b):
+                moving, rests = False, rests + 1
+        now, piece = finish, piece + 1
+
+
+def integrate(given: Problem, *, rtol: float = 1e-12, rest: float = 1e-8) -> Result:
+    """Integrate a problem of the recess or the rolling model."""
+    body = body_of(given.cylinder, G)
+    P = np.array([body.b, body.h, body.I1, body.I2, G, float(given.model == "recess")])
+    record = np.zeros((len(given.motion.acceleration), 3))
+    record[:, : given.motion.acceleration.shape[1]] = given.motion.acceleration
+    y = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0])
+    if given.initial is not None:
+        tilt, rate = given.initial.tilt, given.initial.tilt_rate
+        angle, spin = given.initial.rolling_angle, given.initial.rolling_rate
+        s, cos, sin = math.sin(tilt), math.cos(angle), math.sin(angle)
+        y[:3] = s * cos, s * sin, math.cos(tilt)
+        y[3:6] = -spin * s * cos - rate * sin, -spin * s * sin + rate * cos, spin * (1.0 - math.cos(tilt))
+        y[6] = angle
+    motion = given.motion
+    status, peak, uplift, rests = march(
+        P, body.alpha, record, motion.time_step, motion.duration, y, rest, rtol
+    )
+    return Result(("rest", "completed", "overturned", "failed")[status], peak, uplift, rests)
