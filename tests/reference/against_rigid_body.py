@@ -1,8 +1,8 @@
 """Print on how many of 200 random problems the reduced models differ from an integration of the rigid body.
 
 All kinds of `shaken_problems`, a fifth of them releases, at two tolerances. A problem counts where perturbed
-copies (1e-9 and, for the default tolerance, 1e-7 of the record) give it alike: ``python against_rigid_body.py
-[first] [last]``, with tests/reference and tests/stress on the path.
+copies (1e-9 and, for the default tolerance, 1e-7 of the record) give it alike:
+``python tests/reference/against_rigid_body.py [first] [last]``.
 """
 
 from __future__ import annotations
