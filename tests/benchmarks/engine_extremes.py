@@ -78,16 +78,19 @@ def run(trial: Trial) -> dict[str, Any]:
         rtol=1e-10,
         friction=trial.arguments.get("friction", 1.0),
     )
-    error, whole = _difference(cylinder, model, result)
+    error, whole = _difference(cylinder, model, result, trial.length)
     agrees = error <= AGREES and (whole or bool(result.message))
     verdict = "agrees" if agrees else "said" if result.message else "wrong"
     return row | {"verdict": verdict, "error": error, "message": result.message}
 
 
-def _difference(cylinder: Cylinder, model: Any, result: Any) -> tuple[float, bool]:
-    """Largest tilt difference as long as the model holds [alpha], and whether that is the whole run."""
-    pair = make_pair(cylinder, model, result)
-    breaches = [breach.first_time for breach in model.assumptions.breaches]
+def _difference(cylinder: Cylinder, model: Any, result: Any, length: float) -> tuple[float, bool]:
+    """Largest tilt difference as long as the model holds [alpha], and whether that is the whole run.
+
+    A fall after the run, which lasts `length` [s], multiplies every difference and is left out.
+    """
+    pair = make_pair(cylinder, model, result, until=length)
+    breaches = [breach.first_time for breach in model.assumptions_until(length).breaches]
     until = min(breaches, default=math.inf)
     within = np.abs(pair.tilt_difference)[pair.time <= until]
     whole = math.isinf(until) and model.outcome != "failed"
