@@ -1,15 +1,13 @@
 """Reduced models and engines on the same problem: differences, and how long they agree."""
 
-from .comparison import Comparison, describe_case, describe_run
-from .contact import TILTED
-from .driver import compare
-from .ensemble_members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
-from .ensemble_study import Ensemble, ensemble, read_ensemble
-from .error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
-from .execution import Crash, Job, Progress, simulate_all
-from .external.trajectory import ExternalTrajectory, Foreign, read_trajectory
-from .horizon import AGREEMENT
-from .runs import (
+from .comparison.driver import compare
+from .comparison.error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
+from .comparison.result import Comparison, describe_case, describe_run
+from .comparison.summary import SUMMARY_COLUMNS
+from .metrics.agreement import AGREEMENT
+from .metrics.contact import TILTED
+from .metrics.tilt import relative_rms
+from .runs.choice import (
     default_runs,
     installed_engines,
     missing_engines,
@@ -18,14 +16,16 @@ from .runs import (
     reserved_engines,
     with_settings,
 )
-from .store import replace_files, require_writable
-from .summary import SUMMARY_COLUMNS
-from .sweep_cases import CaseSweep
-from .sweep_grid import Grid
-from .sweep_store import SweepStore, open_sweep_store
-from .sweep_study import SweepIncompleteError, SweepProgress, sweep
-from .tilt import relative_rms
-from .traces import Pair, make_pair
+from .runs.execution import Crash, Job, Progress, simulate_all
+from .storage.files import replace_files, require_writable
+from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
+from .studies.ensemble.study import Ensemble, ensemble, read_ensemble
+from .studies.sweep.cases import CaseSweep
+from .studies.sweep.grid import Grid
+from .studies.sweep.store import SweepStore, open_sweep_store
+from .studies.sweep.study import SweepIncompleteError, SweepProgress, sweep
+from .traces.pair import Pair, make_pair
+from .traces.trajectory import ExternalTrajectory, Foreign, read_trajectory
 
 __all__ = [
     "AGREEMENT",

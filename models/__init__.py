@@ -3,13 +3,13 @@
 from .bounds import Bounds
 from .case import Case, Run, Suite, run_duration
 from .cylinder import Cylinder
-from .el_centro import el_centro_1940
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
-from .p695 import p695_far_field
 from .pulses import pulse
-from .record_files import read_record
-from .suite_file import read_suite, shipped_suites
+from .records.el_centro import el_centro_1940
+from .records.files import read_record
+from .records.p695 import p695_far_field
+from .suites.file import read_suite, shipped_suites
 
 __all__ = [
     "Bounds",

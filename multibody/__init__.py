@@ -5,10 +5,10 @@ reduced models as far as an engine has them. Nothing here knows the reduced mode
 and energy are derived from the pose of a rigid body.
 """
 
+from .engines.registry import BrokenEngineError, EngineNotInstalledError, available_engines, engine_names
 from .ensemble import simulate_many
-from .registry import BrokenEngineError, EngineNotInstalledError, available_engines, engine_names
+from .recording.trajectory import Trajectory
 from .simulation import simulate
-from .trajectory import Trajectory
 
 __all__ = [
     "BrokenEngineError",

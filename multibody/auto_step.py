@@ -22,8 +22,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .guard import LARGEST_STEP
-from .trajectory import Trajectory
+from .recording.trajectory import Trajectory
+from .scene.guard import LARGEST_STEP
 
 AUTO = "auto"
 COARSEST = 4e-4  # [s] at the reference size: four times the default, so that easy cases cost a fourth

@@ -17,13 +17,13 @@ import numpy as np
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from .body import scaled_body
-from .engine import Array, Scene
-from .froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, froude_scale
-from .guard import energy_scale
-from .registry import find_engine
+from .engines.registry import find_engine
+from .protocol import Array, Scene
+from .recording.trajectory import Trajectory
+from .scene.froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, froude_scale
+from .scene.guard import energy_scale
 from .simulation import simulate
 from .start import starting_state
-from .trajectory import Trajectory
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)

@@ -20,10 +20,10 @@ from typing import Any, Literal
 
 from rockwobble.models import Case
 
-from .registry import find_engine
+from .engines.registry import find_engine
+from .recording.trajectory import Trajectory
 from .simulation import simulate
 from .stepping import Progress
-from .trajectory import Trajectory
 
 _Run = Callable[[Case, Progress], Trajectory]
 _Together = Callable[[], AbstractContextManager[None]]

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .body import Body
-from .engine import Steps
+from .protocol import Steps
 
 Array = NDArray[np.float64]
 

@@ -8,11 +8,11 @@ from typing import Any
 
 from rockwobble.models import Case
 
-from .ability import require_able
 from .body import scaled_body
-from .engine import Engine, Scene
-from .froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, Scale, froude_scale
-from .registry import find_engine
+from .engines.ability import require_able
+from .engines.registry import find_engine
+from .protocol import Engine, Scene
+from .scene.froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, Scale, froude_scale
 from .start import starting_state
 
 

@@ -12,19 +12,19 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
-from .ability import require_able
 from .auto_step import AUTO, STEP_TOLERANCE, find_step
-from .engine import Scene
-from .excitation import StepMeans
-from .froude import REFERENCE_TIME_STEP, Scale, froude_scale
-from .guard import check_time_step
-from .passes import passes_between
-from .recorder import COLUMNS, Recorder
-from .registry import find_engine
-from .remarks import remarks
+from .engines.ability import require_able
+from .engines.registry import find_engine
+from .protocol import Scene
+from .recording.passes import passes_between
+from .recording.recorder import COLUMNS, Recorder
+from .recording.remarks import remarks
+from .recording.trajectory import Trajectory
+from .scene.excitation import StepMeans
+from .scene.froude import REFERENCE_TIME_STEP, Scale, froude_scale
+from .scene.guard import check_time_step
 from .scene_of_case import make_scene
 from .stepping import Progress, run_steps
-from .trajectory import Trajectory
 
 if TYPE_CHECKING:
     import pandas as pd

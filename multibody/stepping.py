@@ -16,11 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .body import Body
-from .engine import Engine, Scene, Stepper
-from .excitation import StepMeans
-from .guard import energy_scale
-from .passes import TurningPoint, true_swings
-from .recorder import Recorder
+from .protocol import Engine, Scene, Stepper
+from .recording.passes import TurningPoint, true_swings
+from .recording.recorder import Recorder
+from .scene.excitation import StepMeans
+from .scene.guard import energy_scale
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]

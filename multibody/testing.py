@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .contract import GENERAL, ROLLING, Check
-from .registry import find_engine
+from .engines.registry import find_engine
 
 
 @dataclass(frozen=True, slots=True)

@@ -58,7 +58,7 @@ def on_disk(entry: Callable[..., Any]) -> bool:
     That cache compares only the file that holds the entry point, so whatever was compiled from an
     older state of any file in this folder is removed here first.
     """
-    newest = max(path.stat().st_mtime for path in Path(__file__).parent.glob("*.py"))
+    newest = max(path.stat().st_mtime for path in Path(__file__).parent.rglob("*.py"))
     fresh = False
     for index in Path(cast("Any", entry).stats.cache_path).glob("*.nbi"):
         if index.stat().st_mtime < newest:

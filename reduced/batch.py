@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Cylinder, GroundMotion
 
-from .march import OVERTURNED, March
+from .integration.march import OVERTURNED, March
 from .problem import SEATING, make_problem
 from .simulation import make_ready
 

@@ -9,11 +9,19 @@ from rockwobble.models import Cylinder
 
 from ._compile import kernel
 from .body import Body, body_of
-from .driver import make_driver
-from .march import March, Options
-from .stepping import runge_kutta, taylor_series
-from .systems import PLANAR, RECESS, ROLLING, planar_combine, planar_ratio, rolling_combine, rolling_ratio
-from .tsit5 import State
+from .integration.driver import make_driver
+from .integration.march import March, Options
+from .integration.stepping import runge_kutta, taylor_series
+from .integration.systems import (
+    PLANAR,
+    RECESS,
+    ROLLING,
+    planar_combine,
+    planar_ratio,
+    rolling_combine,
+    rolling_ratio,
+)
+from .integration.tsit5 import State
 
 _march_planar = make_driver(PLANAR, runge_kutta(PLANAR, planar_combine, planar_ratio))
 _march_recess = make_driver(RECESS, taylor_series())

@@ -17,8 +17,8 @@ from rockwobble.models import Cylinder, GroundMotion, InitialState, run_duration
 from . import kernels
 from .body import Body, body_of
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
-from .driver import spin_momentum
-from .march import March, Options
+from .integration.driver import spin_momentum
+from .integration.march import March, Options
 
 MODELS = tuple(kernels.MARCHES)
 

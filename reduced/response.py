@@ -15,7 +15,7 @@ from rockwobble.models import Cylinder
 from . import forces
 from .assumptions import Assumptions, Demands, review
 from .columns import ground_at
-from .march import MAXIMUM, MINIMUM
+from .integration.march import MAXIMUM, MINIMUM
 from .problem import Problem
 
 if TYPE_CHECKING:

@@ -13,7 +13,7 @@ from rockwobble.models import Cylinder, GroundMotion, InitialState
 
 from . import kernels
 from ._compile import in_memory, on_disk
-from .march import COMPLETED, OVER_BUDGET, OVERTURNED, REST, March
+from .integration.march import COMPLETED, OVER_BUDGET, OVERTURNED, REST, March
 from .problem import SEATING, Problem, make_problem
 from .response import Response
 

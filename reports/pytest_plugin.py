@@ -10,7 +10,7 @@ its model of a structure, its records and its suites may look like this:
         records/EW.AT2, NS.AT2
       .github/workflows/ci.yml  # pip install '.[test]', then pytest
 
-with a suite (what it may hold is said in the docstring of `rockwobble.models.suite_file`):
+with a suite (what it may hold is said in the docstring of `rockwobble.models.suites.file`):
 
     [bounds]                     # without this table: what contact at this time step explains
     tilt_rms = 2e-3              # alpha
@@ -71,7 +71,7 @@ class SuiteFile(pytest.File):
     def collect(self) -> Iterator[SuiteItem]:
         """Yield the items."""
         from rockwobble.compare import default_runs, missing_engines
-        from rockwobble.compare.runs import run_labels
+        from rockwobble.compare.runs.choice import run_labels
         from rockwobble.models import read_suite
 
         try:
@@ -101,7 +101,7 @@ class SuiteItem(pytest.Item):
         """Run engine and model, and raise what is beyond a bound."""
         from rockwobble import reduced
         from rockwobble.compare.check import Bench
-        from rockwobble.compare.check.agreement import check_run, model_of
+        from rockwobble.compare.check.engines.agreement import check_run, model_of
 
         bench = Bench(reduced=reduced, suite=self.suite, shipped=False, workers=1)
         (trajectory,) = bench.engine_runs([(self.case, self.run, self.label)])
@@ -116,7 +116,7 @@ class SuiteItem(pytest.Item):
     def _budget(self, model: str, trajectory: Any) -> list[str]:
         from rockwobble.compare.check.bench import crashed
 
-        from .budget_of_run import budget_of_run
+        from .console.budget_of_run import budget_of_run
 
         return [] if crashed(trajectory) else budget_of_run(self.case, self.run, model)
 
@@ -145,7 +145,7 @@ class DisagreementError(Exception):
     """
 
     def __init__(self, failed: list[Finding], budget: list[str]) -> None:
-        from .check_output import in_words
+        from .console.check_output import in_words
 
         super().__init__("\n".join([*(in_words(finding) for finding in failed), *budget]))
         self.failed = failed

@@ -31,7 +31,7 @@ def test_python_runs(block: str) -> None:
 
 @pytest.mark.parametrize("command", commands())
 def test_commands_exist_with_the_options_shown(command: str) -> None:
-    from rockwobble.reports.main import app
+    from rockwobble.reports.cli.main import app
 
     result = CliRunner().invoke(app, [command.split()[0], "--help"])
     assert result.exit_code == 0, result.output

@@ -8,9 +8,9 @@ from typing import Any
 
 from rockwobble.models import Case, Run, Suite
 
-from ..execution import Crash, Job, ProgressCallback, simulate_all
-from ..fingerprint import fingerprint
-from ..runs import installed_engines, run_labels
+from ..runs.choice import installed_engines, run_labels
+from ..runs.execution import Crash, Job, ProgressCallback, simulate_all
+from ..storage.fingerprint import fingerprint
 from .finding import Finding, not_run
 
 # the engines that every installation is meant to have, and whose accuracy at the default step is known

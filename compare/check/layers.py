@@ -4,34 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 
-from . import (
+from .bench import Bench
+from .engines import agreement, engine_baseline, engine_equations, traces
+from .finding import FAILED, LAYERS, Finding, at_most
+from .inputs import ground_motions, record_files, suites
+from .measures import batch, external_trajectories, metrics, predicted_times, sweeps
+from .models import (
     after_record,
-    agreement,
-    batch,
     conserved,
-    engine_baseline,
-    engine_equations,
     equations,
     exact,
-    external_trajectories,
-    ground_motions,
     invariance,
     landing,
-    metrics,
     order,
-    predicted_times,
     properties,
-    record_files,
     reduced_baseline,
     residual,
     rest,
-    suites,
-    sweeps,
-    traces,
     turning_points,
 )
-from .bench import Bench
-from .finding import FAILED, LAYERS, Finding, at_most
 
 Check = Callable[[Bench], Iterator[Finding]]
 

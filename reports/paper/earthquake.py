@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
 
-from ..drawing import drawn, drawn_samples, line, with_grid
+from ..figures.drawing import drawn, drawn_samples, line, with_grid
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Cylinder, InitialState
 
-from ..drawing import drawn, drawn_samples, line, path, with_grid
-from ..thinning import kept_samples
+from ..figures.drawing import drawn, drawn_samples, line, path, with_grid
+from ..figures.thinning import kept_samples
 from .claim import Claim, verdict_of
 
 if TYPE_CHECKING:

@@ -7,9 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.compare.planar_contrast import edge_difference, planar_contrast, unconservative_from
-from rockwobble.compare.series import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.compare.spectrum import OverturningSpectrum
+from rockwobble.compare.studies.spectrum.planar_contrast import (
+    edge_difference,
+    planar_contrast,
+    unconservative_from,
+)
+from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.models import el_centro_1940
 
 from .claim import Claim, verdict_of

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from ..provenance import made_by
+from ..pages.provenance import made_by
 from .claim import Claim
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Cylinder
 
-from ..drawing import drawn, with_grid
+from ..figures.drawing import drawn, with_grid
 from .claim import Claim, verdict_of
 
 if TYPE_CHECKING:

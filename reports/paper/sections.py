@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from rockwobble.compare.lowest_overturning import islands_frame
-from rockwobble.compare.planar_contrast import planar_contrast
-from rockwobble.compare.spectrum_check import check_cells, confirm_lowest
+from rockwobble.compare.studies.spectrum.lowest_overturning import islands_frame
+from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast
+from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
 
-from ..spectrum_figure import spectrum_figure
-from ..spectrum_output import CHECKED_CELLS, run_spectrum
-from ..spectrum_words import check_statement, islands_of, search_statement, statements
+from ..console.spectrum_output import CHECKED_CELLS, run_spectrum
+from ..figures.spectrum_figure import spectrum_figure
+from ..pages.spectrum.words import check_statement, islands_of, search_statement, statements
 from . import earthquake, earthquake_claims, free, overturning, period
 from .page import Section
 

@@ -23,11 +23,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody, reduced
-from rockwobble.compare.execution import Job, ProgressCallback, simulate_all
-from rockwobble.compare.runs import SUPPORTS, own_model
-from rockwobble.compare.traces import make_pair
+from rockwobble.compare.runs.choice import SUPPORTS, own_model
+from rockwobble.compare.runs.execution import Job, ProgressCallback, simulate_all
+from rockwobble.compare.traces.pair import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run
-from rockwobble.multibody.registry import find_engine
+from rockwobble.multibody.engines.registry import find_engine
 
 from .console import options_of, show, tell
 

@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody, reduced
-from rockwobble.compare.runs import own_model
-from rockwobble.compare.traces import make_pair
+from rockwobble.compare.runs.choice import own_model
+from rockwobble.compare.traces.pair import make_pair
 from rockwobble.models import Cylinder, InitialState
 
 from .console import options_of, show
@@ -118,7 +118,7 @@ def measure(
 
     import pandas as pd
 
-    from rockwobble.compare.process_pool import ProcessPool
+    from rockwobble.compare.runs.process_pool import ProcessPool
 
     chosen = trials() if chosen is None else chosen
     rows = []

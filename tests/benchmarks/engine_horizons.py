@@ -17,11 +17,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.compare.execution import Job, ProgressCallback, simulate, simulate_all
-from rockwobble.compare.horizon import agreement_horizon
-from rockwobble.compare.predicted_horizon import estimated_error, predict_horizon, verdict
-from rockwobble.compare.runs import SUPPORTS, own_model
-from rockwobble.compare.traces import Pair, make_pair
+from rockwobble.compare.comparison.prediction import estimated_error, predict_horizon, verdict
+from rockwobble.compare.metrics.agreement import agreement_horizon
+from rockwobble.compare.runs.choice import SUPPORTS, own_model
+from rockwobble.compare.runs.execution import Job, ProgressCallback, simulate, simulate_all
+from rockwobble.compare.traces.pair import Pair, make_pair
 from rockwobble.models import Case, Cylinder, Run, el_centro_1940
 
 from .console import options_of, show, tell

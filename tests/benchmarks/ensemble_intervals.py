@@ -14,8 +14,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.compare.distributions import log_ratios, mcnemar_p, paired_difference, signed_rank_p
-from rockwobble.compare.order_statistics import quantile_interval
+from rockwobble.compare.metrics.distributions import log_ratios, mcnemar_p, paired_difference, signed_rank_p
+from rockwobble.compare.metrics.order_statistics import quantile_interval
 
 from .console import options_of
 

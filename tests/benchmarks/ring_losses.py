@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.compare.validity.ring_losses import INTENSITIES, RingRow, measure, ring_cases
+from rockwobble.compare.studies.validity.ring_losses import INTENSITIES, RingRow, measure, ring_cases
 from rockwobble.models import Run
 
 from .console import options_of

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rockwobble.compare.tradeoff.scene_cost import ROUNDS, STEPS, scene_costs
+from rockwobble.compare.studies.tradeoff.scene_cost import ROUNDS, STEPS, scene_costs
 
 from .console import options_of
 

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.compare.tradeoff.scipy_equations import (
+from rockwobble.compare.studies.tradeoff.scipy_equations import (
     SOLVERS,
     TOLERANCE_SCALE,
     InitialValueProblem,

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from benchmarks.ring_losses import ring_runs, table
-from rockwobble.compare.validity.ring_losses import RingRow
+from rockwobble.compare.studies.validity.ring_losses import RingRow
 
 
 def row(support: str, loss: float, **settings: float) -> RingRow:

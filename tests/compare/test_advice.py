@@ -9,8 +9,16 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.advice import Demands, advise, demands_of, planar_view, scan_scales, spread_of_starts
-from rockwobble.compare.advice.grades import (
+from rockwobble.compare.metrics.tilt import overturned
+from rockwobble.compare.studies.advice import (
+    Demands,
+    advise,
+    demands_of,
+    planar_view,
+    scan_scales,
+    spread_of_starts,
+)
+from rockwobble.compare.studies.advice.grades import (
     BROKEN,
     CHANCE,
     NEAR,
@@ -21,11 +29,10 @@ from rockwobble.compare.advice.grades import (
     overall,
     trust_of,
 )
-from rockwobble.compare.advice.planar import PlanarView
-from rockwobble.compare.lowest_overturning import uplift_factor
-from rockwobble.compare.series import SERIES, intensity_unit
-from rockwobble.compare.spectrum import overturning_spectrum
-from rockwobble.compare.tilt import overturned
+from rockwobble.compare.studies.advice.planar import PlanarView
+from rockwobble.compare.studies.spectrum.lowest_overturning import uplift_factor
+from rockwobble.compare.studies.spectrum.series import SERIES, intensity_unit
+from rockwobble.compare.studies.spectrum.study import overturning_spectrum
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

@@ -11,7 +11,7 @@ import pytest
 
 from rockwobble import multibody, reduced
 from rockwobble.compare import compare
-from rockwobble.compare.error_budget import (
+from rockwobble.compare.comparison.error_budget import (
     LARGEST_SHARE,
     WORTH_EXPLAINING,
     ErrorBudget,
@@ -20,8 +20,8 @@ from rockwobble.compare.error_budget import (
     extrapolated,
     findings,
 )
-from rockwobble.compare.horizon import Horizon
-from rockwobble.compare.refinement import Refined, finer_case, limits
+from rockwobble.compare.comparison.refinement import Refined, finer_case, limits
+from rockwobble.compare.metrics.agreement import Horizon
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
 
 ROUNDING = 1e-12

@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.check import FAILED, NO_BASELINE, PASSED, Bench, baseline_file, engine_baseline
-from rockwobble.compare.check import reduced_baseline as kept_numbers
+from rockwobble.compare.check import FAILED, NO_BASELINE, PASSED, Bench, baseline_file
 from rockwobble.compare.check.baseline_file import Baseline, changes, read_baseline, updated
+from rockwobble.compare.check.engines import engine_baseline
+from rockwobble.compare.check.models import reduced_baseline as kept_numbers
 from rockwobble.models import Suite, read_suite
 
 SUITE = read_suite("quick")

@@ -11,18 +11,10 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.check import (
-    LAYERS,
-    Bench,
-    external_trajectories,
-    ground_motions,
-    metrics,
-    predicted_times,
-    record_files,
-    suites,
-    sweeps,
-)
+from rockwobble.compare.check import LAYERS, Bench
 from rockwobble.compare.check.finding import NOT_RUN
+from rockwobble.compare.check.inputs import ground_motions, record_files, suites
+from rockwobble.compare.check.measures import external_trajectories, metrics, predicted_times, sweeps
 from rockwobble.models import Case, GroundMotion, read_record, read_suite
 
 BENCH = Bench(reduced=reduced, suite=read_suite("quick"))
@@ -71,7 +63,7 @@ def test_a_wrong_metric_is_found(monkeypatch: pytest.MonkeyPatch, name: str, cha
 )
 def test_a_wrong_column_of_the_summary_is_found(monkeypatch: pytest.MonkeyPatch, column: str) -> None:
     changed(monkeypatch, metrics, "summary_row", lambda row: row | {column: -row[column]})
-    assert failed_parts(metrics) == ["columns of the summary (compare/summary.py)"]
+    assert failed_parts(metrics) == ["columns of the summary (compare/comparison/summary.py)"]
 
 
 @pytest.mark.parametrize(

@@ -11,8 +11,10 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.check import Bench, after_record, batch, landing, properties, rest, turning_points
+from rockwobble.compare.check import Bench
 from rockwobble.compare.check.finding import Finding
+from rockwobble.compare.check.measures import batch
+from rockwobble.compare.check.models import after_record, landing, properties, rest, turning_points
 from rockwobble.models import GroundMotion, read_suite
 
 SUITE = read_suite("quick")

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import runs
-from rockwobble.compare.check import Bench, bench, run_checks, traces
+from rockwobble.compare.check import Bench, bench, run_checks
+from rockwobble.compare.check.engines import traces
 from rockwobble.compare.check.finding import NOT_RUN
-from rockwobble.compare.execution import run_engine
-from rockwobble.compare.fingerprint import fingerprint
+from rockwobble.compare.runs import choice as runs
+from rockwobble.compare.runs.execution import run_engine
+from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.models import Case, GroundMotion, Run, read_suite
 
 KEPT: dict[str, Any] = {}

@@ -7,9 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare import SUMMARY_COLUMNS, compare, driver, execution
-from rockwobble.compare.execution import Job, simulate_all
-from rockwobble.compare.process_pool import WorkerDiedError
+from rockwobble.compare import SUMMARY_COLUMNS, compare
+from rockwobble.compare.comparison import driver
+from rockwobble.compare.runs import execution
+from rockwobble.compare.runs.execution import Job, simulate_all
+from rockwobble.compare.runs.process_pool import WorkerDiedError
 from rockwobble.models import Case, GroundMotion, InitialState, Run, Suite
 
 ROUNDING = 1e-12

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare import Comparison, compare
-from rockwobble.compare.parquet_file import read_about
+from rockwobble.compare.storage.parquet_file import read_about
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2, height=11.0)

@@ -13,7 +13,7 @@ import pytest
 from scipy.special import betainc, betaincinv
 from scipy.stats import PermutationMethod, binom, binomtest, norm, wilcoxon
 
-from rockwobble.compare.distributions import (
+from rockwobble.compare.metrics.distributions import (
     CONFIDENCE,
     MARGIN,
     POWER,
@@ -27,7 +27,7 @@ from rockwobble.compare.distributions import (
     ratio_within_reach,
     signed_rank_p,
 )
-from rockwobble.compare.order_statistics import Interval, end_index, quantile_interval
+from rockwobble.compare.metrics.order_statistics import Interval, end_index, quantile_interval
 
 ROUNDING = 1e-12
 COUNT = 22  # far-field pairs of FEMA P-695

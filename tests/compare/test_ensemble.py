@@ -7,19 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare import (
-    ensemble,
-    ensemble_members,
-    execution,
-    far_field_motions,
-    perturbed_starts,
-    read_ensemble,
-    synthetic_motions,
-)
-from rockwobble.compare.describe_ensemble import describe_ensemble
-from rockwobble.compare.ensemble_study import ensemble_of
-from rockwobble.compare.execution import Job
-from rockwobble.compare.parquet_file import pack
+from rockwobble.compare import ensemble, far_field_motions, perturbed_starts, read_ensemble, synthetic_motions
+from rockwobble.compare.describe.ensemble import describe_ensemble
+from rockwobble.compare.runs import execution
+from rockwobble.compare.runs.execution import Job
+from rockwobble.compare.storage.parquet_file import pack
+from rockwobble.compare.studies.ensemble import members as ensemble_members
+from rockwobble.compare.studies.ensemble.study import ensemble_of
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 ROUNDING = 1e-12

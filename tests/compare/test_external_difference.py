@@ -5,12 +5,12 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.external.clock import fitted_delays
-from rockwobble.compare.external.difference import AZIMUTH, difference
-from rockwobble.compare.external.frame import Frame, fitted_frames
-from rockwobble.compare.external.mistake import explains
-from rockwobble.compare.external.motion import Motion
-from rockwobble.compare.external.part import Part
+from rockwobble.compare.comparison.external.clock import fitted_delays
+from rockwobble.compare.comparison.external.difference import AZIMUTH, difference
+from rockwobble.compare.comparison.external.frame import Frame, fitted_frames
+from rockwobble.compare.comparison.external.mistake import explains
+from rockwobble.compare.comparison.external.part import Part
+from rockwobble.compare.traces.motion import Motion
 from rockwobble.models import Cylinder
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from rockwobble import multibody
-from rockwobble.compare.extremes import EXTREMES, METHODS, conditions, scan
+from rockwobble.compare.studies.extremes import EXTREMES, METHODS, conditions, scan
 from rockwobble.models import InitialState
 
 RECESS = ("reduced recess", "recess", "")

@@ -6,9 +6,9 @@ import sys
 import numpy as np
 import pytest
 
-from rockwobble.compare.execution import Job
-from rockwobble.compare.fingerprint import fingerprint
-from rockwobble.compare.run_store import job_fingerprint
+from rockwobble.compare.runs.execution import Job
+from rockwobble.compare.runs.run_store import job_fingerprint
+from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -47,9 +47,8 @@ def test_equal_values_have_one_name():
 
 
 def test_the_name_is_that_of_another_process():
-    code = (
-        "from rockwobble.compare.fingerprint import fingerprint; print(fingerprint({'a': [0.1, 'x', None]}))"
-    )
+    module = "rockwobble.compare.storage.fingerprint"
+    code = f"import {module} as there; print(there.fingerprint({{'a': [0.1, 'x', None]}}))"
     there = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
     assert there.strip() == fingerprint({"a": [0.1, "x", None]})
 
@@ -88,7 +87,7 @@ def test_names_of_case_and_run_are_not():
 
 def test_code_and_versions_are_in_the_name(monkeypatch):
     before = job_fingerprint(job())
-    monkeypatch.setattr("rockwobble.compare.provenance._source_digest", lambda folder: "another")
+    monkeypatch.setattr("rockwobble.compare.storage.provenance._source_digest", lambda folder: "another")
     assert job_fingerprint(job()) != before
     monkeypatch.undo()
     monkeypatch.setattr("importlib.metadata.version", lambda package: "0")

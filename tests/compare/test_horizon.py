@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.horizon import agreed_passes, agreement_horizon, closest_pass
-from rockwobble.compare.predicted_horizon import close_pass
-from rockwobble.compare.traces import make_pair
+from rockwobble.compare.comparison.prediction import close_pass
+from rockwobble.compare.metrics.agreement import agreed_passes, agreement_horizon, closest_pass
+from rockwobble.compare.traces.pair import make_pair
 
 SAMPLE = 0.01  # a horizon is known to one sample
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.lowest_overturning import (
+from rockwobble.compare.metrics.tilt import overturned
+from rockwobble.compare.studies.spectrum.lowest_overturning import (
     STEP,
     lowest_intensities,
     lowest_on_grid,
     search_lowest,
     uplift_factor,
 )
-from rockwobble.compare.tilt import overturned
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
 
 FALL = 0.5 * math.pi

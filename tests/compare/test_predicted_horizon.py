@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.predicted_horizon import (
+from rockwobble.compare.comparison.prediction import (
     close_pass,
     estimated_error,
     landings,

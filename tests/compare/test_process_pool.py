@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from rockwobble.compare.process_pool import ProcessPool, WorkerDiedError
+from rockwobble.compare.runs.process_pool import ProcessPool, WorkerDiedError
 from rockwobble.models import Cylinder
 
 
@@ -35,7 +35,7 @@ def test_a_function_that_cannot_be_imported_there_is_said(tmp_path):
     # the script's own functions are those of __main__, which is another module there
     script = tmp_path / "script.py"
     script.write_text(
-        "from rockwobble.compare.process_pool import ProcessPool\n"
+        "from rockwobble.compare.runs.process_pool import ProcessPool\n"
         "def own(): pass\n"
         "with ProcessPool(1) as pool: pool.submit(own).result(timeout=20)\n"
     )
@@ -112,7 +112,7 @@ def test_a_script_without_a_main_guard_runs_once(tmp_path: Path):
 def test_workers_end_with_a_caller_that_is_killed(tmp_path: Path):
     script = (
         "import os, time\n"
-        "from rockwobble.compare.process_pool import ProcessPool\n"
+        "from rockwobble.compare.runs.process_pool import ProcessPool\n"
         "pool = ProcessPool(1)\n"
         "print(pool.submit(os.getpid).result(), flush=True)\n"
         "pool.submit(time.sleep, 60.0).result()\n"

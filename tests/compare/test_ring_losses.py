@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from rockwobble.compare.validity.ring_losses import measure, ring_cases
+from rockwobble.compare.studies.validity.ring_losses import measure, ring_cases
 from rockwobble.models import Case, Cylinder, InitialState, Run
 
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=1.0)

@@ -10,10 +10,11 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import compare, execution, simulate_all
-from rockwobble.compare.execution import Crash, Job
-from rockwobble.compare.run_store import RUNS, open_run_store
-from rockwobble.compare.stored_trace import from_parquet, stored, to_parquet
+from rockwobble.compare import compare, simulate_all
+from rockwobble.compare.runs import execution
+from rockwobble.compare.runs.execution import Crash, Job
+from rockwobble.compare.runs.run_store import RUNS, open_run_store
+from rockwobble.compare.storage.stored_trace import from_parquet, stored, to_parquet
 from rockwobble.models import Case, Cylinder, InitialState, Run
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

@@ -12,7 +12,7 @@ from rockwobble.compare import (
     own_model,
     reserved_engines,
 )
-from rockwobble.compare.runs import references_of, require_runnable, run_labels, unsupported
+from rockwobble.compare.runs.choice import references_of, require_runnable, run_labels, unsupported
 from rockwobble.models import Case, Cylinder, InitialState, Run
 
 # of two seconds: 3e-7 of the tilt by its own model was measured, 5e-4 by the other

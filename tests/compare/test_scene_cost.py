@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from rockwobble import multibody
-from rockwobble.compare.tradeoff.scene_cost import scene_costs
+from rockwobble.compare.studies.tradeoff.scene_cost import scene_costs
 
 ENGINES = [name for name in ("mujoco", "pybullet") if name in multibody.available_engines()]
 

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
-from rockwobble.compare.spectrum import OverturningSpectrum, overturning_spectrum
-from rockwobble.compare.spectrum_check import check_cells, confirm_lowest
+from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
+from rockwobble.compare.studies.spectrum.study import OverturningSpectrum, overturning_spectrum
+from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
 
 EL_CENTRO = el_centro_1940()

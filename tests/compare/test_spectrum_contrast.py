@@ -5,16 +5,21 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.lowest_overturning import Island, islands_frame, lowest_on_grid, safe_islands
-from rockwobble.compare.planar_contrast import (
+from rockwobble.compare.studies.spectrum.lowest_overturning import (
+    Island,
+    islands_frame,
+    lowest_on_grid,
+    safe_islands,
+)
+from rockwobble.compare.studies.spectrum.planar_contrast import (
     contrast_by_size,
     edge_difference,
     planar_contrast,
     size_bands,
     unconservative_from,
 )
-from rockwobble.compare.series import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.compare.spectrum import OverturningSpectrum
+from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.models import GroundMotion
 
 FALL = 0.5 * math.pi

@@ -10,10 +10,10 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare import CaseSweep, Grid, SweepIncompleteError, open_sweep_store, sweep
 from rockwobble.compare import sweep as sweep_function
-from rockwobble.compare.parquet_file import read_about
-from rockwobble.compare.process_pool import WorkerDiedError
-from rockwobble.compare.sweep_executor import InThisProcess, Workers, run_chunk
-from rockwobble.compare.sweep_store import CHUNKS
+from rockwobble.compare.runs.executor import InThisProcess, Workers, run_chunk
+from rockwobble.compare.runs.process_pool import WorkerDiedError
+from rockwobble.compare.storage.parquet_file import read_about
+from rockwobble.compare.studies.sweep.store import CHUNKS
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -93,7 +93,7 @@ def test_chunks_of_another_sweep_go_only_when_this_one_is_complete(tmp_path):
 
 
 def test_a_scheduler_that_is_not_there(monkeypatch):
-    monkeypatch.setattr("rockwobble.compare.sweep_executor._PATIENCE", 0.5)
+    monkeypatch.setattr("rockwobble.compare.runs.executor._PATIENCE", 0.5)
     with pytest.raises(ValueError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"):
         sweep(grid(), scheduler="tcp://127.0.0.1:9")
 
@@ -116,7 +116,7 @@ def test_a_chunk_whose_process_dies_is_tried_again(tmp_path, monkeypatch):
     def dying(*_):
         yield Workers(Dying(), lambda: 1, (WorkerDiedError,))
 
-    monkeypatch.setattr("rockwobble.compare.sweep_study.open_workers", dying)
+    monkeypatch.setattr("rockwobble.compare.studies.sweep.study.open_workers", dying)
     deadly = {2, 3, 5}
     table = sweep(grid(), chunk_size=5)
     pd.testing.assert_frame_equal(table, sweep(grid()), check_exact=True)

@@ -10,9 +10,9 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.tradeoff import conclusions, fastest, plateaus, seating_price
-from rockwobble.compare.tradeoff.methods import methods_for
-from rockwobble.compare.tradeoff.problem import FINE_SEATING, PIER, _turn, _wasserstein, problems
+from rockwobble.compare.studies.tradeoff import conclusions, fastest, plateaus, seating_price
+from rockwobble.compare.studies.tradeoff.methods import methods_for
+from rockwobble.compare.studies.tradeoff.problem import FINE_SEATING, PIER, _turn, _wasserstein, problems
 
 # a release at a tolerance of 1e-8 turns by 1.5e-7 deg too much or too little
 TURN_ERROR = 1e-6
@@ -111,7 +111,7 @@ def test_the_price_of_seating_is_told_at_equal_tolerance():
 
 
 def test_the_ensemble_knows_what_chance_alone_does():
-    from rockwobble.compare.tradeoff.problem import sampling_distance
+    from rockwobble.compare.studies.tradeoff.problem import sampling_distance
 
     peaks = problems(quick=True)[2]
     assert 0.0 < sampling_distance(peaks, "recess") < 1.0

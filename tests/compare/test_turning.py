@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.contact import contact_rms
-from rockwobble.compare.traces import make_pair
-from rockwobble.compare.turning import direction_difference, first_unresolved_pass, turn_difference
+from rockwobble.compare.metrics.contact import contact_rms
+from rockwobble.compare.metrics.turning import direction_difference, first_unresolved_pass, turn_difference
+from rockwobble.compare.traces.pair import make_pair
 
 ROUNDING = 1e-12
 

@@ -10,13 +10,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare.validity import PARTS, QUICK, limits_of, measure_all
-from rockwobble.compare.validity.limits.limit import first_failing, percent, up_to
-from rockwobble.compare.validity.limits.peaks import peak_difference
-from rockwobble.compare.validity.parts import part_named
+from rockwobble.compare.studies.validity import PARTS, QUICK, limits_of, measure_all
+from rockwobble.compare.studies.validity.limits.limit import first_failing, percent, up_to
+from rockwobble.compare.studies.validity.limits.peaks import peak_difference
+from rockwobble.compare.studies.validity.parts import part_named
 from rockwobble.reduced import body, problem
 from rockwobble.reduced.exact import _checks
-from rockwobble.reports.validity.headline import headline
+from rockwobble.reports.pages.validity.headline import headline
 
 TINY = dataclasses.replace(
     QUICK,
@@ -143,7 +143,7 @@ def test_second_run_repeats_nothing_and_finds_the_same(tables, kept, monkeypatch
     def measured_again(*_):
         raise AssertionError("measured again")
 
-    monkeypatch.setattr("rockwobble.compare.validity.campaign.measure_task", measured_again)
+    monkeypatch.setattr("rockwobble.compare.studies.validity.campaign.measure_task", measured_again)
     told = []
     again = measure_all(TINY, kept, workers=1, progress=told.append)
     assert told[-1].found == told[-1].total == told[-1].done

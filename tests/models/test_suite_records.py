@@ -9,7 +9,8 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.models import p695, p695_far_field, pulse, read_suite
+from rockwobble.models import p695_far_field, pulse, read_suite
+from rockwobble.models.records import p695
 
 # linear between 400 samples in a period: (2 pi/400)^2/8
 LINEAR = 3.1e-5

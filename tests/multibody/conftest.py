@@ -19,7 +19,7 @@ from scipy.optimize import brentq
 
 from rockwobble.models import Cylinder, GroundMotion, InitialState
 from rockwobble.multibody import available_engines
-from rockwobble.multibody.registry import find_engine
+from rockwobble.multibody.engines.registry import find_engine
 
 Array = NDArray[np.float64]
 Acceleration = Callable[[float], Array]

@@ -11,7 +11,7 @@ import pytest
 from rockwobble import multibody
 from rockwobble.models import Cylinder, InitialState, Run
 from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
-from rockwobble.multibody.trajectory import Trajectory
+from rockwobble.multibody.recording.trajectory import Trajectory
 
 ALPHA = 0.2
 # Richardson with a measured order is good for a factor; three is what it misses by at the bounds of the order

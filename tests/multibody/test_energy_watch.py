@@ -10,7 +10,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Cylinder, GroundMotion, InitialState
-from rockwobble.multibody.energy_watch import DRIFT, EnergyWatch
+from rockwobble.multibody.recording.energy_watch import DRIFT, EnergyWatch
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 P = math.sqrt(12.0 * 9.81 / (6.0 * (15.0 + math.cos(PIER.alpha) ** 2)))  # [1/s], section of the equations

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from rockwobble.multibody import available_engines, engine_names
-from rockwobble.multibody.registry import GROUP, find_engine
+from rockwobble.multibody.engines.registry import GROUP, find_engine
 from rockwobble.multibody.testing import ContractCheck, contract_checks
 
 

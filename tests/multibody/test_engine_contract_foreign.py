@@ -12,7 +12,7 @@ from rockwobble import multibody
 from rockwobble.compare import default_runs, require_runnable, reserved_engines
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.multibody import contract
-from rockwobble.multibody.registry import find_engine
+from rockwobble.multibody.engines.registry import find_engine
 from rockwobble.multibody.testing import ContractCheck, check_engine, leaves_no_trace
 
 # MuJoCo on open ground under another name, and with one fault each
@@ -181,4 +181,4 @@ def test_a_name_that_two_packages_claim_is_nobodys(install: Install) -> None:
 def test_our_names_are_taken(install: Install) -> None:
     install(mujoco="foreign_engine:fails")
     assert multibody.engine_names() == ("mujoco", "pybullet", "exudyn")
-    assert type(find_engine("mujoco")).__module__ == "rockwobble.multibody.mujoco_engine"
+    assert type(find_engine("mujoco")).__module__ == "rockwobble.multibody.engines.mujoco_engine"

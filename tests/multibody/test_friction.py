@@ -7,7 +7,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Cylinder, GroundMotion, InitialState
-from rockwobble.multibody.friction import body_friction
+from rockwobble.multibody.scene.friction import body_friction
 
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
 

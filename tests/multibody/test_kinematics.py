@@ -10,8 +10,15 @@ import pytest
 
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.multibody.body import scaled_body
-from rockwobble.multibody.engine import Steps
-from rockwobble.multibody.kinematics import Kinematics, Rim, kinematics, rim, rolling_momentum, unwrap
+from rockwobble.multibody.kinematics import (
+    Kinematics,
+    Rim,
+    kinematics,
+    rim,
+    rolling_momentum,
+    unwrap,
+)
+from rockwobble.multibody.protocol import Steps
 from rockwobble.multibody.start import Start, starting_state
 
 CYLINDER = Cylinder(semidiagonal=2.0, tan_alpha=0.4)

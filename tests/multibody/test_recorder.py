@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.body import scaled_body
-from rockwobble.multibody.engine import Scene, Steps
-from rockwobble.multibody.excitation import StepMeans
-from rockwobble.multibody.froude import froude_scale
+from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
 from rockwobble.multibody.kinematics import axis_of, unwrap_twist
-from rockwobble.multibody.mujoco_engine import MujocoEngine
-from rockwobble.multibody.passes import TurningPoint
-from rockwobble.multibody.recorder import COLUMNS, Recorder
+from rockwobble.multibody.protocol import Scene, Steps
+from rockwobble.multibody.recording.passes import TurningPoint
+from rockwobble.multibody.recording.recorder import COLUMNS, Recorder
+from rockwobble.multibody.scene.excitation import StepMeans
+from rockwobble.multibody.scene.froude import froude_scale
 from rockwobble.multibody.start import Start, starting_state
 
 STEP = 1e-4

@@ -7,8 +7,8 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Cylinder, GroundMotion, InitialState
-from rockwobble.multibody.passes import TurningPoint, passes_between
-from rockwobble.multibody.rests import SHORTEST, RestWatch
+from rockwobble.multibody.recording.passes import TurningPoint, passes_between
+from rockwobble.multibody.recording.rests import SHORTEST, RestWatch
 
 STEP = 1e-3
 

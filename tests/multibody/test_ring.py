@@ -12,10 +12,10 @@ from rockwobble import multibody
 from rockwobble.models import Cylinder, GroundMotion, InitialState
 from rockwobble.multibody import Trajectory
 from rockwobble.multibody.body import scaled_body
-from rockwobble.multibody.engine import Steps, Wall
-from rockwobble.multibody.guard import PENETRATION, first_breach
 from rockwobble.multibody.kinematics import kinematics
-from rockwobble.multibody.ring_geometry import clearance_needed
+from rockwobble.multibody.protocol import Steps, Wall
+from rockwobble.multibody.scene.guard import PENETRATION, first_breach
+from rockwobble.multibody.scene.ring_geometry import clearance_needed
 from rockwobble.multibody.start import starting_state
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

@@ -10,12 +10,17 @@ import pytest
 
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.multibody.body import scaled_body
-from rockwobble.multibody.engine import Array, Scene
+from rockwobble.multibody.engines.mujoco_scene import compile_scene
+from rockwobble.multibody.engines.settings import MujocoSettings
 from rockwobble.multibody.kinematics import axis_of
-from rockwobble.multibody.mujoco_scene import compile_scene
-from rockwobble.multibody.ring_geometry import clearance_needed, rim_overhang, wall_feet, wall_orientations
-from rockwobble.multibody.ring_settings import RingSettings
-from rockwobble.multibody.settings import MujocoSettings
+from rockwobble.multibody.protocol import Array, Scene
+from rockwobble.multibody.scene.ring_geometry import (
+    clearance_needed,
+    rim_overhang,
+    wall_feet,
+    wall_orientations,
+)
+from rockwobble.multibody.scene.ring_settings import RingSettings
 from rockwobble.multibody.start import starting_state
 
 ROUNDING = 1e-12  # of quantities of the order of b or of 1

@@ -11,12 +11,12 @@ import pytest
 import rockwobble.models
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.multibody.body import scaled_body
-from rockwobble.multibody.engine import Scene
-from rockwobble.multibody.mujoco_engine import MujocoEngine
-from rockwobble.multibody.mujoco_scene import compile_scene
-from rockwobble.multibody.ring_geometry import wall_feet, wall_orientations
-from rockwobble.multibody.ring_settings import RingSettings, take_ring
-from rockwobble.multibody.settings import MujocoSettings
+from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
+from rockwobble.multibody.engines.mujoco_scene import compile_scene
+from rockwobble.multibody.engines.settings import MujocoSettings
+from rockwobble.multibody.protocol import Scene
+from rockwobble.multibody.scene.ring_geometry import wall_feet, wall_orientations
+from rockwobble.multibody.scene.ring_settings import RingSettings, take_ring
 from rockwobble.multibody.start import starting_state
 
 FOLDER = Path(next(iter(rockwobble.models.__path__))) / "scenes"

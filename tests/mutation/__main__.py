@@ -14,7 +14,7 @@ _EXAMPLES = """examples:
   python tests/mutation listed --first                          each listed fault against its own layer
   python tests/mutation generated --count 150 --seed 1 --tests  a sample of all, and its page score.md
   python tests/mutation generated --survivors --tests           again, what was not found the last time
-  python tests/mutation show reduced/uplift.py:uplift_in:strictness:1
+  python tests/mutation show reduced/integration/uplift.py:uplift_in:strictness:1
 """
 
 

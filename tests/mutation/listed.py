@@ -111,7 +111,7 @@ def _around(file: str, head: str, body: str) -> Fault:
 def _structure() -> list[Mutation]:
     # the pieces keep their times, but from the 21st on they are those of the next
     skipped = _around(
-        "march.py",
+        "integration/march.py",
         "piece_of_record(record, time_step, index)",
         "skipped = 1 if 20 < index < len(record) - 2 else 0\n"
         "a, slope, end = without_fault(record, time_step, index + skipped)\n"
@@ -119,7 +119,7 @@ def _structure() -> list[Mutation]:
     )
     exchanged = _around("columns.py", "three_columns(motion)", "return without_fault(motion)[:, [1, 0, 2]]")
     late = _around(
-        "uplift.py",
+        "integration/uplift.py",
         "uplift_in(*arguments)",
         "return 0.0 if without_fault(*arguments) == 0.0 else -1.0",
     )

@@ -15,7 +15,7 @@ from mutation.sites import GeneratedFault
 from mutation.trial import NOTHING, Limits, Verdict
 
 SOURCE = "def f(x):\n    return x + 1\n"
-FILE = "compare/tilt.py"
+FILE = "compare/metrics/tilt.py"
 
 
 @pytest.fixture
@@ -119,13 +119,13 @@ def row(name: str, check: str, tests: str = "", detail: str = "") -> Row:
 
 def test_the_page_counts_and_names_what_was_not_found() -> None:
     rows = [
-        row("compare/tilt.py:f:operator:1", "metrics"),
-        row("compare/tilt.py:f:operator:2", NOTHING),
-        row("compare/tilt.py:f:operator:3", NOTHING, NOTHING),
-        row("compare/tilt.py:f:operator:4", NOTHING, NOTHING),
+        row("compare/metrics/tilt.py:f:operator:1", "metrics"),
+        row("compare/metrics/tilt.py:f:operator:2", NOTHING),
+        row("compare/metrics/tilt.py:f:operator:3", NOTHING, NOTHING),
+        row("compare/metrics/tilt.py:f:operator:4", NOTHING, NOTHING),
         row("models/case.py:f:sign:1", NOTHING, "tests", "tests/models/test_a.py::test_a"),
-        row("reduced/driver.py:f:sign:1", "timeout", detail="out of time in exact"),
-        row("reduced/driver.py:f:sign:2", "crash", detail="SIGSEGV in exact"),
+        row("reduced/integration/driver.py:f:sign:1", "timeout", detail="out of time in exact"),
+        row("reduced/integration/driver.py:f:sign:2", "crash", detail="SIGSEGV in exact"),
     ]
     reasons = {(rows[2].fault, rows[2].change): "a factor of one", (rows[0].fault, rows[0].change): "wrong"}
     text = page(rows, reasons, "python tests/mutation generated")

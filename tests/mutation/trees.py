@@ -79,7 +79,7 @@ def compiled_files(root: Path) -> frozenset[Path]:
         If no function is marked as an entry point.
     """
     folder = root / _COMPILED
-    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in folder.glob("*.py")}
+    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in folder.rglob("*.py")}
     waiting = [path for path, tree in trees.items() if _has_entry(tree)]
     if not waiting:
         raise ValueError(f"{_COMPILED} must have functions marked with {_ENTRY}, got none")
@@ -88,7 +88,7 @@ def compiled_files(root: Path) -> frozenset[Path]:
         path = waiting.pop()
         if path in trees and path not in found:
             found.add(path)
-            waiting += [folder / f"{name}.py" for name in _imported(trees[path])]
+            waiting += _imported(path, trees[path])
     return frozenset(found)
 
 
@@ -108,10 +108,10 @@ def _has_entry(tree: ast.Module) -> bool:
     return any(ast.unparse(each) == _ENTRY for node in functions for each in node.decorator_list)
 
 
-def _imported(tree: ast.Module) -> Iterator[str]:
+def _imported(path: Path, tree: ast.Module) -> Iterator[Path]:
+    """Yield the files that relative imports of the file `path` may name."""
     for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and node.level == 1:
-            if node.module is None:
-                yield from (each.name for each in node.names)
-            else:
-                yield node.module
+        if isinstance(node, ast.ImportFrom) and node.level:
+            place = path.parents[node.level - 1].joinpath(*(node.module or "").split("."))
+            yield place.with_suffix(".py")
+            yield from (place / f"{each.name}.py" for each in node.names)

@@ -7,8 +7,8 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
-from rockwobble.reduced import tsit5, uplift
 from rockwobble.reduced.body import body_of
+from rockwobble.reduced.integration import tsit5, uplift
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 BODY = body_of(PIER, 9.81)

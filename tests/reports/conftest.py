@@ -9,8 +9,9 @@ from typing import Any
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import Comparison, compare, driver
-from rockwobble.compare.execution import Job
+from rockwobble.compare import Comparison, compare
+from rockwobble.compare.comparison import driver
+from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Case, Cylinder, Run, el_centro_1940
 
 

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockwobble.compare.plain_json import loads
+from rockwobble.compare.storage.plain_json import loads
 from rockwobble.models import el_centro_1940
-from rockwobble.reports.advise_document import advice_document
-from rockwobble.reports.main import main
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.advice.document import advice_document
 
 PAGE_LIMIT = 8e6  # bytes, of every page
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "advice"

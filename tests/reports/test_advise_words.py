@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import pytest
 
-from rockwobble.compare.advice import Demands, PlanarView, Trust
-from rockwobble.reports.advise_scale_words import overturning_words, planar_words, uplift_words
-from rockwobble.reports.advise_words import (
+from rockwobble.compare.studies.advice import Demands, PlanarView, Trust
+from rockwobble.reports.pages.advice.scale_words import overturning_words, planar_words, uplift_words
+from rockwobble.reports.pages.advice.words import (
     contact_words,
     couple_words,
     engine_words,

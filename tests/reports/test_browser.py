@@ -10,20 +10,20 @@ from browser import complaints, needs_chromium
 
 from rockwobble import compare
 from rockwobble.compare import Comparison
-from rockwobble.compare.advice import advise
-from rockwobble.compare.extremes import read_extremes
-from rockwobble.compare.tradeoff import read_tradeoff
-from rockwobble.compare.validity import read_validity
+from rockwobble.compare.studies.advice import advise
+from rockwobble.compare.studies.extremes import read_extremes
+from rockwobble.compare.studies.tradeoff import read_tradeoff
+from rockwobble.compare.studies.validity import read_validity
 from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
-from rockwobble.reports.advise_page import advice_page
-from rockwobble.reports.ensemble_page import ensemble_page
-from rockwobble.reports.extremes.page import extremes_page
-from rockwobble.reports.page import comparison_page
-from rockwobble.reports.suite_page import suite_page
-from rockwobble.reports.tradeoff.page import tradeoff_page
-from rockwobble.reports.validity.page import validity_page
-from rockwobble.reports.validity.sections import sections_of
-from rockwobble.reports.view_command import view_page
+from rockwobble.reports.cli.view import view_page
+from rockwobble.reports.pages.advice.page import advice_page
+from rockwobble.reports.pages.comparison.page import comparison_page
+from rockwobble.reports.pages.comparison.suite_page import suite_page
+from rockwobble.reports.pages.ensemble.page import ensemble_page
+from rockwobble.reports.pages.extremes.page import extremes_page
+from rockwobble.reports.pages.tradeoff.page import tradeoff_page
+from rockwobble.reports.pages.validity.page import validity_page
+from rockwobble.reports.pages.validity.sections import sections_of
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 # of a player: moved, it must say where it is

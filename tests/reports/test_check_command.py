@@ -11,8 +11,8 @@ import pytest
 
 from rockwobble.compare.check import FAILED, NO_BASELINE, NOT_RUN, PASSED, Finding, layers
 from rockwobble.compare.check.finding import at_most, not_run
-from rockwobble.reports import check_output, check_update
-from rockwobble.reports.main import main
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.console import check_output, check_update
 
 FAST = ["--only", "conserved", "--only", "residual"]
 
@@ -133,7 +133,9 @@ def test_outcomes() -> None:
 def test_an_update_needs_a_reason_and_keeps_it(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
-    from rockwobble.compare.check import baseline_file, engine_baseline, reduced_baseline
+    from rockwobble.compare.check import baseline_file
+    from rockwobble.compare.check.engines import engine_baseline
+    from rockwobble.compare.check.models import reduced_baseline
 
     monkeypatch.setattr(baseline_file, "folder", lambda: tmp_path)
     monkeypatch.setattr(engine_baseline, "measure", lambda _: {"engine 1": {"x": 0.5}})

@@ -13,9 +13,10 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockwobble.compare import execution, runs
-from rockwobble.reports import compare_command
-from rockwobble.reports.main import main
+from rockwobble.compare.runs import choice as runs
+from rockwobble.compare.runs import execution
+from rockwobble.reports.cli import compare as compare_command
+from rockwobble.reports.cli.main import main
 
 GOOD = "time [s], acceleration [g]\n0.00, 0.0\n0.01, 0.1\n0.02, 0.0\n"
 
@@ -218,7 +219,7 @@ def test_no_command_prints_the_help(capsys):
 def test_help_imports_nothing_heavy():
     script = (
         "import sys\n"
-        "from rockwobble.reports.main import main\n"
+        "from rockwobble.reports.cli.main import main\n"
         "try:\n    main(['--help'])\n"
         "except SystemExit:\n    pass\n"
         "heavy = {'numpy', 'numba', 'scipy', 'pandas', 'mujoco', 'plotly', 'matplotlib', 'jinja2'}\n"
@@ -240,7 +241,7 @@ def test_ctrl_c_stops_a_real_run_at_once_and_leaves_no_process(tmp_path):
         "--engine",
         "mujoco",
     ]
-    script = "from rockwobble.reports.main import main; main()"
+    script = "from rockwobble.reports.cli.main import main; main()"
     process = subprocess.Popen(
         [sys.executable, "-c", script, "compare", *arguments],
         cwd=tmp_path,

@@ -12,16 +12,16 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare import Ensemble
-from rockwobble.compare.describe_store import describe_store
-from rockwobble.compare.ensemble_study import ensemble_of
-from rockwobble.models import p695
-from rockwobble.reports.ensemble_chart import curves, ratio_chart
-from rockwobble.reports.ensemble_figure import ensemble_figure
-from rockwobble.reports.ensemble_output import print_ensemble
-from rockwobble.reports.ensemble_page import ensemble_page
-from rockwobble.reports.ensemble_ratios import ratio_rows, ratio_span, ratio_ticks
-from rockwobble.reports.ensemble_words import contrast_rows, method_rows, overturning_rows, statements
-from rockwobble.reports.main import main
+from rockwobble.compare.describe.folder import describe_store
+from rockwobble.compare.studies.ensemble.study import ensemble_of
+from rockwobble.models.records import p695
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.console.ensemble_output import print_ensemble
+from rockwobble.reports.figures.ensemble_chart import curves, ratio_chart
+from rockwobble.reports.figures.ensemble_figure import ensemble_figure
+from rockwobble.reports.figures.ensemble_ratios import ratio_rows, ratio_span, ratio_ticks
+from rockwobble.reports.pages.ensemble.page import ensemble_page
+from rockwobble.reports.pages.ensemble.words import contrast_rows, method_rows, overturning_rows, statements
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "ensemble"
 FALLEN = 7.9  # [alpha]

@@ -7,9 +7,15 @@ import pandas as pd
 import pytest
 from rich.console import Console
 
-from rockwobble.compare.external.verdict import VERDICT_COLUMNS, no_verdict
-from rockwobble.reports.external_words import external_sentences, external_table, mistake_words, scope, within
-from rockwobble.reports.findings import finding, headline
+from rockwobble.compare.comparison.external.verdict import VERDICT_COLUMNS, no_verdict
+from rockwobble.reports.pages.comparison.external_words import (
+    external_sentences,
+    external_table,
+    mistake_words,
+    scope,
+    within,
+)
+from rockwobble.reports.pages.comparison.findings import finding, headline
 
 AGREES = {"azimuth_rms": 0.2, "path_rms": 0.001, "tilt_bound": 0.01, "noise": 0.0}
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockwobble.compare import extremes
-from rockwobble.reports.main import main
+from rockwobble.compare.studies import extremes
+from rockwobble.reports.cli.main import main
 
 
 def call(*arguments: str) -> int:

@@ -6,8 +6,8 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from rockwobble.reports.budget_words import parting_lines
-from rockwobble.reports.findings import finding, headline, small
+from rockwobble.reports.pages.comparison.budget_words import parting_lines
+from rockwobble.reports.pages.comparison.findings import finding, headline, small
 
 LENGTH = 50.0
 

@@ -10,9 +10,9 @@ import pytest
 
 from rockwobble.compare import with_settings
 from rockwobble.models import Case, Cylinder, InitialState, Run
-from rockwobble.reports.main import main
-from rockwobble.reports.method_values import settings
-from rockwobble.reports.run_remarks import counted_remarks, remark_lines
+from rockwobble.reports.cli.inputs.method_values import settings
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.comparison.run_remarks import counted_remarks, remark_lines
 
 RELEASE = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "0.2"]
 

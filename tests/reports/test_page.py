@@ -8,9 +8,9 @@ import pytest
 
 from rockwobble.compare import SUMMARY_COLUMNS, compare
 from rockwobble.models import Case, Cylinder, InitialState, Run
-from rockwobble.reports.figure import comparison_figure
-from rockwobble.reports.page import comparison_page
-from rockwobble.reports.suite_page import suite_page
+from rockwobble.reports.figures.comparison_picture import comparison_figure
+from rockwobble.reports.pages.comparison.page import comparison_page
+from rockwobble.reports.pages.comparison.suite_page import suite_page
 
 PAGE_LIMIT = 8_000_000  # [bytes]
 PICTURE_LIMIT = 300_000  # [bytes]

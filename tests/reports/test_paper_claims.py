@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.series import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.compare.spectrum import OverturningSpectrum
+from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.models import Cylinder, InitialState, el_centro_1940
 from rockwobble.reports.paper import earthquake, earthquake_claims, free, overturning, period
 from rockwobble.reports.paper.claim import DOES_NOT_HOLD, HOLDS, HOLDS_IN_PART, Claim, in_words, verdict_of

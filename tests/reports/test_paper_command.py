@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.reports.main import main
+from rockwobble.reports.cli.main import main
 from rockwobble.reports.paper import earthquake
 
 SVG_LIMIT = 400_000  # bytes, of each committed picture

@@ -8,17 +8,19 @@ from pathlib import Path
 
 import pytest
 
-from rockwobble.compare import describe_store, origin, provenance, read_ensemble
-from rockwobble.compare.extremes import read_extremes
-from rockwobble.compare.plain_json import dumps, loads
-from rockwobble.compare.tradeoff import read_tradeoff
-from rockwobble.compare.validity import motions, read_validity
-from rockwobble.reports.ensemble_document import ensemble_document
-from rockwobble.reports.extremes.page import extremes_markdown
-from rockwobble.reports.main import main
-from rockwobble.reports.tradeoff.page import tradeoff_markdown
-from rockwobble.reports.validity.page import validity_document
-from rockwobble.reports.validity.sections import sections_of
+from rockwobble.compare import read_ensemble
+from rockwobble.compare.describe import folder as describe_store
+from rockwobble.compare.storage import origin, provenance
+from rockwobble.compare.storage.plain_json import dumps, loads
+from rockwobble.compare.studies.extremes import read_extremes
+from rockwobble.compare.studies.tradeoff import read_tradeoff
+from rockwobble.compare.studies.validity import motions, read_validity
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.ensemble.document import ensemble_document
+from rockwobble.reports.pages.extremes.page import extremes_markdown
+from rockwobble.reports.pages.tradeoff.page import tradeoff_markdown
+from rockwobble.reports.pages.validity.page import validity_document
+from rockwobble.reports.pages.validity.sections import sections_of
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 

@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare import SweepProgress, compare
-from rockwobble.compare.parquet_file import read_about
+from rockwobble.compare.storage.parquet_file import read_about
 from rockwobble.models import Case, Cylinder, InitialState, Run
-from rockwobble.reports.main import main
-from rockwobble.reports.sweep_progress import sentence
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.console.sweep_progress import sentence
 
 GRID = ["--semidiagonal", "1:20:4", "--tan-alpha", "0.1,0.2", "--scale", "0.3,2", "--workers", "1"]
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

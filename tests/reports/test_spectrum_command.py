@@ -10,7 +10,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.models import el_centro_1940
-from rockwobble.reports.main import main
+from rockwobble.reports.cli.main import main
 
 # the factors on the record differ by a rounding, grown by a few passes
 SAME_RUN = 1e-6

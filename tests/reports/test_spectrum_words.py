@@ -9,15 +9,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare.planar_contrast import planar_contrast
-from rockwobble.compare.series import PLANAR_X, SERIES, SPATIAL
-from rockwobble.compare.spectrum import OverturningSpectrum, overturning_spectrum
-from rockwobble.compare.spectrum_check import confirm_lowest
+from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast
+from rockwobble.compare.studies.spectrum.series import PLANAR_X, SERIES, SPATIAL
+from rockwobble.compare.studies.spectrum.study import OverturningSpectrum, overturning_spectrum
+from rockwobble.compare.studies.spectrum.verification import confirm_lowest
 from rockwobble.models import GroundMotion, el_centro_1940
-from rockwobble.reports.spectrum_figure import spectrum_figure
-from rockwobble.reports.spectrum_page import spectrum_page
-from rockwobble.reports.spectrum_progress import shown_fraction
-from rockwobble.reports.spectrum_words import (
+from rockwobble.reports.console.spectrum_progress import shown_fraction
+from rockwobble.reports.figures.spectrum_figure import spectrum_figure
+from rockwobble.reports.pages.spectrum.page import spectrum_page
+from rockwobble.reports.pages.spectrum.words import (
     HEADINGS,
     check_statement,
     search_statement,

@@ -12,11 +12,13 @@ import pytest
 from plotly.offline import get_plotlyjs
 
 from rockwobble import reduced
-from rockwobble.compare import Comparison, compare, driver, execution
+from rockwobble.compare import Comparison, compare
+from rockwobble.compare.comparison import driver
+from rockwobble.compare.runs import execution
 from rockwobble.models import Case, Cylinder, InitialState, Run, read_suite
-from rockwobble.reports.main import main
-from rockwobble.reports.suite_choice import chosen_runs, group_of
-from rockwobble.reports.suite_page import suite_page
+from rockwobble.reports.cli.inputs.suite_choice import chosen_runs, group_of
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.comparison.suite_page import suite_page
 
 PAGE_LIMIT = 8_000_000  # [bytes]
 CASES = 6
@@ -184,7 +186,7 @@ def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, 
     assert len(page.encode()) < PAGE_LIMIT
     assert page.count('<script type="application/json"') >= CASES * 4
     # with as many points for six cases as 44 would get, all of them would fit
-    monkeypatch.setattr("rockwobble.reports.suite_page._ALL_POINTS", 150_000 * CASES // 44)
+    monkeypatch.setattr("rockwobble.reports.pages.comparison.suite_page._ALL_POINTS", 150_000 * CASES // 44)
     thinned = len(suite_page(many).encode())
     of_a_case = (thinned - len(get_plotlyjs().encode())) / CASES
     assert len(get_plotlyjs().encode()) + 44 * of_a_case < PAGE_LIMIT

@@ -7,7 +7,7 @@ from rich.console import Console
 
 from rockwobble.compare import compare
 from rockwobble.models import Case, Cylinder, Run
-from rockwobble.reports.summary_table import summary_table
+from rockwobble.reports.console.summary_table import summary_table
 
 
 @pytest.mark.parametrize("width", [80, 100])

@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rockwobble.reports.thinning import POINTS, envelope, kept_samples
+from rockwobble.reports.figures.thinning import POINTS, envelope, kept_samples
 
 
 def test_few_samples_are_all_kept():

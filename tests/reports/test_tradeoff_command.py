@@ -7,10 +7,10 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockwobble.compare import tradeoff
-from rockwobble.compare.origin import Origin
-from rockwobble.compare.tradeoff import Tradeoff, read_tradeoff, tradeoff_tables
-from rockwobble.reports.main import main
+from rockwobble.compare.storage.origin import Origin
+from rockwobble.compare.studies import tradeoff
+from rockwobble.compare.studies.tradeoff import Tradeoff, read_tradeoff, tradeoff_tables
+from rockwobble.reports.cli.main import main
 
 FILES = {
     "tradeoff.html", "tradeoff.md", "tradeoff.svg", "points.parquet", "problems.parquet", "scenes.parquet",

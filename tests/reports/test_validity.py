@@ -12,12 +12,12 @@ import pandas as pd
 import pytest
 from typer.testing import CliRunner
 
-from rockwobble.compare.validity import FULL, PARTS, QUICK, read_validity
-from rockwobble.reports.main import app
-from rockwobble.reports.validity.drawing import svg
-from rockwobble.reports.validity.page import validity_document, validity_page
-from rockwobble.reports.validity.picture import LinePicture, MapPanel, MapPicture
-from rockwobble.reports.validity.sections import sections_of
+from rockwobble.compare.studies.validity import FULL, PARTS, QUICK, read_validity
+from rockwobble.reports.cli.main import app
+from rockwobble.reports.pages.validity.drawing import svg
+from rockwobble.reports.pages.validity.page import validity_document, validity_page
+from rockwobble.reports.pages.validity.picture import LinePicture, MapPanel, MapPicture
+from rockwobble.reports.pages.validity.sections import sections_of
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "validity"
 LARGEST = 8_000_000  # bytes of a page

@@ -12,7 +12,7 @@ import sys
 
 import numpy as np
 
-from rockwobble.compare.ensemble_members import synthetic_motions
+from rockwobble.compare.studies.ensemble.members import synthetic_motions
 from rockwobble.models import GroundMotion
 from rockwobble.reduced import peak_tilts
 

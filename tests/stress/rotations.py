@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.ensemble_members import synthetic_motions
+from rockwobble.compare.studies.ensemble.members import synthetic_motions
 from rockwobble.models import Cylinder, GroundMotion
 from rockwobble.reduced import simulate
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.ensemble_members import synthetic_motions
+from rockwobble.compare.studies.ensemble.members import synthetic_motions
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
 from rockwobble.reduced import peak_tilts, simulate
 from rockwobble.reduced.problem import SEATING

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare.sweep_grid import Grid
-from rockwobble.compare.sweep_store import CHUNKS
-from rockwobble.compare.sweep_study import SweepProgress, sweep
+from rockwobble.compare.studies.sweep.grid import Grid
+from rockwobble.compare.studies.sweep.store import CHUNKS
+from rockwobble.compare.studies.sweep.study import SweepProgress, sweep
 from rockwobble.models import el_centro_1940
 
 if TYPE_CHECKING:

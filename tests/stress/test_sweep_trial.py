@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare import sweep
-from rockwobble.compare.sweep_store import CHUNKS
+from rockwobble.compare.studies.sweep.store import CHUNKS
 from stress.sweep_trial import CHUNK_SIZE, dask_sweep_with_a_death, killed_sweep, trial_grid
 
 

@@ -1,0 +1,1 @@
+"""Checks of record files, ground motions and suites."""

@@ -1,0 +1,173 @@
+"""Layer studies, third part: a suite file, and what its ranges and keys must come to."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from rockwobble.models import Case, Suite, read_suite
+
+from ..bench import Bench
+from ..finding import Finding, at_most, worst_of
+
+LAYER = "studies"
+TEXT = """
+[[runs]]
+engine = ["mujoco", "pybullet"]
+support = ["guided", "free"]
+time_step = [1e-4, 2e-4]
+settings = { iterations = 50 }
+
+[[cases]]
+name = "grid"
+cylinder.semidiagonal = { from = 1, to = 100, count = 3, spacing = "log" }
+cylinder.tan_alpha = { from = 0.1, to = 0.3, step = 0.1 }
+release = { tilt_over_alpha = { from = 0.2, to = 0.8, count = 3 }, rolling_rate = 0.5 }
+duration = [4, 6]
+
+[[cases]]
+name = "fields"
+cylinder.base_radius = 1.5
+cylinder.height = 8
+cylinder.mass_centre_height = 5
+cylinder.transverse_inertia = 7
+cylinder.axial_inertia = 2
+release = { tilt_deg = 3, tilt_rate = -0.1, rolling_angle_deg = 30, rolling_rate = 0.2 }
+duration = 7
+gravity = 3.7
+friction = 0.4
+
+[[cases]]
+name = "record"
+cylinder = { semidiagonal = 6, tan_alpha = 0.2 }
+motion = { x = "x.csv", y = "y.csv", units = "g", scale = 1.5, rotation_deg = 90, time_shift = 0.4 }
+
+[[cases]]
+name = "strength"
+cylinder = { semidiagonal = 6, tan_alpha = 0.25 }
+motion = { x = "x.csv", y = "y.csv", units = "g", times_uplift = [1.5, 2] }
+gravity = 5
+
+[[cases]]
+name = "pulse"
+cylinder = { semidiagonal = 6, tan_alpha = 0.25 }
+motion = { pulse = "half-sine", times_uplift = 1.2, period = 2, azimuth_deg = 90, time_shift = 0.5 }
+duration = 3
+"""
+X, Y, STEP = np.array([0.0, 0.125, -0.25, 0.5]), np.array([0.25, -0.5, 0.125, 0.0]), 0.2
+ROUNDING = 1e-12  # relative: ranges are rounded to 12 digits, angles turned into radians
+
+
+def check(bench: Bench) -> Iterator[Finding]:
+    """Yield the findings of this part."""
+    del bench
+    with tempfile.TemporaryDirectory() as place:
+        folder = Path(place)
+        for name, values in (("x.csv", X), ("y.csv", Y)):
+            lines = [f"{STEP * index:.1f},{value!r}" for index, value in enumerate(values.tolist())]
+            (folder / name).write_text("time,acceleration\n" + "\n".join(lines) + "\n", encoding="utf-8")
+        path = folder / "check.suite.toml"
+        path.write_text(TEXT, encoding="utf-8")
+        suite = read_suite(path)
+    yield _expansion(suite)
+    named = {case.name: case for case in suite.cases}
+    for name, errors, part in (
+        (
+            "fields of a case, from a suite file",
+            _field_errors(named["fields"]),
+            "keys of a case, or their units",
+        ),
+        (
+            "ground motions of a suite file",
+            _motion_errors(named),
+            "scale, rotation, shift or strength of a motion",
+        ),
+    ):
+        reason = "the same numbers worked out by hand, to rounding"
+        yield worst_of(LAYER, name, errors, ROUNDING, reason=reason, part=f"suite file: {part}")
+
+
+def _expansion(suite: Suite) -> Finding:
+    """Every combination of four ranges, the last key fastest, and every run once."""
+    axes = [(1.0, 10.0, 100.0), (0.1, 0.2, 0.3), (0.2, 0.5, 0.8), (4.0, 6.0)]
+    wrong = []
+    combinations = list(itertools.product(*axes))
+    found = [case for case in suite.cases if case.name.startswith("grid")]
+    if len(found) != len(combinations):
+        wrong.append(f"{len(found)} cases instead of {len(combinations)}")
+    for case, (size, tan_alpha, share, duration) in zip(found, combinations, strict=False):
+        name = f"grid: semidiagonal {size:g}, tan_alpha {tan_alpha:g}, tilt_over_alpha {share:g}"
+        initial = case.initial
+        tilt = math.nan if initial is None else initial.tilt / math.atan(tan_alpha)
+        stated = (case.cylinder.semidiagonal, case.cylinder.tan_alpha, case.length)
+        named = case.name == f"{name}, duration {duration:g}"
+        if not (named and stated == (size, tan_alpha, duration) and abs(tilt - share) < ROUNDING):
+            wrong.append(case.name)
+    runs = [(run.engine, run.support, run.time_step, dict(run.settings)) for run in suite.runs]
+    expected = itertools.product(
+        ("mujoco", "pybullet"), ("guided", "free"), (1e-4, 2e-4), ({"iterations": 50},)
+    )
+    if runs != list(expected):
+        wrong.append("the runs")
+    return at_most(
+        LAYER,
+        f"wrong cases and runs of a suite file with four ranges, {len(combinations)} cases",
+        len(wrong),
+        0.0,
+        reason="every combination, in the order of the file, the last key fastest",
+        part="suite file: ranges, names or order of the cases",
+        note="; ".join(wrong[:3]),
+    )
+
+
+def _field_errors(case: Case) -> dict[str, float]:
+    cylinder, initial = case.cylinder, case.initial
+    found = {
+        "base radius": cylinder.base_radius / 1.5,
+        "height of the mass centre": cylinder.mass_centre_height / 5.0,
+        "height": 2.0 * cylinder.half_height / 8.0,
+        "semidiagonal": cylinder.semidiagonal / math.hypot(1.5, 5.0),
+        "transverse inertia": (cylinder.transverse_inertia or math.nan) / 7.0,
+        "axial inertia": (cylinder.axial_inertia or math.nan) / 2.0,
+        "duration": case.length / 7.0,
+        "gravity": case.gravity / 3.7,
+        "friction": case.friction / 0.4,
+    }
+    if initial is not None:
+        found |= {
+            "tilt": initial.tilt / (math.pi / 60.0),
+            "tilt rate": initial.tilt_rate / -0.1,
+            "rolling angle": initial.rolling_angle / (math.pi / 6.0),
+            "rolling rate": initial.rolling_rate / 0.2,
+        }
+    errors = {name: abs(value - 1.0) for name, value in found.items()}
+    return errors if initial is not None else {**errors, "release": math.nan}
+
+
+def _motion_errors(named: dict[str, Case]) -> dict[str, float]:
+    both = 9.81 * np.column_stack([X, Y])
+    peak = float(np.sqrt((both**2).sum(axis=1)).max())
+    # turned by 90 degrees x becomes y and y becomes -x; two time steps of still ground come first
+    shifted = np.vstack([np.zeros((2, 2)), 1.5 * np.column_stack([-both[:, 1], both[:, 0]])])
+    expected = {
+        "record": (shifted, STEP),
+        "strength: times_uplift 1.5": (1.5 * 5.0 * 0.25 / peak * both, STEP),
+        "strength: times_uplift 2": (2.0 * 5.0 * 0.25 / peak * both, STEP),
+    }
+    found = dict.fromkeys((*expected, "pulse"), math.nan)
+    for name, (values, step) in expected.items():
+        motion = named[name].motion if name in named else None
+        if motion is not None and motion.acceleration.shape == values.shape and motion.time_step == step:
+            found[name] = float(np.abs(motion.acceleration - values).max()) / 9.81
+    motion = named["pulse"].motion if "pulse" in named else None
+    if motion is not None:
+        at = motion.time_step * np.arange(len(motion.acceleration))
+        along = np.where(at >= 0.5, 1.2 * 9.81 * 0.25 * np.sin(math.pi * (at - 0.5)), 0.0)
+        apart = float(np.abs(motion.acceleration - np.column_stack([0.0 * along, along])).max()) / 9.81
+        found["pulse"] = apart if abs(motion.duration - 1.5) < ROUNDING else math.nan
+    return found

@@ -1,0 +1,1 @@
+"""Checks of metrics, grids and sweeps."""

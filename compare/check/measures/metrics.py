@@ -1,0 +1,255 @@
+"""Layer: the metrics of a comparison, on traces that are made up so that their values are known.
+
+Expected values are integrals and counts done by hand: the sum of many samples of a sine is known, and a
+ramp crosses 1 % of alpha where it is drawn to.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from rockwobble.models import Case, Cylinder, GroundMotion
+
+from ...comparison.prediction import Prediction
+from ...comparison.summary import summary_row
+from ...metrics.agreement import agreed_passes, agreement_horizon, closest_pass
+from ...metrics.contact import contact_rms
+from ...metrics.energy import energy_loss
+from ...metrics.tilt import tilt_rms, tilt_rms_relative
+from ...metrics.turning import direction_difference, first_unresolved_pass, turn_difference
+from ...traces.pair import make_pair
+from ..bench import Bench
+from ..finding import Finding, worst_of
+from .made_traces import Array, MadeTrace, made, passes
+
+LAYER = "metrics"
+CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+ALPHA, B = CYLINDER.alpha, CYLINDER.base_radius
+TIME: Array = 0.01 * np.arange(1001, dtype=np.float64)
+ROUNDING = 1e-12
+# of a work: the slope of the velocity within a sample comes from its neighbours; 3e-9 was measured
+WORK = 1e-7
+
+
+def check(bench: Bench) -> Iterator[Finding]:
+    """Yield the findings of this part."""
+    del bench
+    yield _finding("differences of tilt", _tilts(), "RMS of the tilt (compare/metrics/tilt.py)")
+    yield _finding(
+        "one time axis for two traces", _axes(), "interpolation or window of a pair (compare/traces/pair.py)"
+    )
+    yield _finding("distance of the contact points", _contacts(), "contact RMS (compare/metrics/contact.py)")
+    yield _finding("differences of turn and direction", _turns(), "turning (compare/metrics/turning.py)")
+    yield _finding("agreement time and passes", _agreement(), "agreement (compare/metrics/agreement.py)")
+    yield _finding("energy lost", _energies(), "energy lost (compare/metrics/energy.py)", WORK)
+    yield _finding("a row of the summary", _row(), "columns of the summary (compare/comparison/summary.py)")
+
+
+def _tilts() -> dict[str, float]:
+    wave = np.sin(2.0 * math.pi * TIME[:-1])  # ten whole periods
+    reference = made(TIME[:-1], 0.5 * ALPHA + 0.2 * ALPHA * wave)
+    trial = made(TIME[:-1], 0.5 * ALPHA + 0.23 * ALPHA * wave - 0.02 * ALPHA)
+    pair = make_pair(CYLINDER, reference, trial)
+    rms = math.sqrt(0.03**2 / 2.0 + 0.02**2)
+    scale = math.sqrt(0.5**2 + 0.2**2 / 2.0)
+    return {
+        "RMS": tilt_rms(pair) - rms,
+        "relative RMS": tilt_rms_relative(pair) - rms / scale,
+        "sign of the difference": pair.tilt_difference[0] + 0.02,
+        "RMS of what never tilts": _none(
+            tilt_rms_relative(make_pair(CYLINDER, made(TIME, 0.0 * TIME), trial))
+        ),
+    }
+
+
+def _axes() -> dict[str, float]:
+    """A trial on a coarser grid that begins later on it, a window, and a trace that breaks off."""
+    reference = made(TIME, 0.3 * ALPHA * (1.0 + 0.1 * TIME), uplift_time=1.25)
+    own = np.append(0.04 * np.arange(200), 8.013)
+    trial = made(
+        own,
+        0.3 * ALPHA * (1.0 + 0.1 * own),
+        contact_point=np.column_stack([own, -2.0 * own]),
+        rolling_angle=3.0 * own,
+    )
+    pair, window = make_pair(CYLINDER, reference, trial), make_pair(CYLINDER, reference, trial, until=2.0)
+    tilts = reference.tilt.copy()
+    tilts[300:] = math.nan
+    broken = make_pair(CYLINDER, reference, made(TIME, tilts))
+    whole = make_pair(CYLINDER, reference, made(TIME + 1e-11, reference.tilt))
+    return {
+        "interpolated tilt": float(np.abs(pair.tilt_difference).max()),
+        "interpolated contact": float(np.abs(pair.contact_point - np.outer(pair.time, [1.0, -2.0])).max()),
+        "interpolated angle": float(np.abs(pair.rolling_angle - 3.0 * pair.time).max()),
+        "end of the shorter": pair.end - 8.01,
+        "end of the window": window.end - 2.0,
+        "samples of the window": len(window.time) - 201.0,
+        "start": pair.start - 1.25,
+        "end before a tilt that is no number": broken.end - 2.99,
+        "times that differ by rounding": len(whole.time) - 1001.0,
+    }
+
+
+def _contacts() -> dict[str, float]:
+    """Half of the samples tilt by less than 5 % of the peak, and do not count."""
+    low = np.arange(len(TIME)) % 2 == 1
+    tilt = np.where(low, 0.04, 1.0) * 0.5 * ALPHA
+    at = np.column_stack([np.cos(TIME), np.sin(TIME)]) * B
+    off = np.where(low[:, None], [[3.0, 3.0]], [[0.03, -0.04]]) * B
+    pair = make_pair(CYLINDER, made(TIME, tilt, contact_point=at), made(TIME, tilt, contact_point=at + off))
+    one_low = make_pair(
+        CYLINDER, made(TIME, tilt + 0.01, contact_point=at), made(TIME, tilt, contact_point=at + off)
+    )
+    gap = at.copy()
+    gap[::4] = math.nan
+    rests = make_pair(CYLINDER, made(TIME, tilt, contact_point=gap), made(TIME, tilt, contact_point=at + off))
+    return {
+        "RMS": contact_rms(pair) - 0.05,
+        "RMS where one of two tilts": contact_rms(one_low) - 0.05,
+        "RMS with a reference that rests now and then": contact_rms(rests) - 0.05,
+    }
+
+
+def _turns() -> dict[str, float]:
+    one = _rolling(2.0, 0.3)
+    fast = _rolling(3.0, 0.3)
+    turned = _rolling(2.0, 0.5 + 4.0 * math.pi)
+    across = (
+        made(TIME, 0.1 + 0.0 * TIME, uplift_direction=math.pi - 0.1),
+        made(TIME, 0.1 + 0.0 * TIME, uplift_direction=0.1 - math.pi),
+    )
+    pair = make_pair(CYLINDER, one, fast)
+    engine = made(TIME, one.tilt, passes=passes([1.0, 2.5, 4.0], [0.1, 0.1, 0.1], [False, True, False]))
+    return {
+        "more than a turn": turn_difference(pair, until=10.0) - 10.0,
+        "until the end of the agreement": turn_difference(pair, until=2.5) - 2.5,
+        "a direction that is named two turns apart": turn_difference(
+            make_pair(CYLINDER, one, turned),
+            until=10.0,
+            direction_difference=direction_difference(one, turned),
+        )
+        - 0.2,
+        "direction across the cut": direction_difference(*across) - 0.2,
+        "first pass that is not resolved": first_unresolved_pass(engine) - 1.0,
+        "the same after the uplift of the reference": first_unresolved_pass(engine, start=1.5) - 4.0,
+        "no such pass": 0.0 if math.isinf(first_unresolved_pass(engine, start=4.5)) else math.nan,
+    }
+
+
+def _agreement() -> dict[str, float]:
+    """The trial leaves the reference on a ramp that is at 1 % of alpha at 6.005 s; uplift was at 1 s."""
+    table = passes([2.0, 5.0, 6.01, 6.02, 8.0], [0.03, 0.01, 0.02, 0.001, 0.002])
+    reference = made(TIME, np.full(len(TIME), 0.4 * ALPHA), uplift_time=1.0, passes=table)
+    for sign in (1.0, -1.0):
+        ramp = sign * 0.01 * ALPHA * np.maximum(0.0, TIME - 5.005)
+        pair = make_pair(CYLINDER, reference, made(TIME, reference.tilt + ramp))
+        horizon = agreement_horizon(pair)
+        if not (horizon.parted and horizon.end == TIME[601]):
+            return {f"a ramp of sign {sign:g}": math.nan}
+    same = agreement_horizon(make_pair(CYLINDER, reference, made(TIME, reference.tilt + 0.0099 * ALPHA)))
+    cut = make_pair(CYLINDER, reference, made(TIME[:501], reference.tilt[:501]))
+    broken = agreement_horizon(cut, broken=True)
+    early = agreement_horizon(make_pair(CYLINDER, reference, made(TIME, reference.tilt + 0.02 * ALPHA)))
+    return {
+        "length from the uplift": horizon.length - 5.01,
+        "passes within it": agreed_passes(reference, horizon) - 3.0,
+        "closest of them": closest_pass(reference, horizon) - 0.01,
+        "a difference just below 1 %": same.end - 10.0 + float(same.parted),
+        "end of a trace that failed": broken.length - 4.0 + (1.0 - float(broken.parted)),
+        "a difference from the start": early.length,
+    }
+
+
+def _energies() -> dict[str, float]:
+    """Work of a known acceleration on a known path, in three components; and a loss that is put in."""
+    samples = np.column_stack(
+        [np.linspace(0.0, 3.0, 6), np.linspace(-1.0, 1.0, 6), np.linspace(0.5, -0.5, 6)]
+    )
+    motion = GroundMotion(samples, 2.0)
+    # a = a0 + c t along each axis, r = sin(w t): the work of -a is -[a sin(w t) + c cos(w t)/w]
+    rates, start = np.array([0.3, 0.2, -0.1]), samples[0]
+    speeds = np.array([1.1, 0.7, 1.9])
+    place = np.sin(np.outer(TIME, speeds))
+    ground = start + np.outer(TIME, rates)
+    swept = ground * place + rates * np.cos(np.outer(TIME, speeds)) / speeds
+    work = -(swept - swept[0]).sum(axis=1)
+    energy = work - work.min() + 1.0
+    lossy = energy - 0.02 * TIME
+    largest = float(lossy.max())
+    tilt = 0.1 + 0.0 * TIME
+    return {
+        "none": energy_loss(made(TIME, tilt, energy=energy, centre_of_mass=place), motion),
+        "some": energy_loss(made(TIME, tilt, energy=lossy, centre_of_mass=place), motion) - 0.2 / largest,
+        "over still ground": energy_loss(made(TIME, tilt, energy=2.0 - 0.05 * TIME), None) - 0.25,
+        "of what never moves": energy_loss(made(TIME, tilt), None),
+        "after the end of the record": energy_loss(
+            made(
+                TIME,
+                tilt,
+                energy=1.0 + 0.0 * TIME,
+                centre_of_mass=np.maximum(0.0, TIME - 4.0)[:, None] ** 3 * [0.01, 0.0, 0.0],
+            ),
+            GroundMotion([[1.0, 0.0], [1.0, 0.0]], 4.0),
+        ),
+    }
+
+
+def _row() -> dict[str, float]:
+    """What the columns of a summary must be where two rolling cylinders differ in everything."""
+    case = Case("made", CYLINDER, None, None, 10.0)
+    reference = _rolling(2.0, 0.3, peak_tilt=0.7 * ALPHA, wall_time=0.5, uplift_time=1.0)
+    trial = _rolling(
+        2.0,
+        0.5,
+        peak_tilt=0.6 * ALPHA,
+        uplift_time=1.02,
+        residual_displacement=0.3 * B,
+        residual_twist=-7.0,
+        contact_resolution=1e-4,
+    )
+    found = summary_row(
+        case, "recess", reference, "made", trial, prediction=Prediction(length=8.0, reason="pass")
+    )
+    expected: Mapping[str, float] = {
+        "peak_tilt": 0.6,
+        "reference_peak_tilt": 0.7,
+        "peak_tilt_difference": -0.1,
+        "tilt_rms": 0.0,
+        "contact_rms": 2.0 * math.sin(0.1),
+        "turn_difference": math.degrees(0.2),
+        "uplift_time_difference": 0.02,
+        "uplift_direction_difference": 0.2,
+        "agreement_horizon": 10.0,
+        "residual_displacement": 0.3,
+        "residual_twist": math.degrees(-7.0),
+        "energy_loss": 0.0,
+        "time_ratio": 2.0,
+        "predicted_horizon": 8.0,
+        "contact_resolution": 1e-4,
+    }
+    return {name: float(found[name]) - value for name, value in expected.items()}
+
+
+def _rolling(rate: float, start: float, **fields: float) -> MadeTrace:
+    """A cylinder that leans by 0.3 alpha and rolls on at `rate` [rad/s] from the azimuth `start` [rad]."""
+    angle = start + rate * TIME
+    return made(
+        TIME,
+        np.full(len(TIME), 0.3 * ALPHA),
+        rolling_angle=angle,
+        contact_point=B * np.column_stack([np.cos(angle), np.sin(angle)]),
+        **{"uplift_direction": start, **fields},
+    )
+
+
+def _none(value: float) -> float:
+    return 0.0 if math.isnan(value) else math.inf
+
+
+def _finding(name: str, errors: Mapping[str, float], part: str, bound: float = ROUNDING) -> Finding:
+    why = "rounding" if bound == ROUNDING else "samples 0.01 s apart"
+    reason = f"made up so that each value is known; {why}"
+    return worst_of(LAYER, name, errors, bound, reason=reason, part=part)

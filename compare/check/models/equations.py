@@ -1,0 +1,183 @@
+"""Layer: whether the motion that the reduced model computes solves the equations of the paper.
+
+Nothing that the model says of itself is used but positions at samples; their differences go into
+Lagrange's equations (`lagrange`), and into (18) and (19) term by term. There every coefficient is fitted
+to the motion on its own, so that a wrong one is named.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..bench import Bench
+from ..finding import Finding, at_most
+from . import lagrange
+from .lagrange import Shape
+from .short_motions import CYLINDERS, FailedMotionError, Sampled, sample
+
+Array = NDArray[np.float64]
+Terms = Mapping[str, tuple[Array, float]]
+
+LAYER = "equations"
+# differences of positions that are known to rounding: 1e-16/0.02^2 of the angles, 1e-11 of p^2 at the
+# worst, and what rtol 1e-13 leaves in a dozen steps
+RESIDUAL = 1e-9
+COEFFICIENT = 1e-7  # the same through the fit, whose condition number is up to a hundred
+
+
+def check(bench: Bench) -> Iterator[Finding]:
+    """Yield the findings of this layer, each the worst over all cylinders."""
+    try:
+        motions = {name: sample(bench.reduced, cylinder) for name, cylinder in CYLINDERS.items()}
+    except FailedMotionError as error:
+        yield at_most(
+            LAYER,
+            "short motions reach their end",
+            math.nan,
+            0.0,
+            reason="a third of a swing, far from the apex",
+            part="equation of motion (18) or (19), or step control",
+            note=str(error),
+        )
+        return
+    coefficients = [
+        *_coefficients("(18)", {name: _terms_18(motion) for name, motion in motions.items()}),
+        *_coefficients("(19)", {name: _terms_19(motion) for name, motion in motions.items()}),
+    ]
+    if any(finding.failed for finding in coefficients):
+        # one that is wrong makes others look a little wrong: the worst comes first
+        coefficients.sort(key=lambda finding: -finding.value if math.isfinite(finding.value) else -math.inf)
+    yield from coefficients
+    for angle, part in enumerate(("tilt", "rolling angle")):
+        yield _worst(
+            f"Lagrange's equation for the {part}",
+            {name: _lagrange(motion)[angle] for name, motion in motions.items()},
+            RESIDUAL,
+            unit="of g (b + h)",
+            reason="differences of positions known to rounding",
+            part=f"equation of motion of the {part}, or how the record reaches it",
+        )
+    yield _worst(
+        "tilt rate against the change of tilt",
+        {
+            name: _largest(motion.theta_rate - motion.stated_rate) / motion.p
+            for name, motion in motions.items()
+        },
+        RESIDUAL,
+        unit="of p",
+        reason="differences of positions known to rounding",
+        part="tilt rate",
+    )
+    yield _worst(
+        "contact force against Newton's law",
+        {name: _newton(motion) for name, motion in motions.items()},
+        RESIDUAL,
+        unit="weights",
+        reason="second differences of the mass centre",
+        part="contact force (reduced/forces.py), or positions of the mass centre",
+    )
+
+
+def _worst(name: str, found: Mapping[str, float], bound: float, **words: str) -> Finding:
+    """Return the finding on the largest of the values found on several cylinders, and say on which."""
+    # a value that is no number is the worst there is
+    place = max(found, key=lambda key: abs(found[key]) if math.isfinite(found[key]) else math.inf)
+    note = f"on {place}" + (f"; {words.pop('note')}" if "note" in words else "")
+    return at_most(LAYER, name, abs(found[place]), bound, note=note, **words)
+
+
+def _largest(values: Array) -> float:
+    return float(np.abs(values).max())
+
+
+def _lagrange(motion: Sampled) -> tuple[float, float]:
+    place, rates = (motion.theta, motion.phi), (motion.theta_rate, motion.phi_rate)
+    curves = (motion.theta_curve, motion.phi_curve)
+    by_tilt, by_turn = lagrange.residuals(motion.shape, place, rates, curves, motion.ground)
+    scale = motion.shape.g * (motion.shape.b + motion.shape.h)
+    return _largest(by_tilt) / scale, _largest(by_turn) / scale
+
+
+def _newton(motion: Sampled) -> float:
+    weight = np.array([0.0, 0.0, motion.shape.g])
+    force = (motion.centre_curve + motion.ground + weight) / motion.shape.g
+    return _largest(force - motion.stated_force)
+
+
+def _coefficients(equation: str, terms: Mapping[str, Terms]) -> Iterator[Finding]:
+    errors = {name: _errors(of_one) for name, of_one in terms.items()}
+    for term in next(iter(errors.values())):
+        found = {name: of_one[term] for name, of_one in errors.items()}
+        percents = ", ".join(
+            f"{100.0 * error:+.2g} %" for error in found.values() if abs(error) > COEFFICIENT
+        )
+        yield _worst(
+            f"{equation}: {term}",
+            found,
+            COEFFICIENT,
+            reason="each coefficient fitted to differences of computed positions",
+            part=f"coefficient of {equation}: {term}",
+            **({"note": f"off by {percents}"} if percents else {}),
+        )
+
+
+def _errors(terms: Terms) -> dict[str, float]:
+    """Return by how much each coefficient is off, relative to its size.
+
+    The equation fixes them but for a common factor, which is chosen so that most are right.
+    """
+    columns = np.column_stack([values * coefficient for values, coefficient in terms.values()])
+    if not np.isfinite(columns).all():
+        return dict.fromkeys(terms, math.nan)
+    scale = np.linalg.norm(columns, axis=0)
+    # the combination of the columns that is nearest to zero
+    _, _, directions = np.linalg.svd(columns / scale, full_matrices=False)
+    factors = directions[-1] / scale
+    errors = factors / np.median(factors) - 1.0
+    return dict(zip(terms, errors.tolist(), strict=True))
+
+
+def _terms_18(motion: Sampled) -> Terms:
+    k, s, c, a_r, _ = _parts(motion)
+    weight, spin2 = k.g + motion.ground[:, 2], motion.phi_rate**2
+    return {
+        "I1 + h^2 + b^2 of theta''": (motion.theta_curve, k.I1 + k.h**2 + k.b**2),
+        "b of (g + az) cos": (c * weight, k.b),
+        "-h of (g + az) sin": (s * weight, -k.h),
+        "I2 - I1 + b^2 - h^2 of sin cos phi'^2": (s * c * spin2, k.I2 - k.I1 + k.b**2 - k.h**2),
+        "-(I2 + b^2) of sin phi'^2": (s * spin2, -(k.I2 + k.b**2)),
+        "-h b of (1 + cos) phi'^2": ((1.0 + c) * spin2, -k.h * k.b),
+        "2 h b of cos^2 phi'^2": (c * c * spin2, 2.0 * k.h * k.b),
+        "h of cos a_r": (c * a_r, k.h),
+        "b of sin a_r": (s * a_r, k.b),
+    }
+
+
+def _terms_19(motion: Sampled) -> Terms:
+    k, s, c, _, a_t = _parts(motion)
+    curve, both = motion.phi_curve, motion.phi_rate * motion.theta_rate
+    return {
+        "I1 - I2 + h^2 - b^2 of sin^2 phi''": (s * s * curve, k.I1 - k.I2 + k.h**2 - k.b**2),
+        "2 (I2 + b^2) of (1 - cos) phi''": ((1.0 - c) * curve, 2.0 * (k.I2 + k.b**2)),
+        "2 h b of sin (1 - cos) phi''": (s * (1.0 - c) * curve, 2.0 * k.h * k.b),
+        "2 (I2 - I1 - h^2 + b^2) of sin (1 - cos) theta' phi'": (
+            s * (1.0 - c) * both,
+            2.0 * (k.I2 - k.I1 - k.h**2 + k.b**2),
+        ),
+        "2 h b of (2 sin^2 + cos - 1) theta' phi'": ((2.0 * s * s + c - 1.0) * both, 2.0 * k.h * k.b),
+        "2 (I1 + h^2) of sin theta' phi'": (s * both, 2.0 * (k.I1 + k.h**2)),
+        "b of (1 - cos) a_t": ((1.0 - c) * a_t, k.b),
+        "h of sin a_t": (s * a_t, k.h),
+    }
+
+
+def _parts(motion: Sampled) -> tuple[Shape, Array, Array, Array, Array]:
+    """Constants, sine and cosine of the tilt, and the ground's acceleration along and across the contact."""
+    cos, sin = np.cos(motion.phi), np.sin(motion.phi)
+    ax, ay = motion.ground[:, 0], motion.ground[:, 1]
+    along, across = ax * cos + ay * sin, ay * cos - ax * sin
+    return motion.shape, np.sin(motion.theta), np.cos(motion.theta), along, across

@@ -1,0 +1,1 @@
+"""Comparison of runs with reference models: result, summary, prediction, error budget."""

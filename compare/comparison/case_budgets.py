@@ -1,0 +1,125 @@
+"""The error budgets of all runs of a comparison."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Collection, Mapping, Sequence
+from typing import Any
+
+from rockwobble.models import Case, Run
+
+from ..metrics.agreement import Horizon, agreement_horizon
+from ..runs.choice import own_model, references_of
+from ..runs.execution import IMPACT, Crash, Job
+from ..traces.pair import make_pair
+from .error_budget import ErrorBudget, error_budget
+from .prediction import landings
+from .refinement import Refined, Simulate, limits
+
+Key = tuple[str, str]
+
+
+def case_budgets(
+    cases: Sequence[Case],
+    runs: Mapping[str, Run],
+    reference: str,
+    results: Mapping[Key, Any],
+    simulate: Simulate,
+) -> dict[tuple[str, str, str], ErrorBudget]:
+    """Return the budget of each run and reference: by names of case, run and reduced model.
+
+    What crashed, failed or never moved has none.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+    runs : mapping
+        Run of each label.
+    reference : str
+        Reduced model that every run is held against.
+    results : mapping
+        Responses by names of case and model, trajectories by names of case and run.
+    simulate : callable
+        Runs jobs, and returns their results in the same order.
+    """
+    agreements: dict[tuple[str, str, str], Horizon] = {}
+    refined = []
+    for case in cases:
+        for label, run in runs.items():
+            trajectory = results[case.name, label]
+            if isinstance(trajectory, Crash) or trajectory.outcome == "failed":
+                continue
+            found = {
+                model: horizon
+                for model in references_of(run, reference)
+                if (horizon := _agreement(case, results[case.name, model], trajectory)) is not None
+            }
+            if not found:
+                continue
+            agreements |= {(case.name, label, model): horizon for model, horizon in found.items()}
+            model, horizon = max(found.items(), key=lambda item: item[1].end)
+            pair = make_pair(case.cylinder, results[case.name, model], trajectory, until=horizon.end)
+            refined.append(
+                Refined(
+                    case=case,
+                    run=run,
+                    label=label,
+                    trajectory=trajectory,
+                    end=horizon.end,
+                    difference=pair.tilt_difference[pair.time >= pair.start],
+                )
+            )
+    extrapolations = limits(refined, simulate) if refined else {}
+    by_name = {case.name: case for case in cases}
+    landings = _landings(cases, {run.support for run in runs.values()}, results, simulate)
+
+    def own(name: str, label: str) -> Any:
+        key = name, own_model(runs[label].support)
+        return landings.get(key, results[key])
+
+    return {
+        (name, label, model): error_budget(
+            by_name[name].cylinder,
+            results[name, label],
+            results[name, model],
+            own(name, label),
+            extrapolations[name, label],
+            horizon,
+        )
+        for (name, label, model), horizon in agreements.items()
+        if (name, label) in extrapolations
+    }
+
+
+def _landings(
+    cases: Sequence[Case], supports: Collection[str], results: Mapping[Key, Any], simulate: Simulate
+) -> dict[Key, Any]:
+    """Return what an exact engine follows where a model goes through the apex: by names of case and model.
+
+    Motion in one vertical plane passes the apex itself, and there the base lands flat. Recess and rolling
+    model go on without loss, as the limit of a vanishing spin does. A rigid base takes the angular momentum
+    about its new edge (Housner), on any support, and so do both engines: the difference is model form.
+    """
+    keys, jobs = [], []
+    for case in cases:
+        for model in {own_model(support) for support in supports}:
+            response = results[case.name, model]
+            if not len(landings(response)):
+                continue
+            direction, motion, initial = response.uplift_direction, case.motion, case.initial
+            plane = dataclasses.replace(
+                case,
+                motion=None if motion is None else motion.rotated(-direction),
+                initial=None if initial is None else dataclasses.replace(initial, rolling_angle=0.0),
+            )
+            keys.append((case.name, model))
+            jobs.append(Job(case=plane, method=IMPACT, label=IMPACT))
+    return dict(zip(keys, simulate(jobs), strict=True)) if jobs else {}
+
+
+def _agreement(case: Case, response: Any, trajectory: Any) -> Horizon | None:
+    if response.outcome == "failed" or not math.isfinite(response.uplift_time):
+        return None
+    horizon = agreement_horizon(make_pair(case.cylinder, response, trajectory, until=case.length))
+    return horizon if horizon.length > 0.0 else None

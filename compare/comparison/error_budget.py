@@ -1,0 +1,240 @@
+"""What a difference between an engine and a reduced model is made of, sample by sample.
+
+    engine - reference = (engine - limit) + (limit - own) + (own - reference)
+                       =     numerics     +  unexplained  +   model form
+
+limit is the engine extrapolated to a time step of zero, own the reduced model of the engine's support
+(see `own_model`) or, where that goes through the apex itself, planar motion with the loss of a base that
+lands flat. The three are signed traces of the tilt, and add up exactly.
+Tilt itself is never negative, so it folds where a motion goes past the apex; as long as two motions agree
+within 1 % of alpha they are on the same side of that fold, which is why the budget ends with the agreement.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Cylinder
+
+from ..metrics.agreement import Horizon
+from ..traces.pair import Trace
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+# share of the agreement that the RMS of a budget covers: its end is where everything grows at once
+COVERED = 0.8
+# smaller differences are not worth explaining [alpha]
+WORTH_EXPLAINING = 1e-4
+# largest share of the whole that may stay unexplained
+LARGEST_SHARE = 0.2
+# samples are multiples of one step; two that differ by less are the same [s]
+_SAME_TIME = 1e-9
+
+BUDGET_COLUMNS = (
+    "whole_rms",
+    "model_form_rms",
+    "numerics_rms",
+    "unexplained_rms",
+    "unexplained_share",
+    "limit_error",
+    "step_order",
+    "finest_step",
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Limit:
+    """An engine extrapolated in its time step.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        [s]
+    tilt : ndarray, shape (n,)
+        [rad]; an extrapolation may be slightly negative next to the apex.
+    error : ndarray, shape (n,)
+        By how much the finest step has moved it [rad]: its uncertainty.
+    steps : tuple of float
+        Time steps that it rests on, the coarsest first [s].
+    order : float
+        Order in the step as measured from the three finest runs; NaN where there are only two.
+    """
+
+    time: Array
+    tilt: Array
+    error: Array
+    steps: tuple[float, ...]
+    order: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ErrorBudget:
+    """Signed parts of a tilt difference, in units of alpha.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        From uplift or release to the end of the agreement [s].
+    whole : ndarray, shape (n,)
+        Engine minus reference: the sum of the three parts.
+    model_form, numerics, unexplained : ndarray, shape (n,)
+    limit_error : ndarray, shape (n,)
+        Uncertainty of the extrapolation, by which numerics and unexplained may be off.
+    covered : float
+        End of the stretch that the RMS values cover, 80 % of the agreement [s].
+    limit : Limit
+    """
+
+    time: Array
+    whole: Array
+    model_form: Array
+    numerics: Array
+    unexplained: Array
+    limit_error: Array
+    covered: float
+    limit: Limit
+
+    def rms(self, part: str) -> float:
+        """Return the RMS of one part until 80 % of the agreement [alpha]; NaN without a sample."""
+        values = getattr(self, part)[self.time <= self.covered + _SAME_TIME]
+        return float(np.sqrt(np.mean(np.square(values)))) if len(values) else math.nan
+
+    def columns(self) -> dict[str, float]:
+        """Return the columns of the summary."""
+        whole, unexplained = self.rms("whole"), self.rms("unexplained")
+        return {
+            "whole_rms": whole,
+            "model_form_rms": self.rms("model_form"),
+            "numerics_rms": self.rms("numerics"),
+            "unexplained_rms": unexplained,
+            "unexplained_share": unexplained / whole if whole > 0.0 else math.nan,
+            "limit_error": self.rms("limit_error"),
+            "step_order": self.limit.order,
+            "finest_step": self.limit.steps[-1],
+        }
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return the samples as a table, in units of alpha."""
+        import pandas as pd
+
+        names = ("time", "whole", "model_form", "numerics", "unexplained", "limit_error")
+        return pd.DataFrame({name: getattr(self, name) for name in names})
+
+
+def error_budget(
+    cylinder: Cylinder, engine: Trace, reference: Trace, own: Trace, limit: Limit, horizon: Horizon
+) -> ErrorBudget:
+    """Return the budget of `engine` minus `reference` over their agreement.
+
+    Parameters
+    ----------
+    cylinder : Cylinder
+    engine : Trace
+        Trajectory of the engine.
+    reference : Trace
+        Response of the reduced model that it is held against.
+    own : Trace
+        Response of the reduced model of the engine's support; may be the reference itself.
+    limit : Limit
+        The engine extrapolated in its step.
+    horizon : Horizon
+        Agreement of engine and reference.
+    """
+    start = reference.uplift_time if math.isfinite(reference.uplift_time) else 0.0
+    times = (engine.time, reference.time, own.time, limit.time)
+    count = common_count(times)
+    keep = slice(
+        int(np.searchsorted(engine.time[:count], start - _SAME_TIME)),
+        int(np.searchsorted(engine.time[:count], horizon.end + _SAME_TIME)),
+    )
+    alpha = cylinder.alpha
+    measured, asked, explained, extrapolated = (
+        trace.tilt[keep] / alpha for trace in (engine, reference, own, limit)
+    )
+    return ErrorBudget(
+        time=engine.time[keep],
+        whole=measured - asked,
+        model_form=explained - asked,
+        numerics=measured - extrapolated,
+        unexplained=extrapolated - explained,
+        limit_error=limit.error[keep] / alpha,
+        covered=start + COVERED * (horizon.end - start),
+        limit=limit,
+    )
+
+
+def extrapolated(time: Array, tilts: Sequence[Array], steps: Sequence[float], *, smooth: bool) -> Limit:
+    """Return the limit of a run for a vanishing step, from runs at steps that halve.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        [s]
+    tilts : sequence of ndarray, shape (n,)
+        One for each step [rad], at least two.
+    steps : sequence of float
+        The coarsest first [s], each half the one before.
+    smooth : bool
+        Whether the error is a power series in the step, as after a release: then its first and its
+        second order are removed, which takes three runs. From rest the instant of uplift falls
+        anywhere within a step, and that error has no series: then only the first order is removed,
+        with as little weight on the single runs as that takes.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two runs.
+    """
+    if len(tilts) < 2:
+        raise ValueError(f"an extrapolation needs runs at two steps or more, got {len(tilts)}")
+    now = _intercept(tilts, smooth=smooth)
+    before = _intercept(tilts[:-1], smooth=smooth) if len(tilts) > 2 else tilts[-1]
+    return Limit(time=time, tilt=now, error=np.abs(now - before), steps=tuple(steps), order=_order(tilts))
+
+
+def _intercept(tilts: Sequence[Array], *, smooth: bool) -> Array:
+    """Value at step zero of a polynomial through the finest runs."""
+    if smooth and len(tilts) > 2:
+        coarse, middle, fine = tilts[-3:]
+        return np.asarray((coarse - 6.0 * middle + 8.0 * fine) / 3.0)
+    if smooth or len(tilts) == 2:
+        return np.asarray(2.0 * tilts[-1] - tilts[-2])
+    # least squares of a straight line over all runs, by the step: one that is off by chance weighs little
+    steps = 0.5 ** np.arange(len(tilts))
+    design = np.column_stack([np.ones_like(steps), steps]) / steps[:, None]  # scatter goes with the step
+    weights = np.linalg.pinv(design)[0] / steps
+    return np.asarray(np.tensordot(weights, np.stack(tilts), axes=1))
+
+
+def _order(tilts: Sequence[Array]) -> float:
+    if len(tilts) < 3:
+        return math.nan
+    coarse, middle, fine = tilts[-3:]
+    first, second = (float(np.sqrt(np.mean(np.square(d)))) for d in (coarse - middle, middle - fine))
+    return math.log2(first / second) if first > 0.0 and second > 0.0 else math.nan
+
+
+def common_count(times: Sequence[Array]) -> int:
+    """Return up to which sample all have the same times."""
+    count = min(map(len, times))
+    same = np.all([np.abs(time[:count] - times[0][:count]) < _SAME_TIME for time in times], axis=0)
+    different = np.flatnonzero(~same)
+    return int(different[0]) if len(different) else count
+
+
+def findings(summary: Any) -> Any:
+    """Return the rows of a summary in which too much stays unexplained, the worst first.
+
+    Rows whose whole difference is below 1e-4 alpha are not worth it.
+    """
+    rows = summary[(summary["whole_rms"] > WORTH_EXPLAINING) & (summary["unexplained_share"] > LARGEST_SHARE)]
+    return rows.sort_values("unexplained_share", ascending=False)

@@ -1,0 +1,1 @@
+"""External trajectories held against the models, and the likely mistake named."""

@@ -1,0 +1,179 @@
+"""Difference of an external trajectory and a model: in tilt, azimuth and path, from when, and how large.
+
+Two good traces of one problem part at some time (`rockwobble.compare.metrics.agreement`), and near upright
+no azimuth means anything. So azimuth and path are compared while the tilts agree, and the azimuth
+where both lean by more than a share of the largest tilt there.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Cylinder
+
+from ...metrics.agreement import AGREEMENT
+from ...metrics.contact import TILTED
+from ...traces.motion import Motion, on_samples_of
+from .part import Part
+
+Mask = NDArray[np.bool_]
+
+# of the length of the agreement, where the tilts part: towards its end the azimuths part already
+_BEFORE_PARTING = 0.8
+# of the azimuth, weighted by the tilt [rad]
+AZIMUTH = math.radians(3.0)
+# of the path, over b, besides what that makes of it: R times 1 % of alpha is about as much
+PATH = 0.01
+# of a difference, in standard deviations of the noise
+ABOVE_NOISE = 5.0
+# noise along the lean against that across it: that of a mass centre is larger across, by R/h at tan alpha 1
+_OF_BOTH_DIRECTIONS = 1.4
+# samples without which azimuth and path are not compared
+_FEWEST = 5
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Difference:
+    """A motion held against a reference.
+
+    Parameters
+    ----------
+    start, end : float
+        Of the agreement of the tilts, in the time of the run [s].
+    covered : float
+        Up to when azimuth and path are compared [s].
+    agreed_motion : float
+        Integral of the tilt of the reference over the agreement [rad s].
+    agreed_peak : float
+        Its largest tilt there [rad].
+    tilt : Part
+    azimuth, path : Part or None
+        None where they are not known, or the cylinder does not lean enough while the tilts agree.
+    """
+
+    start: float
+    end: float
+    covered: float
+    agreed_motion: float
+    agreed_peak: float
+    tilt: Part
+    azimuth: Part | None
+    path: Part | None
+
+    @property
+    def differs_in(self) -> tuple[str, ...]:
+        """What differs, of "tilt", "azimuth" and "path"."""
+        parts = (("tilt", self.tilt), ("azimuth", self.azimuth), ("path", self.path))
+        return tuple(name for name, part in parts if part is not None and part.differs)
+
+    @property
+    def length(self) -> float:
+        """Length of the agreement of the tilts [s]."""
+        return max(0.0, self.end - self.start)
+
+
+def difference(reference: Motion, motion: Motion, *, cylinder: Cylinder, start: float) -> Difference:
+    """Hold a motion against a reference.
+
+    Parameters
+    ----------
+    reference, motion : Motion
+    cylinder : Cylinder
+    start : float
+        Uplift or release of the reference [s].
+    """
+    model, trial = on_samples_of(reference, motion)
+    if not len(model.time):
+        nothing = Part(first_time=start, size=math.inf, bound=AGREEMENT)
+        return Difference(
+            start=start,
+            end=start,
+            covered=start,
+            agreed_motion=0.0,
+            agreed_peak=0.0,
+            tilt=nothing,
+            azimuth=None,
+            path=None,
+        )
+    start = max(start, float(model.time[0]))
+    tilt, end = _tilt(model, trial, cylinder.alpha)
+    covered = start + _BEFORE_PARTING * (end - start) if tilt.differs else end
+    # to the sample: rounding must not take the last one away
+    within = model.time <= covered + 1e-9
+    agreed = model.time <= end + 1e-9
+    return Difference(
+        start=start,
+        end=end,
+        covered=covered,
+        agreed_motion=float(np.trapezoid(model.tilt[agreed], model.time[agreed])),
+        agreed_peak=float(model.tilt[agreed].max(initial=0.0)),
+        tilt=tilt,
+        azimuth=_azimuth(model, trial, within),
+        path=_path(model, trial, within, cylinder),
+    )
+
+
+def allowance(noise: float, alpha: float) -> float:
+    """Return what noise [rad] adds to the bound of the tilt [alpha]; none where it is a tenth of that."""
+    added = ABOVE_NOISE * noise / alpha
+    return added if added > 0.1 * AGREEMENT else 0.0
+
+
+def leans(model: Motion, trial: Motion, within: Mask) -> Mask:
+    """Return the samples at which an azimuth is compared: both lean far enough."""
+    if not within.any():
+        return within
+    least = max(TILTED * float(model.tilt[within].max()), ABOVE_NOISE * trial.noise)
+    counts: Mask = within & (model.tilt > least) & (trial.tilt > least)
+    return counts
+
+
+def _tilt(model: Motion, trial: Motion, alpha: float) -> tuple[Part, float]:
+    apart = np.abs(trial.tilt - model.tilt) / alpha
+    bound = AGREEMENT + allowance(trial.noise, alpha)
+    beyond = np.flatnonzero(apart > bound)
+    first = float(model.time[beyond[0]]) if len(beyond) else math.nan
+    part = Part(first_time=first, size=float(np.sqrt(np.mean(apart**2))), bound=bound)
+    return part, first if len(beyond) else float(model.time[-1])
+
+
+def _azimuth(model: Motion, trial: Motion, within: Mask) -> Part | None:
+    if model.lean is None or trial.lean is None:
+        return None
+    counts = leans(model, trial, within)
+    if np.count_nonzero(counts) < _FEWEST:
+        return None
+    apart = np.abs(np.angle(trial.lean[counts] * model.lean[counts].conj()))
+    weight = np.abs(trial.lean[counts] * model.lean[counts])
+    size = math.sqrt(float(np.sum(weight * apart**2) / np.sum(weight)))
+    # the mean of few samples scatters itself, and noise is not the same in both directions
+    blurred = (
+        _OF_BOTH_DIRECTIONS
+        * trial.noise
+        / math.sqrt(float(np.mean(weight)))
+        * (1.0 + 3.0 / math.sqrt(2.0 * len(apart)))
+    )
+    bound = math.hypot(AZIMUTH, blurred)
+    if size <= bound:
+        return Part(first_time=math.nan, size=size, bound=bound)
+    beyond = np.flatnonzero(apart > AZIMUTH + ABOVE_NOISE * trial.noise / np.sqrt(weight))
+    return Part(first_time=float(model.time[counts][beyond[0] if len(beyond) else 0]), size=size, bound=bound)
+
+
+def _path(model: Motion, trial: Motion, within: Mask, cylinder: Cylinder) -> Part | None:
+    if model.path is None or trial.path is None or np.count_nonzero(within) < _FEWEST:
+        return None
+    apart = np.linalg.norm(trial.path[within] - model.path[within], axis=1) / cylinder.base_radius
+    size = float(np.sqrt(np.mean(apart**2)))
+    beside = float(np.sqrt(np.mean(np.sum(model.path[within, :2] ** 2, axis=1))))
+    # of three coordinates, and of samples that are few
+    blurred = math.sqrt(3.0) * trial.path_noise * (1.0 + 3.0 / math.sqrt(6.0 * len(apart)))
+    bound = math.hypot(PATH, AZIMUTH * beside / cylinder.base_radius, blurred / cylinder.base_radius)
+    if size <= bound:
+        return Part(first_time=math.nan, size=size, bound=bound)
+    beyond = np.flatnonzero(apart > bound + ABOVE_NOISE * trial.path_noise / cylinder.base_radius)
+    return Part(first_time=float(model.time[within][beyond[0] if len(beyond) else 0]), size=size, bound=bound)

@@ -1,0 +1,212 @@
+"""When traces have to part, from the reduced models alone.
+
+Three things end an agreement, and the first of them is the prediction:
+
+* model form: the reduced model of the engine's support leaves the model that is asked about, as the
+  rolling one leaves the recess;
+* pass: a pass closer to the apex than the engine's contact resolves, which leaves the side to chance;
+* growth: a twin of the reduced run, disturbed by as much as the engine errs, leaves it. Near passes
+  multiply whatever difference there is, and the twin goes through the same passes.
+
+The twin is disturbed through its gravity, which acts all the time as the error of a step does, and which
+shifts the uplift as a base does that stands on corners. The size of the disturbance is set so that the
+twin is as far off after the first second as the engine is.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from rockwobble.models import Case
+
+from ..metrics.agreement import agreement_horizon
+from ..traces.pair import FloatArray, Trace, make_pair
+from .error_budget import ErrorBudget
+
+# a prediction is in time if the measured horizon is within this factor of it, either way
+IN_TIME = 2.0
+# [s] at a semidiagonal of 6 m and 9.81 m/s^2, and in proportion to the time scale of the cylinder
+FIRST_STRETCH = 1.0
+_REFERENCE_SIZE, _REFERENCE_GRAVITY, _REFERENCE_STEP = 6.0, 9.81, 1e-4
+# relative change of gravity of the twin whose distance sets the scale; far above rounding, far below 1
+_TRIAL = 1e-6
+# and the largest that still is a twin
+_LARGEST = 1e-2
+
+# RMS of the tilt error in that first second after a release, over alpha tan^2(alpha), and after an uplift
+# from rest, over alpha, at a step of 1e-4 s (first order in the step), as measured by halving the step
+_AFTER_RELEASE: Mapping[str, float] = MappingProxyType({"mujoco": 2e-6, "pybullet": 1.5e-5})
+_AFTER_UPLIFT: Mapping[str, float] = MappingProxyType({"mujoco": 2.5e-5, "pybullet": 4e-5})
+_SMALLEST_ERROR = 1e-9  # [alpha] no engine is better than its contact
+
+_HALF_A_TURN = 1e-9  # [rad] rounding of half a turn: motion with spin takes longer than a sample for it
+
+Simulate = Callable[[Case, str], Trace]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Prediction:
+    """When an agreement has to end.
+
+    Parameters
+    ----------
+    length : float
+        From uplift or release [s]; the length of the run where nothing ends it.
+    reason : {"", "pass", "growth", "model form"}
+        What ends it; empty where nothing does.
+    """
+
+    length: float
+    reason: str
+
+
+def estimated_error(case: Case, engine: str, time_step: float) -> float:
+    """Return the tilt error of an engine in the first second of motion, without running it [alpha].
+
+    Parameters
+    ----------
+    case : Case
+    engine : str
+        One that nothing is known of counts as the better of those that are.
+    time_step : float
+        [s]
+    """
+    step = time_step / time_scale(case) / _REFERENCE_STEP
+    if case.initial is not None and case.initial.tilt > 0.0:
+        error = _AFTER_RELEASE.get(engine, min(_AFTER_RELEASE.values())) * case.cylinder.tan_alpha**2
+    else:
+        error = _AFTER_UPLIFT.get(engine, min(_AFTER_UPLIFT.values()))
+    return max(error * step, _SMALLEST_ERROR)
+
+
+def measured_error(case: Case, budget: ErrorBudget) -> float:
+    """Return the tilt error of an engine in the first second, as halving its step has shown it [alpha]."""
+    start = float(budget.time[0]) if len(budget.time) else 0.0
+    return max(early_rms(case, budget.time, budget.numerics, start), _SMALLEST_ERROR)
+
+
+def close_pass(reference: Trace, contact_resolution: float, length: float) -> Prediction:
+    """Return the prediction for a trajectory whose errors are not known: its first close pass alone."""
+    end = _close_pass(reference, contact_resolution, length)
+    if end >= length:
+        return Prediction(length=length, reason="")
+    return Prediction(length=max(0.0, end - _start(reference)), reason="pass")
+
+
+def predict_horizon(
+    case: Case,
+    *,
+    reference: Trace,
+    own: Trace,
+    own_model: str,
+    contact_resolution: float,
+    error: float,
+    simulate: Simulate,
+) -> Prediction:
+    """Return when engine and `reference` have to part.
+
+    Parameters
+    ----------
+    case : Case
+    reference : Trace
+        Response of the reduced model that is asked about.
+    own : Trace
+        Response of the reduced model of the engine's support; may be the reference itself.
+    own_model : str
+        Name of that model.
+    contact_resolution : float
+        Smallest minimum tilt of a pass that the engine resolves [rad].
+    error : float
+        RMS error of the engine's tilt in the first second of motion [alpha].
+    simulate : callable
+        Runs a reduced model on a case; for the twin.
+    """
+    length = case.length
+    start = _start(reference)
+    ends = {
+        "model form": length if own is reference else _parting(case, reference, own),
+        "pass": _close_pass(own, contact_resolution, length),
+        "growth": _twin_parting(case, own, own_model, error, simulate),
+    }
+    reason = min(ends, key=ends.__getitem__)
+    if ends[reason] >= length:
+        return Prediction(length=length, reason="")
+    return Prediction(length=max(0.0, ends[reason] - start), reason=reason)
+
+
+def verdict(measured: float, parted: bool, predicted: float, reason: str) -> str:
+    """Return whether traces parted when they had to.
+
+    Returns
+    -------
+    {"in time", "later", "earlier", "never, as foretold"}
+        "later": they agree for more than twice as long as foretold, or to the end of the run;
+        "earlier": for less than half as long, which is a finding.
+    """
+    if not parted and not reason:
+        return "never, as foretold"
+    if parted and measured * IN_TIME < predicted:
+        return "earlier"
+    if reason and measured > predicted * IN_TIME:
+        return "later"
+    return "in time"
+
+
+def landings(response: Trace) -> FloatArray:
+    """Return when a reduced model goes through the apex itself (n,) [s], to a sample.
+
+    Its contact then jumps to the other end of the diameter. A fall that follows makes no pass of it.
+    """
+    turned = np.abs(np.diff(response.rolling_angle))
+    return np.asarray(response.time)[1:][np.abs(turned - np.pi) < _HALF_A_TURN]
+
+
+def early_rms(case: Case, time: Any, difference: Any, start: float) -> float:
+    """Return the RMS of a difference in the first second after `start`, scaled with the cylinder's time."""
+    first = (time >= start) & (time <= start + FIRST_STRETCH * time_scale(case))
+    return float(np.sqrt(np.mean(np.square(difference[first])))) if first.any() else 0.0
+
+
+def time_scale(case: Case) -> float:
+    """Return the time of a cylinder over that of one of 6 m at 9.81 m/s^2."""
+    return math.sqrt(case.cylinder.semidiagonal / _REFERENCE_SIZE * _REFERENCE_GRAVITY / case.gravity)
+
+
+def _start(trace: Trace) -> float:
+    return trace.uplift_time if math.isfinite(trace.uplift_time) else 0.0
+
+
+def _parting(case: Case, reference: Trace, other: Trace) -> float:
+    """Time at which two responses part [s]; the length of the run where they do not."""
+    horizon = agreement_horizon(make_pair(case.cylinder, reference, other, until=case.length))
+    return horizon.end if horizon.parted else case.length
+
+
+def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:
+    close = np.asarray(own.passes["minimum_tilt"], dtype=np.float64) < contact_resolution
+    times = np.asarray(own.passes["time"], dtype=np.float64)[close]
+    return float(min([*times[:1], *landings(own)[:1], length]))
+
+
+def _twin_parting(case: Case, own: Trace, model: str, error: float, simulate: Simulate) -> float:
+    if not math.isfinite(own.uplift_time):
+        return case.length
+    disturbed = simulate(_disturbed(case, _TRIAL), model)
+    trial = make_pair(case.cylinder, own, disturbed, until=case.length)
+    distance = early_rms(case, trial.time, trial.tilt_difference, _start(own))
+    if distance == 0.0:
+        return case.length
+    disturbance = min(_TRIAL * error / distance, _LARGEST)
+    # what is disturbed by less than the reduced model's own tolerance is no twin of an engine
+    return _parting(case, own, simulate(_disturbed(case, disturbance), model))
+
+
+def _disturbed(case: Case, relative: float) -> Case:
+    return dataclasses.replace(case, gravity=case.gravity * (1.0 + relative))

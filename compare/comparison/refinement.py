@@ -1,0 +1,160 @@
+"""The runs of an engine at finer steps, and what they tend to.
+
+A budget needs the engine's limit for a vanishing step. Each run is repeated at half and a quarter of its
+step, and where the limit is still uncertain at an eighth and so on; none longer than its traces agree.
+
+A cylinder that starts from rest stands on a polygon in both engines. MuJoCo turns its corners under the load,
+and its uplift is of first order in the step. Bullet keeps four contacts, wherever the base has leaned before:
+it uplifts with a lean of 1e-8 rad in a direction of chance, which no step removes. So its finer runs are
+held upright until the load is on the rim, and turned about the vertical until that is opposite to the x axis:
+upright, Bullet finds its first contact there, and is soon rid of it. Ground that is the same in every
+direction knows no difference, and the chance becomes part of the numerics, where it belongs. The direction is
+that of the engine's own run.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from rockwobble.models import Case, Run
+
+from ..runs.execution import SAMPLE_STEP, Crash, Job
+from .error_budget import COVERED, WORTH_EXPLAINING, Limit, common_count, extrapolated
+
+# of the step of the run: always two, and one more where the limit is uncertain
+_ALWAYS, _AT_MOST = 2, 3
+# Engines whose uplift has an error that is a power series in the step
+_SMOOTH_UPLIFT = frozenset({"mujoco"})
+# What an engine needs besides a finer step to uplift without chance
+_FINER_SETTINGS: Mapping[str, Mapping[str, Any]] = MappingProxyType({"pybullet": {"held_standing": True}})
+# uncertainty of a limit, over the whole difference, that asks for a finer step
+_UNCERTAIN = 0.1
+
+Simulate = Callable[[list[Job]], list[Any]]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Refined:
+    """A run that is to be extrapolated.
+
+    Parameters
+    ----------
+    case : Case
+    run : Run
+    label : str
+    trajectory : Any
+        Of the engine.
+    end : float
+        Until when the limit is needed [s].
+    difference : ndarray
+        Engine minus model, as far as they agree [alpha]: the whole that is to be explained.
+    """
+
+    case: Case
+    run: Run
+    label: str
+    trajectory: Any
+    end: float
+    difference: Any
+
+    @property
+    def smooth(self) -> bool:
+        """Whether the error of the run is a power series in the step: from rest not in every engine."""
+        return _released(self.case) or self.run.engine in _SMOOTH_UPLIFT
+
+    @property
+    def finer_smooth(self) -> bool:
+        """Whether that of the finer runs is."""
+        return self.smooth or self.run.engine in _FINER_SETTINGS
+
+
+def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str, str], Limit]:
+    """Return the limit of each run, by names of case and run.
+
+    A run whose finer runs fail or crash has none.
+
+    Parameters
+    ----------
+    refined : sequence of Refined
+    simulate : callable
+        Runs jobs, and returns their results in the same order.
+    """
+    found: dict[tuple[str, str], list[Any]] = {(r.case.name, r.label): [r.trajectory] for r in refined}
+    waiting = list(refined)
+    levels: Sequence[int] = range(1, _ALWAYS + 1)
+    while waiting:
+        jobs = [_job(each, level) for each in waiting for level in levels]
+        results = iter(simulate(jobs))
+        for each in waiting:
+            found[each.case.name, each.label] += [next(results) for _ in levels]
+        next_level = levels[-1] + 1
+        if next_level > _AT_MOST:
+            break
+        levels = (next_level,)
+        waiting = [each for each in waiting if _is_uncertain(each, found[each.case.name, each.label])]
+    made = {(r.case.name, r.label): _limit(r, found[r.case.name, r.label]) for r in refined}
+    return {key: limit for key, limit in made.items() if limit is not None}
+
+
+def finer_case(refined: Refined) -> Case:
+    """Return the problem of the finer runs: as long as needed, and turned where it starts from rest."""
+    case = refined.case
+    end = min(case.length, math.ceil(refined.end / SAMPLE_STEP - 1e-6) * SAMPLE_STEP)
+    motion, direction = case.motion, refined.trajectory.uplift_direction
+    uplifts = not _released(case) and math.isfinite(direction)
+    if motion is not None and uplifts and refined.run.engine in _FINER_SETTINGS:
+        # elsewhere the error of an uplift may have no order, and a flat landing loses too little
+        motion = motion.rotated(math.pi - direction)
+    return dataclasses.replace(case, motion=motion, duration=max(end, SAMPLE_STEP))
+
+
+def _released(case: Case) -> bool:
+    return case.initial is not None and case.initial.tilt > 0.0
+
+
+def _job(refined: Refined, level: int) -> Job:
+    run = refined.run
+    step = refined.trajectory.time_step * 0.5**level
+    more = {} if _released(refined.case) else _FINER_SETTINGS.get(run.engine, {})
+    return Job(
+        case=finer_case(refined),
+        method=Run(run.engine, run.support, step, **{**more, **run.settings}),
+        label=f"{refined.label}, step/{2**level}",
+    )
+
+
+def _limit(refined: Refined, traces: Sequence[Any]) -> Limit | None:
+    if any(isinstance(trace, Crash) or trace.outcome == "failed" for trace in traces):
+        return None
+    # a run that uplifts by chance has no part in the limit
+    used = traces if refined.smooth else traces[1:]
+    count = common_count([trace.time for trace in used])
+    tilts = [trace.tilt[:count] for trace in used]
+    if count == 0 or not all(np.isfinite(tilt).all() for tilt in tilts):
+        return None
+    steps = [trace.time_step for trace in used]
+    return extrapolated(used[0].time[:count], tilts, steps, smooth=refined.finer_smooth)
+
+
+def _is_uncertain(refined: Refined, traces: Sequence[Any]) -> bool:
+    limit = _limit(refined, traces)
+    if limit is None or not refined.finer_smooth:
+        return False
+    # the stretch that the budget covers, from the uplift on: before it there is nothing to err in
+    uplift = refined.trajectory.uplift_time
+    start = uplift if math.isfinite(uplift) else 0.0
+    covered = (limit.time >= start) & (limit.time <= start + COVERED * (refined.end - start))
+    error = _rms(limit.error[covered]) / refined.case.cylinder.alpha
+    whole = _rms(refined.difference[: math.ceil(COVERED * len(refined.difference))])
+    return whole > WORTH_EXPLAINING and error > _UNCERTAIN * whole
+
+
+def _rms(values: Any) -> float:
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0

@@ -1,0 +1,270 @@
+"""One row of the summary: an engine's run held against one reduced model."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from rockwobble.models import Case, Run
+
+from ..metrics.agreement import Horizon, agreed_passes, agreement_horizon, closest_pass
+from ..metrics.contact import contact_rms
+from ..metrics.energy import energy_loss
+from ..metrics.tilt import tilt_rms, tilt_rms_relative
+from ..metrics.turning import direction_difference, first_unresolved_pass, turn_difference
+from ..traces.pair import EngineTrace, Trace, make_pair
+from ..traces.trajectory import ExternalTrajectory
+from .error_budget import BUDGET_COLUMNS, ErrorBudget
+from .external.difference import allowance as noise_allowance
+from .external.verdict import VERDICT_COLUMNS, judge, no_verdict
+from .prediction import Prediction, close_pass, verdict
+
+# name: (unit, meaning); the order is that of the table
+SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        "case": ("", "name of the case"),
+        "reference": ("", "reduced model that the run is held against"),
+        "engine": ("", "multibody engine"),
+        "support": ("", "what holds the cylinder in place"),
+        "time_step": ("s", "time step of the engine"),
+        "outcome": ("", "how the engine's run ended"),
+        "reference_outcome": ("", "how the reduced model's run ended"),
+        "message": ("", "what there is to know of either run, in words"),
+        "peak_tilt": ("alpha", "largest tilt of the engine's run"),
+        "reference_peak_tilt": ("alpha", "largest tilt of the reduced model"),
+        "peak_tilt_difference": ("alpha", "engine minus reduced model"),
+        "tilt_rms": ("alpha", "root mean square of the tilt difference"),
+        "tilt_rms_relative": ("", "the same over the root mean square of the reduced model's tilt"),
+        "contact_rms": ("b", "RMS distance of the contact points where both tilts exceed 5 % of the peak"),
+        "turn_difference": ("deg", "how far apart the contact points have rolled at the end of agreement"),
+        "uplift_time_difference": ("s", "engine minus reduced model"),
+        "uplift_direction_difference": ("rad", "azimuth of the contact point at uplift or release"),
+        "agreement_horizon": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
+        "parted": ("", "whether there was such a difference; if not, the horizon is the run's length"),
+        "agreed_passes": ("", "passes by the apex within the agreement"),
+        "predicted_horizon": ("s", "when the traces have to part, from the reduced models alone"),
+        "residual_displacement": ("b", "distance of the base centre from its old place at the end"),
+        "residual_twist": ("deg", "turn of the cylinder about its axis at the end"),
+        "energy_loss": ("", "energy lost by the engine's run over the largest energy reached"),
+        "wall_time": ("s", "computing time of the engine"),
+        "time_ratio": ("", "the same over that of the reduced model"),
+        "reference_wall_time": ("s", "computing time of the reduced model"),
+        "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine's contact resolves"),
+        "closest_pass": ("alpha", "smallest minimum tilt of the reduced model's passes within the agreement"),
+        "engine_version": ("", "version of the engine"),
+        "run": ("", "label of the run, as in the files of samples and in the figures"),
+        "predicted_by": ("", "what ends the agreement there: a pass, growth or model form; empty: nothing"),
+        "parting": (
+            "",
+            "in time: within a factor of 2 of the prediction; later, earlier, or after it touched a wall",
+        ),
+        "estimated_error": ("alpha", "RMS error of the engine in its first second, on which growth rests"),
+        "whole_rms": ("alpha", "RMS of the tilt difference until 80 % of the agreement; with a budget only"),
+        "model_form_rms": ("alpha", "of it: reduced model of the support minus the reference"),
+        "numerics_rms": ("alpha", "of it: engine minus the engine extrapolated to a step of zero"),
+        "unexplained_rms": ("alpha", "of it: engine extrapolated minus reduced model of its support"),
+        "unexplained_share": ("", "unexplained over whole; above 0.2 it is a finding"),
+        "limit_error": ("alpha", "uncertainty of the extrapolation"),
+        "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
+        "finest_step": ("s", "smallest time step that the extrapolation rests on"),
+        **VERDICT_COLUMNS,
+    }
+)
+
+
+def summary_row(
+    case: Case,
+    model: str,
+    reference: Trace,
+    label: str,
+    trial: EngineTrace,
+    *,
+    prediction: Prediction,
+    estimated_error: float = math.nan,
+    budget: ErrorBudget | None = None,
+    until: float | None = None,
+    allowance: float = 0.0,
+) -> dict[str, Any]:
+    """Return all columns of the summary for one engine run and one reduced model.
+
+    Parameters
+    ----------
+    case : Case
+    model : str
+        Name of the reduced model.
+    reference : Trace
+        Its response.
+    label : str
+        Label of the engine's run.
+    trial : EngineTrace
+        Trajectory of the engine.
+    prediction : Prediction
+        When the two have to part.
+    estimated_error : float, optional
+        Error of the engine that the prediction rests on [alpha].
+    budget : ErrorBudget, optional
+        What their difference is made of; without one its columns are NaN.
+    until : float, optional
+        End of the window of tilt_rms, tilt_rms_relative and contact_rms, in the time of the run
+        [s]. Default: the whole run.
+    allowance : float, optional
+        For the noise of a measurement: added to the tilt difference that ends the agreement [alpha].
+    """
+    cylinder = case.cylinder
+    alpha, radius = cylinder.alpha, cylinder.base_radius
+    whole = make_pair(cylinder, reference, trial, until=case.length)  # a fall after it multiplies differences
+    window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
+    broken = "failed" in (trial.outcome, reference.outcome)
+    horizon = agreement_horizon(whole, broken=broken, allowance=allowance)
+    direction = direction_difference(reference, trial)
+    turned_until = min(horizon.end, first_unresolved_pass(trial, start=whole.start))
+    row = {
+        "case": case.name,
+        "reference": model,
+        "engine": trial.engine,
+        "support": trial.support,
+        "time_step": trial.time_step,
+        "outcome": trial.outcome,
+        "reference_outcome": reference.outcome,
+        "message": "",
+        "peak_tilt": trial.peak_tilt / alpha,
+        "reference_peak_tilt": reference.peak_tilt / alpha,
+        "peak_tilt_difference": (trial.peak_tilt - reference.peak_tilt) / alpha,
+        "tilt_rms": tilt_rms(window),
+        "tilt_rms_relative": tilt_rms_relative(window),
+        "contact_rms": contact_rms(window),
+        "turn_difference": math.degrees(
+            turn_difference(whole, until=turned_until, direction_difference=direction)
+        ),
+        "uplift_time_difference": trial.uplift_time - reference.uplift_time,
+        "uplift_direction_difference": direction,
+        "agreement_horizon": horizon.length,
+        "parted": horizon.parted,
+        "agreed_passes": agreed_passes(reference, horizon),
+        "predicted_horizon": prediction.length,
+        "residual_displacement": trial.residual_displacement / radius,
+        "residual_twist": math.degrees(trial.residual_twist),
+        "energy_loss": energy_loss(trial, case.motion),
+        "wall_time": trial.wall_time,
+        "time_ratio": trial.wall_time / reference.wall_time if reference.wall_time > 0.0 else math.nan,
+        "reference_wall_time": reference.wall_time,
+        "contact_resolution": trial.contact_resolution,
+        "closest_pass": closest_pass(reference, horizon) / alpha,
+        "engine_version": trial.engine_version,
+        "run": label,
+    }
+    row["message"] = _message(model, reference, trial, whole.end, case.length, _undefined(row))
+    row |= {
+        "predicted_by": prediction.reason,
+        "parting": _parting(trial, horizon, prediction),
+        "estimated_error": estimated_error,
+        **no_verdict(),
+    }
+    return row | (dict.fromkeys(BUDGET_COLUMNS, math.nan) if budget is None else budget.columns())
+
+
+def _parting(trial: EngineTrace, horizon: Horizon, prediction: Prediction) -> str:
+    found = verdict(horizon.length, horizon.parted, prediction.length, prediction.reason)
+    # no reduced model knows of walls, so none foretells what they do
+    touched = getattr(trial, "first_wall_contact", math.inf) <= horizon.end
+    return "after it touched a wall" if found == "earlier" and touched else found
+
+
+def foreign_row(
+    case: Case,
+    model: str,
+    reference: Trace,
+    label: str,
+    trial: ExternalTrajectory,
+    *,
+    until: float | None = None,
+) -> dict[str, Any]:
+    """Return the row of an external trajectory: nothing is known of its steps and errors.
+
+    Its uplift is compared as its samples show it: see `external.uplift_difference`.
+    """
+    verdict = judge(trial, reference, case)
+    row = summary_row(
+        case,
+        model,
+        reference,
+        label,
+        trial,
+        prediction=close_pass(reference, trial.contact_resolution, case.length),
+        until=until,
+        allowance=noise_allowance(trial.noise, case.cylinder.alpha),
+    )
+    for name, part in (("uplift_time", verdict.uplift_time), ("uplift_direction", verdict.uplift_direction)):
+        if part is not None:
+            row[f"{name}_difference"] = part.size
+    return row | verdict.columns()
+
+
+def crashed_row(
+    case: Case, model: str, reference: Trace, label: str, run: Run, message: str
+) -> dict[str, Any]:
+    """Return the row of a run that left no trajectory: what is not known is NaN, and the message says why."""
+    row: dict[str, Any] = dict.fromkeys(SUMMARY_COLUMNS, math.nan)
+    row |= {
+        "case": case.name,
+        "reference": model,
+        "engine": run.engine,
+        "support": run.support,
+        "outcome": "failed",
+        "reference_outcome": reference.outcome,
+        "message": f"{run.engine} left no trajectory: {message}",
+        "reference_peak_tilt": reference.peak_tilt / case.cylinder.alpha,
+        "agreement_horizon": 0.0,
+        "parted": True,
+        "agreed_passes": 0,
+        "reference_wall_time": reference.wall_time,
+        "engine_version": "",
+        "run": label,
+        "predicted_by": "",
+        "parting": "",
+    }
+    return row | no_verdict()
+
+
+def _undefined(row: dict[str, Any]) -> list[str]:
+    """Names of the numbers of a row that are none."""
+    return [name for name, value in row.items() if isinstance(value, float) and not math.isfinite(value)]
+
+
+def _message(
+    model: str, reference: Trace, trial: EngineTrace, end: float, length: float, undefined: list[str]
+) -> str:
+    """Say in words what the numbers of a row must not hide."""
+    engine = trial.engine
+    notes = []
+    if trial.outcome == "failed":
+        notes.append(f"{engine} failed: {trial.message}")
+    if reference.outcome == "failed":
+        notes.append(f"the {model} model failed: {reference.message}")
+    fell = [
+        name
+        for name, trace in ((engine, trial), (f"the {model} model", reference))
+        if trace.outcome == "overturned"
+    ]
+    if len(fell) == 2:
+        notes.append("both overturned")
+    elif fell:
+        notes.append(f"only {fell[0]} overturned")
+    lifted = [math.isfinite(trace.uplift_time) for trace in (trial, reference)]
+    if not any(lifted):
+        notes.append("neither uplifted: there is no motion to compare")
+    elif not all(lifted):
+        notes.append(f"only {engine if lifted[0] else f'the {model} model'} uplifted")
+    elif not bool(np.any(trial.tilt > 0.0)):
+        notes.append(f"{engine} never tilted")
+    if end < length * (1.0 - 1e-9):
+        notes.append(f"compared up to {end:.4g} s")
+    if trial.message and trial.outcome != "failed":
+        notes.append(trial.message)
+    if undefined:
+        notes.append(f"not defined here: {', '.join(undefined)}")
+    return "; ".join(notes)

@@ -1,0 +1,1 @@
+"""Measures of agreement: tilt, contact point, turning, energy, agreement time, distributions."""

@@ -1,0 +1,31 @@
+"""Distance of the contact points."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ..traces.pair import Pair
+
+# share of the reference peak below which a contact point is too poorly defined to compare
+TILTED = 0.05
+
+
+def contact_rms(pair: Pair) -> float:
+    """Return the RMS distance of the two contact points, in units of b.
+
+    Counted where both tilts exceed 5 % of the reference's peak: near the apex the whole base is
+    close to the ground, and where the rim touches says nothing.
+
+    Returns
+    -------
+    float
+        NaN where no sample counts.
+    """
+    least = TILTED * float(pair.reference_tilt.max())
+    distance = np.linalg.norm(pair.contact_point - pair.reference_contact_point, axis=1)
+    counts = (pair.tilt > least) & (pair.reference_tilt > least) & np.isfinite(distance)
+    if not counts.any():
+        return math.nan
+    return float(np.sqrt(np.mean(np.square(distance[counts])))) / pair.cylinder.base_radius

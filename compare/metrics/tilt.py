@@ -1,0 +1,59 @@
+"""What a peak tilt says, and differences of the tilt."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rockwobble.models import Cylinder
+
+from ..traces.pair import Pair, Trace, make_pair
+
+
+def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
+    """Return where a run of a reduced model overturned, by its peak tilt [rad]; False where it failed.
+
+    The models decide, also where a run ends in the middle of a fall, and then give pi/2 and no less.
+    """
+    return np.asarray(peak_tilts, dtype=np.float64) >= 0.5 * math.pi
+
+
+def tilt_rms(pair: Pair) -> float:
+    """Root mean square of the tilt difference over all samples, in units of alpha."""
+    return float(np.sqrt(np.mean(np.square(pair.tilt_difference))))
+
+
+def tilt_rms_relative(pair: Pair) -> float:
+    """RMS(difference)/RMS(tilt of the reference); NaN where the reference never tilts."""
+    scale = float(np.sqrt(np.mean(np.square(pair.reference_tilt)))) / pair.cylinder.alpha
+    return tilt_rms(pair) / scale if scale > 0.0 else math.nan
+
+
+def relative_rms(cylinder: Cylinder, reference: Trace, trial: Trace, *, until: float | None = None) -> float:
+    """Return RMS(difference of tilt)/RMS(tilt of the reference) from uplift to `until`.
+
+    Parameters
+    ----------
+    cylinder : Cylinder
+    reference, trial : Trace
+        A response of a reduced model or a trajectory of an engine.
+    until : float, optional
+        In the time of the run [s]. Default: as far as both reach.
+
+    Returns
+    -------
+    float
+        Dimensionless; 0 is identity, sqrt(2) two motions that know nothing of each other.
+
+    Raises
+    ------
+    ValueError
+        If the reference never tilts, or not before `until`.
+    """
+    pair = make_pair(cylinder, reference, trial, until=until)
+    value = tilt_rms_relative(pair)
+    if math.isnan(value):
+        raise ValueError(f"the reference must tilt before the end of the window, {pair.end:g} s")
+    return value

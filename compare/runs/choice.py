@@ -1,0 +1,166 @@
+"""Which runs a comparison consists of where the user does not say, and what they are held against."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from rockwobble.models import Case, InitialState, Run
+from rockwobble.multibody import BrokenEngineError, available_engines
+from rockwobble.multibody.engines.registry import find_engine, standard_engines
+from rockwobble.multibody.scene.froude import froude_scale
+from rockwobble.multibody.scene.guard import check_time_step
+from rockwobble.multibody.scene_of_case import resolved_settings
+
+SUPPORTS = ("guided", "free")
+_LEAN = 1e-3  # of alpha: a tilt that fits into any ring
+
+# What an exact engine would follow. A ring holds only what has rolled out as far as its clearance: until the
+# first touch of a wall the cylinder rolls as on open ground, and after it no reduced model knows the walls.
+_OWN_MODELS = {"guided": "recess", "free": "rolling", "ring": "rolling"}
+
+
+def installed_engines() -> tuple[str, ...]:
+    """Return the engines that are installed here, whatever they can do."""
+    return available_engines()
+
+
+def missing_engines() -> tuple[str, ...]:
+    """Return the engines that every installation is meant to have and this one has not."""
+    return tuple(name for name in standard_engines() if name not in installed_engines())
+
+
+def reserved_engines() -> dict[str, str]:
+    """Return the installed engines that a default run leaves out, and why.
+
+    A default run takes the engines that serve any case: those with each support and with uplift. The
+    others run where they are named.
+    """
+    reasons = {name: _reservation(name) for name in installed_engines()}
+    return {name: reason for name, reason in reasons.items() if reason}
+
+
+def _reservation(name: str) -> str:
+    try:
+        engine = find_engine(name)
+    except BrokenEngineError as error:
+        # of another package: what is broken there stops nobody here
+        return str(error)
+    lacks = [f"no {support} support" for support in SUPPORTS if support not in engine.supports]
+    lacks += [] if engine.uplifts else ["no uplift"]
+    return f"{name} has {' and '.join(lacks)}" if lacks else ""
+
+
+def require_runnable(case: Case, run: Run) -> None:
+    """Check engine, support, time step and settings of a run, so that no other run starts in vain.
+
+    Raises
+    ------
+    ValueError
+        If the engine is unknown or not installed, does not have the support or cannot start the case,
+        the time step is too large for contact, or a setting is unknown or out of range.
+    """
+    step = None if isinstance(run.time_step, str) else run.time_step
+    if step is not None:
+        check_time_step(step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
+    settings = dict(run.settings)
+    if run.time_step == "auto":
+        settings.pop("step_tolerance", None)
+    resolved_settings(case, run.engine, run.support, settings, step)
+
+
+def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, Any]) -> tuple[Run, ...]:
+    """Return the runs with more settings, each where the run has one of that name.
+
+    Raises
+    ------
+    ValueError
+        If no run has a setting of that name, with those that there are.
+    """
+    known = [_setting_names(case, run) for run in runs]
+    for name in settings:
+        if not any(name in names for names in known):
+            allowed = dict.fromkeys(each for names in known for each in names)
+            raise ValueError(f"no run has a setting {name!r}; there are {', '.join(allowed)}")
+    return tuple(
+        Run(
+            run.engine,
+            run.support,
+            run.time_step,
+            **{**run.settings, **{name: value for name, value in settings.items() if name in names}},
+        )
+        for run, names in zip(runs, known, strict=True)
+    )
+
+
+def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
+    # from a release that every engine and every ring can start: what is to be set may be what the case needs
+    start = Case(case.name, case.cylinder, None, InitialState(_LEAN * case.cylinder.alpha), 1.0)
+    steps = ("step_tolerance",) if run.time_step == "auto" else ()
+    return (*resolved_settings(start, run.engine, run.support, {}), *steps)
+
+
+def default_runs(
+    engines: Sequence[str] | None = None, supports: Sequence[str] | None = None
+) -> tuple[Run, ...]:
+    """Return every engine that serves any case with each support, the guided ones first.
+
+    Engines that are named run whatever they can do: with the supports that they have where none is named.
+    Where only supports are named, each gets the engines that have it, or all if none has, which will say so.
+    """
+    if engines is not None and supports is not None:
+        return tuple(Run(engine, support) for support in supports for engine in engines)
+    if engines is None:
+        reserved = reserved_engines()
+        engines = [name for name in installed_engines() if name not in reserved]
+    runs = []
+    for support in SUPPORTS if supports is None else supports:
+        able = [engine for engine in engines if support in find_engine(engine).supports]
+        runs += [Run(engine, support) for engine in able or (engines if supports is not None else ())]
+    return tuple(runs)
+
+
+def unsupported(supports: Sequence[str]) -> tuple[str, ...]:
+    """Return why a default run with these supports leaves out installed engines, one sentence for each."""
+    reserved = reserved_engines()
+    names = [name for name in installed_engines() if name not in reserved]
+    lacks = [
+        (name, support) for support in supports for name in names if support not in find_engine(name).supports
+    ]
+    return tuple(f"{name} has no {support} support and is left out there" for name, support in lacks)
+
+
+def references_of(run: Run, reference: str) -> tuple[str, ...]:
+    """Return the reduced models that a run is held against: `reference`, and that of its support."""
+    own = own_model(run.support)
+    return (reference,) if own in (reference, "recess") else (reference, own)
+
+
+def _step_label(time_step: float | str) -> str:
+    return time_step if isinstance(time_step, str) else f"{time_step:g} s"
+
+
+def own_model(support: str) -> str:
+    """Return the reduced model of a support: what an exact engine would follow, until it touches a wall."""
+    return _OWN_MODELS.get(support, "recess")
+
+
+def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
+    """Return a label for each run: engine and support, and as much more as tells them apart."""
+    labels = [f"{run.engine} {run.support}" for run in runs]
+    if len(set(labels)) < len(labels):
+        labels = [
+            f"{label} {_step_label(run.time_step)}" if run.time_step and labels.count(label) > 1 else label
+            for label, run in zip(labels, runs, strict=True)
+        ]
+    if len(set(labels)) < len(labels):
+        labels = [
+            " ".join([label, *(f"{key}={value}" for key, value in run.settings.items())])
+            if labels.count(label) > 1
+            else label
+            for label, run in zip(labels, runs, strict=True)
+        ]
+    for label in labels:
+        if labels.count(label) > 1:
+            raise ValueError(f"the runs of a comparison must differ, got {label!r} twice")
+    return tuple(labels)

@@ -1,0 +1,1 @@
+"""Studies: many runs and what follows from them, one folder each."""

@@ -1,0 +1,106 @@
+"""When a reduced model and an engine have to part, and one run of an engine that shows when they do."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rockwobble.models import Case, Run
+
+from ...comparison.driver import compare
+from ...comparison.prediction import Prediction, estimated_error, predict_horizon, time_scale
+from ...metrics.agreement import agreement_horizon
+from ...runs.execution import Job, simulate
+from ...traces.pair import make_pair
+
+# [s] the default step of the engines at 6 m and 9.81 m/s^2, for a prediction without an engine
+_STEP = 1e-4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Verification:
+    """One run of an engine, held against the reduced model of its support.
+
+    Attributes
+    ----------
+    label : str
+        Engine and support.
+    version : str
+    time_step : float
+        [s]
+    trajectory : Trajectory or None
+        None where the engine's process died.
+    outcome, message : str
+    peak_tilt : float
+        [alpha]; NaN where failed.
+    agreement : float
+        From uplift or release to the first tilt difference above 1 % of alpha [s]; the length of the run
+        where there is none.
+    agreed_until : float
+        The same in the time of the run [s].
+    parted : bool
+    parting : str
+        Whether that was "in time", "later" or "earlier" than predicted, or "never, as foretold".
+    """
+
+    label: str
+    version: str
+    time_step: float
+    trajectory: Any
+    outcome: str
+    message: str
+    peak_tilt: float
+    agreement: float
+    agreed_until: float
+    parted: bool
+    parting: str
+
+
+def predicted(case: Case, response: Any, model: str, run: Run | None) -> Prediction:
+    """When an engine at its default step would have to part, from the reduced models alone."""
+    if response.outcome == "failed" or not math.isfinite(response.uplift_time):
+        return Prediction(length=case.length, reason="")
+    step = _STEP * time_scale(case)
+    if run is not None and isinstance(run.time_step, float):
+        step = run.time_step
+    return predict_horizon(
+        case,
+        reference=response,
+        own=response,
+        own_model=model,
+        # the tilt that the fastest fall crosses in one step; the penetration counts for less than it
+        contact_resolution=float(np.abs(response.tilt_rate).max()) * step,
+        error=estimated_error(case, "mujoco" if run is None else run.engine, step),
+        simulate=lambda each, name: simulate(Job(case=each, method=name, label=name)),
+    )
+
+
+def verified(case: Case, run: Run, model: str) -> tuple[Verification, Prediction]:
+    """Run the engine; what it resolved makes the prediction sharper."""
+    found = compare(case, runs=[run], reference=model)
+    row = found.summary[found.summary["reference"] == model].iloc[0]
+    trajectory = next(iter(found.trajectories.values()), None)
+    agreed_until = 0.0
+    if trajectory is not None:
+        pair = make_pair(case.cylinder, found.responses[case.name, model], trajectory)
+        agreed_until = agreement_horizon(pair, broken=row.outcome == "failed").end
+    verification = Verification(
+        label=f"{run.engine} {run.support}",
+        version=row.engine_version,
+        time_step=float(row.time_step),
+        trajectory=trajectory,
+        outcome=row.outcome,
+        message=row.message,
+        peak_tilt=float(row.peak_tilt),
+        agreement=float(row.agreement_horizon),
+        agreed_until=agreed_until,
+        parted=bool(row.parted),
+        parting=row.parting,
+    )
+    predicted = float(row.predicted_horizon)
+    if not math.isfinite(predicted):  # a crash left none
+        return verification, Prediction(length=case.length, reason="")
+    return verification, Prediction(length=predicted, reason=row.predicted_by)

@@ -1,0 +1,207 @@
+"""Ensembles: what can be compared beyond the horizon, where single traces say nothing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockwobble.models import Case, Run, Suite
+
+from ...runs.choice import default_runs, own_model, require_runnable, run_labels
+from ...runs.execution import Crash, Job, ProgressCallback, simulate_all
+from ...runs.run_store import job_fingerprint, open_run_store
+from ...storage.fingerprint import fingerprint
+from ...storage.origin import read_table
+from ...storage.parquet_file import read_about
+from ...storage.provenance import about_results
+from .members import perturbed_starts
+from .tables import contrast_table, method_table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+KIND = "rockwobble ensemble"
+TABLE = "members.parquet"
+MODELS = ("recess", "rolling")
+# without which the members cannot be held against each other or described
+_NEEDED = ("methods", "members", "semidiagonal", "tan_alpha", "seeds", "versions")
+_COLUMNS = ("member", "method", "peak_tilt", "outcome")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Ensemble:
+    """Peak tilts of many members by several methods.
+
+    Parameters
+    ----------
+    members : DataFrame
+        One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
+        overturned), outcome, message, wall_time [s], all as the run has them.
+    methods : DataFrame
+        One row for each method: own_model (of the support of an engine), runs, rocked, overturned, failed,
+        failed_members (their names), and of the peak tilts of what did not fail [alpha] the median with its
+        interval (peak_median, _low, _high) and the 16th and 84th percentile (peak_16, peak_84): infinite
+        where they overturn.
+    contrasts : DataFrame
+        One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high, its
+        verdict, masked (members that failed by one of them), and both probabilities corrected for the number
+        of pairs (Holm) in columns _adjusted.
+    about : dict
+        As `about_results`, with what the members are, the range of their sizes and slendernesses, and the
+        model of the support of each method.
+    """
+
+    members: pd.DataFrame
+    methods: pd.DataFrame
+    contrasts: pd.DataFrame
+    about: dict[str, Any]
+
+
+def ensemble(
+    case_or_members: Case | Suite | Sequence[Case],
+    *,
+    runs: Iterable[Run] | None = None,
+    models: Sequence[str] = MODELS,
+    size: int = 20,
+    perturbation: float = 0.01,
+    seed: int = 0,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+    resume: str | Path | None = None,
+    source: str = "cases",
+) -> Ensemble:
+    """Run many members by each method, and hold their peak tilts against each other, member by member.
+
+    Parameters
+    ----------
+    case_or_members : Case, Suite or sequence of Case
+        One case is run with `size` perturbed starts, see `perturbed_starts`; several are the members,
+        such as one body under many records.
+    runs : iterable of Run, optional
+        Default: those of the suite, else every installed engine with supports "guided" and "free".
+    models : sequence of str, optional
+        Reduced models. The first is named first in every contrast.
+    size : int, optional
+        Number of perturbed starts.
+    perturbation : float, optional
+        Their relative standard deviation.
+    seed : int, optional
+        Of the perturbations.
+    workers, progress, resume
+        As in `compare`.
+    source : str, optional
+        What the members are, for people, where there are several cases.
+
+    Returns
+    -------
+    Ensemble
+        Failed runs have no peak; they are counted and named, and their member does not count in the
+        contrasts of their method.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two members, or an engine or a number is not usable.
+
+    Examples
+    --------
+    >>> from rockwobble.models import Cylinder, el_centro_1940
+    >>> case = Case("pier", Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
+    >>> found = ensemble(case, runs=[], size=5, workers=1)
+    >>> found.methods[["method", "runs", "failed"]].values.tolist()
+    [['recess', 5, 0], ['rolling', 5, 0]]
+    """
+    about: dict[str, Any] = {}
+    if isinstance(case_or_members, Case):
+        members = perturbed_starts(case_or_members, size, perturbation=perturbation, seed=seed)
+        about |= {"members": f"starts of {case_or_members.name}, perturbed by {100.0 * perturbation:g} %"}
+        about |= {"perturbation": perturbation}
+    else:
+        members = list(case_or_members.cases if isinstance(case_or_members, Suite) else case_or_members)
+        about |= {"members": source}
+    if len(members) < 2 or len({case.name for case in members}) < len(members):
+        raise ValueError(f"an ensemble has at least 2 members of different names, got {len(members)}")
+    chosen = _runs(case_or_members, runs)
+    for case in members:
+        for run in chosen:
+            require_runnable(case, run)
+    methods: dict[str, str | Run] = {model: model for model in models}
+    methods |= dict(zip(run_labels(chosen), chosen, strict=True))
+    jobs = [
+        Job(case=case, method=method, label=label) for case in members for label, method in methods.items()
+    ]
+    with nullcontext() if resume is None else open_run_store(resume, samples=False) as store:
+        results = simulate_all(jobs, workers=workers, progress=progress, store=store)
+    table = _members(jobs, results)
+    inputs = fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])
+    about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
+    about |= {
+        "methods": {label: "" if isinstance(m, str) else own_model(m.support) for label, m in methods.items()}
+    }
+    return ensemble_of(table, about_results(KIND, inputs, seeds={"ensemble": seed}) | about)
+
+
+def ensemble_of(members: pd.DataFrame, about: dict[str, Any]) -> Ensemble:
+    """Return the ensemble of a table of members, and of what `Ensemble.about` says of them."""
+    return Ensemble(
+        members=members,
+        methods=method_table(members, about["methods"]),
+        contrasts=contrast_table(members, about["methods"]),
+        about=about,
+    )
+
+
+def read_ensemble(folder: str | Path) -> Ensemble:
+    """Return an ensemble whose members were stored as `members.parquet`.
+
+    Raises
+    ------
+    ValueError
+        If the file is missing, is not what was stored, or is too old to say what is needed.
+    """
+    file = Path(folder) / TABLE
+    members, about = read_table(file), read_about(file)
+    if about.get("kind") != KIND:
+        raise ValueError(f"{file} does not hold the members of an ensemble")
+    missing = [name for name in _NEEDED if name not in about]
+    missing += [name for name in _COLUMNS if name not in members]
+    if missing:
+        raise ValueError(f"{file} is too old: it does not hold {', '.join(missing)}; run the ensemble again")
+    return ensemble_of(members, about)
+
+
+def _range(members: Sequence[Case], name: str) -> dict[str, float]:
+    values = {float(getattr(case.cylinder, name)) for case in members}
+    return {"from": min(values), "to": max(values), "count": len(values)}
+
+
+def _runs(case_or_members: Case | Suite | Sequence[Case], runs: Iterable[Run] | None) -> tuple[Run, ...]:
+    if runs is not None:
+        return tuple(runs)
+    if isinstance(case_or_members, Suite) and case_or_members.runs:
+        return case_or_members.runs
+    return default_runs()
+
+
+def _members(jobs: Sequence[Job], results: Sequence[Any]) -> pd.DataFrame:
+    import pandas as pd
+
+    rows = []
+    for job, result in zip(jobs, results, strict=True):
+        crashed = isinstance(result, Crash)
+        failed = crashed or result.outcome == "failed"
+        rows.append(
+            {
+                "member": job.case.name,
+                "method": job.label,
+                "peak_tilt": math.nan if failed else result.peak_tilt / job.case.cylinder.alpha,
+                "outcome": "failed" if failed else result.outcome,
+                "message": result.message,
+                "wall_time": math.nan if crashed else result.wall_time,
+            }
+        )
+    return pd.DataFrame(rows)

@@ -1,0 +1,1 @@
+"""Overturning spectra: peak tilts over size and intensity, in 3D and by planar analysis."""

@@ -1,0 +1,1 @@
+"""Sweeps: grids of runs in chunks that are kept as they are finished."""

@@ -1,0 +1,183 @@
+"""What each part of an engine's scene costs: degrees of freedom, contacts, constraint rows, time of a step.
+
+Every scene is opened anew in each round and all are timed in turn, round after round, so that a change of
+the machine's speed meets them alike; the ratio to the cheapest scene of the same engine is taken inside
+each round. Timed is the engine alone, in processor time of this thread: for MuJoCo the rollout in C, for
+Bullet its loop in Python.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.multibody import available_engines
+from rockwobble.multibody.engines.scene_counts import SceneCounts
+from rockwobble.multibody.scene_of_case import open_scene
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ROUNDS = 9
+STEPS = 2000  # that are timed, 0.2 s of the cylinder of 6 m
+_WARM_UP = 100  # steps before them: contact settles, the machine fetches the scene
+_PUSH = 0.1  # [m/s^2] of each component that a scene has; far from uplift
+
+_PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Variant:
+    """A scene, and the one thing that it has and its neighbours in the table have not.
+
+    Parameters
+    ----------
+    engine, support : str
+    standing : bool
+        Upright at rest, or released at half of alpha.
+    components : str
+        Of the ground acceleration: "", "xy" or "xyz".
+    option : str
+        What is special, for the table.
+    settings : mapping
+        Of the engine.
+    """
+
+    engine: str
+    support: str
+    standing: bool = False
+    components: str = ""
+    option: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict)
+
+
+def variants(engine: str) -> list[Variant]:
+    """Return the scenes of an engine: each support plain, and then with one thing changed at a time.
+
+    Raises
+    ------
+    ValueError
+        If the engine has no such table.
+    """
+
+    def scene(support: str, option: str = "", **rest: Any) -> Variant:
+        return Variant(engine=engine, support=support, option=option, **rest)
+
+    common = [
+        scene("free", "released"),
+        scene("guided", "released"),
+        scene("guided", "ground motion x, y", components="xy"),
+        scene("guided", "ground motion x, y, z", components="xyz"),
+    ]
+    if engine == "pybullet":
+        return [*common, scene("guided", "standing", standing=True, components="xy")]
+    if engine != "mujoco":
+        raise ValueError(f"engine must be one of mujoco, pybullet, got {engine!r}")
+    return [
+        *common,
+        *(
+            scene("guided", f"integrator {name}", settings={"integrator": name})
+            for name in ("implicitfast", "implicit", "RK4", "discrete")
+        ),
+        scene("guided", "pyramidal cone", settings={"cone": "pyramidal"}),
+        *(
+            scene("ring", f"{count} walls", settings={"ring_facets": count, "ring_clearance": clearance})
+            for count, clearance in ((8, 0.1), (32, 0.1), (128, 0.1))
+        ),
+        *(
+            scene(
+                "guided",
+                f"standing on {corners} corners" if corners else "standing without prisms",
+                standing=True,
+                components="xy",
+                settings={"standing_corners": corners},
+            )
+            for corners in (0, 4, 12, 24, 48)
+        ),
+    ]
+
+
+def scene_costs(
+    engines: Sequence[str] | None = None,
+    *,
+    rounds: int = ROUNDS,
+    steps: int = STEPS,
+    say: Callable[[str], None] | None = None,
+) -> pd.DataFrame:
+    """Measure the cost of a step in every scene.
+
+    Parameters
+    ----------
+    engines : sequence of str, optional
+        Default: those of "mujoco" and "pybullet" that are installed.
+    rounds, steps : int
+        Times that each scene is measured, and steps each time.
+    say : callable, optional
+        Told what happens, line by line.
+
+    Returns
+    -------
+    DataFrame
+        One row for each scene: engine, support, option, degrees_of_freedom, contacts, constraint_rows,
+        microseconds (of a step, median), ratio (to the cheapest scene of the engine, median of rounds).
+
+    Raises
+    ------
+    ValueError
+        If an engine is unknown or not installed, or a number is not positive.
+    """
+    import pandas as pd
+
+    if rounds < 1 or steps < 1:
+        raise ValueError(f"rounds and steps must be positive, got {rounds} and {steps}")
+    names = engines or [name for name in ("mujoco", "pybullet") if name in available_engines()]
+    scenes = [variant for name in names for variant in variants(name)]
+    times = np.empty((rounds, len(scenes)))
+    counts: list[SceneCounts] = []
+    for number in range(rounds):
+        if say is not None:
+            say(f"round {number + 1} of {rounds}, {len(scenes)} scenes of {steps} steps")
+        for place, variant in enumerate(scenes):
+            times[number, place], count = step_cost(variant, steps)
+            if not number:
+                counts.append(count)
+    ratio = np.empty(len(scenes))
+    for name in names:
+        ours = np.array([variant.engine == name for variant in scenes])
+        cheapest = np.flatnonzero(ours)[np.argmin(np.median(times[:, ours], axis=0))]
+        ratio[ours] = np.median(times[:, ours] / times[:, [cheapest]], axis=0)
+    return pd.DataFrame(
+        {
+            "engine": [variant.engine for variant in scenes],
+            "support": [variant.support for variant in scenes],
+            "option": [variant.option for variant in scenes],
+            "degrees_of_freedom": [count.degrees_of_freedom for count in counts],
+            "contacts": [count.contacts for count in counts],
+            "constraint_rows": [count.constraint_rows for count in counts],
+            "microseconds": 1e6 * np.median(times, axis=0),
+            "ratio": ratio,
+        }
+    )
+
+
+def step_cost(variant: Variant, steps: int) -> tuple[float, SceneCounts]:
+    """Return the processor time of one step [s], a mean over `steps`, and what the step solved."""
+    initial = None if variant.standing else InitialState(0.5 * _PIER.alpha, rolling_rate=0.5)
+    motion = None
+    if variant.components:
+        motion = GroundMotion(np.full((2, len(variant.components)), _PUSH), 1.0)
+    case = Case("cost", _PIER, motion, initial, 1.0)
+    push = np.array([_PUSH if name in variant.components else 0.0 for name in "xyz"])
+    with open_scene(case, variant.engine, variant.support, variant.settings) as stepper:
+        stepper.advance(np.tile(push, (_WARM_UP, 1)))
+        rows = np.tile(push, (steps, 1))
+        begin = time.thread_time()
+        stepper.advance(rows)
+        spent = (time.thread_time() - begin) / steps
+        counts: SceneCounts = stepper.counts()
+        return spent, counts

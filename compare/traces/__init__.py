@@ -1,0 +1,1 @@
+"""Two traces on one time axis, and trajectories from elsewhere."""

@@ -1,0 +1,98 @@
+"""A motion as the lean of its axis and the path of its mass centre.
+
+The lean sin(theta) exp(i phi) is smooth through the upright position, where the azimuth phi means nothing and
+in planar motion jumps by pi.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .file import Array
+from .pair import Trace
+
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Motion:
+    """The samples of a motion.
+
+    Parameters
+    ----------
+    time, tilt : ndarray, shape (n,)
+        [s], [rad]
+    lean : ndarray of complex, shape (n,), or None
+        x + i y of the axis, a unit vector; None where no azimuth is known.
+    path : ndarray, shape (n, 3), or None
+        Mass centre from O [m]; None where it is not known.
+    noise, path_noise : float, optional
+        Standard deviations of the noise of the axis [rad] and of each coordinate of the mass centre [m].
+    """
+
+    time: Array
+    tilt: Array
+    lean: Complex | None
+    path: Array | None
+    noise: float = 0.0
+    path_noise: float = 0.0
+
+    def turned(self, angle: float, *, mirrored: bool = False) -> Motion:
+        """Return the motion turned by `angle` [rad] counter-clockwise, with y reversed first if mirrored."""
+        turn = np.exp(1j * angle)
+        lean, path = self.lean, self.path
+        if lean is not None:
+            lean = turn * (lean.conj() if mirrored else lean)
+        if path is not None:
+            flat = path[:, 0] + (-1j if mirrored else 1j) * path[:, 1]
+            flat = turn * flat
+            path = np.column_stack([flat.real, flat.imag, path[:, 2]])
+        return replace(self, lean=lean, path=path)
+
+    def at(self, time: Array) -> Motion:
+        """Return the motion at other times [s], linear between its samples."""
+        lean, path = self.lean, self.path
+        return replace(
+            self,
+            time=time,
+            tilt=np.interp(time, self.time, self.tilt),
+            lean=None if lean is None else np.interp(time, self.time, lean),
+            path=None
+            if path is None
+            else np.column_stack([np.interp(time, self.time, part) for part in path.T]),
+        )
+
+    def delayed(self, time: float) -> Motion:
+        """Return the motion with `time` added to its clock [s]."""
+        return replace(self, time=self.time + time)
+
+
+def motion_of(
+    trace: Trace,
+    told: tuple[str, ...] = ("azimuth", "path"),
+    *,
+    noise: float = 0.0,
+    path_noise: float = 0.0,
+) -> Motion:
+    """Return the motion of a trace, as far as it is `told`."""
+    angle = np.nan_to_num(trace.rolling_angle)
+    return Motion(
+        time=trace.time,
+        tilt=trace.tilt,
+        lean=np.sin(trace.tilt) * np.exp(1j * angle) if "azimuth" in told else None,
+        path=trace.centre_of_mass if "path" in told else None,
+        noise=noise,
+        path_noise=path_noise,
+    )
+
+
+def on_samples_of(reference: Motion, motion: Motion) -> tuple[Motion, Motion]:
+    """Return both at the samples of the reference, as far as the motion reaches: reference, motion."""
+    finite = np.isfinite(reference.tilt)
+    within = (reference.time >= motion.time[0] - 1e-9) & (reference.time <= motion.time[-1] + 1e-9) & finite
+    time = reference.time[within]
+
+    return reference.at(time), motion.at(time)

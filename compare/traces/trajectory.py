@@ -1,0 +1,266 @@
+"""A trajectory from a shake table or another code as one more run of a comparison."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble.models import Case
+
+from .file import Array, Columns, read_columns
+from .measures import passes, peak, places, resampled, sample_times
+from .motion import Motion, motion_of
+from .pose import SAME_TIME, Poses, poses_of
+from .uplift import uplift
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SUPPORT = "foreign"
+# the side lies on the ground, as far as a measurement says [rad]
+_FALLEN = 0.5 * math.pi - 0.01
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Foreign:
+    """A file of a trajectory, and how to read it; `rockwobble.compare.traces.file` says what it may hold.
+
+    Parameters
+    ----------
+    path : Path
+    label : str, optional
+        For tables and figures. Default: the name of the file without its ending.
+    angle_unit : {"rad", "deg"}, optional
+        Of tilt and azimuth where the header does not say.
+    time_offset : float, optional
+        Added to the times of the file [s], so that the run starts at 0 with the ground motion or the release.
+    noise : float, optional
+        Tilt below which the cylinder counts as standing [rad]. Default: what the scatter of the samples
+        asks for, 5 standard deviations, and at least 1e-4 alpha.
+
+    Raises
+    ------
+    ValueError
+        If the offset is not finite or the noise is not positive.
+    """
+
+    path: Path
+    label: str = ""
+    angle_unit: str | None = None
+    time_offset: float = 0.0
+    noise: float | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "path", Path(self.path))
+        object.__setattr__(self, "label", self.label or self.path.stem)
+        if not math.isfinite(self.time_offset):
+            raise ValueError(f"time_offset must be finite [s], got {self.time_offset!r}")
+        if self.noise is not None and not 0.0 < self.noise < 0.5 * math.pi:
+            raise ValueError(f"noise must be above 0 and below pi/2 [rad], got {self.noise!r}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class ExternalTrajectory:
+    """A foreign trajectory at the sample times of the reduced models; fields as of an engine's trajectory.
+
+    What the file does not tell is NaN: energy, computing time, contact resolution; the twist without
+    quaternions; rolling angle, contact point and mass centre with the tilt alone; the residual displacement
+    without positions, where contact point and mass centre are those of a cylinder in a recess with the same
+    tilt and azimuth, equations (8) and (10).
+
+    Its own fields: `first_lean`, the first of its own samples that leans [s]; `told`, what the file tells of
+    "tilt", "azimuth" and "path"; `noise` and `position_noise`, the standard deviations of its scatter [rad],
+    [m]; `stands`, the tilt below which it stands [rad]; `uplift_time_uncertainty` [s] and
+    `uplift_direction_uncertainty` [rad]; `given` and `columns`, the file that it was read from.
+    """
+
+    engine: str
+    time: Array
+    tilt: Array
+    rolling_angle: Array
+    twist: Array
+    contact_point: Array
+    centre_of_mass: Array
+    energy: Array
+    passes: pd.DataFrame
+    peak_tilt: float
+    outcome: str
+    message: str
+    uplift_time: float
+    uplift_direction: float
+    time_step: float
+    residual_displacement: float
+    residual_twist: float
+    uplift_time_uncertainty: float
+    uplift_direction_uncertainty: float
+    first_lean: float
+    told: tuple[str, ...]
+    noise: float
+    position_noise: float
+    stands: float
+    given: Foreign
+    columns: Columns
+    support: str = SUPPORT
+    engine_version: str = ""
+    wall_time: float = math.nan
+    contact_resolution: float = math.nan
+
+    @property
+    def motion(self) -> Motion:
+        """What is compared: the tilt, the azimuth, also where it follows from the path, and the path."""
+        known = bool(np.isfinite(self.rolling_angle).any())
+        return motion_of(
+            self,
+            (*(("azimuth",) if known else ()), *self.told),
+            noise=self.noise,
+            path_noise=self.position_noise,
+        )
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return the sampled fields as a table with one row for each sample; SI units and radians."""
+        import pandas as pd
+
+        return pd.DataFrame(
+            {
+                "time": self.time,
+                "tilt": self.tilt,
+                "rolling_angle": self.rolling_angle,
+                "twist": self.twist,
+                "contact_x": self.contact_point[:, 0],
+                "contact_y": self.contact_point[:, 1],
+                "centre_x": self.centre_of_mass[:, 0],
+                "centre_y": self.centre_of_mass[:, 1],
+                "centre_z": self.centre_of_mass[:, 2],
+            }
+        )
+
+
+def read_trajectory(foreign: Foreign | str | Path, case: Case) -> ExternalTrajectory:
+    """Read a foreign trajectory of a case.
+
+    Parameters
+    ----------
+    foreign : Foreign, str or Path
+    case : Case
+        The problem that it answers: cylinder and length.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, has gaps or times that do not rise, or does not cover the start of
+        the run; the message names the file and the line.
+    """
+    given = foreign if isinstance(foreign, Foreign) else Foreign(path=Path(foreign))
+    return trajectory_of(read_columns(given.path, given.angle_unit), given, case)
+
+
+def trajectory_of(columns: Columns, given: Foreign, case: Case) -> ExternalTrajectory:
+    """Return the trajectory that the columns of a file hold; see `read_trajectory`."""
+    poses = poses_of(columns, case, noise=given.noise, time_offset=given.time_offset)
+    start = int(np.argmax(poses.time > -0.5 * float(poses.time[1] - poses.time[0])))
+    if poses.tilt[start] >= _FALLEN:
+        raise columns.refuse(
+            start,
+            f"it must not lie at the start, got a tilt of {poses.tilt[start]:.4g} rad; is it in degrees?",
+        )
+    poses = _from_start_to_end(poses, start, case.length)
+    stands = poses.stands
+    begin = uplift(poses.time, poses.tilt, poses.rolling_angle, stands=stands, noise=poses.noise)
+    fell = bool(poses.tilt[-1] >= _FALLEN)
+    time = sample_times(float(poses.time[-1]) if fell else min(float(poses.time[-1]), case.length))
+    tilt, angle, axis = resampled(poses, time)
+    angle = np.where((tilt > stands) & (time >= begin.time - SAME_TIME), angle, np.nan)
+    contact, centre, moved = places(poses, time, axis, angle, case.cylinder)
+    twist = np.full(len(time), np.nan) if poses.twist is None else np.interp(time, poses.time, poses.twist)
+    return ExternalTrajectory(
+        engine=given.label,
+        time=time,
+        tilt=tilt,
+        rolling_angle=angle,
+        twist=twist,
+        contact_point=contact,
+        centre_of_mass=centre,
+        energy=np.full(len(time), np.nan),
+        passes=passes(poses, begin.time, stands),
+        peak_tilt=0.5 * math.pi if fell else peak(poses),
+        outcome="overturned" if fell else "rest" if bool((tilt[-100:] < stands).all()) else "completed",
+        message=_message(poses),
+        uplift_time=begin.time,
+        uplift_direction=begin.direction,
+        time_step=float(np.median(np.diff(poses.time))),
+        residual_displacement=moved,
+        residual_twist=float(twist[-1]),
+        uplift_time_uncertainty=begin.time_uncertainty,
+        uplift_direction_uncertainty=begin.direction_uncertainty,
+        first_lean=math.nan
+        if begin.first is None
+        else float(poses.time[begin.first])
+        if begin.first
+        else 0.0,
+        told=poses.told,
+        noise=poses.noise,
+        position_noise=poses.position_noise,
+        stands=stands,
+        given=given,
+        columns=columns,
+    )
+
+
+def read_trajectories(
+    foreign: Sequence[Foreign | str | Path], cases: Sequence[Case], *, taken: Collection[str] = ()
+) -> dict[tuple[str, str], ExternalTrajectory]:
+    """Read all trajectories that belong to the one case of a comparison.
+
+    Parameters
+    ----------
+    foreign : sequence of Foreign, str or Path
+    cases : sequence of Case
+    taken : collection of str
+        Labels of the other runs.
+
+    Returns
+    -------
+    dict
+        By the name of the case and the label.
+
+    Raises
+    ------
+    ValueError
+        What `read_trajectory` raises; or if there are several cases, or two runs would have one label.
+    """
+    if foreign and len(cases) > 1:
+        raise ValueError(f"a trajectory belongs to one case, got {len(cases)} cases")
+    found: dict[tuple[str, str], ExternalTrajectory] = {}
+    for item in foreign:
+        trajectory = read_trajectory(item, cases[0])
+        label = trajectory.engine
+        if label in taken or (cases[0].name, label) in found:
+            raise ValueError(f"each run must have its own label, got {label!r} twice")
+        found[cases[0].name, label] = trajectory
+    return found
+
+
+def _from_start_to_end(poses: Poses, start: int, length: float) -> Poses:
+    """Cut to the run, and at the fall where there is one."""
+    chosen = np.arange(start, len(poses.time))
+    tilt = poses.tilt[chosen]
+    falls = np.flatnonzero((tilt[:-1] >= _FALLEN) & (np.diff(tilt) <= 0.0))
+    landed = int(falls[0]) if len(falls) else len(chosen) - 1
+    # one sample beyond the end, to interpolate up to it
+    last = min(int(np.searchsorted(poses.time[chosen], length - SAME_TIME)), len(chosen) - 1)
+    # a fall that began before the end is followed to the ground
+    falling = tilt[landed] >= _FALLEN and bool((np.diff(tilt[last : landed + 1]) > 0.0).all())
+    return poses.taken(chosen[: (landed if landed < last or falling else last) + 1])
+
+
+def _message(poses: Poses) -> str:
+    notes = list(poses.notes)
+    guessed = int(np.count_nonzero(~poses.followed))
+    if guessed:
+        notes.append(f"{guessed} near pass{'es' if guessed > 1 else ''} fell between two samples")
+    return "; ".join(notes)

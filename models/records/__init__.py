@@ -1,0 +1,1 @@
+"""Records of ground motions: their files, their units, and those that ship or can be installed."""

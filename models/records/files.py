@@ -1,0 +1,91 @@
+"""Strong-motion records from files: PEER AT2, two-column text, CSV."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from ..ground_motion import GroundMotion
+from .at2_file import is_at2, read_at2
+from .column_file import read_columns
+from .component import Component
+from .units import UNITS, factor
+
+# over a whole record two components may drift apart by this part of a step, the rounding of printed times
+_DRIFT = 0.05
+
+
+def read_record(
+    x_path: str | Path,
+    y_path: str | Path,
+    z_path: str | Path | None = None,
+    *,
+    units: str | None = None,
+    name: str | None = None,
+) -> GroundMotion:
+    """Read a ground motion, one file for each component.
+
+    Each file may be PEER AT2 (in each form of its header line), text of two columns, time [s] and
+    acceleration, or the same as CSV with or without a header line. 1 g is 9.81 m/s^2.
+
+    Parameters
+    ----------
+    x_path, y_path : str or Path
+        East-west and north-south component.
+    z_path : str or Path, optional
+        Vertical component.
+    units : {"g", "m/s2", "cm/s2"}, optional
+        Required where a file does not say its unit; where it does, both must agree.
+    name : str, optional
+        Default: the name of the x file without its ending.
+
+    Returns
+    -------
+    GroundMotion
+        In m/s^2, cut to the shortest component.
+
+    Raises
+    ------
+    ValueError
+        If a file is missing, empty or not readable as numbers, its unit is unknown or contradicts
+        `units`, its times are uneven, or the components have different time steps or starts. The
+        message names the file, and the line where there is one.
+    """
+    if units is not None and units not in UNITS:
+        raise ValueError(f"units must be one of {', '.join(UNITS)}, got {units!r}")
+    components = [_read_component(Path(path)) for path in (x_path, y_path, z_path) if path is not None]
+    length = min(len(component.values) for component in components)
+    first = components[0]
+    for other in components[1:]:
+        _require_same_clock(first, other, length)
+    with np.errstate(over="ignore"):  # GroundMotion refuses what is not finite
+        columns = [part.values[:length] * factor(part.path, part.unit, units) for part in components]
+    return GroundMotion(np.column_stack(columns), first.time_step, first.path.stem if name is None else name)
+
+
+def _read_component(path: Path) -> Component:
+    try:
+        # utf-8-sig drops the byte-order mark that spreadsheets write
+        lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
+    except (OSError, ValueError) as error:  # ValueError: a null byte in the name
+        reason = getattr(error, "strerror", None) or error
+        raise ValueError(f"cannot read the record {path}: {reason}") from None
+    if not any(line.strip() for line in lines):
+        raise ValueError(f"the record {path} is empty")
+    return read_at2(path, lines) if is_at2(lines) else read_columns(path, lines)
+
+
+def _require_same_clock(first: Component, other: Component, length: int) -> None:
+    tolerance = _DRIFT * first.time_step
+    if abs(other.time_step - first.time_step) * length > tolerance:
+        raise ValueError(
+            f"the components of a record must have one time step, got {first.time_step:g} s in "
+            f"{first.path.name} and {other.time_step:g} s in {other.path.name}"
+        )
+    # an AT2 file gives no times: its first sample is taken as that of the others
+    if first.start is not None and other.start is not None and abs(other.start - first.start) > tolerance:
+        raise ValueError(
+            f"the components of a record must start at one time, got {first.start:g} s in "
+            f"{first.path.name} and {other.start:g} s in {other.path.name}"
+        )

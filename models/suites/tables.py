@@ -1,0 +1,241 @@
+"""The tables of a suite file, as pydantic models: which keys there are, and which go together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import Annotated, Any, Literal
+
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
+
+from ..bounds import REFERENCES
+from ..pulses import PULSES
+from ..records.units import UNITS
+from .errors import KeyedError, shown
+from .values import NotNegatives, Numbers, Positives, Wholes, expanded, positive
+
+RECORDS = ("el_centro_1940", "p695")
+
+
+class _Table(BaseModel):
+    model_config = ConfigDict(extra="forbid", frozen=True, strict=True)
+
+    def given(self, *names: str) -> list[str]:
+        """Return those of the keys that the file gives."""
+        return [name for name in names if getattr(self, name) is not None]
+
+    def require_one_of(self, *names: str) -> str:
+        """Return the one key of these that is given."""
+        given = self.given(*names)
+        if len(given) != 1:
+            raise ValueError(
+                f"must have exactly one of {', '.join(names)}, got {' and '.join(given) or 'none of them'}"
+            )
+        return given[0]
+
+    def refuse(self, reason: str, *names: str) -> None:
+        """Refuse keys that mean nothing here."""
+        for name in self.given(*names):
+            raise KeyedError(name, f"must be left out: it {reason}")
+
+
+class CylinderTable(_Table):
+    """The body: semidiagonal and tan_alpha, or base_radius and height."""
+
+    semidiagonal: Positives | None = None
+    tan_alpha: Positives | None = None
+    base_radius: Positives | None = None
+    height: Positives | None = None
+    mass_centre_height: Positives | None = None
+    transverse_inertia: Positives | None = None
+    axial_inertia: Positives | None = None
+
+    @model_validator(mode="after")
+    def _one_way_to_say_it(self) -> CylinderTable:
+        if self.given("base_radius"):
+            self.refuse("does not go with base_radius and height", "semidiagonal", "tan_alpha")
+            needed = ("base_radius", "height")
+        else:
+            needed = ("semidiagonal", "tan_alpha")
+            self.refuse("belongs to base_radius and height", "mass_centre_height")
+        for name in needed:
+            if not self.given(name):
+                raise KeyedError(
+                    name,
+                    "must be given: either semidiagonal and tan_alpha, or base_radius and height",
+                )
+        return self
+
+
+class MotionTable(_Table):
+    """The ground motion: a record that ships, files of a record, or a pulse."""
+
+    record: str | None = None
+    vertical: bool | None = None
+    pair: Wholes | None = None
+    x: str | None = None
+    y: str | None = None
+    z: str | None = None
+    units: str | None = None
+    pulse: str | None = None
+    amplitude: Positives | None = None
+    period: Positives | None = None
+    azimuth_deg: Numbers | None = None
+    scale: Positives | None = None
+    times_uplift: Positives | None = None
+    rotation_deg: Numbers | None = None
+    time_shift: Numbers | None = None
+
+    @model_validator(mode="after")
+    def _keys_go_together(self) -> MotionTable:
+        kind = "x" if self.given("x", "y") else self.require_one_of("record", "x", "pulse")
+        self.refuse_others(kind)
+        if kind == "record":
+            _require_known("record", self.record, RECORDS)
+        if kind == "x":
+            for name in ("x", "y"):
+                if not self.given(name):
+                    raise KeyedError(name, "must be given: a record has two horizontal components")
+            if self.units is not None:
+                _require_known("units", self.units, UNITS)
+        if kind == "pulse":
+            _require_known("pulse", self.pulse, PULSES)
+            if not self.given("period"):
+                raise KeyedError("period", "must be given with a pulse [s]")
+            self.require_one_of("amplitude", "times_uplift")
+        if len(self.given("scale", "times_uplift")) > 1:
+            raise KeyedError("times_uplift", "must be left out: it replaces scale")
+        return self
+
+    def refuse_others(self, kind: str) -> None:
+        """Refuse the keys of the other kinds of motion."""
+        files, pulse = ("x", "y", "z", "units"), ("pulse", "amplitude", "period", "azimuth_deg")
+        if kind != "record":
+            self.refuse("belongs to a record that ships", "record", "vertical", "pair")
+        if kind != "x":
+            self.refuse("belongs to files of a record, with x and y", *files)
+        if kind != "pulse":
+            self.refuse("belongs to a pulse", *pulse)
+        else:
+            self.refuse("belongs to a record; a pulse has amplitude and azimuth_deg", "scale", "rotation_deg")
+        if self.record != "p695":
+            self.refuse('belongs to record = "p695"', "pair")
+        if self.record != "el_centro_1940":
+            self.refuse('belongs to record = "el_centro_1940"', "vertical")
+
+
+class ReleaseTable(_Table):
+    """The start: tilted, and with rates where they are given."""
+
+    tilt: Positives | None = None
+    tilt_deg: Positives | None = None
+    tilt_over_alpha: Positives | None = None
+    tilt_rate: Numbers | None = None
+    rolling_angle_deg: Numbers | None = None
+    rolling_rate: Numbers | None = None
+
+    @model_validator(mode="after")
+    def _one_tilt(self) -> ReleaseTable:
+        self.require_one_of("tilt", "tilt_deg", "tilt_over_alpha")
+        return self
+
+
+class CaseTable(_Table):
+    """One problem, or as many as its lists and ranges make."""
+
+    name: str = Field(min_length=1)
+    cylinder: CylinderTable
+    motion: MotionTable | None = None
+    release: ReleaseTable | None = None
+    duration: Positives | None = None
+    gravity: Positives | None = None
+    friction: NotNegatives | None = None
+
+    @model_validator(mode="after")
+    def _something_moves_for_some_time(self) -> CaseTable:
+        if ":" in self.name:
+            raise KeyedError("name", f"must not hold a colon, values follow one, got {self.name!r}")
+        if self.motion is None and self.release is None:
+            raise ValueError("must have a motion or a release, got neither: nothing would move")
+        if self.duration is None and (self.motion is None or self.motion.pulse is not None):
+            raise KeyedError("duration", "must be given [s]: only a record has a length of its own")
+        return self
+
+
+def _texts(given: Any) -> Any:
+    return given if isinstance(given, list) else [given]
+
+
+def _steps(given: Any) -> Any:
+    """Values of a time step; "auto" is left to the engine."""
+    if given == "auto":
+        return ("auto",)
+    return expanded(given, positive)
+
+
+def _one_positive(given: Any) -> float:
+    if isinstance(given, list | dict):
+        raise ValueError(f"must be one number, got {shown(given)}")  # noqa: TRY004 (bad input)
+    return expanded(given, positive)[0]
+
+
+Positive = Annotated[float, BeforeValidator(_one_positive)]
+Texts = Annotated[list[str], BeforeValidator(_texts), Field(min_length=1)]
+
+
+class RunTable(_Table):
+    """One method, or as many as its lists make."""
+
+    engine: Texts
+    support: Texts = ["guided"]
+    time_step: Annotated[tuple[float | Literal["auto"], ...] | None, BeforeValidator(_steps)] = None
+    settings: dict[str, Any] = Field(default_factory=dict)
+
+
+class BoundsTable(_Table):
+    """What tests ask of every run: bounds on columns of the summary."""
+
+    tilt_rms: Positive | None = None
+    tilt_rms_relative: Positive | None = None
+    peak_tilt_difference: Positive | None = None
+    contact_rms: Positive | None = None
+    turn_difference: Positive | None = None
+    uplift_time_difference: Positive | None = None
+    residual_displacement: Positive | None = None
+    residual_twist: Positive | None = None
+    energy_loss: Positive | None = None
+    agreement_horizon: Positive | None = None
+    reference: str | None = None
+
+    @model_validator(mode="after")
+    def _known_reference(self) -> BoundsTable:
+        if self.reference is not None:
+            _require_known("reference", self.reference, REFERENCES)
+        return self
+
+
+class SuiteTable(_Table):
+    """The whole file."""
+
+    cases: list[CaseTable] = Field(min_length=1)
+    runs: list[RunTable] = Field(default_factory=list)
+    bounds: BoundsTable | None = None
+
+
+def _require_known(key: str, value: str | None, allowed: tuple[str, ...]) -> None:
+    if value not in allowed:
+        raise KeyedError(key, f"must be one of {', '.join(allowed)}, got {shown(value)}")
+
+
+# by their keys, "" for the whole file
+TABLES: Mapping[str, type[BaseModel]] = MappingProxyType(
+    {
+        "": SuiteTable,
+        "cases": CaseTable,
+        "cylinder": CylinderTable,
+        "motion": MotionTable,
+        "release": ReleaseTable,
+        "runs": RunTable,
+        "bounds": BoundsTable,
+    }
+)

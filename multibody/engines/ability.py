@@ -1,0 +1,25 @@
+"""What an engine cannot do, said before anything runs."""
+
+from __future__ import annotations
+
+from rockwobble.models import Case
+
+from ..protocol import Engine
+
+
+def require_able(engine: Engine, name: str, case: Case, support: str) -> None:
+    """Check that the engine called `name` has the support and can start the case.
+
+    Raises
+    ------
+    ValueError
+        Saying what is allowed.
+    """
+    supports = engine.supports
+    if support not in supports:
+        allowed = f"one of {', '.join(supports)}" if len(supports) > 1 else supports[0]
+        raise ValueError(f"support must be {allowed} in {name}, got {support!r}")
+    if not engine.uplifts and (case.initial is None or case.initial.tilt == 0.0):
+        raise ValueError(
+            f"{name} cannot uplift a cylinder that stands: give a release with a tilt, got a start at rest"
+        )

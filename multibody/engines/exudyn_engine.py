@@ -1,0 +1,226 @@
+"""Exudyn: the rim is an ideal rolling disc, a joint without contact and without its parameters.
+
+The joint holds the lowest point of the rim on the ground and its material point at rest: three
+constraints, exact up to the integration. So it is a check of the rolling model that shares neither
+contact nor friction with the other engines. What it cannot do follows from the same: the rim neither
+leaves the ground nor slips, whatever force that takes, and a cylinder that stands has no lowest point.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..kinematics import axis_of
+from ..protocol import Array, Scene, Settings, Stepper, Steps
+from ..start import Start
+from .exudyn_settings import ExudynSettings
+
+
+class ExudynEngine:
+    """Exudyn: rigid body on Euler parameters, joint of a rolling disc, implicit integration."""
+
+    @property
+    def supports(self) -> tuple[str, ...]:
+        """Open ground only: the joint lets the rim roll out."""
+        return ("free",)
+
+    @property
+    def uplifts(self) -> bool:
+        """The joint knows the rim only, not the base."""
+        return False
+
+    def version(self) -> str:
+        """Version of the package."""
+        from importlib.metadata import version
+
+        return version("exudyn")
+
+    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
+        """Return every setting; see `ExudynSettings`."""
+        resolved = ExudynSettings.resolve(given)
+        return {name: getattr(resolved, name) for name in ExudynSettings.__dataclass_fields__}
+
+    @contextlib.contextmanager
+    def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
+        """Open the scene at its start."""
+        import exudyn
+
+        # a failed step is reported in words on standard output; here it is data
+        printing = exudyn.config.printToConsole
+        exudyn.config.printToConsole = False
+        try:
+            yield _ExudynStepper(exudyn, scene, ExudynSettings(**settings))
+        finally:
+            exudyn.config.printToConsole = printing
+
+
+class _ExudynStepper:
+    def __init__(self, exudyn: Any, scene: Scene, settings: ExudynSettings) -> None:
+        self._exudyn, self._step = exudyn, scene.time_step
+        self._start = scene.start
+        self._forces: list[list[float]] = []
+        self._excited = bool(scene.components)
+        self._container = exudyn.SystemContainer()
+        self._system, self._sensors = self._build(scene)
+        self._how = _simulation_settings(exudyn, settings)
+        kinds = exudyn.DynamicSolverType
+        self._solver = (
+            kinds.TrapezoidalIndex2 if settings.integrator == "trapezoidal" else kinds.GeneralizedAlpha
+        )
+        self._force_now: list[float] | None = None
+        self._last = scene.start.velocity, scene.start.angular_velocity
+        self._lean = _leans(scene.start.quaternion[None])[0]
+        self._warning = ""
+
+    @property
+    def hold_centre(self) -> float:
+        """The force at the end of a step is the mean about that time: both rules take it at both ends."""
+        return 1.0
+
+    def advance(self, acceleration: Array) -> Steps:
+        """Take one step for each row of `acceleration`."""
+        count = len(acceleration)
+        rows = np.full((count, 14), np.nan)
+        if not self._warning:
+            stepped = self._integrate(acceleration)
+            rows[: len(stepped)] = stepped
+            self._check_apex(rows)
+        place, turn, velocity, rates = np.split(rows, (3, 7, 10), axis=1)
+        quaternion = self._start.quaternion + turn
+        # the norm is held up to the tolerance of the iteration
+        quaternion /= np.linalg.norm(quaternion, axis=1)[:, None]
+        spin = _spin(quaternion, rates)
+        before, self._last = self._last, (velocity[-1], spin[-1])
+        return Steps(
+            self._start.position + place, quaternion, _means(before[0], velocity), _means(before[1], spin)
+        )
+
+    def warnings(self) -> str:
+        """Return why the run cannot go on, if it cannot."""
+        return self._warning
+
+    def _check_apex(self, rows: Array) -> None:
+        """Give up the rows (n, 14) from the one on that has jumped over the apex."""
+        leans = np.vstack([self._lean, _leans(self._start.quaternion + rows[:, 3:7])])
+        self._lean = leans[-1]
+        # more than a quarter turn in one step: the step is longer than twice the distance from the apex
+        over = np.flatnonzero((leans[1:] * leans[:-1]).sum(axis=1) < 0.0)
+        if len(over):
+            rows[over[0] :] = np.nan
+            self._warning = "the rim rolled through the apex, where it has no lowest point"
+
+    def _integrate(self, acceleration: Array) -> Array:
+        """Rows (n, 14) of Euler coordinates and their rates after each step; fewer where a step fails."""
+        forces = (-acceleration).tolist()
+        # the first step starts with the force of its end, which is second order; none before would be first
+        self._forces = [self._force_now or forces[0], *forces]
+        self._force_now = self._forces[-1]
+        integration = self._how.timeIntegration
+        integration.numberOfSteps = len(acceleration)
+        integration.endTime = len(acceleration) * self._step
+        self._how.solution.sensors.writePeriod = self._step
+        try:
+            self._system.SolveDynamic(
+                self._how,
+                solverType=self._solver,
+                updateInitialValues=True,
+                storeSolver=False,
+                showCausingItems=False,
+            )
+        except (RuntimeError, ValueError):
+            self._warning = "Newton's iteration did not converge"
+        # accelerations go on from one call to the next
+        integration.generalizedAlpha.computeInitialAccelerations = False
+        stored = [self._system.GetSensorStoredData(sensor) for sensor in self._sensors]
+        # the first row is the start; the first column the time
+        return np.hstack([np.asarray(table)[1:, 1:] for table in stored])
+
+    def _build(self, scene: Scene) -> tuple[Any, list[Any]]:
+        """Make ground, cylinder, rim and forces; return the system and its sensors."""
+        # its functions are not typed
+        items: Any = importlib.import_module("exudyn.itemInterface")
+        body, start = scene.body, scene.start
+        system = self._container.AddSystem()
+        ground = system.AddObject(items.ObjectGround())
+        node = system.AddNode(
+            items.NodeRigidBodyEP(
+                referenceCoordinates=[*start.position, *start.quaternion],
+                initialCoordinates=[0.0] * 7,
+                initialVelocities=[*start.velocity, *_rates(start)],
+            )
+        )
+        inertia = [body.transverse_inertia, body.transverse_inertia, body.axial_inertia, 0.0, 0.0, 0.0]
+        cylinder = system.AddObject(items.ObjectRigidBody(mass=1.0, inertia=inertia, nodeNumber=node))
+        centre = system.AddMarker(items.MarkerBodyMass(bodyNumber=cylinder))
+        system.AddLoad(items.LoadMassProportional(markerNumber=centre, loadVector=[0.0, 0.0, -scene.gravity]))
+        if self._excited:
+            at_centre = system.AddMarker(items.MarkerBodyPosition(bodyNumber=cylinder))
+            system.AddLoad(
+                items.LoadForceVector(markerNumber=at_centre, loadVectorUserFunction=self._excitation)
+            )
+        base = [0.0, 0.0, -body.mass_centre_height]
+        rim = [
+            system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground)),
+            system.AddMarker(items.MarkerBodyRigid(bodyNumber=cylinder, localPosition=base)),
+        ]
+        system.AddObject(
+            items.ObjectJointRollingDisc(
+                markerNumbers=rim, discRadius=body.base_radius, discAxis=[0.0, 0.0, 1.0]
+            )
+        )
+        kinds = self._exudyn.OutputVariableType
+        sensors = [
+            system.AddSensor(items.SensorNode(nodeNumber=node, storeInternal=True, outputVariableType=kind))
+            for kind in (kinds.Coordinates, kinds.Coordinates_t)
+        ]
+        system.Assemble()
+        return system, sensors
+
+    def _excitation(self, system: Any, time: float, load: Any) -> list[float]:
+        """Force for each unit of mass: -a."""
+        return self._forces[round(time / self._step)]
+
+
+def _simulation_settings(exudyn: Any, settings: ExudynSettings) -> Any:
+    how = exudyn.SimulationSettings()
+    how.solution.file.write = False
+    integration = how.timeIntegration
+    # a step that does not converge ends the run: shorter steps would not be those of the time grid
+    integration.adaptiveStep = False
+    integration.verboseMode = 0
+    newton = integration.newton
+    newton.relativeTolerance = settings.relative_tolerance
+    newton.absoluteTolerance = settings.absolute_tolerance
+    newton.maxIterations = settings.iterations
+    integration.generalizedAlpha.spectralRadius = settings.spectral_radius
+    return how
+
+
+def _rates(start: Start) -> Array:
+    """Rates of the Euler parameters, shape (4,), of the angular velocity at the start."""
+    scalar, imaginary, spin = start.quaternion[0], start.quaternion[1:], start.angular_velocity
+    turning = scalar * spin + np.cross(spin, imaginary)
+    return np.asarray(0.5 * np.concatenate([[-spin @ imaginary], turning]))
+
+
+def _leans(quaternion: Array) -> Array:
+    """Horizontal parts (n, 2) of the axes, of quaternions (n, 4)."""
+    return axis_of(quaternion)[:, :2]
+
+
+def _means(first: Array, values: Array) -> Array:
+    """Mean over each step of what is known at its ends: `first` (3,), then `values` (n, 3)."""
+    return np.asarray(0.5 * (np.vstack([first, values[:-1]]) + values))
+
+
+def _spin(quaternion: Array, rates: Array) -> Array:
+    """Angular velocities (n, 3), world axes, of Euler parameters and their rates (n, 4)."""
+    scalar, imaginary = quaternion[:, :1], quaternion[:, 1:]
+    return np.asarray(
+        2.0 * (scalar * rates[:, 1:] - rates[:, :1] * imaginary - np.cross(rates[:, 1:], imaginary))
+    )

@@ -1,0 +1,286 @@
+"""MuJoCo: stepped in C by rollouts, with the ground acceleration as an array of controls."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..kinematics import axis_of
+from ..protocol import Array, Scene, Settings, Stepper, Steps, Wall
+from ..scene.ring_geometry import check_start
+from ..scene.ring_settings import RingSettings, take_ring
+from ..start import Start
+from .mujoco_scene import compile_scene
+from .scene_counts import SceneCounts
+from .settings import MujocoSettings
+
+if TYPE_CHECKING:
+    import mujoco  # type: ignore[import-untyped]
+
+_SECANT_STEPS = 30
+_STILL = 1e-9  # [m/s^2] acceleration left of the rim at the start
+_STANDING_BLOCK = 20  # steps between two looks at whether a standing cylinder has uplifted
+# Lean from which the rim carries a cylinder better than the corners of its prisms do [rad]. Below it the
+# rounding of the rim's depth, 1e-16 b/lean, makes the rim hop; and the longer the base rolls on corners,
+# the more its path is that of a polygon.
+_RISEN = 1e-7
+# the same over the depth of a single corner under the weight, over b: what stands leans by up to a sixteenth
+_RISEN_DEPTHS = 1000.0
+_LOADED = 0.5  # of b, eccentricity of the load from which prisms follow it
+# A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
+# under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
+_ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # of b, [rad]
+
+
+class MujocoEngine:
+    """MuJoCo 4: free joint, ground plane, analytic plane-cylinder contact."""
+
+    @property
+    def supports(self) -> tuple[str, ...]:
+        """Supports that have a scene file."""
+        return ("guided", "free", "ring")
+
+    @property
+    def uplifts(self) -> bool:
+        """The base is in contact as well as the rim."""
+        return True
+
+    def version(self) -> str:
+        """Version of the package."""
+        import mujoco
+
+        return str(mujoco.__version__)
+
+    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
+        """Return every setting; see `MujocoSettings` and, for the support "ring", `RingSettings`."""
+        others, ring = take_ring(given, scene.support, scene.body.tan_alpha)
+        if ring is not None:
+            check_start(ring, scene)
+        resolved = MujocoSettings.resolve(others, scene.time_step * scene.unit_time)
+        found = {name: getattr(resolved, name) for name in MujocoSettings.__dataclass_fields__}
+        return found | (ring.as_dict() if ring is not None else {})
+
+    @contextlib.contextmanager
+    def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
+        """Open the scene at its start."""
+        from mujoco import rollout
+
+        with self.together(), rollout.Rollout(nthread=0) as runner:
+            others, ring = take_ring(settings, scene.support, scene.body.tan_alpha)
+            yield _MujocoStepper(scene, MujocoSettings(**others), ring, runner)
+
+    @contextlib.contextmanager
+    def together(self) -> Iterator[None]:
+        """Let several runs go side by side in threads: rollouts leave the interpreter free."""
+        import mujoco
+
+        reporter = mujoco.get_mju_user_warning()
+        # warnings are counted in the data; the engine would also write them to a file where the user works
+        mujoco.set_mju_user_warning(lambda message: None)
+        try:
+            yield
+        finally:
+            mujoco.set_mju_user_warning(reporter)
+
+
+class _MujocoStepper:
+    def __init__(
+        self, scene: Scene, settings: MujocoSettings, ring: RingSettings | None, runner: Any
+    ) -> None:
+        import mujoco
+
+        self._scene, self._settings, self._ring, self._runner = scene, settings, ring, runner
+        self._columns = ["xyz".index(component) for component in scene.components]
+        self._staggered = settings.integrator != "RK4"
+        self._standing = scene.start.standing and settings.standing_corners > 0
+        self._risen = max(_RISEN, _RISEN_DEPTHS * _depth(scene, settings) / scene.body.base_radius)
+        self._model = compile_scene(scene, settings, standing=self._standing, ring=ring)
+        self._data = mujoco.MjData(self._model)
+        names = [self._model.geom(index).name for index in range(self._model.ngeom)]
+        self._prisms = [index for index, name in enumerate(names) if name.startswith("prism")]
+        self._model.geom_sameframe[self._prisms] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # they will turn
+        self._warned: list[str] = []
+        _set_start(self._model, self._data, scene, self._staggered)
+        kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
+        self._state = np.empty(mujoco.mj_stateSize(self._model, kind))
+        mujoco.mj_getState(self._model, self._data, self._state, kind)
+
+    @property
+    def hold_centre(self) -> float:
+        """Leapfrog holds the force about the pose; RK4 over the step ahead."""
+        return 0.0 if self._staggered else 0.5
+
+    def advance(self, acceleration: Array) -> Steps:
+        """Take one step for each row of `acceleration`."""
+        start = self._state[None]
+        blocks, walls = [], []
+        done = 0
+        while done < len(acceleration):
+            if self._standing:
+                self._follow_load(acceleration[done : done + _STANDING_BLOCK].mean(axis=0))
+            end = done + _STANDING_BLOCK if self._standing else len(acceleration)
+            block, sensors = self._roll(acceleration[done:end])
+            blocks.append(block)
+            walls.append(sensors)
+            done = end
+        # time, then position, quaternion, velocity in world axes, angular velocity in body axes
+        # stored by component, which the recorder takes one by one
+        rows = np.ascontiguousarray(np.vstack([start, *blocks]).T).T
+        quaternion = rows[:, 4:8]
+        velocity, spin = rows[:, 8:11], to_world(quaternion, rows[:, 11:14])
+        touch = None if self._ring is None else _wall(np.vstack(walls))
+        if self._staggered:
+            return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:], touch, self._unsolved())
+        mean = 0.5 * (velocity[:-1] + velocity[1:]), 0.5 * (spin[:-1] + spin[1:])
+        return Steps(rows[1:, 1:4], quaternion[1:], *mean, touch, self._unsolved())
+
+    def warnings(self) -> str:
+        """Return the warnings of the engine."""
+        return ", ".join(dict.fromkeys(self._warned + _warnings(self._data)))
+
+    def step_alone(self, count: int) -> None:
+        """Take `count` steps of the engine and nothing else: what the cost of a run is measured against."""
+        import mujoco
+
+        mujoco.mj_step(self._model, self._data, nstep=count)
+
+    def counts(self) -> SceneCounts:
+        """Return what the last step solved."""
+        data = self._data
+        return SceneCounts(
+            degrees_of_freedom=self._model.nv, contacts=int(data.ncon), constraint_rows=int(data.nefc)
+        )
+
+    def _unsolved(self) -> bool:
+        # the rollout keeps what the last step did; an empty island has used no iteration
+        used = int(self._data.solver_niter.max())
+        return used >= self._settings.iterations and self._settings.tolerance > 0.0
+
+    def _roll(self, acceleration: Array) -> tuple[Array, Array]:
+        """Step in C; return the states (n, 14) after each step, and the sensors at its start."""
+        control = np.zeros((1, len(acceleration), self._model.nu))
+        control[0, :, : len(self._columns)] = -acceleration[:, self._columns]
+        states, sensors = self._runner.rollout(
+            self._model,
+            self._data,
+            self._state[None],
+            control if self._model.nu else None,
+            nstep=len(acceleration),
+            initial_warmstart=self._data.qacc_warmstart.copy(),
+        )
+        rows: Array = states[0]
+        if _warnings(self._data):
+            # from there on the engine repeats the last state that it could compute
+            frozen = (np.diff(rows[:, 1:8], axis=0, prepend=self._state[None, 1:8]) == 0.0).all(axis=1)
+            rows[frozen & (np.cumsum(~frozen[::-1])[::-1] == 0), 1:] = np.nan
+        self._state = rows[-1].copy()
+        return rows, sensors[0]
+
+    def _follow_load(self, acceleration: Array) -> None:
+        """Turn the prisms about the axis until a corner is under the load; leave them after the uplift."""
+        body, corners = self._scene.body, self._settings.standing_corners
+        push = float(np.hypot(acceleration[0], acceleration[1])) * body.mass_centre_height
+        eccentricity = push / (body.base_radius * self._scene.gravity)
+        lean = float(np.hypot(*axis_of(self._state[None, 4:8])[0, :2]))
+        if lean > (self._risen if eccentricity > _ON_RIM else max(self._risen, _RISEN_ANYHOW)):
+            self._leave_prisms()
+        if not self._standing or eccentricity < _LOADED:
+            return
+        # the first corner of a prism is an eighth of a turn from its x axis
+        first = np.arctan2(-acceleration[1], -acceleration[0]) - 0.25 * np.pi
+        half = 0.5 * (first + 2.0 * np.pi / corners * np.arange(corners // 4))
+        self._model.geom_quat[self._prisms] = np.outer(np.cos(half), [1, 0, 0, 0]) + np.outer(
+            np.sin(half), [0, 0, 0, 1]
+        )
+
+    def _leave_prisms(self) -> None:
+        """Go on without what only a standing cylinder needs: its corners cost time and brush the ground."""
+        import mujoco
+
+        self._warned += _warnings(self._data)
+        self._standing = False
+        self._model = compile_scene(self._scene, self._settings, standing=False, ring=self._ring)
+        self._data = mujoco.MjData(self._model)
+
+
+def _warnings(data: mujoco.MjData) -> list[str]:
+    import mujoco
+
+    # as an array: one by one they cost a hundred steps
+    return [
+        mujoco.mjtWarning(int(index)).name.removeprefix("mjWARN_").lower()
+        for index in np.flatnonzero(data.warning.number)
+    ]
+
+
+def _depth(scene: Scene, settings: MujocoSettings) -> float:
+    """Depth at which one contact carries the weight [m]: what the impedance leaves for the spring."""
+    time = settings.contact_time_constant / scene.unit_time
+    return scene.gravity * time**2 * (1.0 - settings.impedance) / settings.impedance
+
+
+def _wall(sensors: Array) -> Wall:
+    """From the sensors (n, 5) of the scene: number of contacts, net force of the mass of 1 kg, distance."""
+    return Wall(sensors[:, 0] > 0.0, np.linalg.norm(sensors[:, 1:4], axis=1), -sensors[:, 4])
+
+
+def to_world(quaternion: Array, vector: Array) -> Array:
+    """Turn vectors (n, 3) from body to world axes by quaternions (n, 4), scalar first."""
+    w, x, y, z = quaternion.T
+    a, b, c = vector.T
+    # v + w t + q x t with t = 2 q x v
+    along_x, along_y, along_z = 2.0 * (y * c - z * b), 2.0 * (z * a - x * c), 2.0 * (x * b - y * a)
+    turned = np.empty((3, len(vector)))
+    turned[0] = a + w * along_x + (y * along_z - z * along_y)
+    turned[1] = b + w * along_y + (z * along_x - x * along_z)
+    turned[2] = c + w * along_z + (x * along_y - y * along_x)
+    return turned.T
+
+
+def _set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, staggered: bool) -> None:
+    """Put the cylinder at its loaded penetration, and its velocity half a step back if it is `staggered`."""
+    import mujoco
+
+    start = scene.start
+    inverse = start.quaternion * np.array([1.0, -1.0, -1.0, -1.0])
+    data.qpos[:3], data.qpos[3:] = start.position, start.quaternion
+    data.qvel[:3] = start.velocity
+    data.qvel[3:] = to_world(inverse[None], start.angular_velocity[None])[0]
+
+    def rim_acceleration(depth: float) -> float:
+        data.qpos[2] = start.position[2] - depth
+        data.qacc_warmstart[:] = 0.0
+        mujoco.mj_forward(model, data)
+        return _rim_acceleration(data, scene)
+
+    # contact is a spring under a given load, so the secant is nearly exact
+    before, depth = 1e-7, 2e-7
+    value_before, value = rim_acceleration(before), rim_acceleration(depth)
+    for _ in range(_SECANT_STEPS):
+        if abs(value) < _STILL or value == value_before:
+            break
+        before, depth = depth, depth - value * (depth - before) / (value - value_before)
+        value_before, value = value, rim_acceleration(depth)
+    if staggered and not start.standing:
+        data.qvel[:] -= 0.5 * model.opt.timestep * data.qacc
+
+
+def _rim_acceleration(data: mujoco.MjData, scene: Scene) -> float:
+    """Second derivative of the height of the lowest point of the base [m/s^2]."""
+    start: Start = scene.start
+    rise = float(data.qacc[2])
+    if start.standing:
+        return rise
+    b, h = scene.body.base_radius, scene.body.mass_centre_height
+    axis = to_world(start.quaternion[None], np.array([[0.0, 0.0, 1.0]]))[0]
+    angular = to_world(start.quaternion[None], np.asarray(data.qacc[3:])[None])[0]
+    rate = np.cross(start.angular_velocity, axis)
+    curve = np.cross(angular, axis) + np.cross(start.angular_velocity, rate)
+    # height = z - h cos(theta) - b sin(theta), with cos(theta) the third component of the axis
+    sine, cosine = float(np.hypot(axis[0], axis[1])), float(axis[2])
+    tilt_rate = -rate[2] / sine
+    tilt_curve = -(curve[2] + cosine * tilt_rate**2) / sine
+    return float(rise - h * curve[2] - b * (cosine * tilt_curve - sine * tilt_rate**2))

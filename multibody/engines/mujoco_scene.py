@@ -1,0 +1,105 @@
+"""The scene files of MuJoCo, with the values of one run set on them."""
+
+from __future__ import annotations
+
+from importlib.resources import as_file, files
+from typing import TYPE_CHECKING, Any
+
+from ..protocol import Scene
+from ..scene.friction import body_friction
+from ..scene.ring_settings import RingSettings
+from .mujoco_ring import set_walls
+from .settings import MujocoSettings
+
+if TYPE_CHECKING:
+    import mujoco  # type: ignore[import-untyped]
+
+_PRISMS = 12  # in the scene file; four corners each
+
+
+def compile_scene(
+    scene: Scene, settings: MujocoSettings, *, standing: bool, ring: RingSettings | None = None
+) -> mujoco.MjModel:
+    """Return the compiled model of `scene`: its file, with what the case does not need taken out.
+
+    The prisms that carry the cylinder are there only while it is `standing`, the walls only of a `ring`.
+    """
+    import mujoco
+
+    with as_file(files("rockwobble.models") / "scenes") as folder:
+        spec = mujoco.MjSpec.from_file(str(folder / f"{scene.support}.xml"))
+    _set_options(spec, scene, settings)
+    _set_body(spec, scene)
+    if ring is not None:
+        set_walls(spec, ring, scene.body.base_radius)
+    _set_contact(spec, scene, settings, standing, ring)
+    for component in set("xyz") - set(scene.components):
+        spec.delete(spec.actuator(f"push_{component}"))
+    for name in ("guide_vertical", "guide_axial"):
+        guide = spec.actuator(name)
+        if guide is not None:
+            # guide_stiffness is in the time of the user
+            guide.biasprm[1] = -settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
+    return spec.compile()
+
+
+def _set_options(spec: Any, scene: Scene, settings: MujocoSettings) -> None:
+    import mujoco
+
+    integrators = {
+        "Euler": mujoco.mjtIntegrator.mjINT_EULER,
+        "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
+        "implicit": mujoco.mjtIntegrator.mjINT_IMPLICIT,
+        "RK4": mujoco.mjtIntegrator.mjINT_RK4,
+        "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
+    }
+    cones = {"elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC, "pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL}
+    option = spec.option
+    option.timestep = scene.time_step
+    option.gravity = [0.0, 0.0, -scene.gravity]
+    option.integrator = integrators[settings.integrator]
+    option.cone = cones[settings.cone]
+    option.tolerance = settings.tolerance
+    option.iterations = settings.iterations
+    # a state that is not finite must reach the guard, not be replaced by the initial one
+    option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    if settings.contact_time_constant < 2.0 * scene.time_step * scene.unit_time * (1.0 - 1e-9):
+        # the engine would silently lengthen what the user asked for
+        option.disableflags |= mujoco.mjtDisableBit.mjDSBL_REFSAFE
+
+
+def _set_body(spec: Any, scene: Scene) -> None:
+    shape = scene.body
+    radius, half = shape.base_radius, 0.5 * shape.height
+    above = half - shape.mass_centre_height  # of the middle of the outline over the mass centre
+    body = spec.body("cylinder")
+    body.pos = [0.0, 0.0, shape.mass_centre_height]
+    body.inertia = [shape.transverse_inertia, shape.transverse_inertia, shape.axial_inertia]
+    for geom in body.geoms:
+        geom.pos = [0.0, 0.0, above]
+        geom.size = [radius, half, 0.0] if geom.name == "cylinder" else [radius / 2**0.5] * 2 + [half]
+
+
+def _set_contact(
+    spec: Any, scene: Scene, settings: MujocoSettings, standing: bool, ring: RingSettings | None
+) -> None:
+    count = settings.standing_corners // 4 if standing else 0
+    for index in range(_PRISMS):
+        name = f"prism{index}"
+        if index >= count:
+            spec.delete(next(pair for pair in spec.pairs if pair.geomname2 == name))
+            spec.delete(spec.geom(name))
+        else:
+            # the corners of all prisms stand evenly on the rim
+            spec.geom(name).alt.euler = [0.0, 0.0, 90.0 * index / count]
+    ground, _ = body_friction(scene.friction, "pair")
+    for pair in spec.pairs:
+        friction = ground if ring is None or pair.geomname1 == "ground" else ring.ring_friction
+        pair.friction = [friction, friction, 0.0, 0.0, 0.0]
+        pair.condim = 3
+        pair.solref = [settings.contact_time_constant / scene.unit_time, settings.contact_damping_ratio]
+        pair.solimp = [settings.impedance, settings.impedance, 1e-3, 0.5, 2.0]
+        # two negative numbers are a stiffness, which friction has none of, and a damping; the engine divides
+        # the damping by the impedance
+        damping = settings.friction_damping * settings.impedance / scene.time_step
+        pair.solreffriction = [-1.0, -damping]

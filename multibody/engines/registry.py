@@ -1,0 +1,129 @@
+"""Engines by name; each is imported only when it is asked for.
+
+Engines are declared as entry points of the group `rockwobble.engines`, so that a package of somebody
+else can bring one. Ours are declared there too, and known here besides: a checkout that is not installed
+has no entry points, and one of ours is known by name where its package has no wheel.
+"""
+
+from __future__ import annotations
+
+import importlib
+import importlib.util
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, cast
+
+from ..protocol import MEMBERS, Engine
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint
+
+GROUP = "rockwobble.engines"
+
+
+class EngineNotInstalledError(ValueError):
+    """A known engine whose package cannot be imported here."""
+
+
+class BrokenEngineError(ValueError):
+    """An engine that another package declares and that does not load."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Entry:
+    package: str
+    factory: str  # module:callable, relative to this folder
+    remedy: str
+    standard: bool = True  # comes with every installation of this package, where it has a wheel
+
+
+_ENGINES: Mapping[str, _Entry] = MappingProxyType(
+    {
+        "mujoco": _Entry("mujoco", ".mujoco_engine:MujocoEngine", "pip install 'mujoco>=4.0,<5'"),
+        "pybullet": _Entry(
+            "pybullet",
+            ".pybullet_engine:PybulletEngine",
+            "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
+        ),
+        "exudyn": _Entry(
+            "exudyn", ".exudyn_engine:ExudynEngine", "pip install 'rockwobble[exudyn]'", standard=False
+        ),
+    }
+)
+
+
+def engine_names() -> tuple[str, ...]:
+    """Return the names of all known engines, installed or not: ours, then those of other packages."""
+    return (*_ENGINES, *_declared())
+
+
+def standard_engines() -> tuple[str, ...]:
+    """Return the names of the engines that every installation is meant to have."""
+    return tuple(name for name, entry in _ENGINES.items() if entry.standard)
+
+
+def available_engines() -> tuple[str, ...]:
+    """Return the names of the engines whose packages are installed here, without importing them."""
+    ours = (name for name, entry in _ENGINES.items() if importlib.util.find_spec(entry.package))
+    return (*ours, *_declared())
+
+
+def find_engine(name: str) -> Engine:
+    """Return the engine called `name`.
+
+    Raises
+    ------
+    ValueError
+        If there is no such engine.
+    EngineNotInstalledError
+        If its package is not installed; a ValueError that says how to get it.
+    BrokenEngineError
+        If another package declares it and it does not load, or is no engine; a ValueError that says why.
+    """
+    entry = _ENGINES.get(name)
+    if entry is None:
+        declared = _declared()
+        if name not in declared:
+            raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")
+        return _load(name, declared[name])
+    if importlib.util.find_spec(entry.package) is None:
+        raise EngineNotInstalledError(f"engine {name!r} is not installed here: {entry.remedy}")
+    module, factory = entry.factory.split(":")
+    return cast(Engine, getattr(importlib.import_module(module, __package__), factory)())
+
+
+def _declared() -> dict[str, list[EntryPoint]]:
+    """Entry points of other packages by name, in alphabetical order; our names are taken."""
+    from importlib.metadata import entry_points
+
+    found: dict[str, list[EntryPoint]] = {}
+    for point in sorted(entry_points(group=GROUP), key=lambda point: (point.name, point.value)):
+        # an installation may be found by two ways
+        if point.name not in _ENGINES and point not in found.get(point.name, []):
+            found.setdefault(point.name, []).append(point)
+    return found
+
+
+def _load(name: str, points: list[EntryPoint]) -> Engine:
+    packages = ", ".join(sorted(_package(point) for point in points))
+    if len(points) > 1:
+        raise BrokenEngineError(f"engine {name!r} is declared more than once, by {packages}: uninstall one")
+    try:
+        engine = points[0].load()()
+    # whatever an engine of somebody else raises, it must not stop the others
+    except Exception as error:
+        reason = (str(error).splitlines() or [""])[0]
+        raise BrokenEngineError(
+            f"engine {name!r} of the package {packages} does not load: {type(error).__name__}: {reason}"
+        ) from error
+    missing = [member for member in MEMBERS if not hasattr(engine, member)]
+    if missing:
+        raise BrokenEngineError(
+            f"engine {name!r} of the package {packages} is no engine: it has no {', '.join(missing)}"
+        )
+    return cast(Engine, engine)
+
+
+def _package(point: EntryPoint) -> str:
+    return point.dist.name if point.dist is not None else point.value

@@ -1,0 +1,1 @@
+"""Recording of an engine's steps: kinematics, turning points, forces, energy, rests."""

@@ -1,0 +1,124 @@
+"""When and where the base uplifts.
+
+The base uplifts when the ground's reaction reaches its rim. Contact yields, so tilt itself has no sharp
+onset: the eccentricity of the reaction, from the engine's own accelerations, has. It follows the
+excitation until it is b, and stays there while the cylinder rolls on its rim. The search therefore goes
+back from the first tilt that is motion beyond doubt to the last steps at which the reaction still
+followed the excitation, and takes the last few percent of the way to the rim from the course of the
+excitation, which bends at every sample of a record.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..body import Body
+from ..protocol import Steps
+
+Array = NDArray[np.float64]
+
+SURE_TILT = 5e-6  # of alpha; a standing cylinder leans by 1e-9 rad in MuJoCo, 1e-8 rad in Bullet
+_MEMORY = 4000  # steps kept before that tilt: it takes a few hundred from the uplift
+# Eccentricities, over b, up to which the reaction may be expected to follow. Contact yields next to the rim,
+# and Bullet's four contacts share the load by turns there: the highest with a steady ratio counts.
+_LEVELS = (0.97, 0.94, 0.9, 0.8)
+_FIT = 20  # steps that must follow
+_STEADY = 2e-3  # largest deviation of their ratio
+_AT_RIM = 0.99  # of b; a polygon of 48 corners carries the reaction at 0.998 b or more
+_SPIKE = 9  # steps; a single step that loses contact, or carries twice the load, says nothing
+_DEPARTURE = 0.015  # of b; a reaction that lags so far behind has left the excitation: the base tips early
+_MINIMUM_LOAD = 0.1  # weights; a smaller reaction, in the step that loses contact, has no eccentricity
+
+
+def sure_tilt(body: Body) -> float:
+    """Return the tilt [rad] that is motion beyond doubt."""
+    return SURE_TILT * float(np.arctan(body.tan_alpha))
+
+
+class UpliftWatch:
+    """Follows a standing cylinder chunk by chunk until it uplifts."""
+
+    def __init__(self, body: Body, gravity: float, time_step: float) -> None:
+        self._body, self._gravity, self._step = body, gravity, time_step
+        self._sure = sure_tilt(body)
+        # time, eccentricity of the reaction, eccentricity of a reaction that follows the excitation at once
+        self._history: Array = np.empty((0, 5))
+
+    def watch(
+        self, time: Array, tilt: Array, poses: Steps, after: Steps, acceleration: Array
+    ) -> tuple[float, float] | None:
+        """Return time [s] and direction [rad] of the uplift once it has happened, None before.
+
+        `acceleration` (n, 3) is the ground's in the step after each pose.
+        """
+        still = -self._body.mass_centre_height * acceleration[:, :2] / (self._gravity + acceleration[:, 2:])
+        reaction = self._reaction_eccentricity(poses, after, acceleration)
+        rows = np.column_stack([time, reaction, still])
+        b = self._body.base_radius
+        # a load that passes the rim for a millisecond uplifts the base by less than that tilt
+        passes = (np.hypot(still[:, 0], still[:, 1]) >= b) & (
+            np.hypot(reaction[:, 0], reaction[:, 1]) > _AT_RIM * b
+        )
+        sure = np.flatnonzero((tilt > self._sure) | passes)
+        end = int(sure[0]) + 1 if len(sure) else len(tilt)
+        self._history = np.vstack([self._history, rows[:end]])[-_MEMORY:]
+        return self._crossing() if len(sure) else None
+
+    def _reaction_eccentricity(self, poses: Steps, after: Steps, acceleration: Array) -> Array:
+        """Where the ground's reaction acts on the base, relative to its centre, shape (n, 2) [m]."""
+        body = self._body
+        force = (after.velocity - poses.velocity) / self._step + acceleration
+        load = np.maximum(force[:, 2] + self._gravity, _MINIMUM_LOAD * self._gravity)
+        # upright, the moment about the mass centre is that of the transverse inertia
+        change = body.transverse_inertia * (after.angular_velocity - poses.angular_velocity) / self._step
+        height = body.mass_centre_height
+        return np.column_stack(
+            [-(change[:, 1] + height * force[:, 0]) / load, (change[:, 0] - height * force[:, 1]) / load]
+        )
+
+    def _crossing(self) -> tuple[float, float]:
+        time, still = self._history[:, 0], self._history[:, 3:]
+        reaction = _without_spikes(self._history[:, 1:3])
+        share, expected = (np.hypot(at[:, 0], at[:, 1]) / self._body.base_radius for at in (reaction, still))
+        for level in _LEVELS:
+            inside = np.flatnonzero(share < level)
+            end = int(inside[-1]) + 1 if len(inside) else 0
+            fit = slice(end - _FIT, end)
+            if end < _FIT or not (expected[fit] > 0.0).all():
+                continue
+            ratio = share[fit] / expected[fit]
+            middle = float(np.median(ratio))
+            if np.abs(ratio - middle).max() > _STEADY:
+                continue
+            return self._follow(time, still, middle * expected, share, end)
+        # the load jumped over the rim: no approach, and no doubt about the step
+        inside = np.flatnonzero(share < _LEVELS[0])
+        step = min(int(inside[-1]) + 1 if len(inside) else 0, len(time) - 1)
+        return float(time[step]), _azimuth(still[step])
+
+    def _follow(
+        self, time: Array, still: Array, expected: Array, share: Array, end: int
+    ) -> tuple[float, float]:
+        """Go on from step `end` to where the expected eccentricity is b, or the reaction lags for good."""
+        over = np.flatnonzero(expected[end:] >= 1.0)
+        step = end + int(over[0]) if len(over) else len(time) - 1
+        follows = np.flatnonzero(expected[end:step] - share[end:step] < _DEPARTURE)
+        step = min(step, end + (int(follows[-1]) + 1 if len(follows) else 0))
+        before = expected[step - 1]
+        part = 1.0
+        if expected[step] >= 1.0 and expected[step] > before:
+            part = min(max((1.0 - before) / (expected[step] - before), 0.0), 1.0)
+        at = still[step - 1] + part * (still[step] - still[step - 1])
+        return float(time[step - 1] + part * (time[step] - time[step - 1])), _azimuth(at)
+
+
+def _without_spikes(values: Array) -> Array:
+    """Median of each value (n, 2) and its neighbours in time."""
+    padded = np.pad(values, ((_SPIKE // 2, _SPIKE // 2), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, _SPIKE, axis=0)
+    return np.asarray(np.median(windows, axis=-1))
+
+
+def _azimuth(vector: Array) -> float:
+    return float(np.arctan2(vector[1], vector[0]))

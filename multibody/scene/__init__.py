@@ -1,0 +1,1 @@
+"""A scene: body, start, support and excitation at the reference size, stated for every engine."""

@@ -1,0 +1,52 @@
+"""How motion ends: the cylinder sits down, or it has what it takes to overturn."""
+
+from __future__ import annotations
+
+from math import cos, hypot, pi, sin
+
+from .._compile import inlined, jit
+from ..body import Body
+from ..equations import energy
+from .tsit5 import Vector
+from .uplift import excess
+
+HALF_PI = 0.5 * pi  # the tilt at which the side lies on the ground
+
+
+@inlined
+def may_sit_down(
+    body: Body, seating: float, theta: float, omega: float, L: float, S: float, a: Vector
+) -> bool:
+    """Return whether the cylinder comes to rest: f < 0 and too little energy left to matter.
+
+    The bound is the energy of a standstill at the tilt `seating` alpha, less what the ground
+    acceleration takes off the restoring moment.
+    """
+    limit = seating * body.alpha
+    if theta > 10.0 * limit:  # above the bound, unless az exceeds 9 g
+        return False
+    share = 1.0 + a[2] / body.g - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
+    if share <= 0.0 or excess(body, a) >= 0.0:
+        return False
+    return energy(body, theta, omega, L, S) < share * energy(body, limit, 0.0, 0.0, 0.0)
+
+
+@jit
+def may_overturn(body: Body, theta: float, omega: float, L: float, S: float) -> bool:
+    """Return whether the energy suffices to pass the balance at alpha over still ground.
+
+    It is conserved there, and no part of it is negative but the potential energy beyond alpha.
+    """
+    return theta >= body.alpha or energy(body, theta, omega, L, S) > energy(body, body.alpha, 0.0, 0.0, 0.0)
+
+
+@jit
+def surely_falls(body: Body, theta: float, strongest: float, lightest: float) -> bool:
+    """Return whether a tilt above alpha that does not decrease is bound to reach pi/2, without twist.
+
+    `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium tilt
+    under these two, theta'' is positive and grows with theta. Spin only adds to it, (18); a twist rate,
+    which the rolling model has, may hold a cylinder up.
+    """
+    beyond = theta - body.alpha
+    return lightest > 0.0 and lightest * sin(beyond) > strongest * cos(beyond)

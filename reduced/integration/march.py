@@ -1,0 +1,82 @@
+"""What a time integration is given and returns, and its access to the record."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._compile import inlined, jit
+from .tsit5 import State, Vector
+
+REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a march ends
+MAXIMUM, MINIMUM = 1.0, -1.0
+
+
+class Options(NamedTuple):
+    """What steers a march."""
+
+    rtol: float  # tolerance of one step, relative
+    seating: float  # tilt of the seating rule over alpha; 0 leaves the rule out
+    restitution: float  # of the tilt rate where the base meets the ground in planar motion
+    duration: float  # [s]
+    step_budget: int
+    record_steps: bool
+
+
+class March(NamedTuple):
+    """What a march returns; `size` is the number of variables of the model."""
+
+    status: int
+    end: float  # time reached [s]; later than the duration only where it overturns after it
+    peak: float  # largest tilt until the duration [rad]
+    uplift_time: float  # first uplift, or 0 for a release [s]; NaN if there is none
+    uplift_direction: float  # rolling angle there [rad]
+    samples: NDArray[np.float64]  # (n, size) state at the times asked for
+    moving: NDArray[np.bool_]  # (n,) False where the cylinder stands
+    reached: int  # how many samples were reached
+    final: NDArray[np.float64]  # (size,) state at the end
+    extrema: NDArray[np.float64]  # (k, 4) time, tilt, rolling angle, MAXIMUM or MINIMUM
+    rests: NDArray[np.float64]  # (r, 2) when it came to rest after moving, and moved again or NaN [s]
+    steps: NDArray[np.float64]  # (j, 1 + size) time and state after each step, if recorded
+    step_count: int
+
+
+Driver = Callable[..., March]
+
+
+# Loops instead of slice assignment: that carries shape checks with formatted messages, which double
+# the time to compile.
+@jit
+def write(source: State, target: NDArray[np.float64]) -> None:
+    """Copy a tuple to an array of its length."""
+    for i in range(len(source)):
+        target[i] = source[i]
+
+
+@jit
+def as_table(rows: Any, count: int, width: int) -> NDArray[np.float64]:
+    """Return the first `count` tuples of a list as an array (count, width)."""
+    table = np.empty((count, width))
+    for i in range(count):
+        write(rows[i], table[i])
+    return table
+
+
+@inlined
+def piece_of_record(
+    record: NDArray[np.float64], time_step: float, index: int
+) -> tuple[Vector, Vector, float]:
+    """Return the acceleration at sample `index`, its rate from there on, and where that ends [s]."""
+    if index >= len(record) - 1:  # the ground is still after the record
+        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), np.inf
+    end = index + 1
+    a = (record[index, 0], record[index, 1], record[index, 2])
+    slope = (
+        (record[end, 0] - a[0]) / time_step,
+        (record[end, 1] - a[1]) / time_step,
+        (record[end, 2] - a[2]) / time_step,
+    )
+    return a, slope, end * time_step

@@ -1,0 +1,170 @@
+"""The three models as systems of first order: what the driver needs to know of each.
+
+States are tuples whose first three entries are tilt, tilt rate and rolling angle:
+
+======== ============================================================================
+planar   theta, theta', phi; the plane is x z, so phi is 0 or pi
+recess   theta, theta', phi, L
+rolling  theta, theta', phi, Lambda, tau, S, X, Y; the rim rolls on the circle about
+         (X, Y), so the contact point is (X + b cos phi, Y + b sin phi), and moves
+         at the speed b psi'
+======== ============================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import sqrt
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .._compile import inlined, jit
+from ..body import Body
+from ..equations import planar_rhs, recess_rhs, rolling_rhs
+from ..trigonometry import sin_cos
+from .tsit5 import State, Vector
+
+_ROUNDING = float(np.finfo(np.float64).eps)
+
+Weights = tuple[float, ...]
+
+
+class System(NamedTuple):
+    """The compiled functions of one model."""
+
+    derivative: Callable[..., Any]  # (body, y, a) -> y'
+    momenta: Callable[..., Any]  # y -> (L or Lambda, S)
+    placed: Callable[..., Any]  # (y, theta, omega, phi, L) -> y with these, and without twist rate
+
+
+@inlined
+def scales(
+    body: Body, rtol: float, tilt: float, rate: float, spin_rate: float, flat: bool
+) -> tuple[float, float]:
+    """Return what the errors of tilt and of tilt rate are divided by: both inverses over the tolerance.
+
+    Near the apex the motion is that of a point at the polar distance theta, with one speed in all
+    directions (`spin_rate` is its part across): the tilt is held to itself, and the rates to that
+    speed. Planar motion goes through theta = 0, so there the tilt is held to what the speed makes of
+    it in the time 1/p. Near theta = alpha, where every difference grows as exp(p t), the distance
+    from alpha takes the place of theta. An error below the rounding of the tilt cannot be told from
+    none.
+    """
+    tilt = abs(tilt)
+    from_alpha = abs(body.alpha - tilt)
+    speed = abs(rate) + spin_rate
+    velocity = speed + body.p * min(sqrt(body.sin_alpha * tilt), from_alpha)
+    distance = min(tilt + velocity / body.p if flat else tilt, from_alpha + speed / body.p)
+    least = _ROUNDING * tilt
+    return 1.0 / max(rtol * distance, least), 1.0 / max(rtol * velocity, body.p * least)
+
+
+@jit
+def _planar_derivative(body: Body, y: State, a: Vector) -> State:
+    return y[1], planar_rhs(body, y[0], sin_cos(y[2])[1], a[0], a[2]), 0.0
+
+
+@jit
+def planar_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+    """Return y + h sum(weights slopes)."""
+    a = b = c = 0.0
+    for j in range(len(weights)):
+        w, k = weights[j], slopes[j]
+        a += w * k[0]
+        b += w * k[1]
+        c += w * k[2]
+    return y[0] + h * a, y[1] + h * b, y[2] + h * c
+
+
+@jit
+def _planar_momenta(y: State) -> tuple[float, float]:
+    return 0.0, 0.0
+
+
+@jit
+def _planar_placed(y: State, theta: float, omega: float, phi: float, L: float) -> State:
+    return theta, omega, phi
+
+
+@jit
+def planar_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
+    """Return the largest error over what is allowed."""
+    per_tilt, per_rate = scales(body, rtol, y[0], y[1], 0.0, True)
+    return max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
+
+
+@jit
+def _recess_derivative(body: Body, y: State, a: Vector) -> State:
+    return recess_rhs(body, y[0], y[1], y[2], y[3], a[0], a[1], a[2])
+
+
+@jit
+def _recess_momenta(y: State) -> tuple[float, float]:
+    return y[3], 0.0
+
+
+@jit
+def _recess_placed(y: State, theta: float, omega: float, phi: float, L: float) -> State:
+    return theta, omega, phi, L
+
+
+@jit
+def _rolling_derivative(body: Body, y: State, a: Vector) -> State:
+    rates = rolling_rhs(body, y[0], y[1], y[2], y[3], y[4], y[5], a[0], a[1], a[2])
+    sin_phi, cos_phi = sin_cos(y[2])
+    drift = body.b * rates[4]
+    return rates[0], rates[1], rates[2], rates[3], rates[4], rates[5], drift * sin_phi, -drift * cos_phi
+
+
+@jit
+def rolling_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+    """Return y + h sum(weights slopes)."""
+    a = b = c = d = e = f = x = z = 0.0
+    for j in range(len(weights)):
+        w, k = weights[j], slopes[j]
+        a += w * k[0]
+        b += w * k[1]
+        c += w * k[2]
+        d += w * k[3]
+        e += w * k[4]
+        f += w * k[5]
+        x += w * k[6]
+        z += w * k[7]
+    return (
+        y[0] + h * a,
+        y[1] + h * b,
+        y[2] + h * c,
+        y[3] + h * d,
+        y[4] + h * e,
+        y[5] + h * f,
+        y[6] + h * x,
+        y[7] + h * z,
+    )
+
+
+@jit
+def _rolling_momenta(y: State) -> tuple[float, float]:
+    return y[3], y[5]
+
+
+@jit
+def _rolling_placed(y: State, theta: float, omega: float, phi: float, L: float) -> State:
+    return theta, omega, phi, L, y[4], 0.0, y[6], y[7]
+
+
+@jit
+def rolling_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
+    """Return the largest error over what is allowed."""
+    per_lever = 0.0 if flat else 1.0 / (body.J * y[0])
+    per_tilt, per_rate = scales(body, rtol, y[0], y[1], abs(y[3]) * per_lever, flat)
+    ratio = max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
+    ratio = max(ratio, abs(error[2]) * (1.0 / rtol), abs(error[3]) * per_lever * per_rate)
+    M = body.C - body.E * body.E / body.J
+    ratio = max(ratio, abs(error[4]) / rtol, abs(error[5]) * per_rate / sqrt(body.A * M))
+    return max(ratio, max(abs(error[6]), abs(error[7])) / (rtol * body.b))
+
+
+PLANAR = System(_planar_derivative, _planar_momenta, _planar_placed)
+RECESS = System(_recess_derivative, _recess_momenta, _recess_placed)
+ROLLING = System(_rolling_derivative, _rolling_momenta, _rolling_placed)

@@ -1,0 +1,173 @@
+"""When and how the cylinder leaves the ground.
+
+The cylinder stands until f = |a| - (g + az) tan(alpha) reaches zero (25), and lifts off towards the
+inertia force (26). There theta = 0 is a singular point of the polar coordinates with a regular
+solution: a power series in the time since uplift gives the state a little later, from where the
+equations are integrated. Within one sample |a| is convex and az linear, so f is convex: a single
+sign change tells all.
+"""
+
+from __future__ import annotations
+
+from math import atan2, hypot, pi, sqrt
+
+import numpy as np
+
+from .._compile import jit
+from ..body import Body
+from ..equations import in_plane_below
+from .tsit5 import Vector, ground
+
+# The series is left at the share x of the shortest time scale there: 1/p, and the time in which the
+# ground acceleration turns or changes by its own size. The terms left out are below x^3 relative to
+# those kept, so x^3 is the tolerance. The solution oscillates there about the direction of the inertia
+# force, ever faster towards t = 0, so an earlier start costs steps, about 1/sqrt(x).
+_LATEST_START = 5e-3
+# Where the very first sample is already over the threshold the oscillation is only logarithmic in
+# t, and a start this much earlier is free.
+STEP_START = 1e-6
+# Below this share of g a horizontal acceleration has no direction; it lifts only where g + az <= 0.
+WEAK = 1e-12
+
+
+@jit
+def excess(body: Body, a: Vector) -> float:
+    """Return f = |a| - (g + az) tan(alpha) [m/s^2]; the cylinder cannot stand where it is positive."""
+    return sqrt(a[0] * a[0] + a[1] * a[1]) - (body.g + a[2]) * (body.sin_alpha / body.cos_alpha)
+
+
+@jit
+def uplift_in(body: Body, a: Vector, slope: Vector, end: float) -> float:
+    """Return the first time in [0, end) at which f reaches zero and rises, or -1.0.
+
+    Times count from where the acceleration is `a`, with rate `slope` per second. A root at `end`
+    itself belongs to the next sample.
+    """
+    f_begin, f_end = excess(body, a), excess(body, ground(a, slope, end))
+    if f_begin > 0.0:
+        return 0.0
+    if f_end <= 0.0:
+        return -1.0
+    low, high = 0.0, end
+    # bisection and regula falsi in turn (Illinois): f is convex, so one secant side would stall
+    f_low, f_high = f_begin, f_end
+    for _ in range(200):
+        middle = high - f_high * (high - low) / (f_high - f_low)
+        if not low < middle < high:
+            middle = 0.5 * (low + high)
+            if not low < middle < high:
+                break
+        f = excess(body, ground(a, slope, middle))
+        if f > 0.0:
+            high, f_high = middle, f
+            f_low *= 0.5
+        else:
+            low, f_low = middle, f
+            f_high *= 0.5
+        if f == 0.0:
+            break
+    return low
+
+
+@jit
+def nearest_branch(angle: float, last: float) -> float:
+    """Return `angle` plus the multiple of 2 pi that brings it nearest to `last` [rad]."""
+    return float(angle + 2.0 * pi * np.rint((last - angle) / (2.0 * pi)))
+
+
+@jit
+def started(
+    body: Body,
+    time_step: float,
+    a: Vector,
+    slope: Vector,
+    at: float,
+    time: float,
+) -> tuple[float, float, float, float]:
+    """Return theta, theta', the direction of the contact and its rate, `time` after uplift.
+
+    Parameters
+    ----------
+    body : Body
+    time_step : float
+        Spacing of the samples [s], over which what the ground turns by less than a rounding is none.
+    a, slope : tuple of 3 floats
+        Acceleration at the last sample and its rate.
+    at : float
+        Time of uplift since that sample [s].
+    time : float
+        Time since uplift [s], short against 1/p.
+
+    Returns
+    -------
+    tuple of float
+        theta [rad], theta' [rad/s], phi [rad] in (-pi, pi] up to its lag, phi' [rad/s].
+
+    Notes
+    -----
+    theta'' = F(t) + Q theta with F = p^2 cos(alpha) f/g expanded to t^3. The contact follows the
+    inertia force, which turns at the rate W, with the lag that balances
+    (J theta^2 phi')' = -h theta |a| sin(lag), (19) near the apex: two rounds of its expansion. Where
+    f starts above zero the lag is linear in time from the start and the balance is exact:
+    phi' = W/(1 + 2 J F0/(h |a|)).
+    """
+    ax, ay, az = ground(a, slope, at)
+    size = max(hypot(ax, ay), WEAK * body.g)
+    along = (ax * slope[0] + ay * slope[1]) / size  # d|a|/dt
+    cross = ax * slope[1] - ay * slope[0]  # |a|^2 times the turning rate, constant in a sample
+    if abs(cross) * time_step <= in_plane_below(body, ax, ay) * size:
+        cross = 0.0
+    turning = cross / (size * size)
+    factor = body.p2 * body.cos_alpha / body.g
+    tan_alpha = body.sin_alpha / body.cos_alpha
+    F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
+    F1 = factor * (along - slope[2] * tan_alpha)
+    F2 = factor * size * turning * turning
+    F3 = -3.0 * F2 * along / size
+    Q = body.p2 * (1.0 + az / body.g) / body.cos_alpha + body.J / body.A * turning * turning
+    t = time
+    theta = t * t * (F0 / 2 + t * (F1 / 6 + t * ((F2 + Q * F0) / 24 + t * (F3 + Q * F1) / 120)))
+    theta_1 = t * (F0 + t * (F1 / 2 + t * ((F2 + Q * F0) / 6 + t * (F3 + Q * F1) / 24)))
+    theta_2 = F0 + t * (F1 + t * ((F2 + Q * F0) / 2 + t * (F3 + Q * F1) / 6))
+
+    bx, by = ax + slope[0] * t, ay + slope[1] * t
+    direction = atan2(-by, -bx)
+    now = max(hypot(bx, by), WEAK * body.g)
+    W = cross / (now * now)
+    if starts_as_step(F0, F1, shortest_time(body, a, slope, at)):
+        rate = W / (1.0 + 2.0 * body.J * F0 / (body.h * size))
+        return theta, theta_1, direction - (W - rate) * t, rate
+    W_1 = -2.0 * W * (bx * slope[0] + by * slope[1]) / (now * now)
+    lag = body.J / (body.h * now)
+    lag_1 = -lag * (2.0 * theta_2 * W + 3.0 * theta_1 * W_1)
+    lag_2 = -lag * (2.0 * F1 * W + 5.0 * theta_2 * W_1)
+    offset = -lag * (2.0 * theta_1 * (W + lag_1) + theta * (W_1 + lag_2))
+    return theta, theta_1, direction + offset, W + lag_1
+
+
+@jit
+def shortest_time(body: Body, a: Vector, slope: Vector, at: float) -> float:
+    """Return the time [s] in which motion or ground acceleration change by their own size at an uplift."""
+    ax, ay, _ = ground(a, slope, at)
+    change = hypot(slope[0], slope[1]) / max(hypot(ax, ay), WEAK * body.g)
+    return 1.0 / max(body.p, change)
+
+
+@jit
+def starts_as_step(F0: float, F1: float, unit: float) -> bool:
+    """Return whether the jump F0 of theta'' [rad/s^2] outweighs its rise F1 t at the first of times."""
+    return abs(F1) * STEP_START * unit < F0
+
+
+@jit
+def start_length(body: Body, rtol: float, a: Vector, slope: Vector, at: float) -> float:
+    """Return for how long after uplift [s] the series is used."""
+    ax, ay, az = ground(a, slope, at)
+    factor = body.p2 * body.cos_alpha / body.g
+    F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
+    along = (ax * slope[0] + ay * slope[1]) / max(hypot(ax, ay), WEAK * body.g)
+    F1 = factor * (along - slope[2] * (body.sin_alpha / body.cos_alpha))
+    unit = shortest_time(body, a, slope, at)
+    if not starts_as_step(F0, F1, unit):
+        return unit * min(float(rtol ** (1.0 / 3.0)), _LATEST_START)
+    return min(STEP_START * unit, 1e-3 * F0 / abs(F1)) if F1 != 0.0 else STEP_START * unit

@@ -1,0 +1,177 @@
+"""`rockwobble check`: whether the reduced model is still the same model, and agrees with the engines."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from ..console.terminal import FAILED, complain, interruptible, user_input
+
+if TYPE_CHECKING:
+    from rockwobble.compare.check import Bench, Finding
+    from rockwobble.models import Run
+
+_OUTPUT = "Output for programs"
+Suite = Annotated[
+    str,
+    typer.Option("--suite", help="Suite for the agreement with the engines: a TOML file, or one that ships."),
+]
+Only = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--only",
+        metavar="LAYER",
+        help="Run one layer; may be repeated: records, equations, conserved, exact, rest, invariance, "
+        "properties, order, residual, metrics, studies, traces, agreement, baseline. Default: all.",
+    ),
+]
+Json = Annotated[
+    Path | None, typer.Option("--json", help="Write all findings as JSON.", rich_help_panel=_OUTPUT)
+]
+Junit = Annotated[
+    Path | None, typer.Option("--junit", help="Write a JUnit report (XML).", rich_help_panel=_OUTPUT)
+]
+Markdown = Annotated[
+    Path | None,
+    typer.Option(
+        "--markdown",
+        help="Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.",
+        rich_help_panel=_OUTPUT,
+    ),
+]
+Workers = Annotated[
+    int | None,
+    typer.Option("--workers", min=1, help="Processes for the engines. Default: one for each core."),
+]
+Update = Annotated[
+    bool,
+    typer.Option(
+        "--update-baseline", help="Show what new baselines would change, and write them if a reason is given."
+    ),
+]
+Reason = Annotated[
+    str | None,
+    typer.Option("--reason", help="Why the baselines change; kept in their file. Without it you are asked."),
+]
+
+
+def check(
+    suite: Suite = "quick",
+    only: Only = None,
+    json: Json = None,
+    junit: Junit = None,
+    markdown: Markdown = None,
+    workers: Workers = None,
+    update_baseline: Update = False,
+    reason: Reason = None,
+) -> None:
+    """Check that the reduced model stays the same model, and stays in agreement with the engines.
+
+    Tightest first: files of records; equations against the energies, term by term, and against
+    accelerations in the engines; conserved quantities; exact solutions; rest, landings and the end of a
+    record; invariances; one motion stated in several ways; order; zero residual displacement; metrics on
+    made-up traces; suites, sweeps and grids against single runs; every field of an engine's trace; agreement
+    with the engines on a suite; stored baselines. Each check says what it measured, what it may be, why, and
+    what is wrong if it is more.
+
+    Exit code 0 if all checks hold, 1 if one does not, 2 for bad input.
+    """
+    with interruptible("no file was written"):
+        with user_input():
+            from rockwobble.compare.check import LAYERS, Bench
+
+            if reason is not None and not update_baseline:
+                raise ValueError("--reason belongs to --update-baseline, got it alone")
+            for layer in only or ():
+                if layer not in LAYERS:
+                    raise ValueError(f"--only must be one of {', '.join(LAYERS)}, got {layer!r}")
+            _require_writable(json, junit, markdown)
+            bench = _bench(suite, workers, Bench)
+        if update_baseline:
+            from ..console.check_update import update
+
+            with user_input():
+                if suite != "quick" or only:
+                    raise ValueError(
+                        "--update-baseline goes with neither --suite nor --only: it measures all of quick"
+                    )
+                update(bench, reason)
+            return
+        findings, seconds = _run(bench, only)
+        from rockwobble.compare.storage.provenance import package_versions
+
+        from ..console.check_output import as_json, as_junit, as_markdown, headline
+
+        versions = package_versions()
+        if json is not None:
+            _replace(json, as_json(findings, versions, seconds))
+        if junit is not None:
+            _replace(junit, as_junit(findings, seconds))
+        if markdown is not None:
+            # the summary of a CI job may hold pages of other steps
+            with markdown.open("a", encoding="utf-8") as file:
+                file.write(as_markdown(findings, versions, seconds))
+        print(f"\n{headline(findings, seconds)}")
+    if any(finding.failed for finding in findings):
+        raise typer.Exit(FAILED)
+
+
+def _bench(suite: str, workers: int | None, make: type[Bench]) -> Bench:
+    from rockwobble import reduced
+    from rockwobble.compare import require_runnable
+    from rockwobble.models import Suite as Cases
+    from rockwobble.models import read_suite
+
+    from .inputs.suite_choice import chosen_runs, without_missing
+
+    read = read_suite(suite)
+    runs: list[Run]
+    runs, missing = without_missing(chosen_runs(read, None, None, None), None)
+    for engine in missing:
+        complain(f"{engine} is not installed here and is left out")
+    for case in read.cases:
+        for run in runs:
+            require_runnable(case, run)
+    return make(
+        reduced=reduced, suite=Cases(read.cases, runs, read.bounds), shipped=suite == "quick", workers=workers
+    )
+
+
+def _run(bench: Bench, only: list[str] | None) -> tuple[list[Finding], float]:
+    """Run the layers, and print each when it is done."""
+    from rich.console import Console
+
+    from rockwobble.compare.check import LAYERS, run_checks
+
+    from ..console.check_progress import shown_progress
+    from ..console.check_table import print_layer
+
+    console = Console()
+    begun = time.monotonic()
+    findings: list[Finding] = []
+    for layer in (name for name in LAYERS if not only or name in only):
+        with shown_progress(layer) as (tell, count):
+            bench.progress = tell
+            of_layer = []
+            for finding in run_checks(bench, [layer]):
+                of_layer.append(finding)
+                count(len(of_layer))
+        print_layer(console, layer, of_layer)
+        findings += of_layer
+    return findings, time.monotonic() - begun
+
+
+def _require_writable(*paths: Path | None) -> None:
+    for path in paths:
+        if path is not None and (path.is_dir() or not path.absolute().parent.is_dir()):
+            raise ValueError(f"a report must be a file in a folder that exists, got {path}")
+
+
+def _replace(path: Path, text: str) -> None:
+    """Write beside, and put in place: never half a file."""
+    beside = path.with_name(f".{path.name}.part")
+    beside.write_text(text, encoding="utf-8")
+    beside.replace(path)

@@ -1,0 +1,188 @@
+"""`rockwobble ensemble`: peak tilts of many members, for what lies beyond the agreement of traces."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from ..console.terminal import interruptible, user_input
+from .inputs import options
+
+if TYPE_CHECKING:
+    from rockwobble.models import Case, GroundMotion, Run, Suite
+
+Members = Annotated[int, typer.Option("--members", help="Number of members, where no suite gives them.")]
+Perturbation = Annotated[
+    float,
+    typer.Option(
+        "--perturbation",
+        help="Relative standard deviation of tilt and rolling rate at release, or of the two components "
+        "of the ground motion.",
+    ),
+]
+Synthetic = Annotated[
+    float | None,
+    typer.Option(
+        "--synthetic",
+        help="Made-up ground motions instead of perturbed starts, with a peak of so many times g tan alpha.",
+    ),
+]
+FarField = Annotated[
+    float | None,
+    typer.Option(
+        "--p695",
+        help="The 22 far-field pairs of FEMA P-695 (extra records) instead of perturbed starts, each scaled "
+        "to a peak of so many times g tan alpha.",
+    ),
+]
+Seed = Annotated[int, typer.Option("--seed", help="Of everything random.")]
+
+
+def ensemble(
+    context: typer.Context,
+    suite: options.SuiteName = None,
+    semidiagonal: options.Semidiagonal = 6.0,
+    tan_alpha: options.TanAlpha = 0.2,
+    record_x: options.RecordX = None,
+    record_y: options.RecordY = None,
+    record_z: options.RecordZ = None,
+    units: options.Units = None,
+    scale: options.Scale = 1.0,
+    release_tilt_deg: options.ReleaseTilt = None,
+    rolling_rate: options.RollingRate = 0.0,
+    duration: options.Duration = None,
+    members: Members = 20,
+    perturbation: Perturbation = 0.01,
+    synthetic: Synthetic = None,
+    far_field: FarField = None,
+    seed: Seed = 0,
+    engine: options.Engines = None,
+    support: options.Supports = None,
+    time_step: options.TimeStep = None,
+    out: options.Out = Path("rockwobble-ensemble"),
+) -> None:
+    """Hold the peak tilts of many members by each method against each other, member by member.
+
+    Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly different starts. With
+    --synthetic or --p695 the members are ground motions, with a SUITE its cases. --engine none runs the
+    reduced models alone.
+
+    Whatever ends it, the same command goes on where it stopped.
+
+    Writes members, methods and contrasts as CSV and members as Parquet, ensemble.json, ensemble.svg and
+    ensemble.html.
+    """
+    from ..pages.case_words import describe
+    from .inputs.problem import case_from_options
+
+    with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
+        with user_input():
+            from rockwobble import compare
+
+            compare.require_writable(out)
+            problem: Case | Suite | list[Case]
+            if suite is not None:
+                problem = _suite(context, suite)
+                print(f"Suite {suite}: {len(problem.cases)} members")
+            else:
+                case = case_from_options(
+                    semidiagonal=semidiagonal,
+                    tan_alpha=tan_alpha,
+                    record_x=record_x,
+                    record_y=record_y,
+                    record_z=record_z,
+                    units=units,
+                    scale=scale,
+                    release_tilt_deg=release_tilt_deg,
+                    rolling_rate=rolling_rate,
+                    duration=duration,
+                )
+                motions = _motions(case, members, synthetic, far_field, seed)
+                problem = _under(case, motions) if motions else case
+                for line in describe(case)[:1] if motions else describe(case):
+                    print(line)
+                print(f"Members: {len(motions) or members}, {_source(synthetic, far_field, perturbation)}")
+            runs = _runs(engine, support, time_step, stated=suite is not None)
+        from ..console.ensemble_output import ensemble_files, print_ensemble
+        from ..console.progress import shown_progress
+        from ..pages.provenance import command_line
+
+        with user_input(), shown_progress(many=True) as tell:
+            found = compare.ensemble(
+                problem,
+                runs=runs,
+                size=members,
+                perturbation=perturbation,
+                seed=seed,
+                progress=tell,
+                resume=out,
+                source=_source(synthetic, far_field, perturbation) if suite is None else f"cases of {suite}",
+            )
+        found = dataclasses.replace(found, about={**found.about, "command": command_line()})
+        print_ensemble(found)
+        contents = ensemble_files(found)
+        with user_input():
+            compare.replace_files(out, contents)
+    print(f"\nWritten to {out}: {', '.join(contents)}")
+
+
+def _suite(context: typer.Context, name: str) -> Suite:
+    from rockwobble.models import read_suite
+
+    from .inputs.suite_choice import refuse_problem_options
+
+    for option in ("members", "perturbation", "synthetic", "far_field"):
+        source = context.get_parameter_source(option)
+        if source is not None and source.name == "COMMANDLINE":
+            given = {"far_field": "p695"}.get(option, option)
+            raise ValueError(f"--{given} does not go with a suite, got {name}: its cases are the members")
+    refuse_problem_options(context, name)
+    return read_suite(name)
+
+
+def _motions(
+    case: Case, members: int, synthetic: float | None, far_field: float | None, seed: int
+) -> list[GroundMotion]:
+    """Return the ground motions that are the members; none where the members are perturbed starts."""
+    from rockwobble.compare import far_field_motions, synthetic_motions
+
+    if synthetic is not None and far_field is not None:
+        raise ValueError("the members are made-up ground motions or those of FEMA P-695, got both options")
+    uplift = case.gravity * case.cylinder.tan_alpha
+    if far_field is not None:
+        return far_field_motions(peak=far_field * uplift)
+    if synthetic is not None:
+        return synthetic_motions(members, peak=synthetic * uplift, seed=seed)
+    return []
+
+
+def _under(case: Case, motions: list[GroundMotion]) -> list[Case]:
+    """Return the case under each motion, named by that alone: the others are all the same."""
+    return [dataclasses.replace(case, name=motion.name, motion=motion) for motion in motions]
+
+
+def _runs(
+    engines: list[str] | None, supports: list[str] | None, time_step: Any, *, stated: bool
+) -> list[Run] | None:
+    """Return the runs of the options; None where those of a suite count."""
+    from rockwobble.compare import default_runs
+    from rockwobble.models import Run
+
+    if engines == ["none"]:
+        return []
+    if stated and not (engines or supports or time_step):
+        return None
+    chosen = default_runs(engines or None, supports or None)
+    return [Run(run.engine, run.support, time_step) for run in chosen]
+
+
+def _source(synthetic: float | None, far_field: float | None, perturbation: float) -> str:
+    """Return what the members are."""
+    if far_field is not None:
+        return f"far-field pairs of FEMA P-695, with peaks of {far_field:g} g tan alpha"
+    if synthetic is not None:
+        return f"made-up ground motions, with peaks of {synthetic:g} g tan alpha"
+    return f"starts perturbed by {100.0 * perturbation:g} %"

@@ -1,0 +1,79 @@
+"""The command line. Nothing heavy is imported before a command needs it: --help answers at once."""
+
+from __future__ import annotations
+
+import sys
+from typing import Annotated, Any
+
+import typer
+
+from ..console.terminal import BAD_INPUT, INTERRUPTED, complain
+from .advise import advise
+from .check import check
+from .compare import compare
+from .ensemble import ensemble
+from .extremes import extremes
+from .figures import figures
+from .report import report
+from .show import show
+from .simulate import simulate
+from .spectrum import spectrum
+from .sweep import sweep
+from .tradeoff import tradeoff
+from .validity import validity
+from .view import view
+
+app = typer.Typer(
+    name="rockwobble",
+    help="How far can a two-degree-of-freedom model of a rocking and wobbling cylinder be trusted?",
+    add_completion=False,
+    rich_markup_mode="rich",
+    pretty_exceptions_enable=False,
+)
+app.command(epilog="Example: rockwobble compare --semidiagonal 10 --tan-alpha 0.1 --engine mujoco")(compare)
+app.command(epilog="Example: rockwobble advise --record-x EW.AT2 --record-y NS.AT2 --friction 0.5")(advise)
+app.command(epilog="Example: rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8")(
+    simulate
+)
+app.command(epilog="Example: rockwobble spectrum --tan-alpha 0.2 --sizes 50 --intensities 50")(spectrum)
+app.command(epilog="Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid")(sweep)
+app.command(epilog="Example: rockwobble show rockwobble-sweep")(show)
+app.command(epilog="Example: rockwobble report rockwobble-out")(report)
+app.command(epilog="Example: rockwobble view --scale 2 --support free")(view)
+app.command(epilog="Example: rockwobble ensemble --synthetic 3 --members 40 --engine mujoco")(ensemble)
+app.command(epilog="Example: rockwobble check --only equations --only conserved")(check)
+app.command(epilog="Example: rockwobble validity --quick --out validity")(validity)
+app.command(epilog="Example: rockwobble figures --out paper")(figures)
+app.command(epilog="Example: rockwobble tradeoff --quick --out tradeoff")(tradeoff)
+app.command(epilog="Example: rockwobble extremes --quick --out extremes")(extremes)
+
+# typer brings its own click in some versions and imports click in others: one base class, two homes
+_USAGE_ERROR: Any = next(base for base in typer.BadParameter.__mro__ if base.__name__ == "ClickException")
+
+
+@app.callback(invoke_without_command=True)
+def _root(
+    context: typer.Context,
+    version: Annotated[bool, typer.Option("--version", help="Print the version and stop.")] = False,
+) -> None:
+    if version:
+        from importlib.metadata import version as version_of
+
+        print(f"rockwobble {version_of('rockwobble')}")
+        raise typer.Exit
+    if context.invoked_subcommand is None:
+        print(context.get_help())
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the command line; exit code 0 done, 1 a check failed, 2 bad input, 130 interrupted."""
+    try:
+        code = app(arguments, prog_name="rockwobble", standalone_mode=False)
+    except _USAGE_ERROR as error:
+        # one clear line, without the box that typer draws around it
+        complain(error.format_message())
+        sys.exit(BAD_INPUT)
+    except (typer.Abort, KeyboardInterrupt):
+        complain("interrupted")
+        sys.exit(INTERRUPTED)
+    sys.exit(code if isinstance(code, int) else 0)

@@ -1,0 +1,1 @@
+"""Pages: words and tables made from stored numbers."""
