@@ -25,7 +25,7 @@ from .studies.sweep.grid import Grid
 from .studies.sweep.store import SweepStore, open_sweep_store
 from .studies.sweep.study import SweepIncompleteError, SweepProgress, sweep
 from .traces.pair import Pair, make_pair
-from .traces.trajectory import ExternalTrajectory, Foreign, read_trajectory
+from .traces.trajectory import External, ExternalTrajectory, read_trajectory
 
 __all__ = [
     "AGREEMENT",
@@ -38,8 +38,8 @@ __all__ = [
     "Crash",
     "Ensemble",
     "ErrorBudget",
+    "External",
     "ExternalTrajectory",
-    "Foreign",
     "Grid",
     "Job",
     "Pair",

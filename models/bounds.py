@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 
 from ._validation import require_positive
 
-REFERENCES = ("own", "recess", "rolling")
+REFERENCES = ("own", "recess", "flat")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -25,9 +25,9 @@ class Bounds:
         At most [deg].
     uplift_time_difference : float, optional
         At most [s].
-    agreement_horizon : float, optional
+    agreement_time : float, optional
         At least [s], unless the traces agree to the end of the run.
-    reference : {"own", "recess", "rolling"}
+    reference : {"own", "recess", "flat"}
         Reduced model that each run is held against; "own": that of its support.
 
     Raises
@@ -50,7 +50,7 @@ class Bounds:
     residual_displacement: float | None = None
     residual_twist: float | None = None
     energy_loss: float | None = None
-    agreement_horizon: float | None = None
+    agreement_time: float | None = None
     reference: str = "own"
 
     def __post_init__(self) -> None:

@@ -87,7 +87,7 @@ class Run:
     engine : str
         Name of the engine, such as "mujoco" or "pybullet".
     support : str
-        What holds the cylinder in place: "guided", "free", ...
+        What holds the cylinder in place: "recess", "flat", ...
     time_step : float or "auto", optional
         [s]; default: the engine's own choice for the size of the cylinder. "auto": halved until the
         result has settled.

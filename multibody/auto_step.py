@@ -1,11 +1,11 @@
 """time_step="auto": the step is halved until the tilt no longer depends on it.
 
 Runs of successive steps are held against each other, each against the one of twice its step. Two traces
-that near passes of the apex tell apart are compared only up to the last pass before they part, for
+that near passes of upright tell apart are compared only up to the last pass before they part, for
 beyond it no step is small enough: they part where they differ by 1 % of alpha. The tilt has settled when
 
 * the two agree within the tolerance to the end of the run; or
-* they agree within the tolerance until they part, and a further halving does not put off the parting.
+* they agree within the tolerance until they part, and a further halving does not put off the divergence.
 
 Halving ends without that where it no longer brings the traces closer, which engines know (a smaller step
 is not always better), or at the smallest step. The run that is kept is the last that was an improvement.
@@ -30,7 +30,7 @@ COARSEST = 4e-4  # [s] at the reference size: four times the default, so that ea
 SMALLEST = 6.25e-6  # [s] at the reference size: six halvings; below it rounding and cost grow, not accuracy
 STEP_TOLERANCE = 1e-3  # of alpha; the default, a tenth of the difference at which traces part
 _PARTED = 0.01  # of alpha
-_PUT_OFF = 1.05  # a parting later by less is no gain
+_PUT_OFF = 1.05  # a divergence later by less is no gain
 _CLOSER = 0.9  # a difference reduced by less is no gain
 _ORDERS = 0.5, 2.0  # least and largest order that an estimate relies on
 
@@ -49,14 +49,14 @@ class Closeness:
     difference : float
         Largest difference of the tilt until `until` [rad].
     until : float
-        The end of the shorter trace, or the last pass before the parting [s].
-    parting : float
+        The end of the shorter trace, or the last pass before the divergence [s].
+    divergence : float
         Where they part; infinite if they do not [s].
     """
 
     difference: float
     until: float
-    parting: float
+    divergence: float
 
 
 def find_step(
@@ -120,29 +120,29 @@ def closeness(coarse: Trajectory, fine: Trajectory, alpha: float) -> Closeness:
         ends_alike = coarse.outcome == fine.outcome or "overturned" not in (coarse.outcome, fine.outcome)
         end = float(fine.time[count - 1])
         return Closeness(float(distance.max(initial=0.0)), end, math.inf if ends_alike else end)
-    parting = float(fine.time[beyond[0]])
+    divergence = float(fine.time[beyond[0]])
     passes = np.asarray(fine.passes["time"], dtype=float)
-    earlier = passes[passes < parting]
+    earlier = passes[passes < divergence]
     until = float(earlier[-1]) if len(earlier) else 0.0
     within = distance[: int(np.searchsorted(fine.time, until, side="right"))]
-    return Closeness(float(within.max(initial=0.0)), until, parting)
+    return Closeness(float(within.max(initial=0.0)), until, divergence)
 
 
 def _judge(found: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
     """Return why to stop, "" where the tilt has settled and None to go on, and whether the last is a gain."""
     last = found[-1]
     close = last.difference <= tolerance
-    if math.isinf(last.parting) and close:
+    if math.isinf(last.divergence) and close:
         return "", True
     if len(found) < 2:
         return None, True
     before = found[-2]
-    if last.parting > before.parting * _PUT_OFF:
+    if last.divergence > before.divergence * _PUT_OFF:
         return None, True
-    if math.isfinite(last.parting):
-        # the one before parted later: the smaller step is the worse one
-        gain = last.parting >= before.parting / _PUT_OFF
-        return ("" if close and gain else "a smaller step does not put off the parting"), gain
+    if math.isfinite(last.divergence):
+        # the one before diverged later: the smaller step is the worse one
+        gain = last.divergence >= before.divergence / _PUT_OFF
+        return ("" if close and gain else "a smaller step does not put off the divergence"), gain
     if last.difference > _CLOSER * before.difference:
         return "a smaller step does not bring it closer", last.difference <= before.difference
     return None, True
@@ -164,7 +164,7 @@ def _reported(run: Trajectory, found: list[Closeness], verdict: str, alpha: floa
         return run if run.outcome == "failed" else replace(run, message=_joined(run.message, said))
     last = found[-1]
     until = (
-        "" if math.isinf(last.parting) else f" until {last.until:.4g} s, the last pass before traces part,"
+        "" if math.isinf(last.divergence) else f" until {last.until:.4g} s, the last pass before traces part,"
     )
     error, order = _estimate(found)
     if verdict:

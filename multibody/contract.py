@@ -1,7 +1,7 @@
 """What any engine must hold, in physics: invariants that need no other model to compare with.
 
 Each check runs one engine with one support and raises an AssertionError that says what was found. The
-problem is a pier of 6 m released at half its slenderness, which passes by the apex within 1.2 s.
+problem is a pier of 6 m released at half its slenderness, which passes within 1.2 s.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from .start import starting_state
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)
-PASS = 1.3  # [s] until after the first pass by the apex
+PASS = 1.3  # [s] until after the first pass
 
 FALL = 2.0 * REFERENCE_GRAVITY  # [m/s^2] more than the acceleration of the mass centre
 START = 1e-6  # relative, of rates: a central difference over two steps
@@ -73,10 +73,10 @@ def steps_one_by_one(engine: str, support: str) -> None:
     backend, scene = find_engine(engine), _scene(support)
     settings = backend.settings({}, scene)
     still = np.zeros((60, 3))
-    with backend.open(scene, settings) as whole, backend.open(scene, settings) as parted:
+    with backend.open(scene, settings) as whole, backend.open(scene, settings) as separated:
         _hold(0.0 <= whole.hold_centre <= 1.0, f"hold_centre is {whole.hold_centre}")
         together = whole.advance(still)
-        parts = [parted.advance(still[:1]), parted.advance(still[1:23]), parted.advance(still[23:])]
+        parts = [separated.advance(still[:1]), separated.advance(still[1:23]), separated.advance(still[23:])]
         _hold(whole.warnings() == "", f"it warned of {whole.warnings()!r} in a sound run")
     for name, width in (("position", 3), ("quaternion", 4), ("velocity", 3), ("angular_velocity", 3)):
         values: Array = getattr(together, name)
@@ -172,7 +172,7 @@ def takes_the_work_of_the_ground(engine: str, support: str) -> None:
 def keeps_momentum_or_rolls(engine: str, support: str) -> None:
     """In a recess L = B phi' is conserved and there is no twist; on open ground the rim does not slip."""
     found = run(engine, support)
-    if support == "guided":
+    if support == "recess":
         momentum = np.array([_inertia(tilt)[0] for tilt in found.tilt]) * found.rolling_rate
         _small(momentum / momentum[0] - 1.0, MOMENTUM, "L = B phi' over its start is not conserved")
         _small(found.twist, 1e-4, "the guide lets the cylinder twist")
@@ -226,7 +226,7 @@ GENERAL: tuple[Check, ...] = (
 )
 """What holds with any support."""
 
-ROLLING: tuple[Check, ...] = (
+FLAT: tuple[Check, ...] = (
     does_not_tell_left_from_right,
     does_not_know_the_axes,
     keeps_its_energy,
@@ -236,7 +236,7 @@ ROLLING: tuple[Check, ...] = (
     overturns,
     uplifts_when_due,
 )
-"""What holds where the rim rolls without loss: guided and free."""
+"""What holds where the rim rolls without loss: recess and flat."""
 
 
 def _hold(condition: bool, otherwise: str) -> None:

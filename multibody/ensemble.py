@@ -37,7 +37,7 @@ def simulate_many(
     cases: Sequence[Case],
     *,
     engine: str = "mujoco",
-    support: str = "guided",
+    support: str = "recess",
     time_step: float | Literal["auto"] | None = None,
     sample_step: float = 0.01,
     progress: Progress | None = None,

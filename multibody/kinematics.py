@@ -167,7 +167,7 @@ def unwrap_twist(twist: Array, before: float) -> Array:
     """Return the twist (n,) without jumps, going on from `before` [rad].
 
     A quaternion and its negative are one pose, and the twists that they tell differ by a whole turn. A step
-    twists by far less than half a turn, unlike the azimuth at the apex: q_z and q_w vanish together only
+    twists by far less than half a turn, unlike the azimuth at upright: q_z and q_w vanish together only
     upside down.
     """
     turns = np.cumsum(np.round(np.diff(twist, prepend=before) / (2.0 * np.pi)))
@@ -183,7 +183,7 @@ def unwrap(
 ) -> Array:
     """Return the rolling angle without jumps, going on from `before` [rad].
 
-    A change above a quarter turn in one step happens next to the apex, where the shorter way round may
+    A change above a quarter turn in one step happens next to upright, where the shorter way round may
     be the wrong one: the sign of the momentum, given for some indices, says which way the cylinder
     turned. Where the azimuth is not `meaningful`, because the cylinder stands, the angle waits;
     `leant_before` says whether it was meaningful at `before`.

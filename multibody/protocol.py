@@ -154,7 +154,7 @@ class Engine(Protocol):
 
     @property
     def supports(self) -> tuple[str, ...]:
-        """Names of the supports that it has: "guided" (ideal recess), "free" (open ground)."""
+        """Names of the supports that it has: "recess" (ideal recess), "flat" (open ground)."""
         ...
 
     @property

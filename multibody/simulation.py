@@ -41,7 +41,7 @@ def simulate(
     initial: InitialState | None = None,
     duration: float | None = None,
     engine: str = "mujoco",
-    support: str = "guided",
+    support: str = "recess",
     time_step: float | Literal["auto"] | None = None,
     friction: float = 1.0,
     sample_step: float = 0.01,
@@ -62,7 +62,7 @@ def simulate(
         [s]; default that of the motion.
     engine : {"mujoco", "pybullet", "exudyn"}
         Or one that another package declares. Exudyn is an ideal rim: free, from a release only.
-    support : {"guided", "free", "ring"}
+    support : {"recess", "flat", "ring"}
         The ideal recess, which holds the twist at zero; open ground; or a real recess of inclined walls,
         which MuJoCo has.
     time_step : float or "auto", optional

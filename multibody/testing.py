@@ -22,7 +22,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from .contract import GENERAL, ROLLING, Check
+from .contract import FLAT, GENERAL, Check
 from .engines.registry import find_engine
 
 
@@ -51,7 +51,7 @@ def contract_checks(engine: str) -> tuple[ContractCheck, ...]:
         If there is no such engine, or it does not load.
     """
     supports = find_engine(engine).supports
-    rules = {support: (*GENERAL, *(ROLLING if support in ("guided", "free") else ())) for support in supports}
+    rules = {support: (*GENERAL, *(FLAT if support in ("recess", "flat") else ())) for support in supports}
     checks = (ContractCheck(engine, support, rule) for support in supports for rule in rules[support])
     # a new process takes as long as all the rest, and what an engine prints does not depend on the support
     return (*checks, ContractCheck(engine, supports[0], leaves_no_trace))

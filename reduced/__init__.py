@@ -11,13 +11,13 @@ from .exact import (
     steady_wobble_rate,
     wobbling_period,
 )
-from .problem import MODELS, SEATING, restitution_from_momentum
+from .problem import MODELS, REST_TILT, restitution_from_momentum
 from .response import Response
 from .simulation import simulate
 
 __all__ = [
     "MODELS",
-    "SEATING",
+    "REST_TILT",
     "FreeResponse",
     "Response",
     "angle_of_turn",

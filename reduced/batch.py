@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble.models import Cylinder, GroundMotion
 
 from .integration.march import OVERTURNED, March
-from .problem import SEATING, make_problem
+from .problem import REST_TILT, make_problem
 from .simulation import make_ready
 
 # Tasks for each thread, so that all end at about the same time. The sizes of one task share the preparation
@@ -30,7 +30,7 @@ def peak_tilts(
     *,
     model: str = "recess",
     rtol: float = 1e-7,
-    seating: float = SEATING,
+    rest_tilt: float = REST_TILT,
     gravity: float = 9.81,
     plane: float = 0.0,
     restitution: float | str = 1.0,
@@ -51,7 +51,7 @@ def peak_tilts(
     motion : GroundMotion
     scales : array_like, shape (n_scale,)
         Factors on the motion, not negative [-].
-    model, rtol, seating, gravity, plane, restitution
+    model, rtol, rest_tilt, gravity, plane, restitution
         As in `simulate`.
     workers : int, optional
         Number of threads; default: that of the cores.
@@ -85,7 +85,7 @@ def peak_tilts(
             None,
             gravity=gravity,
             rtol=rtol,
-            seating=seating,
+            rest_tilt=rest_tilt,
             plane=plane,
             restitution=restitution,
         )

@@ -1,4 +1,4 @@
-"""Equations of motion of the planar, recess and rolling models, in the form that computes well.
+"""Equations of motion of the planar, recess and flat models, in the form that computes well.
 
 All are written per unit mass, with s = sin theta, c = cos theta, v = 1 - c = 2 sin^2(theta/2),
 t = tan(theta/2) = v/s and
@@ -83,7 +83,7 @@ def recess_rhs(
 
 
 @jit
-def rolling_rhs(
+def flat_rhs(
     body: Body,
     theta: float,
     omega: float,
@@ -136,7 +136,7 @@ def rolling_rhs(
 
 @jit
 def twist_coupling(body: Body, t: float, H: float) -> float:
-    """Return N1 [-], the coefficient of theta' Lambda in S'; it tends to infinity as 1/t at the apex."""
+    """Return N1 [-], the coefficient of theta' Lambda in S'; it tends to infinity as 1/t at upright."""
     b, h, I1, I2, C, E = body.b, body.h, body.I1, body.I2, body.C, body.E
     polynomial = b * b * I1 + t * (-2.0 * I2 * E + t * (C * (I1 - I2) + I2 * h * h))
     return (1.0 + t * t) / (2.0 * t * H * H) * polynomial

@@ -2,7 +2,7 @@
 
 The force follows from the acceleration of the mass centre; S is at the radius D - b + |contact| of
 the contact azimuth, so its velocity across that azimuth is D phi' - b tau' and the terms that grow
-without bound towards the apex cancel exactly when collected, as they are here.
+without bound towards upright cancel exactly when collected, as they are here.
 
 ====== ======== =============================================================== ========
 symbol unit     meaning                                                         source
@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from ._compile import jit, kernel
 from .body import Body
-from .equations import energy, rolling_rhs
+from .equations import energy, flat_rhs
 
 # columns of what `derived_quantities` returns
 ROLLING_RATE, ENERGY, FORCE_X, FORCE_Y, FORCE_Z, COUPLE = range(6)
@@ -42,9 +42,9 @@ def contact_force(
     az: float,
     free_twist: bool,
 ) -> tuple[float, float, float, float]:
-    """Return F_r, F_t, N and kappa of a state, for the rolling model or (S = 0) for the recess."""
+    """Return F_r, F_t, N and kappa of a state, for the flat-ground model or (S = 0) for the recess."""
     b, h, C, E = body.b, body.h, body.C, body.E
-    rates = rolling_rhs(body, theta, omega, phi, Lambda, 0.0, S, ax, ay, az)
+    rates = flat_rhs(body, theta, omega, phi, Lambda, 0.0, S, ax, ay, az)
     theta_acceleration, phi_rate, tau_rate, S_rate = rates[1], rates[2], rates[4], rates[5]
     s, c = sin(theta), cos(theta)
     t = s / (1.0 + c)
@@ -105,7 +105,7 @@ def derived_quantities(
         if theta == 0.0 and omega == 0.0:
             out[i, FORCE_X], out[i, FORCE_Y], out[i, FORCE_Z] = ax / body.g, ay / body.g, 1.0 + az / body.g
             continue
-        out[i, ROLLING_RATE] = rolling_rhs(body, theta, omega, phi, Lambda, tau, S, ax, ay, az)[2]
+        out[i, ROLLING_RATE] = flat_rhs(body, theta, omega, phi, Lambda, tau, S, ax, ay, az)[2]
         out[i, ENERGY] = energy(body, theta, omega, Lambda, S)
         F_r, F_t, N, kappa = contact_force(body, theta, omega, phi, Lambda, S, ax, ay, az, free_twist)
         out[i, FORCE_X] = (F_r * cos(phi) - F_t * sin(phi)) / body.g

@@ -13,19 +13,19 @@ from .integration.driver import make_driver
 from .integration.march import March, Options
 from .integration.stepping import runge_kutta, taylor_series
 from .integration.systems import (
+    FLAT,
     PLANAR,
     RECESS,
-    ROLLING,
+    flat_combine,
+    flat_ratio,
     planar_combine,
     planar_ratio,
-    rolling_combine,
-    rolling_ratio,
 )
 from .integration.tsit5 import State
 
 _march_planar = make_driver(PLANAR, runge_kutta(PLANAR, planar_combine, planar_ratio))
 _march_recess = make_driver(RECESS, taylor_series())
-_march_rolling = make_driver(ROLLING, runge_kutta(ROLLING, rolling_combine, rolling_ratio))
+_march_flat = make_driver(FLAT, runge_kutta(FLAT, flat_combine, flat_ratio))
 
 
 @kernel
@@ -57,7 +57,7 @@ def march_recess(
 
 
 @kernel
-def march_rolling(
+def march_flat(
     body: Body,
     options: Options,
     record: NDArray[np.float64],
@@ -66,12 +66,12 @@ def march_rolling(
     times: NDArray[np.float64],
     later: NDArray[np.float64],
 ) -> March:
-    """Solve the rolling model; see `driver.make_driver`."""
-    return _march_rolling(body, options, record, time_step, initial, times, later)
+    """Solve the flat-ground model; see `driver.make_driver`."""
+    return _march_flat(body, options, record, time_step, initial, times, later)
 
 
-MARCHES = {"planar": march_planar, "recess": march_recess, "rolling": march_rolling}
-SIZES = {"planar": 3, "recess": 4, "rolling": 8}  # variables of a state
+MARCHES = {"planar": march_planar, "recess": march_recess, "flat": march_flat}
+SIZES = {"planar": 3, "recess": 4, "flat": 8}  # variables of a state
 
 
 def load(model: str) -> None:

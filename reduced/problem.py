@@ -28,16 +28,16 @@ MODELS = tuple(kernels.MARCHES)
 # than 2 % from that of a hundred times smaller tilt in 10.1, 3.9, 1.4, 0.5, 0.3 and 0.3 % at 1e-5, 1e-6,
 # 1e-7, 1e-8, 1e-9 and 1e-10: from 1e-8 on it is what the tolerance leaves. The steps grow by a sixth from
 # 1e-5 to 1e-8, and the longest chatter from 59 to 251 steps a sample.
-SEATING = 1e-8
+REST_TILT = 1e-8
 # With energy lost at each impact the impacts accumulate in finite time: some bound is needed.
-_LEAST_SEATING_WITH_LOSS = 1e-9
+_LEAST_WITH_LOSS = 1e-9
 # Steps allowed before a run is given up, at least and per record sample or time 1/p: two orders above what a
 # record of strong shaking takes. Rocking at the rest threshold without end takes 5e4 in a time 1/p.
 _BUDGET, _BUDGET_PER_SAMPLE, _BUDGET_PER_TIME = 500_000, 50, 100_000
 # A spin (over p) whose passes are as near to the upright position as numbers can be to zero. A weaker one
 # turns by the same angle, that of vanishing spin, and is solved as this one.
 _LEAST_SPIN = 1e-100
-MOST_SEATING = 0.1  # tilt of the seating rule over alpha
+LARGEST_REST_TILT = 0.1  # tilt of the rest rule over alpha
 
 
 class Plane(NamedTuple):
@@ -74,7 +74,7 @@ class Problem:
     duration: float
     gravity: float
     rtol: float
-    seating: float
+    rest_tilt: float
     plane: float
     restitution: float
 
@@ -142,15 +142,17 @@ class Problem:
         return 1.0 if self.motion is None else self.motion.time_step
 
     def _options(self, record_steps: bool) -> Options:
-        least_seating = _LEAST_SEATING_WITH_LOSS if self.restitution < 1.0 else 0.0
-        seating = max(self.seating, least_seating)
-        return Options(self.rtol, seating, self.restitution, self.duration, self._step_budget(), record_steps)
+        least_rest_tilt = _LEAST_WITH_LOSS if self.restitution < 1.0 else 0.0
+        rest_tilt = max(self.rest_tilt, least_rest_tilt)
+        return Options(
+            self.rtol, rest_tilt, self.restitution, self.duration, self._step_budget(), record_steps
+        )
 
     @cached_property
     def _set_up(self) -> SetUp:
         """Choose the march: motion that stays in one vertical plane is solved as planar.
 
-        Rounding would otherwise choose on which side such motion passes the apex.
+        Rounding would otherwise choose on which side such motion passes upright.
         """
         record = three_columns(self.motion)
         plane = self._plane(record)
@@ -164,7 +166,7 @@ class Problem:
     def _later(self) -> NDArray[np.float64]:
         """Largest |a| and least az from each sample on (m, 2) [m/s^2]; none where a fall may yet be held."""
         record = self._set_up.record
-        if len(self._set_up.start) == kernels.SIZES["rolling"]:
+        if len(self._set_up.start) == kernels.SIZES["flat"]:
             return np.empty((0, 2))
         strongest = np.maximum.accumulate(np.hypot(record[::-1, 0], record[::-1, 1]))[::-1]
         # the ground is still after the record, so az reaches 0
@@ -233,7 +235,7 @@ def make_problem(
     *,
     gravity: float,
     rtol: float,
-    seating: float,
+    rest_tilt: float,
     plane: float,
     restitution: float | str,
 ) -> Problem:
@@ -244,8 +246,8 @@ def make_problem(
         raise ValueError(f"gravity must be positive and finite [m/s^2], got {gravity!r}")
     if not 1e-13 <= rtol <= 1e-2:
         raise ValueError(f"rtol must be from 1e-13 to 1e-2, got {rtol!r}")
-    if not 0.0 <= seating <= MOST_SEATING:
-        raise ValueError(f"seating must be from 0 (no rule) to 0.1 (of alpha), got {seating!r}")
+    if not 0.0 <= rest_tilt <= LARGEST_REST_TILT:
+        raise ValueError(f"rest threshold must be from 0 (no rule) to 0.1 (of alpha), got {rest_tilt!r}")
     if not math.isfinite(plane):
         raise ValueError(f"plane must be a finite azimuth [rad], got {plane!r}")
     if restitution == "momentum":
@@ -266,7 +268,7 @@ def make_problem(
         duration=run_duration(motion, duration),
         gravity=float(gravity),
         rtol=float(rtol),
-        seating=float(seating),
+        rest_tilt=float(rest_tilt),
         plane=float(plane),
         restitution=factor,
     )

@@ -39,7 +39,7 @@ class Response:
     rolling_rate : ndarray, shape (n,)
         phi' [rad/s]; 0 at rest.
     twist : ndarray, shape (n,)
-        phi + psi [rad]; 0 but in the rolling model.
+        phi + psi [rad]; 0 but in the flat-ground model.
     contact_point : ndarray, shape (n, 2)
         On the ground, relative to O [m]; NaN at rest.
     centre_of_mass : ndarray, shape (n, 3)
@@ -48,7 +48,7 @@ class Response:
         Relative to the ground, per unit mass, zero standing [m^2/s^2].
     contact_force : ndarray, shape (n, 3)
         On the cylinder, in weights, world axes.
-    recess_couple : ndarray, shape (n,)
+    restraining_moment : ndarray, shape (n,)
         Couple along z_world + z_body that the recess supplies, over the weight [m]; 0 without one.
     friction_needed : ndarray, shape (n,)
         Horizontal over normal force; inf where the normal force is not positive.
@@ -138,7 +138,7 @@ class Response:
         return self._derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
 
     @property
-    def recess_couple(self) -> Array:
+    def restraining_moment(self) -> Array:
         """Couple (n,) of the recess along z_world + z_body, over the weight [m]."""
         return self._derived[:, forces.COUPLE]
 
@@ -166,7 +166,7 @@ class Response:
 
     @property
     def passes(self) -> pd.DataFrame:
-        """Passes by the apex: a tilt minimum between two maxima, one row each.
+        """Passes: a tilt minimum between two maxima, one row each.
 
         Columns: time [s] of the minimum, minimum_tilt [rad], angle_of_turn [rad], the change of
         rolling angle from maximum to maximum. Turning points closer than the tolerance of the
@@ -231,7 +231,7 @@ class Response:
                 "force_x": force[:, 0],
                 "force_y": force[:, 1],
                 "force_z": force[:, 2],
-                "recess_couple": self.recess_couple,
+                "restraining_moment": self.restraining_moment,
                 "friction_needed": self.friction_needed,
             }
         )
@@ -249,7 +249,7 @@ class Response:
             self.problem.body,
             np.ascontiguousarray(states),
             ground_at(self.problem.motion, self.problem.duration, times),
-            self.model == "rolling",
+            self.model == "flat",
         )
 
 

@@ -14,7 +14,7 @@ from rockwobble.models import Cylinder, GroundMotion, InitialState
 from . import kernels
 from ._compile import in_memory, on_disk
 from .integration.march import COMPLETED, OVER_BUDGET, OVERTURNED, REST, March
-from .problem import SEATING, Problem, make_problem
+from .problem import REST_TILT, Problem, make_problem
 from .response import Response
 
 _OUTCOMES = {REST: "rest", COMPLETED: "completed", OVERTURNED: "overturned"}
@@ -28,7 +28,7 @@ def simulate(
     duration: float | None = None,
     rtol: float = 1e-8,
     sample_step: float = 0.01,
-    seating: float = SEATING,
+    rest_tilt: float = REST_TILT,
     gravity: float = 9.81,
     friction: float = 1.0,
     model: str = "recess",
@@ -50,16 +50,16 @@ def simulate(
         Relative tolerance of one step.
     sample_step : float, optional
         Spacing of the samples returned [s]; does not influence the solution.
-    seating : float, optional
+    rest_tilt : float, optional
         The cylinder is at rest again when its energy is below that of a standstill at the tilt
-        ``seating * alpha``; 0 leaves the rule out, as in the paper.
+        ``rest_tilt * alpha``; 0 leaves the rule out, as in the paper.
     gravity : float, optional
         g [m/s^2].
     friction : float, optional
         Coefficient that `Response.assumptions` holds the friction needed against.
-    model : {"recess", "rolling", "planar"}, optional
+    model : {"recess", "flat", "planar"}, optional
         "recess": no slip, no roll-out, the paper's two degrees of freedom, (18) and (19);
-        "rolling": no slip, free to roll out; "planar": one vertical plane.
+        "flat": no slip, free to roll out; "planar": one vertical plane.
     plane : float, optional
         Azimuth of that plane [rad] (planar model only).
     restitution : float or "momentum", optional
@@ -93,7 +93,7 @@ def simulate(
         duration,
         gravity=gravity,
         rtol=rtol,
-        seating=seating,
+        rest_tilt=rest_tilt,
         plane=plane,
         restitution=restitution,
     )
@@ -149,7 +149,7 @@ def _response(
     if overturned:
         states[-1, 0] = 0.5 * math.pi  # the last of a Newton iteration
     none = np.zeros(len(states))
-    # planar motion has neither spin nor twist, and only the rolling model has the latter
+    # planar motion has neither spin nor twist, and only the flat-ground model has the latter
     momentum = states[:, 3] if states.shape[1] > 3 else none
     twist, twist_momentum = (states[:, 4], states[:, 5]) if states.shape[1] > 4 else (none, none)
     outcome = _OUTCOMES.get(march.status, "failed")
@@ -200,7 +200,7 @@ def _ending(problem: Problem, march: March) -> str:
     if march.status == OVER_BUDGET:
         return (
             f"the step budget of {march.step_count - 1} steps was used up at {march.end:.4g} s: the motion "
-            f"chatters near the upright position (a seating above {problem.seating:g} would end it)"
+            f"chatters near the upright position (a rest threshold above {problem.rest_tilt:g} would end it)"
         )
     if march.status not in _OUTCOMES:
         return f"no step met the tolerance of {problem.rtol:g} at {march.end:.4g} s"

@@ -14,7 +14,7 @@ with a suite (what it may hold is said in the docstring of `rockwobble.models.su
 
     [bounds]                     # without this table: what contact at this time step explains
     tilt_rms = 2e-3              # alpha
-    agreement_horizon = 10       # s, at least
+    agreement_time = 10       # s, at least
 
     [[runs]]
     engine = ["mujoco", "pybullet"]

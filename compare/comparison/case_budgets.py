@@ -9,7 +9,7 @@ from typing import Any
 
 from rockwobble.models import Case, Run
 
-from ..metrics.agreement import Horizon, agreement_horizon
+from ..metrics.agreement import Agreement, agreement_time
 from ..runs.choice import own_model, references_of
 from ..runs.execution import IMPACT, Crash, Job
 from ..traces.pair import make_pair
@@ -43,7 +43,7 @@ def case_budgets(
     simulate : callable
         Runs jobs, and returns their results in the same order.
     """
-    agreements: dict[tuple[str, str, str], Horizon] = {}
+    agreements: dict[tuple[str, str, str], Agreement] = {}
     refined = []
     for case in cases:
         for label, run in runs.items():
@@ -95,9 +95,9 @@ def case_budgets(
 def _landings(
     cases: Sequence[Case], supports: Collection[str], results: Mapping[Key, Any], simulate: Simulate
 ) -> dict[Key, Any]:
-    """Return what an exact engine follows where a model goes through the apex: by names of case and model.
+    """Return what an exact engine follows where a model goes through upright: by names of case and model.
 
-    Motion in one vertical plane passes the apex itself, and there the base lands flat. Recess and rolling
+    Motion in one vertical plane passes upright itself, and there the base lands flat. Recess and rolling
     model go on without loss, as the limit of a vanishing spin does. A rigid base takes the angular momentum
     about its new edge (Housner), on any support, and so do both engines: the difference is model form.
     """
@@ -118,8 +118,8 @@ def _landings(
     return dict(zip(keys, simulate(jobs), strict=True)) if jobs else {}
 
 
-def _agreement(case: Case, response: Any, trajectory: Any) -> Horizon | None:
+def _agreement(case: Case, response: Any, trajectory: Any) -> Agreement | None:
     if response.outcome == "failed" or not math.isfinite(response.uplift_time):
         return None
-    horizon = agreement_horizon(make_pair(case.cylinder, response, trajectory, until=case.length))
+    horizon = agreement_time(make_pair(case.cylinder, response, trajectory, until=case.length))
     return horizon if horizon.length > 0.0 else None

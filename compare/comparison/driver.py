@@ -14,12 +14,12 @@ from ..runs.execution import Crash, Job, ProgressCallback, simulate_all
 from ..runs.run_store import open_run_store
 from ..storage.files import require_writable
 from ..storage.provenance import package_versions
-from ..traces.trajectory import Foreign, read_trajectories
+from ..traces.trajectory import External, read_trajectories
 from .case_budgets import case_budgets
 from .error_budget import ErrorBudget
 from .prediction import Simulate, estimated_error, measured_error, predict_horizon
 from .result import Comparison
-from .summary import SUMMARY_COLUMNS, crashed_row, foreign_row, summary_row
+from .summary import SUMMARY_COLUMNS, crashed_row, external_row, summary_row
 
 
 def compare(
@@ -32,7 +32,7 @@ def compare(
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
-    foreign: Iterable[Foreign | str | Path] = (),
+    external: Iterable[External | str | Path] = (),
     budget: bool = False,
 ) -> Comparison:
     """Run engines and reduced models on the same problem, and report how they differ.
@@ -41,10 +41,10 @@ def compare(
     ----------
     case_or_suite : Case or Suite
     runs : iterable of Run, optional
-        Default: those of the suite, else every installed engine with supports "guided" and "free".
+        Default: those of the suite, else every installed engine with supports "recess" and "flat".
     reference : str, optional
-        Reduced model that each run is held against. A run on open ground ("free") is also held
-        against the model that is free to roll out, "rolling", and so is one in a ring of walls ("ring").
+        Reduced model that each run is held against. A run on open ground ("flat") is also held
+        against the model that is free to roll out, "flat", and so is one in a ring of walls ("ring").
     out : str or Path, optional
         Folder to save the results in; checked before anything runs.
     until : float, optional
@@ -56,7 +56,7 @@ def compare(
     resume : str or Path, optional
         Folder, such as that of `out`, that keeps each run in `runs` as soon as it is finished. A second
         call with the same inputs, after whatever ended the first, repeats none that is there.
-    foreign : iterable of Foreign, str or Path, optional
+    external : iterable of External, str or Path, optional
         CSV files of trajectories of this case from a shake table or another code, each one more run; what
         they may hold is said in `rockwobble.compare.traces.file`. With them, `runs` may be empty.
     budget : bool, optional
@@ -79,19 +79,19 @@ def compare(
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     >>> case = Case("release", pier, initial=release, duration=0.5)
-    >>> found = compare(case, runs=[Run("mujoco", "guided", 1e-3)], workers=1)
-    >>> found.summary[["engine", "support", "reference", "parted"]].values.tolist()
-    [['mujoco', 'guided', 'recess', False]]
+    >>> found = compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1)
+    >>> found.summary[["engine", "support", "reference", "diverged"]].values.tolist()
+    [['mujoco', 'recess', 'recess', False]]
     """
     if out is not None:
         require_writable(out)
     cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
-    chosen = _runs(case_or_suite, runs, needed=not (foreign := tuple(foreign)))
+    chosen = _runs(case_or_suite, runs, needed=not (external := tuple(external)))
     for case in cases:
         for run in chosen:
             require_runnable(case, run)
     labels = run_labels(chosen)
-    brought = read_trajectories(foreign, cases, taken=labels)
+    brought = read_trajectories(external, cases, taken=labels)
     models = [reference] if brought else []
     for run in chosen:
         models += [*references_of(run, reference), own_model(run.support)]
@@ -125,7 +125,7 @@ def compare(
             for model in references_of(run, reference)
         ]
     rows += [
-        foreign_row(cases[0], reference, by_label[name, reference], label, trajectory, until=until)
+        external_row(cases[0], reference, by_label[name, reference], label, trajectory, until=until)
         for (name, label), trajectory in brought.items()
     ]
     comparison = Comparison(
@@ -210,4 +210,4 @@ def _row(
 def _table(rows: list[dict[str, Any]]) -> Any:
     import pandas as pd
 
-    return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS)).astype({"parted": bool, "agreed_passes": int})
+    return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS)).astype({"diverged": bool, "agreed_passes": int})

@@ -4,9 +4,9 @@
                        =     numerics     +  unexplained  +   model form
 
 limit is the engine extrapolated to a time step of zero, own the reduced model of the engine's support
-(see `own_model`) or, where that goes through the apex itself, planar motion with the loss of a base that
+(see `own_model`) or, where that goes through upright itself, planar motion with the loss of a base that
 lands flat. The three are signed traces of the tilt, and add up exactly.
-Tilt itself is never negative, so it folds where a motion goes past the apex; as long as two motions agree
+Tilt itself is never negative, so it folds where a motion goes past upright; as long as two motions agree
 within 1 % of alpha they are on the same side of that fold, which is why the budget ends with the agreement.
 """
 
@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder
 
-from ..metrics.agreement import Horizon
+from ..metrics.agreement import Agreement
 from ..traces.pair import Trace
 
 if TYPE_CHECKING:
@@ -60,7 +60,7 @@ class Limit:
     time : ndarray, shape (n,)
         [s]
     tilt : ndarray, shape (n,)
-        [rad]; an extrapolation may be slightly negative next to the apex.
+        [rad]; an extrapolation may be slightly negative next to upright.
     error : ndarray, shape (n,)
         By how much the finest step has moved it [rad]: its uncertainty.
     steps : tuple of float
@@ -131,7 +131,7 @@ class ErrorBudget:
 
 
 def error_budget(
-    cylinder: Cylinder, engine: Trace, reference: Trace, own: Trace, limit: Limit, horizon: Horizon
+    cylinder: Cylinder, engine: Trace, reference: Trace, own: Trace, limit: Limit, horizon: Agreement
 ) -> ErrorBudget:
     """Return the budget of `engine` minus `reference` over their agreement.
 
@@ -146,7 +146,7 @@ def error_budget(
         Response of the reduced model of the engine's support; may be the reference itself.
     limit : Limit
         The engine extrapolated in its step.
-    horizon : Horizon
+    horizon : Agreement
         Agreement of engine and reference.
     """
     start = reference.uplift_time if math.isfinite(reference.uplift_time) else 0.0

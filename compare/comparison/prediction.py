@@ -4,7 +4,7 @@ Three things end an agreement, and the first of them is the prediction:
 
 * model form: the reduced model of the engine's support leaves the model that is asked about, as the
   rolling one leaves the recess;
-* pass: a pass closer to the apex than the engine's contact resolves, which leaves the side to chance;
+* pass: a pass closer to upright than the engine's contact resolves, which leaves the side to chance;
 * growth: a twin of the reduced run, disturbed by as much as the engine errs, leaves it. Near passes
   multiply whatever difference there is, and the twin goes through the same passes.
 
@@ -26,7 +26,7 @@ import numpy as np
 
 from rockwobble.models import Case
 
-from ..metrics.agreement import agreement_horizon
+from ..metrics.agreement import agreement_time
 from ..traces.pair import FloatArray, Trace, make_pair
 from .error_budget import ErrorBudget
 
@@ -141,18 +141,18 @@ def predict_horizon(
     return Prediction(length=max(0.0, ends[reason] - start), reason=reason)
 
 
-def verdict(measured: float, parted: bool, predicted: float, reason: str) -> str:
-    """Return whether traces parted when they had to.
+def verdict(measured: float, diverged: bool, predicted: float, reason: str) -> str:
+    """Return whether traces diverged when they had to.
 
     Returns
     -------
-    {"in time", "later", "earlier", "never, as foretold"}
-        "later": they agree for more than twice as long as foretold, or to the end of the run;
+    {"in time", "later", "earlier", "never, as predicted"}
+        "later": they agree for more than twice as long as predicted, or to the end of the run;
         "earlier": for less than half as long, which is a finding.
     """
-    if not parted and not reason:
-        return "never, as foretold"
-    if parted and measured * IN_TIME < predicted:
+    if not diverged and not reason:
+        return "never, as predicted"
+    if diverged and measured * IN_TIME < predicted:
         return "earlier"
     if reason and measured > predicted * IN_TIME:
         return "later"
@@ -160,7 +160,7 @@ def verdict(measured: float, parted: bool, predicted: float, reason: str) -> str
 
 
 def landings(response: Trace) -> FloatArray:
-    """Return when a reduced model goes through the apex itself (n,) [s], to a sample.
+    """Return when a reduced model goes through upright itself (n,) [s], to a sample.
 
     Its contact then jumps to the other end of the diameter. A fall that follows makes no pass of it.
     """
@@ -185,8 +185,8 @@ def _start(trace: Trace) -> float:
 
 def _parting(case: Case, reference: Trace, other: Trace) -> float:
     """Time at which two responses part [s]; the length of the run where they do not."""
-    horizon = agreement_horizon(make_pair(case.cylinder, reference, other, until=case.length))
-    return horizon.end if horizon.parted else case.length
+    horizon = agreement_time(make_pair(case.cylinder, reference, other, until=case.length))
+    return horizon.end if horizon.diverged else case.length
 
 
 def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:

@@ -40,7 +40,7 @@ class Comparison:
         Response of the reduced model for each (case name, model name).
     trajectories : dict
         Trajectory of the engine for each (case name, label of the run), such as
-        ("El Centro 1940", "mujoco guided"). A run whose process died is left out.
+        ("El Centro 1940", "mujoco recess"). A run whose process died is left out.
     versions : dict
         Version of each package and engine that took part.
     until : float or None
@@ -61,7 +61,7 @@ class Comparison:
         """Write the results to `folder`: whole files or none, other files there are left alone.
 
         summary.csv is the summary; responses.parquet and trajectories.parquet hold the samples,
-        passes.parquet the passes by the apex, excitation.parquet the ground motions, and
+        passes.parquet the passes, excitation.parquet the ground motions, and
         comparison.json the cases and the versions.
 
         Raises

@@ -11,7 +11,7 @@ import numpy as np
 
 from rockwobble.models import Case, Run
 
-from ..metrics.agreement import Horizon, agreed_passes, agreement_horizon, closest_pass
+from ..metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
 from ..metrics.contact import contact_rms
 from ..metrics.energy import energy_loss
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
@@ -43,10 +43,10 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "turn_difference": ("deg", "how far apart the contact points have rolled at the end of agreement"),
         "uplift_time_difference": ("s", "engine minus reduced model"),
         "uplift_direction_difference": ("rad", "azimuth of the contact point at uplift or release"),
-        "agreement_horizon": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
-        "parted": ("", "whether there was such a difference; if not, the horizon is the run's length"),
-        "agreed_passes": ("", "passes by the apex within the agreement"),
-        "predicted_horizon": ("s", "when the traces have to part, from the reduced models alone"),
+        "agreement_time": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
+        "diverged": ("", "whether there was such a difference; if not, the horizon is the run's length"),
+        "agreed_passes": ("", "passes within the agreement"),
+        "predicted_agreement_time": ("s", "when the traces have to part, from the reduced models alone"),
         "residual_displacement": ("b", "distance of the base centre from its old place at the end"),
         "residual_twist": ("deg", "turn of the cylinder about its axis at the end"),
         "energy_loss": ("", "energy lost by the engine's run over the largest energy reached"),
@@ -58,7 +58,7 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
         "engine_version": ("", "version of the engine"),
         "run": ("", "label of the run, as in the files of samples and in the figures"),
         "predicted_by": ("", "what ends the agreement there: a pass, growth or model form; empty: nothing"),
-        "parting": (
+        "divergence": (
             "",
             "in time: within a factor of 2 of the prediction; later, earlier, or after it touched a wall",
         ),
@@ -119,7 +119,7 @@ def summary_row(
     whole = make_pair(cylinder, reference, trial, until=case.length)  # a fall after it multiplies differences
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
     broken = "failed" in (trial.outcome, reference.outcome)
-    horizon = agreement_horizon(whole, broken=broken, allowance=allowance)
+    horizon = agreement_time(whole, broken=broken, allowance=allowance)
     direction = direction_difference(reference, trial)
     turned_until = min(horizon.end, first_unresolved_pass(trial, start=whole.start))
     row = {
@@ -142,10 +142,10 @@ def summary_row(
         ),
         "uplift_time_difference": trial.uplift_time - reference.uplift_time,
         "uplift_direction_difference": direction,
-        "agreement_horizon": horizon.length,
-        "parted": horizon.parted,
+        "agreement_time": horizon.length,
+        "diverged": horizon.diverged,
         "agreed_passes": agreed_passes(reference, horizon),
-        "predicted_horizon": prediction.length,
+        "predicted_agreement_time": prediction.length,
         "residual_displacement": trial.residual_displacement / radius,
         "residual_twist": math.degrees(trial.residual_twist),
         "energy_loss": energy_loss(trial, case.motion),
@@ -160,21 +160,21 @@ def summary_row(
     row["message"] = _message(model, reference, trial, whole.end, case.length, _undefined(row))
     row |= {
         "predicted_by": prediction.reason,
-        "parting": _parting(trial, horizon, prediction),
+        "divergence": _parting(trial, horizon, prediction),
         "estimated_error": estimated_error,
         **no_verdict(),
     }
     return row | (dict.fromkeys(BUDGET_COLUMNS, math.nan) if budget is None else budget.columns())
 
 
-def _parting(trial: EngineTrace, horizon: Horizon, prediction: Prediction) -> str:
-    found = verdict(horizon.length, horizon.parted, prediction.length, prediction.reason)
-    # no reduced model knows of walls, so none foretells what they do
+def _parting(trial: EngineTrace, horizon: Agreement, prediction: Prediction) -> str:
+    found = verdict(horizon.length, horizon.diverged, prediction.length, prediction.reason)
+    # no reduced model knows of walls, so none predicts what they do
     touched = getattr(trial, "first_wall_contact", math.inf) <= horizon.end
     return "after it touched a wall" if found == "earlier" and touched else found
 
 
-def foreign_row(
+def external_row(
     case: Case,
     model: str,
     reference: Trace,
@@ -218,14 +218,14 @@ def crashed_row(
         "reference_outcome": reference.outcome,
         "message": f"{run.engine} left no trajectory: {message}",
         "reference_peak_tilt": reference.peak_tilt / case.cylinder.alpha,
-        "agreement_horizon": 0.0,
-        "parted": True,
+        "agreement_time": 0.0,
+        "diverged": True,
         "agreed_passes": 0,
         "reference_wall_time": reference.wall_time,
         "engine_version": "",
         "run": label,
         "predicted_by": "",
-        "parting": "",
+        "divergence": "",
     }
     return row | no_verdict()
 

@@ -121,8 +121,8 @@ def _comparison(path: Path) -> dict[str, Any]:
             "rows": len(rows),
             "median relative RMS": _number(rows["tilt_rms_relative"].median()),
             "largest relative RMS": _number(rows["tilt_rms_relative"].max()),
-            "parted": int(rows["parted"].sum()),
-            "median agreement horizon [s]": _number(rows["agreement_horizon"].median()),
+            "diverged": int(rows["diverged"].sum()),
+            "median agreement horizon [s]": _number(rows["agreement_time"].median()),
         }
         for (engine, support, reference), rows in summary.groupby(
             ["engine", "support", "reference"], sort=False

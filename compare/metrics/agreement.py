@@ -1,6 +1,6 @@
 """How long two traces agree.
 
-Each near pass of the apex may turn one motion to the left and its neighbour to the right, so two
+Each near pass of upright may turn one motion to the left and its neighbour to the right, so two
 traces of one problem part at some time however good both are. What counts is when.
 """
 
@@ -18,25 +18,25 @@ AGREEMENT = 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Horizon:
+class Agreement:
     """The length of an agreement.
 
     Parameters
     ----------
     length : float
-        From uplift or release to the parting [s]; the length of the run where there is none.
+        From uplift or release to the divergence [s]; the length of the run where there is none.
     end : float
         The same in the time of the run [s].
-    parted : bool
-        Whether there was a parting.
+    diverged : bool
+        Whether there was a divergence.
     """
 
     length: float
     end: float
-    parted: bool
+    diverged: bool
 
 
-def agreement_horizon(pair: Pair, *, broken: bool = False, allowance: float = 0.0) -> Horizon:
+def agreement_time(pair: Pair, *, broken: bool = False, allowance: float = 0.0) -> Agreement:
     """Return the time from uplift or release to the first |tilt difference| > 1 % of alpha.
 
     Where one of the two traces is `broken` off by a failure, agreement ends with it at the latest. The
@@ -44,21 +44,21 @@ def agreement_horizon(pair: Pair, *, broken: bool = False, allowance: float = 0.
     """
     beyond = np.flatnonzero(np.abs(pair.tilt_difference) > AGREEMENT + allowance)
     if not len(beyond) and broken:
-        return Horizon(length=max(0.0, pair.end - pair.start), end=pair.end, parted=True)
+        return Agreement(length=max(0.0, pair.end - pair.start), end=pair.end, diverged=True)
     if not len(beyond):
-        return Horizon(length=pair.end, end=pair.end, parted=False)
+        return Agreement(length=pair.end, end=pair.end, diverged=False)
     end = float(pair.time[beyond[0]])
     # a trial that moves before the reference uplifts has no agreement at all
-    return Horizon(length=max(0.0, end - pair.start), end=end, parted=True)
+    return Agreement(length=max(0.0, end - pair.start), end=end, diverged=True)
 
 
-def agreed_passes(reference: Trace, horizon: Horizon) -> int:
+def agreed_passes(reference: Trace, horizon: Agreement) -> int:
     """Return how many passes of the reference lie within the agreement."""
     times = np.asarray(reference.passes["time"], dtype=np.float64)
     return int(np.count_nonzero(times <= horizon.end))
 
 
-def closest_pass(reference: Trace, horizon: Horizon) -> float:
+def closest_pass(reference: Trace, horizon: Agreement) -> float:
     """Return the smallest minimum tilt of the passes within the agreement [rad]; NaN without a pass."""
     minima = np.asarray(reference.passes["minimum_tilt"], dtype=np.float64)[
         : agreed_passes(reference, horizon)

@@ -15,7 +15,7 @@ TILTED = 0.05
 def contact_rms(pair: Pair) -> float:
     """Return the RMS distance of the two contact points, in units of b.
 
-    Counted where both tilts exceed 5 % of the reference's peak: near the apex the whole base is
+    Counted where both tilts exceed 5 % of the reference's peak: near upright the whole base is
     close to the ground, and where the rim touches says nothing.
 
     Returns

@@ -12,12 +12,12 @@ from rockwobble.multibody.scene.froude import froude_scale
 from rockwobble.multibody.scene.guard import check_time_step
 from rockwobble.multibody.scene_of_case import resolved_settings
 
-SUPPORTS = ("guided", "free")
+SUPPORTS = ("recess", "flat")
 _LEAN = 1e-3  # of alpha: a tilt that fits into any ring
 
 # What an exact engine would follow. A ring holds only what has rolled out as far as its clearance: until the
 # first touch of a wall the cylinder rolls as on open ground, and after it no reduced model knows the walls.
-_OWN_MODELS = {"guided": "recess", "free": "rolling", "ring": "rolling"}
+_OWN_MODELS = {"recess": "recess", "flat": "flat", "ring": "flat"}
 
 
 def installed_engines() -> tuple[str, ...]:

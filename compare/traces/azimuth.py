@@ -13,8 +13,8 @@ def unwrapped(
     """Return the azimuth of the axis without jumps, and whether each change is known without a guess.
 
     Between two samples the azimuth takes the shorter way round, unless that is more than a quarter turn:
-    then the apex was passed between them, and which way is told by the sense in which the axis went round
-    before and after (the area that its projection sweeps, which the passage of the apex conserves).
+    then upright was passed between them, and which way is told by the sense in which the axis went round
+    before and after (the area that its projection sweeps, which the passage of upright conserves).
 
     Parameters
     ----------

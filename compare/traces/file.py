@@ -1,6 +1,6 @@
 """Trajectories from a shake table or another code, as CSV files.
 
-A header line names the columns, in any order, parted by commas, semicolons or tabs; lines before it that
+A header line names the columns, in any order, separated by commas, semicolons or tabs; lines before it that
 begin with # are comments. Units stand behind a name in brackets: "time [s], tilt [deg], azimuth [deg]".
 
 ============== ============ =======================================================================

@@ -25,7 +25,7 @@ def sample_times(end: float) -> Array:
 
 
 def resampled(poses: Poses, time: Array) -> tuple[Array, Array, Array]:
-    """Tilt, rolling angle and axis at other times: a local cubic through the axis, smooth at the apex."""
+    """Tilt, rolling angle and axis at other times: a local cubic through the axis, smooth at upright."""
     own = poses.time
     if len(own) == len(time) and bool((np.abs(own - time) < SAME_TIME).all()):
         return poses.tilt.copy(), poses.rolling_angle, poses.axis

@@ -21,13 +21,13 @@ from .uplift import uplift
 if TYPE_CHECKING:
     import pandas as pd
 
-SUPPORT = "foreign"
+SUPPORT = "external"
 # the side lies on the ground, as far as a measurement says [rad]
 _FALLEN = 0.5 * math.pi - 0.01
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Foreign:
+class External:
     """A file of a trajectory, and how to read it; `rockwobble.compare.traces.file` says what it may hold.
 
     Parameters
@@ -66,7 +66,7 @@ class Foreign:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class ExternalTrajectory:
-    """A foreign trajectory at the sample times of the reduced models; fields as of an engine's trajectory.
+    """A external trajectory at the sample times of the reduced models; fields as of an engine's trajectory.
 
     What the file does not tell is NaN: energy, computing time, contact resolution; the twist without
     quaternions; rolling angle, contact point and mass centre with the tilt alone; the residual displacement
@@ -103,7 +103,7 @@ class ExternalTrajectory:
     noise: float
     position_noise: float
     stands: float
-    given: Foreign
+    given: External
     columns: Columns
     support: str = SUPPORT
     engine_version: str = ""
@@ -140,12 +140,12 @@ class ExternalTrajectory:
         )
 
 
-def read_trajectory(foreign: Foreign | str | Path, case: Case) -> ExternalTrajectory:
-    """Read a foreign trajectory of a case.
+def read_trajectory(external: External | str | Path, case: Case) -> ExternalTrajectory:
+    """Read a external trajectory of a case.
 
     Parameters
     ----------
-    foreign : Foreign, str or Path
+    external : External, str or Path
     case : Case
         The problem that it answers: cylinder and length.
 
@@ -155,11 +155,11 @@ def read_trajectory(foreign: Foreign | str | Path, case: Case) -> ExternalTrajec
         If the file cannot be read, has gaps or times that do not rise, or does not cover the start of
         the run; the message names the file and the line.
     """
-    given = foreign if isinstance(foreign, Foreign) else Foreign(path=Path(foreign))
+    given = external if isinstance(external, External) else External(path=Path(external))
     return trajectory_of(read_columns(given.path, given.angle_unit), given, case)
 
 
-def trajectory_of(columns: Columns, given: Foreign, case: Case) -> ExternalTrajectory:
+def trajectory_of(columns: Columns, given: External, case: Case) -> ExternalTrajectory:
     """Return the trajectory that the columns of a file hold; see `read_trajectory`."""
     poses = poses_of(columns, case, noise=given.noise, time_offset=given.time_offset)
     start = int(np.argmax(poses.time > -0.5 * float(poses.time[1] - poses.time[0])))
@@ -212,13 +212,13 @@ def trajectory_of(columns: Columns, given: Foreign, case: Case) -> ExternalTraje
 
 
 def read_trajectories(
-    foreign: Sequence[Foreign | str | Path], cases: Sequence[Case], *, taken: Collection[str] = ()
+    external: Sequence[External | str | Path], cases: Sequence[Case], *, taken: Collection[str] = ()
 ) -> dict[tuple[str, str], ExternalTrajectory]:
     """Read all trajectories that belong to the one case of a comparison.
 
     Parameters
     ----------
-    foreign : sequence of Foreign, str or Path
+    external : sequence of External, str or Path
     cases : sequence of Case
     taken : collection of str
         Labels of the other runs.
@@ -233,10 +233,10 @@ def read_trajectories(
     ValueError
         What `read_trajectory` raises; or if there are several cases, or two runs would have one label.
     """
-    if foreign and len(cases) > 1:
+    if external and len(cases) > 1:
         raise ValueError(f"a trajectory belongs to one case, got {len(cases)} cases")
     found: dict[tuple[str, str], ExternalTrajectory] = {}
-    for item in foreign:
+    for item in external:
         trajectory = read_trajectory(item, cases[0])
         label = trajectory.engine
         if label in taken or (cases[0].name, label) in found:

@@ -1,4 +1,4 @@
-"""Records as text of two columns, time and acceleration, parted by blanks, commas or semicolons."""
+"""Records as text of two columns, time and acceleration, separated by blanks, commas or semicolons."""
 
 from __future__ import annotations
 

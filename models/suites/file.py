@@ -3,10 +3,10 @@
 A file states problems (cases) and methods (runs) apart; every run is made of every case. Units are SI:
 metres, seconds, m/s^2, radians; where a key says so, degrees or a ratio.
 
-    # Every run is made of every case. Without runs: all installed engines, guided and free.
+    # Every run is made of every case. Without runs: all installed engines, recess and flat.
     [[runs]]
     engine = ["mujoco", "pybullet"]     # a list makes one run of each
-    support = "guided"                  # "guided" (ideal recess, the default), "free" (open ground), ...
+    support = "recess"                  # "recess" (ideal recess, the default), "flat" (open ground), ...
     time_step = 1e-4                    # [s], may be left out
     settings = { iterations = 50 }      # of the engine, may be left out
 
@@ -43,8 +43,8 @@ cases.release
 bounds, of what tests ask of every run (see `Bounds`); each may be left out
     at most: tilt_rms [alpha], tilt_rms_relative, peak_tilt_difference [alpha], contact_rms [b],
     turn_difference [deg], uplift_time_difference [s], residual_displacement [b], residual_twist [deg],
-    energy_loss; at least: agreement_horizon [s]
-    reference = "recess" or "rolling" (default "own": the model of the support)
+    energy_loss; at least: agreement_time [s]
+    reference = "recess" or "flat" (default "own": the model of the support)
 cases
     name, duration [s] (default: that of the record), gravity [m/s^2] (9.81), friction (1)
 """

@@ -187,7 +187,7 @@ class RunTable(_Table):
     """One method, or as many as its lists make."""
 
     engine: Texts
-    support: Texts = ["guided"]
+    support: Texts = ["recess"]
     time_step: Annotated[tuple[float | Literal["auto"], ...] | None, BeforeValidator(_steps)] = None
     settings: dict[str, Any] = Field(default_factory=dict)
 
@@ -204,7 +204,7 @@ class BoundsTable(_Table):
     residual_displacement: Positive | None = None
     residual_twist: Positive | None = None
     energy_loss: Positive | None = None
-    agreement_horizon: Positive | None = None
+    agreement_time: Positive | None = None
     reference: str | None = None
 
     @model_validator(mode="after")

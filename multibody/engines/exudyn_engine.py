@@ -1,7 +1,7 @@
 """Exudyn: the rim is an ideal rolling disc, a joint without contact and without its parameters.
 
 The joint holds the lowest point of the rim on the ground and its material point at rest: three
-constraints, exact up to the integration. So it is a check of the rolling model that shares neither
+constraints, exact up to the integration. So it is a check of the flat-ground model that shares neither
 contact nor friction with the other engines. What it cannot do follows from the same: the rim neither
 leaves the ground nor slips, whatever force that takes, and a cylinder that stands has no lowest point.
 """
@@ -27,7 +27,7 @@ class ExudynEngine:
     @property
     def supports(self) -> tuple[str, ...]:
         """Open ground only: the joint lets the rim roll out."""
-        return ("free",)
+        return ("flat",)
 
     @property
     def uplifts(self) -> bool:
@@ -105,14 +105,14 @@ class _ExudynStepper:
         return self._warning
 
     def _check_apex(self, rows: Array) -> None:
-        """Give up the rows (n, 14) from the one on that has jumped over the apex."""
+        """Give up the rows (n, 14) from the one on that has jumped over upright."""
         leans = np.vstack([self._lean, _leans(self._start.quaternion + rows[:, 3:7])])
         self._lean = leans[-1]
-        # more than a quarter turn in one step: the step is longer than twice the distance from the apex
+        # more than a quarter turn in one step: the step is longer than twice the distance from upright
         over = np.flatnonzero((leans[1:] * leans[:-1]).sum(axis=1) < 0.0)
         if len(over):
             rows[over[0] :] = np.nan
-            self._warning = "the rim rolled through the apex, where it has no lowest point"
+            self._warning = "the rim rolled through upright, where it has no lowest point"
 
     def _integrate(self, acceleration: Array) -> Array:
         """Rows (n, 14) of Euler coordinates and their rates after each step; fewer where a step fails."""

@@ -1,7 +1,7 @@
 """Settings of Exudyn, each with its reason by measurement.
 
 Measured on a release at alpha/2 with a rolling rate of 0.1 rad/s, h = 2 b, b = 1 m: error of the angle of
-turn against the equations of the rolling model, 203.909800 deg.
+turn against the equations of the flat-ground model, 203.909800 deg.
 """
 
 from __future__ import annotations

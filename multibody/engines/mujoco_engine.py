@@ -41,7 +41,7 @@ class MujocoEngine:
     @property
     def supports(self) -> tuple[str, ...]:
         """Supports that have a scene file."""
-        return ("guided", "free", "ring")
+        return ("recess", "flat", "ring")
 
     @property
     def uplifts(self) -> bool:

@@ -27,7 +27,7 @@ class PybulletEngine:
     @property
     def supports(self) -> tuple[str, ...]:
         """Supports that it has."""
-        return ("guided", "free")
+        return ("recess", "flat")
 
     @property
     def uplifts(self) -> bool:
@@ -67,7 +67,7 @@ class _PybulletStepper:
         self._gravity = scene.gravity
         # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if scene.support == "guided" else 0.0
+        self._stiffness = stiffness if scene.support == "recess" else 0.0
         self._ground, self._body = _build(pybullet, client, scene, settings)
         self._lengths = scene.body.base_radius, scene.body.mass_centre_height
         self._iterations, self._unsolved = settings.iterations, False

@@ -44,7 +44,7 @@ class Pass:
 def turning_points(time: Array, tilt: Array, rolling_angle: Array) -> list[TurningPoint]:
     """Return the extrema among the inner steps, each refined by a parabola through three steps.
 
-    The parabola is that of the squared tilt: near the apex the axis goes past in a straight line, on
+    The parabola is that of the squared tilt: near upright the axis goes past in a straight line, on
     which the squared tilt is exactly a parabola however few steps the pass takes.
     """
     rising = np.diff(tilt) > 0.0

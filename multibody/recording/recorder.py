@@ -234,7 +234,7 @@ class Recorder:
             rate = max(float(state.tilt_rate[stop]), 1e-3)
             self.end_time = float(time[stop] + max(0.5 * math.pi - state.tilt[stop], 0.0) / rate)
         breach = first_breach(
-            state, gained, self._scene.body, self._scene.gravity, self._scene.support == "guided", wall,
+            state, gained, self._scene.body, self._scene.gravity, self._scene.support == "recess", wall,
             self.energy.largest,
         )  # fmt: skip
         if breach is not None and breach.index < stop:

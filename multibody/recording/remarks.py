@@ -51,7 +51,7 @@ def remarks(recorder: Recorder, passes: pd.DataFrame, resolution: float, scale: 
     close = passes[~passes["resolved"]]
     if len(close):
         found.append(
-            f"{len(close)} of {len(passes)} passes are closer to the apex than the {resolution:.1e} rad that "
+            f"{len(close)} of {len(passes)} passes are closer to upright than the {resolution:.1e} rad that "
             f"the run resolves, first at {close['time'].iloc[0]:.4g} s"
         )
     return "; ".join(found)

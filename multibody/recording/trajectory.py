@@ -65,7 +65,7 @@ class Trajectory:
         overturned, NaN where failed.
     outcome : {"rest", "completed", "overturned", "failed"}
     message : str
-        Why the run failed, or what limits it: slip, flight, passes too close to the apex. May be empty.
+        Why the run failed, or what limits it: slip, flight, passes too close to upright. May be empty.
     uplift_time, uplift_direction : float
         [s], [rad]. NaN if the base never uplifts; 0 and the rolling angle of the start for a release.
     passes : DataFrame

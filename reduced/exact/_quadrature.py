@@ -4,7 +4,7 @@ With t = t1 + (t2 - t1) sin^2(u/2) both roots of the radicand cancel against dt:
 
     dphi = (t1/t) sqrt(A sigma12 H1 G2 n^3/(H q)) du,    dtime = sqrt(A n1 n2 beta12 G/(g n q)) du.
 
-What is left is smooth but for two poles beyond the ends: the apex t = 0 behind the minimum, and the
+What is left is smooth but for two poles beyond the ends: upright t = 0 behind the minimum, and the
 far side of the overturning barrier behind the maximum. u = eps sinh v from either end resolves each
 on its own logarithmic scale, at any spin.
 """

@@ -3,7 +3,7 @@
 With L = 0 the cylinder is an inverted pendulum about the rim, A theta'' = -g R sin(alpha - theta) for
 theta > 0 and its mirror image for theta < 0 (equation 21 with phi' = 0). Energy gives
 theta'^2 = 2 p^2 [cos(alpha - tilt) - cos(alpha - theta)], and with x = sin((alpha - theta)/2) the time
-from the apex to the maximum is an incomplete elliptic integral of the first kind,
+from upright to the maximum is an incomplete elliptic integral of the first kind,
 
     p T/4 = int_k^K dx/sqrt((1 - x^2)(x^2 - k^2)),    k = sin((alpha - tilt)/2),  K = sin(alpha/2),
 

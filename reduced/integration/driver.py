@@ -1,4 +1,4 @@
-"""Time integration through a record: rest, uplift, motion, turning points, seating, overturning.
+"""Time integration through a record: rest, uplift, motion, turning points, rest_tilt, overturning.
 
 One driver serves the three models; they differ in their equations and in the number of variables.
 `systems` says which.
@@ -256,10 +256,10 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     resting = y[1] == 0.0  # no speed is left: it stands, or lifts off again by (25) and (26)
                 if options.record_steps:
                     steps.append((now, *y))
-                if options.seating > 0.0 and not falls:
+                if options.rest_tilt > 0.0 and not falls:
                     L, S = momenta(y)
                     a_now = ground(a, slope, elapsed)
-                    resting = resting or may_sit_down(body, options.seating, y[0], y[1], L, S, a_now)
+                    resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a_now)
                 if resting:
                     rests.append((now, np.nan))
                     y = placed(y, 0.0, 0.0, y[2], 0.0)

@@ -15,14 +15,14 @@ HALF_PI = 0.5 * pi  # the tilt at which the side lies on the ground
 
 @inlined
 def may_sit_down(
-    body: Body, seating: float, theta: float, omega: float, L: float, S: float, a: Vector
+    body: Body, rest_tilt: float, theta: float, omega: float, L: float, S: float, a: Vector
 ) -> bool:
     """Return whether the cylinder comes to rest: f < 0 and too little energy left to matter.
 
-    The bound is the energy of a standstill at the tilt `seating` alpha, less what the ground
+    The bound is the energy of a standstill at the tilt `rest_tilt` alpha, less what the ground
     acceleration takes off the restoring moment.
     """
-    limit = seating * body.alpha
+    limit = rest_tilt * body.alpha
     if theta > 10.0 * limit:  # above the bound, unless az exceeds 9 g
         return False
     share = 1.0 + a[2] / body.g - hypot(a[0], a[1]) * body.cos_alpha / (body.g * body.sin_alpha)
@@ -46,7 +46,7 @@ def surely_falls(body: Body, theta: float, strongest: float, lightest: float) ->
 
     `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium tilt
     under these two, theta'' is positive and grows with theta. Spin only adds to it, (18); a twist rate,
-    which the rolling model has, may hold a cylinder up.
+    which the flat-ground model has, may hold a cylinder up.
     """
     beyond = theta - body.alpha
     return lightest > 0.0 and lightest * sin(beyond) > strongest * cos(beyond)

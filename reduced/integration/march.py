@@ -19,7 +19,7 @@ class Options(NamedTuple):
     """What steers a march."""
 
     rtol: float  # tolerance of one step, relative
-    seating: float  # tilt of the seating rule over alpha; 0 leaves the rule out
+    rest_tilt: float  # tilt of the rest rule over alpha; 0 leaves the rule out
     restitution: float  # of the tilt rate where the base meets the ground in planar motion
     duration: float  # [s]
     step_budget: int

@@ -21,7 +21,7 @@ import numpy as np
 
 from .._compile import inlined, jit
 from ..body import Body
-from ..equations import planar_rhs, recess_rhs, rolling_rhs
+from ..equations import flat_rhs, planar_rhs, recess_rhs
 from ..trigonometry import sin_cos
 from .tsit5 import State, Vector
 
@@ -44,7 +44,7 @@ def scales(
 ) -> tuple[float, float]:
     """Return what the errors of tilt and of tilt rate are divided by: both inverses over the tolerance.
 
-    Near the apex the motion is that of a point at the polar distance theta, with one speed in all
+    Near upright the motion is that of a point at the polar distance theta, with one speed in all
     directions (`spin_rate` is its part across): the tilt is held to itself, and the rates to that
     speed. Planar motion goes through theta = 0, so there the tilt is held to what the speed makes of
     it in the time 1/p. Near theta = alpha, where every difference grows as exp(p t), the distance
@@ -110,15 +110,15 @@ def _recess_placed(y: State, theta: float, omega: float, phi: float, L: float) -
 
 
 @jit
-def _rolling_derivative(body: Body, y: State, a: Vector) -> State:
-    rates = rolling_rhs(body, y[0], y[1], y[2], y[3], y[4], y[5], a[0], a[1], a[2])
+def _flat_derivative(body: Body, y: State, a: Vector) -> State:
+    rates = flat_rhs(body, y[0], y[1], y[2], y[3], y[4], y[5], a[0], a[1], a[2])
     sin_phi, cos_phi = sin_cos(y[2])
     drift = body.b * rates[4]
     return rates[0], rates[1], rates[2], rates[3], rates[4], rates[5], drift * sin_phi, -drift * cos_phi
 
 
 @jit
-def rolling_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+def flat_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
     """Return y + h sum(weights slopes)."""
     a = b = c = d = e = f = x = z = 0.0
     for j in range(len(weights)):
@@ -144,17 +144,17 @@ def rolling_combine(y: State, h: float, weights: Weights, slopes: tuple[State, .
 
 
 @jit
-def _rolling_momenta(y: State) -> tuple[float, float]:
+def _flat_momenta(y: State) -> tuple[float, float]:
     return y[3], y[5]
 
 
 @jit
-def _rolling_placed(y: State, theta: float, omega: float, phi: float, L: float) -> State:
+def _flat_placed(y: State, theta: float, omega: float, phi: float, L: float) -> State:
     return theta, omega, phi, L, y[4], 0.0, y[6], y[7]
 
 
 @jit
-def rolling_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
+def flat_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
     """Return the largest error over what is allowed."""
     per_lever = 0.0 if flat else 1.0 / (body.J * y[0])
     per_tilt, per_rate = scales(body, rtol, y[0], y[1], abs(y[3]) * per_lever, flat)
@@ -167,4 +167,4 @@ def rolling_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -
 
 PLANAR = System(_planar_derivative, _planar_momenta, _planar_placed)
 RECESS = System(_recess_derivative, _recess_momenta, _recess_placed)
-ROLLING = System(_rolling_derivative, _rolling_momenta, _rolling_placed)
+FLAT = System(_flat_derivative, _flat_momenta, _flat_placed)

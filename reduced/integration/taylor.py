@@ -1,7 +1,7 @@
 """One step of the recess model as a Taylor series in time, of the order that the tolerance asks for.
 
-The radius of convergence is the time to the apex, about theta/speed, so a sample of a record takes order 5
-to 7 far from the apex and more steps of a high order near it. `recurrences` has the series of the
+The radius of convergence is the time to upright, about theta/speed, so a sample of a record takes order 5
+to 7 far from upright and more steps of a high order near it. `recurrences` has the series of the
 equations. See A. Jorba and M. Zou, "A software package for the numerical integration of ODEs by means of
 high-order Taylor methods", Experimental Mathematics 14 (2005) 99-117.
 """

@@ -107,7 +107,7 @@ def started(
     -----
     theta'' = F(t) + Q theta with F = p^2 cos(alpha) f/g expanded to t^3. The contact follows the
     inertia force, which turns at the rate W, with the lag that balances
-    (J theta^2 phi')' = -h theta |a| sin(lag), (19) near the apex: two rounds of its expansion. Where
+    (J theta^2 phi')' = -h theta |a| sin(lag), (19) near upright: two rounds of its expansion. Where
     f starts above zero the lag is linear in time from the start and the balance is exact:
     phi' = W/(1 + 2 J F0/(h |a|)).
     """

@@ -39,7 +39,7 @@ Support = Annotated[
     str,
     typer.Option(
         "--support",
-        help="What holds the cylinder: guided (ideal recess), free (open ground) or ring (real recess).",
+        help="What holds the cylinder: recess (ideal recess), flat (flat ground) or ring (real recess).",
         rich_help_panel="Method",
     ),
 ]
@@ -62,7 +62,7 @@ def advise(
     duration: options.Duration = None,
     friction: Friction = 1.0,
     engine: Engine = None,
-    support: Support = "guided",
+    support: Support = "recess",
     time_step: options.TimeStep = None,
     starts: Starts = 100,
     seed: Seed = 1,

@@ -20,7 +20,7 @@ from .inputs.suite_choice import chosen_runs, describe_suite, refuse_problem_opt
 if TYPE_CHECKING:
     from rich.console import Console
 
-    from rockwobble.compare import Comparison, Foreign
+    from rockwobble.compare import Comparison, External
     from rockwobble.models import Case, Run, Suite
 
     from ..console.progress import Tell
@@ -94,7 +94,9 @@ def compare(
             for each in cases:
                 for run in runs:
                     require_runnable(each, run)
-            foreign = _foreign(trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg)
+            external = _external(
+                trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
+            )
         lines = describe_suite(suite, cases, runs) if suite is not None else describe(cases[0])
         for line in lines:
             print(line)
@@ -107,7 +109,7 @@ def compare(
                 cases,
                 runs=runs,
                 progress=tell,
-                foreign=foreign,
+                external=external,
                 resume=None if suite is None else out,
                 budget=budget,
             )
@@ -122,7 +124,7 @@ def run_comparison(
     cases: Sequence[Case],
     runs: list[Run],
     progress: Tell,
-    foreign: Sequence[Foreign] = (),
+    external: Sequence[External] = (),
     resume: Path | None = None,
     budget: bool = False,
 ) -> Comparison:
@@ -131,7 +133,7 @@ def run_comparison(
     from rockwobble.models import Suite
 
     return run(
-        Suite(cases, runs), runs=runs, progress=progress, foreign=foreign, resume=resume, budget=budget
+        Suite(cases, runs), runs=runs, progress=progress, external=external, resume=resume, budget=budget
     )
 
 
@@ -162,14 +164,14 @@ def _runs(engines: list[str] | None, supports: list[str] | None, time_step: Any,
     ]
 
 
-def _foreign(
+def _external(
     paths: list[Path] | None,
     cases: Sequence[Case],
     angles: str | None,
     offset: float,
     noise_deg: float | None,
-) -> list[Foreign]:
-    from rockwobble.compare import Foreign, read_trajectory
+) -> list[External]:
+    from rockwobble.compare import External, read_trajectory
 
     if not paths:
         if angles is not None or offset or noise_deg is not None:
@@ -178,10 +180,10 @@ def _foreign(
     if len(cases) > 1:
         raise ValueError(f"--trajectory belongs to one case, got a suite of {len(cases)}")
     noise = None if noise_deg is None else math.radians(noise_deg)
-    foreign = [Foreign(path=path, angle_unit=angles, time_offset=offset, noise=noise) for path in paths]
-    for each in foreign:  # whatever is wrong with a file is said before anything runs
+    external = [External(path=path, angle_unit=angles, time_offset=offset, noise=noise) for path in paths]
+    for each in external:  # whatever is wrong with a file is said before anything runs
         read_trajectory(each, cases[0])
-    return foreign
+    return external
 
 
 def _say_what_is_left_out(supports: list[str]) -> None:

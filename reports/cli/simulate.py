@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from rockwobble.models import Case
 
 Model = Annotated[
-    str, typer.Option("--model", help="Reduced model: recess, rolling or planar.", rich_help_panel="Method")
+    str, typer.Option("--model", help="Reduced model: recess, flat or planar.", rich_help_panel="Method")
 ]
 Engine = Annotated[
     str | None,
@@ -30,7 +30,7 @@ Support = Annotated[
     str,
     typer.Option(
         "--support",
-        help="Of the engine: guided (ideal recess), free (open ground) or ring (walls, MuJoCo only).",
+        help="Of the engine: recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only).",
         rich_help_panel="Method",
     ),
 ]
@@ -49,7 +49,7 @@ def simulate(
     duration: options.Duration = None,
     model: Model = "recess",
     engine: Engine = None,
-    support: Support = "guided",
+    support: Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
     out: options.Out = Path("rockwobble-out"),
@@ -58,7 +58,7 @@ def simulate(
 
     Without options: the recess model under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
-    Writes run.csv and run.parquet with the samples, passes.csv with the passes by the apex, and
+    Writes run.csv and run.parquet with the samples, passes.csv with the passes, and
     run.json with the rest; SI units and radians.
     """
     from ..pages.case_words import describe
@@ -142,7 +142,7 @@ def _facts(case: Case, trace: Any) -> dict[str, str]:
         "uplift": f"{trace.uplift_time:.4f} s towards {math.degrees(trace.uplift_direction):.2f} deg"
         if math.isfinite(trace.uplift_time)
         else "none",
-        "passes by the apex": str(len(trace.passes)),
+        "passes": str(len(trace.passes)),
     }
     if len(trace.passes):
         facts["closest pass"] = f"{trace.passes['minimum_tilt'].min() / alpha:.3g} alpha"

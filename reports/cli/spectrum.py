@@ -55,7 +55,7 @@ SearchStep = Annotated[
 ]
 SpatialModel = Annotated[
     str,
-    typer.Option("--model", help="Model in three dimensions: recess or rolling.", rich_help_panel="Method"),
+    typer.Option("--model", help="Model in three dimensions: recess or flat.", rich_help_panel="Method"),
 ]
 
 

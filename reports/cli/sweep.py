@@ -33,7 +33,7 @@ Models = Annotated[
     list[str] | None,
     typer.Option(
         "--model",
-        help="recess, rolling or planar; may be repeated. Default: recess; with a suite, none but its runs.",
+        help="recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs.",
         rich_help_panel=_GRID,
     ),
 ]

@@ -33,7 +33,7 @@ Support = Annotated[
     str,
     typer.Option(
         "--support",
-        help="guided (ideal recess), free (open ground) or ring (real recess).",
+        help="recess (ideal recess), flat (flat ground) or ring (real recess).",
         rich_help_panel="Method",
     ),
 ]
@@ -58,7 +58,7 @@ def view(
     rolling_rate: options.RollingRate = 0.0,
     duration: options.Duration = None,
     engine: Engine = "mujoco",
-    support: Support = "guided",
+    support: Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
     out: options.Out = Path("rockwobble-out"),
@@ -66,7 +66,7 @@ def view(
 ) -> None:
     """Play one case in three dimensions: the engine's cylinder, and the reduced model translucent over it.
 
-    Without options: MuJoCo guided under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
+    Without options: MuJoCo recess under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
     Writes view.html, which needs nothing else and works offline.
     """

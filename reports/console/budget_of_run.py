@@ -39,8 +39,8 @@ def budget_of_run(case: Case, run: Run, model: str) -> list[str]:
     order = "" if math.isnan(budget.limit.order) else f"; measured order {budget.limit.order:.1f}"
     lines.append(f"  known to {budget.rms('limit_error'):.1e}, from time steps of {steps} s{order}")
     row = comparison.summary[comparison.summary["reference"] == model].iloc[0]
-    if row["parted"]:
+    if row["diverged"]:
         lines.append(
-            f"  traces part after {row['agreement_horizon']:.3g} s: {row['parting']} of the prediction"
+            f"  traces part after {row['agreement_time']:.3g} s: {row['divergence']} of the prediction"
         )
     return [*lines, _ADVICE[max(rms, key=lambda part: rms[part])]]

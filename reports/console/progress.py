@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 Tell = Callable[["Progress"], None]
 
-_COMPILES = ("recess", "rolling", "planar")
+_COMPILES = ("recess", "flat", "planar")
 
 
 @contextmanager

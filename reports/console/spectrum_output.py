@@ -126,7 +126,7 @@ def spectrum_files(
 
 def _inputs(result: OverturningSpectrum) -> str:
     """Return the hash of all that a spectrum depends on."""
-    names = ("tan_alpha", "gravity", "model", "seating", "semidiagonals", "intensities", "search_step")
+    names = ("tan_alpha", "gravity", "model", "rest_tilt", "semidiagonals", "intensities", "search_step")
     return fingerprint(
         {
             "motion": (result.motion.acceleration, result.motion.time_step),

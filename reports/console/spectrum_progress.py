@@ -32,7 +32,7 @@ def _bar(stages: Sequence[str]) -> Iterator[Tell]:
         TimeRemainingColumn(),
         TextColumn("left"),
     )
-    # sizes differ in cost: an average over many of them foretells the rest better than the last few
+    # sizes differ in cost: an average over many of them predicts the rest better than the last few
     with Progress(
         *columns, console=Console(stderr=True), transient=True, speed_estimate_period=600.0
     ) as bars:

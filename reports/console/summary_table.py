@@ -66,9 +66,9 @@ _COLUMNS = (
     _Column("peak", "α", True, lambda row: _tilt(row.peak_tilt, row.outcome)),
     _Column("model", "α", True, lambda row: _tilt(row.reference_peak_tilt, row.reference_outcome)),
     _Column("RMS", "%", True, lambda row: _per_cent(row.tilt_rms_relative)),
-    _Column("agrees", "s", True, lambda row: f"{row.agreement_horizon:.2f}{' ' if row.parted else '+'}"),
+    _Column("agrees", "s", True, lambda row: f"{row.agreement_time:.2f}{' ' if row.diverged else '+'}"),
     _Column("passes", "-", False, lambda row: str(row.agreed_passes)),
-    _Column("foretold", "s", True, lambda row: _fixed(row.predicted_horizon, 2)),
+    _Column("predicted", "s", True, lambda row: _fixed(row.predicted_agreement_time, 2)),
     _Column("turn", "deg", False, lambda row: _fixed(row.turn_difference, 2)),
     _Column("moved", "b", True, lambda row: _powers(row.residual_displacement)),
     _Column("twist", "deg", True, lambda row: _fixed(row.residual_twist, 2)),
@@ -79,7 +79,7 @@ _COLUMNS = (
 
 LEGEND = (
     "peak, model: largest tilt of the run and of the reduced model. RMS: tilt difference over tilt. "
-    "agrees: until the tilts differ by 1 % of alpha (+ they never do). foretold: when the "
+    "agrees: until the tilts differ by 1 % of alpha (+ they never do). predicted: when the "
     "reduced models say that they have to part. moved, twist: how the cylinder stands at the end. "
     "time: computing time of the engine. ratio: the same over that of the reduced model."
 )

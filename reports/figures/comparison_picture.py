@@ -70,8 +70,8 @@ def _differences(axes: Axes, view: CaseView) -> None:
         style = view.styles[row.run]
         difference = np.maximum(envelope(pair.time, np.abs(pair.tilt_difference), WINDOW), SMALLEST)
         _line(axes, pair.time, difference, f"{row.run} − {row.reference}", style, 1.3)
-        if row.parted:
-            end = view.start(row.reference) + row.agreement_horizon
+        if row.diverged:
+            end = view.start(row.reference) + row.agreement_time
             axes.plot(
                 end, AGREEMENT, "D", markersize=7, color=style.colour, markeredgecolor="black", zorder=5
             )

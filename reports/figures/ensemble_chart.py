@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from rockwobble.compare import Ensemble
 
-MODELS = ("recess", "rolling", "planar")
+MODELS = ("recess", "flat", "planar")
 _BAR, _BEYOND = "#222222", "#D55E00"
 
 

@@ -20,7 +20,7 @@ DASHES: Mapping[str, Any] = MappingProxyType(
         "longdashdot": (0, (9, 3, 1, 3)),
     }
 )
-_REFERENCE = {"recess": ("#000000", "solid"), "rolling": ("#666666", "dash")}
+_REFERENCE = {"recess": ("#000000", "solid"), "flat": ("#666666", "dash")}
 _REST = ("#000000", "dot")
 
 

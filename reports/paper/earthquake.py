@@ -28,7 +28,7 @@ CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 _GRAVITY = 9.81
 _RTOL = 1e-10
 _SAMPLE_STEP = 5e-4  # [s]; half a turn in a typical pass takes tens of it
-# Passes near the apex make one response one of many. What the paper sees in one is therefore counted
+# Passes near upright make one response one of many. What the paper sees in one is therefore counted
 # over neighbours too: the record scaled by up to a tenth, evenly.
 _NEIGHBOURS = tuple(0.9 + 0.005 * i for i in range(41))
 _NEIGHBOUR_STEP = 2e-3  # [s]; enough to count by
@@ -48,7 +48,7 @@ class Part:
     Attributes
     ----------
     passes : int
-        By the apex.
+        By upright.
     half_turn : float
         Median time in which the middle half of the turn of a pass is made [s].
     abrupt : int

@@ -105,7 +105,7 @@ def sensitivity(data: Shaken) -> str:
         return f"A twin whose record is {stronger} stays within 1 % of α of this response to the end."
     return (
         f"A twin whose record is {stronger} differs by 1 % of α from {data.horizon:.1f} s on: passes close "
-        "to the apex amplify every difference, and from there on this response is one of many."
+        "to upright amplify every difference, and from there on this response is one of many."
     )
 
 

@@ -13,7 +13,7 @@ TESTS = Path(__file__).resolve().parents[1]
 SCRIPTS = (
     "convergence",
     "engine_extremes",
-    "engine_horizons",
+    "agreement_times",
     "engine_settings",
     "ensemble_intervals",
     "ring_losses",

@@ -2,11 +2,11 @@
 
 `python tests/benchmarks convergence` prints three tables.
 
-1. Guided against the recess model and free against the rolling model over 8 s, released at 0.3, 0.5 and
+1. Guided against the recess model and free against the flat-ground model over 8 s, released at 0.3, 0.5 and
    0.8 alpha with 0.5 rad/s at 6 m, for tan(alpha) from 0.1 to 3: error at each step, and the order. A release
    in which the model itself loses contact with the ground is left out, and said below the table.
 2. The angle of turn from tilt maximum to tilt maximum, b = 1 m, h = 2 b, released at alpha/2 with 0.1 rad/s,
-   against exact quadrature (recess) and against the rolling model; Exudyn, which has no recess, as well.
+   against exact quadrature (recess) and against the flat-ground model; Exudyn, which has no recess, as well.
 3. The first table's release at 0.5 alpha for cylinders of 1 cm, 6 m and 100 m.
 
 With 2.5e-5 s both engines stay within 5.3e-5 alpha of their models in all releases, at the default step
@@ -39,7 +39,7 @@ RELEASES = (0.3, 0.5, 0.8)  # of alpha
 STEPS = (2e-4, 1e-4, 5e-5, 2.5e-5)  # [s] at 6 m; the second is the default
 TURN_STEPS = (4e-4, 2e-4, 1e-4, 5e-5)
 SIZES = (0.01, 6.0, 100.0)  # [m]
-TABLES = ("free", "turn", "size")
+TABLES = ("free_response", "turn", "size")
 _LENGTH = 8.0  # [s] at 6 m
 _RATE = 0.5  # [rad/s] at 6 m
 _MODEL_TOLERANCE = 1e-11  # of the reduced models: their error is nothing against that of an engine
@@ -202,7 +202,7 @@ def angle_of_turn(
     for support, engine in keys:
         exact = (
             reduced.angle_of_turn(cylinder, release)
-            if support == "guided"
+            if support == "recess"
             else float(reference(case, support).passes["angle_of_turn"].iloc[0])
         )
         turns = [float(next(trials).passes["angle_of_turn"].iloc[0]) for _ in steps]
@@ -227,7 +227,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     engines = [name for name in given.engine or engines_here() if name in engines_here()]
     for table in given.table or TABLES:
-        if table == "free":
+        if table == "free_response":
             _print_free(given.tan_alpha or SLENDERNESS, engines)
         elif table == "turn":
             _print_turn(given.engine)

@@ -3,7 +3,7 @@
 `python tests/benchmarks engine_settings` prints the table. Each variant differs from the default in
 one setting. First the time of a step is measured, in turns, so that a change of the machine's speed meets
 all alike; then each runs with the step that its time allows, so that all cost the same. The errors are
-those of the tilt, guided against the recess model and free against the rolling model:
+those of the tilt, guided against the recess model and free against the flat-ground model:
 
 * shaken: two cases with teeth under El Centro to 15 s, (10 m, 0.1) as recorded and (6 m, 0.2) doubled,
   relative RMS, geometric mean of the two. By chance alone these differ by a factor of two from one azimuth
@@ -140,7 +140,7 @@ def seconds_per_step(chosen: Sequence[Variant]) -> np.ndarray[Any, np.dtype[np.f
     times = np.empty((_TURNS, len(chosen)))
     for turn in times:
         for index, variant in enumerate(chosen):
-            run = variant.run("guided", STEP, 1.0)
+            run = variant.run("recess", STEP, 1.0)
             started = time.process_time()
             multibody.simulate(
                 case.cylinder,

@@ -47,7 +47,7 @@ def trials(engines: Sequence[str] | None = None) -> list[Trial]:
     known = ("mujoco", "pybullet") if engines is None else engines
     installed = [engine for engine in known if engine in multibody.available_engines()]
     found = [
-        trial for engine in installed for support in ("guided", "free") for trial in _of(engine, support)
+        trial for engine in installed for support in ("recess", "flat") for trial in _of(engine, support)
     ]
     return found + (_rings() if "mujoco" in installed else [])
 
@@ -124,7 +124,7 @@ def _of(engine: str, support: str) -> list[Trial]:
               arguments={"friction": 5.0})
         for tan_alpha, peak in steep
     ]  # fmt: skip
-    if support == "guided":
+    if support == "recess":
         # h sqrt(2 k) of the twist, over its limit of stability from about 1 on
         found += [
             trial("guide, h sqrt(k)", part, tan_alpha=tan_alpha,

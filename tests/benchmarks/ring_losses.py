@@ -34,14 +34,14 @@ def ring_runs() -> tuple[Run, ...]:
         "ring_friction": FRICTIONS,
     }
     rings = [Run("mujoco", "ring", **{name: value}) for name, values in varied.items() for value in values]
-    return (Run("mujoco", "guided"), Run("mujoco", "free"), *rings)
+    return (Run("mujoco", "recess"), Run("mujoco", "flat"), *rings)
 
 
 def table(rows: Sequence[RingRow]) -> str:
     """Return the rows as text, one block for each case: medians over the rows of a case and a ring."""
     head = [
         f"{'run':17} {'first':>6} {'contact':>8} {'passes':>6} {'lost':>8} {'from':>8} {'to':>8} "
-        f"{'a pass':>8} {'rolled':>8} {'at end':>8} {'twist':>6} {'recess':>7} {'rolling':>7}",
+        f"{'a pass':>8} {'rolled':>8} {'at end':>8} {'twist':>6} {'recess':>7} {'flat':>7}",
         f"{'':17} {'s':>6} {'s':>8} {'':>6} {'%':>8} {'%':>8} {'%':>8} {'%':>8} "
         f"{'b':>8} {'b':>8} {'rad':>6} {'RMS':>7} {'RMS':>7}",
     ]
@@ -72,7 +72,7 @@ def _line(name: str, rows: Sequence[RingRow]) -> str:
         f"{name:17} {median('first_contact'):6.2f} {median('contact_time'):8.4f} {median('passes'):6.0f} "
         f"{_median(lost):8.3f} {min(lost):8.3f} {max(lost):8.3f} {each:8.3f} "
         f"{median('rolled_out'):8.4f} {median('at_end'):8.4f} {median('twist'):6.3f} "
-        f"{median('against_recess'):7.0e} {median('against_rolling'):7.0e}"
+        f"{median('against_recess'):7.0e} {median('against_flat'):7.0e}"
         + (f"  {broken} of {len(rows)} failed or overturned" if broken else "")
     )
 
@@ -118,7 +118,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "MuJoCo, R = 6 m, friction of the ground 3. A ring has its default settings but for the one named.\n"
         f"Medians of runs turned by {azimuths} deg about the vertical. lost: of the largest energy reached.\n"
         "rolled: how far from its place the cylinder would come down, largest and at the end.\n"
-        "recess, rolling: RMS of the tilt difference over that of the model's tilt."
+        "recess, flat: RMS of the tilt difference over that of the model's tilt."
     )
     print(table(rows))
     return 0

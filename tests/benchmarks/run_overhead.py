@@ -54,7 +54,7 @@ def run_overheads(
     grounds: dict[str, GroundMotion | None] = {"still": None, "El Centro / 10": el_centro_1940().scaled(0.1)}
     cases = [
         (support, ground, Case(f"{support}, {ground}", _PIER, motion, release, seconds))
-        for support in ("guided", "free")
+        for support in ("recess", "flat")
         for ground, motion in grounds.items()
     ]
     steps = round(seconds / _STEP)

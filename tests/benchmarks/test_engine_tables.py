@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from benchmarks import convergence, engine_horizons, engine_settings
+from benchmarks import agreement_times, convergence, engine_settings
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
@@ -27,7 +27,7 @@ def test_the_order_is_a_slope() -> None:
 def test_a_convergence_row() -> None:
     case = Case("short", PIER, None, RELEASE, 1.0)
     table = convergence.convergence([case], engines=["mujoco"], steps=(8e-4, 4e-4, 2e-4), workers=1)
-    assert list(table["support"]) == ["guided", "free"]
+    assert list(table["support"]) == ["recess", "flat"]
     assert (table["error_3"] < table["error_1"]).all()
     # 3e-6 alpha over 8 s at the default step, first order
     assert (table["error_3"] < 1e-5).all()
@@ -43,19 +43,19 @@ def test_a_release_that_flies_is_said() -> None:
 def test_a_horizon_row() -> None:
     time = np.arange(0.0, 1.0, 0.01)
     push = np.column_stack([3.0 * np.sin(8.0 * time), 2.0 * np.cos(7.0 * time)])
-    table = engine_horizons.horizons([Case("push", PIER, GroundMotion(push, 0.01))], workers=1)
-    assert list(table["reference"]) == ["recess", "rolling", "recess"]
+    table = agreement_times.agreement_times([Case("push", PIER, GroundMotion(push, 0.01))], workers=1)
+    assert list(table["reference"]) == ["recess", "flat", "recess"]
     guided = table.iloc[0]
-    assert not guided["parted"]
+    assert not guided["diverged"]
     assert guided["horizon"] == pytest.approx(guided["length"])
-    assert guided["agreed"] == "never, as foretold"
+    assert guided["agreed"] == "never, as predicted"
 
 
 def test_variants_differ_from_the_default_in_one_setting() -> None:
     found = engine_settings.variants(["mujoco"])
-    assert found[0].run("free", 1e-4, 1.0).settings == {}
+    assert found[0].run("flat", 1e-4, 1.0).settings == {}
     for variant in found[1:]:
-        assert 1 <= len(variant.run("guided", 1e-4, 1.0).settings) <= 2
+        assert 1 <= len(variant.run("recess", 1e-4, 1.0).settings) <= 2
     names = [(variant.engine, variant.what) for variant in found]
     assert len(set(names)) == len(names)
 
@@ -71,10 +71,10 @@ def test_settings_are_measured_on_a_record_that_is_turned() -> None:
 
 def test_forces_are_compared_between_passes_while_the_motion_is_the_same() -> None:
     case = Case("release", PIER, None, RELEASE, 0.5)
-    model = convergence.reference(case, "guided")
+    model = convergence.reference(case, "recess")
     run = multibody.simulate(PIER, initial=RELEASE, duration=0.5)
     # 0.4 % in free response at worst; a force that is 2 % off is seen
-    assert engine_horizons.force_error(case, model, run, np.inf) < 4e-3
+    assert agreement_times.force_error(case, model, run, np.inf) < 4e-3
     wrong = replace(run, contact_force=1.02 * run.contact_force)
-    assert engine_horizons.force_error(case, model, wrong, np.inf) == pytest.approx(0.02, abs=4e-3)
-    assert np.isnan(engine_horizons.force_error(case, model, wrong, 0.05))
+    assert agreement_times.force_error(case, model, wrong, np.inf) == pytest.approx(0.02, abs=4e-3)
+    assert np.isnan(agreement_times.force_error(case, model, wrong, 0.05))

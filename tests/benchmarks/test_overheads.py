@@ -14,7 +14,7 @@ from benchmarks.sweep_overhead import IN_MEMORY, KERNEL, STORED, Cost, measure, 
 
 def test_overhead_is_a_ratio_of_the_same_steps() -> None:
     table = run_overheads(rounds=1, seconds=0.05)
-    assert list(table["support"]) == ["guided", "guided", "free", "free"]
+    assert list(table["support"]) == ["recess", "recess", "flat", "flat"]
     assert (table["steps"] == 500).all()
     np.testing.assert_allclose(table["ratio"], table["run"] / table["bare"])
     # a run does all that the bare steps do
@@ -45,5 +45,5 @@ def test_a_table_of_costs_is_shown_whole_and_written(
     assert scene_cost.main(["--engine", "mujoco", "--rounds", "1", "--steps", "5", "--out", str(out)]) == 0
     shown = capsys.readouterr().out
     assert "…" not in shown
-    assert "guided" in shown
+    assert "recess" in shown
     assert len(out.read_text().splitlines()) > 10

@@ -34,7 +34,7 @@ class MadeUpTrace:
     wall_time: float = 1.0
     engine: str = "made up"
     engine_version: str = "1"
-    support: str = "guided"
+    support: str = "recess"
     time_step: float = 1e-4
     contact_resolution: float = 0.0
     residual_displacement: float = 0.0

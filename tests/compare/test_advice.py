@@ -301,9 +301,9 @@ def test_what_a_falling_cylinder_asks_is_no_demand():
 
 def test_open_ground_asks_for_the_rolling_model():
     found = advise(
-        Case("x", PIER, initial=InitialState(0.05, rolling_rate=0.5), duration=2.0), support="free"
+        Case("x", PIER, initial=InitialState(0.05, rolling_rate=0.5), duration=2.0), support="flat"
     )
-    assert (found.model, found.other) == ("rolling", "recess")
+    assert (found.model, found.other) == ("flat", "recess")
     assert found.demands.couple == 0.0
     assert found.trust.kind == "trace"
 

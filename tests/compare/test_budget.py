@@ -21,7 +21,7 @@ from rockwobble.compare.comparison.error_budget import (
     findings,
 )
 from rockwobble.compare.comparison.refinement import Refined, finer_case, limits
-from rockwobble.compare.metrics.agreement import Horizon
+from rockwobble.compare.metrics.agreement import Agreement
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
 
 ROUNDING = 1e-12
@@ -29,7 +29,7 @@ STEP = 4e-4  # coarse, so that four runs take a second
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.5)
 CASE = Case("release", PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=2.0)
 TIME = np.arange(201) * 0.01
-WHOLE_RUN = Horizon(length=2.0, end=2.0, parted=False)
+WHOLE_RUN = Agreement(length=2.0, end=2.0, diverged=False)
 
 
 def run(case: Case, step: float):
@@ -51,7 +51,7 @@ def engine():
 def limit(engine) -> Limit:
     refined = Refined(
         case=CASE,
-        run=Run("mujoco", "guided", STEP),
+        run=Run("mujoco", "recess", STEP),
         label="x",
         trajectory=engine,
         end=2.0,
@@ -96,7 +96,7 @@ def test_a_model_half_a_per_cent_off_in_size_is_unexplained(engine, limit):
 def test_the_difference_of_two_models_is_model_form(engine, limit):
     models = [
         reduced.simulate(PIER, initial=CASE.initial, duration=2.0, model=m, rtol=1e-11)
-        for m in ("rolling", "recess")
+        for m in ("flat", "recess")
     ]
     found = error_budget(PIER, engine, *models, limit, WHOLE_RUN)
     expected = (models[1].tilt - models[0].tilt) / PIER.alpha
@@ -151,7 +151,7 @@ def test_from_rest_the_finer_runs_are_turned_away_from_where_bullet_looks_first(
     case = Case("pulse", PIER, motion)
     trajectory = dataclasses.replace(engine, uplift_direction=0.7)
     refined = Refined(
-        case=case, run=Run(engine_name, "guided"), label="x", trajectory=trajectory, end=0.804, difference=0.0
+        case=case, run=Run(engine_name, "recess"), label="x", trajectory=trajectory, end=0.804, difference=0.0
     )
     finer = finer_case(refined)
     assert np.allclose(finer.motion.acceleration, motion.rotated(turn).acceleration)
@@ -159,12 +159,12 @@ def test_from_rest_the_finer_runs_are_turned_away_from_where_bullet_looks_first(
 
 
 def test_a_base_that_lands_flat_loses_what_the_model_keeps():
-    # uplift along one direction, past the apex itself, and on: the engine takes Housner's loss there
+    # uplift along one direction, past upright itself, and on: the engine takes Housner's loss there
     time = np.arange(26) * 0.02
     pulse = np.column_stack([np.sin(2.0 * np.pi * time / 0.5), np.zeros_like(time)])
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case("pulse", pier, GroundMotion(2.0 * 9.81 * 0.2 * pulse, 0.02), duration=1.0)
-    run = Run("mujoco", "guided", 2e-4)
+    run = Run("mujoco", "recess", 2e-4)
     found = compare(Suite([case], [run]), runs=[run], budget=True, workers=1)
     (row,) = found.summary.to_dict("records")
     assert row["whole_rms"] > WORTH_EXPLAINING

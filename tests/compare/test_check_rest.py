@@ -84,7 +84,7 @@ def lossier(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotio
 
 
 def rests_early(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
-    options["seating"] = 1.3 * options.get("seating", 0.0)
+    options["rest_tilt"] = 1.3 * options.get("rest_tilt", 0.0)
     return motion
 
 
@@ -92,7 +92,7 @@ def rests_early(motion: GroundMotion | None, options: dict[str, Any]) -> GroundM
     ("part", "change", "word"),
     [
         (rest, vertical_reversed, "vertical"),
-        (rest, rests_early, "rest threshold"),
+        (rest, rests_early, "rest_tilt"),
         (landing, lossier, "landing"),
         (after_record, held_after_the_end, "end of the record"),
         (after_record, vertical_reversed, "end of the record"),

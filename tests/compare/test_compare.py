@@ -34,10 +34,10 @@ CONTRACT = [
     "turn_difference",
     "uplift_time_difference",
     "uplift_direction_difference",
-    "agreement_horizon",
-    "parted",
+    "agreement_time",
+    "diverged",
     "agreed_passes",
-    "predicted_horizon",
+    "predicted_agreement_time",
     "residual_displacement",
     "residual_twist",
     "energy_loss",
@@ -61,7 +61,7 @@ def made_up(monkeypatch, cylinder, make_trace):
     def use(engine=None, model=None):
         def simulate(job: Job):
             if isinstance(job.method, str):
-                offset = 0.002 if job.method == "rolling" else 0.0
+                offset = 0.002 if job.method == "flat" else 0.0
                 fields = {"passes": [(3.0, 1e-5)], "wall_time": 0.5} | (model or {})
             else:
                 offset = 0.005 * cylinder.alpha
@@ -83,23 +83,23 @@ def made_up(monkeypatch, cylinder, make_trace):
 
 def test_columns_are_those_of_the_contract_in_its_order(made_up, case):
     made_up()
-    summary = compare(case, runs=[Run("mujoco", "guided")], workers=1).summary
+    summary = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary
     assert list(summary.columns[: len(CONTRACT)]) == CONTRACT
     assert list(summary.columns) == list(SUMMARY_COLUMNS)
 
 
 def test_numbers_of_a_row(made_up, case, cylinder):
     made_up()
-    row = compare(case, runs=[Run("mujoco", "guided", 1e-3)], workers=1).summary.iloc[0]
-    assert (row.case, row.reference, row.engine, row.support) == ("made up", "recess", "mujoco", "guided")
+    row = compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1).summary.iloc[0]
+    assert (row.case, row.reference, row.engine, row.support) == ("made up", "recess", "mujoco", "recess")
     assert row.time_step == 1e-3
     assert row.peak_tilt == pytest.approx(0.305, rel=ROUNDING)
     assert row.reference_peak_tilt == pytest.approx(0.3, rel=ROUNDING)
     assert row.peak_tilt_difference == pytest.approx(0.005, rel=1e-9)
     assert row.tilt_rms == pytest.approx(0.005, rel=1e-9)
     assert row.tilt_rms_relative == pytest.approx(0.005 / 0.3, rel=1e-9)
-    assert (row.agreement_horizon, row.parted, row.agreed_passes) == (10.0, False, 1)
-    assert row.predicted_horizon == 3.0
+    assert (row.agreement_time, row.diverged, row.agreed_passes) == (10.0, False, 1)
+    assert row.predicted_agreement_time == 3.0
     assert row.residual_displacement == pytest.approx(0.5, rel=ROUNDING)
     assert row.residual_twist == pytest.approx(3.0, rel=ROUNDING)
     assert row.time_ratio == 4.0
@@ -108,26 +108,26 @@ def test_numbers_of_a_row(made_up, case, cylinder):
 
 def test_open_ground_gets_a_row_for_each_model(made_up, case):
     made_up()
-    found = compare(case, runs=[Run("mujoco", "guided"), Run("mujoco", "free")], workers=1)
+    found = compare(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1)
     assert found.summary[["support", "reference"]].to_numpy().tolist() == [
-        ["guided", "recess"],
-        ["free", "recess"],
-        ["free", "rolling"],
+        ["recess", "recess"],
+        ["flat", "recess"],
+        ["flat", "flat"],
     ]
-    assert set(found.responses) == {("made up", "recess"), ("made up", "rolling")}
-    assert set(found.trajectories) == {("made up", "mujoco guided"), ("made up", "mujoco free")}
-    assert found.summary.parted.tolist() == [False, False, False]
+    assert set(found.responses) == {("made up", "recess"), ("made up", "flat")}
+    assert set(found.trajectories) == {("made up", "mujoco recess"), ("made up", "mujoco flat")}
+    assert found.summary.diverged.tolist() == [False, False, False]
 
 
 def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
     time = np.arange(1001) * 0.01
     tilt = (0.3 + np.where(time > 5.0, 0.1, 0.0)) * cylinder.alpha
     made_up(engine={"tilt": tilt})
-    row = compare(case, runs=[Run("mujoco", "guided")], workers=1, until=5.0).summary.iloc[0]
+    row = compare(case, runs=[Run("mujoco", "recess")], workers=1, until=5.0).summary.iloc[0]
     assert row.tilt_rms == 0.0
     assert row.contact_rms == 0.0
-    assert row.parted
-    assert row.agreement_horizon == pytest.approx(5.01)
+    assert row.diverged
+    assert row.agreement_time == pytest.approx(5.01)
 
 
 @pytest.mark.parametrize(
@@ -145,32 +145,32 @@ def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
 )
 def test_what_the_numbers_would_hide_is_said(made_up, case, engine, model, words):
     made_up(engine, model)
-    assert words in compare(case, runs=[Run("mujoco", "guided")], workers=1).summary.message[0]
+    assert words in compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.message[0]
 
 
 def test_two_that_never_move_agree_and_say_so(made_up, case):
     still = {"tilt": np.zeros(1001), "uplift_time": math.nan, "uplift_direction": math.nan, "outcome": "rest"}
     made_up(still, still)
-    row = compare(case, runs=[Run("mujoco", "guided")], workers=1).summary.iloc[0]
+    row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
     assert row.message.startswith("neither uplifted: there is no motion to compare; not defined here: ")
-    assert (row.tilt_rms, row.parted, row.agreement_horizon) == (0.0, False, 10.0)
+    assert (row.tilt_rms, row.diverged, row.agreement_time) == (0.0, False, 10.0)
 
 
 def test_a_run_that_fails_half_way_is_compared_up_to_there(made_up, case, cylinder):
     tilt = np.where(np.arange(1001) > 400, np.nan, 0.3 * cylinder.alpha)
     made_up({"tilt": tilt, "outcome": "failed", "message": "not a number", "peak_tilt": math.nan})
-    row = compare(case, runs=[Run("mujoco", "guided")], workers=1).summary.iloc[0]
+    row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
     assert row.message == (
         "mujoco failed: not a number; compared up to 4 s; not defined here: peak_tilt, peak_tilt_difference"
     )
     assert math.isnan(row.peak_tilt)
     assert row.tilt_rms == 0.0
-    assert (row.agreement_horizon, row.parted) == (4.0, True)
+    assert (row.agreement_time, row.diverged) == (4.0, True)
 
 
 def test_no_number_is_missing_without_a_word(made_up, case):
     made_up({"energy": np.full(1001, np.nan), "residual_twist": math.nan})
-    row = compare(case, runs=[Run("mujoco", "guided")], workers=1).summary.iloc[0]
+    row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
     assert row.message == "not defined here: residual_twist, energy_loss"
 
 
@@ -199,9 +199,9 @@ def test_a_process_that_dies_is_a_failed_row(monkeypatch, made_up, case):
             return future
 
     monkeypatch.setattr(execution, "ProcessPool", Pool)
-    found = compare(case, runs=[Run("mujoco", "guided")], workers=2)
+    found = compare(case, runs=[Run("mujoco", "recess")], workers=2)
     row = found.summary.iloc[0]
-    assert (row.outcome, row.parted) == ("failed", True)
+    assert (row.outcome, row.diverged) == ("failed", True)
     assert row.message == "mujoco left no trajectory: the process ended with status -11"
     assert row.reference_peak_tilt == pytest.approx(0.3)
     assert math.isnan(row.tilt_rms)
@@ -213,7 +213,7 @@ def test_a_suite_is_cases_times_runs(made_up, case, cylinder, monkeypatch):
     # no engine runs, so none needs to be installed: PyBullet is not everywhere
     monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
     other = Case("second", cylinder, case.motion)
-    suite = Suite([case, other], [Run("mujoco", "guided"), Run("pybullet", "guided")])
+    suite = Suite([case, other], [Run("mujoco", "recess"), Run("pybullet", "recess")])
     summary = compare(suite, workers=1).summary
     assert summary[["case", "engine"]].to_numpy().tolist() == [
         ["made up", "mujoco"],
@@ -226,18 +226,18 @@ def test_a_suite_is_cases_times_runs(made_up, case, cylinder, monkeypatch):
 def test_progress_is_told_of_every_run(made_up, case):
     made_up()
     told = []
-    compare(case, runs=[Run("mujoco", "guided")], workers=1, progress=told.append)
+    compare(case, runs=[Run("mujoco", "recess")], workers=1, progress=told.append)
     assert [(p.label, p.state, p.done, p.total) for p in told] == [
         ("recess", "started", 0, 2),
         ("recess", "finished", 1, 2),
-        ("mujoco guided", "started", 1, 2),
-        ("mujoco guided", "finished", 2, 2),
+        ("mujoco recess", "started", 1, 2),
+        ("mujoco recess", "finished", 2, 2),
     ]
 
 
 def test_files_hold_the_whole_result(made_up, case, tmp_path):
     made_up()
-    found = compare(case, runs=[Run("mujoco", "guided"), Run("mujoco", "free")], workers=1, out=tmp_path)
+    found = compare(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1, out=tmp_path)
     names = {path.name for path in tmp_path.iterdir()}
     assert names == {
         "summary.csv",
@@ -254,8 +254,8 @@ def test_files_hold_the_whole_result(made_up, case, tmp_path):
     # the default parser of older pandas is off by a rounding
     assert summary.tilt_rms.tolist() == pytest.approx(found.summary.tilt_rms.tolist(), rel=ROUNDING)
     samples = pd.read_parquet(tmp_path / "trajectories.parquet")
-    assert samples.groupby("run").size().to_dict() == {"mujoco guided": 1001, "mujoco free": 1001}
-    assert set(pd.read_parquet(tmp_path / "responses.parquet").model) == {"recess", "rolling"}
+    assert samples.groupby("run").size().to_dict() == {"mujoco recess": 1001, "mujoco flat": 1001}
+    assert set(pd.read_parquet(tmp_path / "responses.parquet").model) == {"recess", "flat"}
     assert list(pd.read_parquet(tmp_path / "passes.parquet").columns[:2]) == ["case", "run"]
     about = json.loads((tmp_path / "comparison.json").read_text())
     assert about["cases"]["made up"]["tan_alpha"] == 0.2
@@ -266,7 +266,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_runs(monkeyp
     monkeypatch.setattr(execution, "simulate", lambda _: pytest.fail("it ran"))
     (tmp_path / "taken").write_text("")
     with pytest.raises(ValueError, match="must be a folder"):
-        compare(case, runs=[Run("mujoco", "guided")], workers=1, out=tmp_path / "taken")
+        compare(case, runs=[Run("mujoco", "recess")], workers=1, out=tmp_path / "taken")
 
 
 def test_the_same_run_in_other_processes_is_the_same(cylinder):

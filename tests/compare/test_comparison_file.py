@@ -25,7 +25,7 @@ CASES = [
 @pytest.fixture(scope="module")
 def saved(tmp_path_factory) -> tuple[Comparison, Comparison]:
     folder = tmp_path_factory.mktemp("comparison")
-    runs = [Run("mujoco", "guided", 1e-3), Run("mujoco", "free", 1e-3)]
+    runs = [Run("mujoco", "recess", 1e-3), Run("mujoco", "flat", 1e-3)]
     comparison = compare(Suite(CASES, runs), workers=1, out=folder, budget=True)
     return comparison, Comparison.load(folder)
 

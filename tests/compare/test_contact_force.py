@@ -19,7 +19,7 @@ BETWEEN = 0.1
 SLIP = 1e-3
 
 ENGINES = [name for name in ("mujoco", "pybullet") if name in multibody.available_engines()]  # with contact
-MODELS = {"guided": "recess", "free": "rolling"}
+MODELS = {"recess": "recess", "flat": "flat"}
 
 
 def _agree(run: multibody.Trajectory, model: reduced.Response, alpha: float, start: float) -> None:
@@ -35,7 +35,7 @@ def _agree(run: multibody.Trajectory, model: reduced.Response, alpha: float, sta
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("support", ["guided", "free"])
+@pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize("tan_alpha", [0.2, 1.0])
 def test_force_of_a_free_response(engine: str, support: str, tan_alpha: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
@@ -45,7 +45,7 @@ def test_force_of_a_free_response(engine: str, support: str, tan_alpha: float) -
     _agree(run, model, cylinder.alpha, 0.0)
 
 
-@pytest.mark.parametrize("support", ["guided", "free"])
+@pytest.mark.parametrize("support", ["recess", "flat"])
 def test_force_under_el_centro(support: str) -> None:
     # standing, uplift and two passes; the record has a kink at every sample
     cylinder, motion = Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940()
@@ -58,7 +58,7 @@ def test_force_under_el_centro(support: str) -> None:
 
 
 @pytest.mark.parametrize("engine", ENGINES)
-@pytest.mark.parametrize("support", ["guided", "free"])
+@pytest.mark.parametrize("support", ["recess", "flat"])
 def test_a_steady_wobble_holds_where_friction_suffices_and_says_where_not(engine: str, support: str) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.5)
     tilt = 0.3 * cylinder.alpha

@@ -44,21 +44,21 @@ def test_failed_runs_are_counted_and_named(monkeypatch, make_trace):
     time = np.arange(11) * 0.1
 
     def simulate(job: Job):
-        if job.label == "rolling" and job.case.name.endswith("#2"):
+        if job.label == "flat" and job.case.name.endswith("#2"):
             return make_trace(time, time, outcome="failed", message="no step", peak_tilt=math.nan)
         return make_trace(time, job.case.initial.tilt * time)
 
     monkeypatch.setattr(execution, "simulate", simulate)
     found = ensemble(CASE, runs=[], size=4, workers=1)
     methods = found.methods.set_index("method")
-    assert methods["failed"].to_dict() == {"recess": 0, "rolling": 1}
-    assert methods.loc["rolling", "failed_members"] == "release #2"
+    assert methods["failed"].to_dict() == {"recess": 0, "flat": 1}
+    assert methods.loc["flat", "failed_members"] == "release #2"
     assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [3, "release #2"]
     assert len(found.members) == 8
     # of three members that do not differ; what failed has no part in the counts and quantiles of its method
     assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [3, 1.0]
-    assert methods.loc["rolling", ["runs", "rocked", "overturned"]].tolist() == [4, 3, 0]
-    assert math.isfinite(methods.loc["rolling", "peak_median"])
+    assert methods.loc["flat", ["runs", "rocked", "overturned"]].tolist() == [4, 3, 0]
+    assert math.isfinite(methods.loc["flat", "peak_median"])
 
 
 def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch, make_trace):
@@ -66,7 +66,7 @@ def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch, make_tra
     # past its balance and falling at the end: what that is called is the matter of who ran it
     runs = {
         "recess": make_trace(time, 1.5 * PIER.alpha * time, tilt_rate=np.ones(11), message="still falling"),
-        "rolling": make_trace(time, time, outcome="overturned", peak_tilt=0.5 * math.pi),
+        "flat": make_trace(time, time, outcome="overturned", peak_tilt=0.5 * math.pi),
     }
     cases = [dataclasses.replace(CASE, name=name) for name in "ab"]
     monkeypatch.setattr(execution, "simulate", lambda job: runs[job.label])
@@ -112,7 +112,7 @@ def test_a_failed_run_is_no_member_that_stands(tmp_path):
     members.loc[recess, "peak_tilt"] = [8.0, 8.0, 0.3, 0.4]
     again = ensemble_of(members, found.about)
     assert again.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
-    turned = ensemble_of(members, {**found.about, "methods": {"rolling": "", "recess": ""}})
+    turned = ensemble_of(members, {**found.about, "methods": {"flat": "", "recess": ""}})
     assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
     assert again.methods.loc[0, ["runs", "rocked", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
     (tmp_path / "members.parquet").write_bytes(pack(members, found.about))

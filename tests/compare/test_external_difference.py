@@ -47,13 +47,13 @@ def test_an_azimuth_differs_by_its_bound_and_from_its_first_sample(degrees):
 def test_an_azimuth_near_the_upright_position_and_after_the_agreement_means_nothing():
     upright = motion(TILT, TIME + np.where(TILT < 0.003, 2.0, 0.0))
     assert not held(motion(TILT, TIME), upright).azimuth.differs
-    parting = TILT + np.where(TIME > 3.5, 0.01 * PIER.alpha * 1.5, 0.0)
-    after = motion(parting, TIME + np.where(TIME > 3.5, 2.0, 0.0))
+    divergence = TILT + np.where(TIME > 3.5, 0.01 * PIER.alpha * 1.5, 0.0)
+    after = motion(divergence, TIME + np.where(TIME > 3.5, 2.0, 0.0))
     assert held(motion(TILT, TIME), after).differs_in == ("tilt",)
     # what is about to part is off already: the last fifth does not count
-    before = motion(parting, TIME + np.where(TIME > 2.9, 2.0, 0.0))
+    before = motion(divergence, TIME + np.where(TIME > 2.9, 2.0, 0.0))
     assert held(motion(TILT, TIME), before).differs_in == ("tilt",)
-    # without a parting all of it does
+    # without a divergence all of it does
     assert held(motion(TILT, TIME), motion(TILT, TIME + np.where(TIME > 2.9, 2.0, 0.0))).differs_in == (
         "azimuth",
     )

@@ -12,7 +12,7 @@ from rockwobble.compare.studies.extremes import EXTREMES, METHODS, conditions, s
 from rockwobble.models import InitialState
 
 RECESS = ("reduced recess", "recess", "")
-GUIDED = ("MuJoCo guided", "mujoco", "guided")
+GUIDED = ("MuJoCo recess", "mujoco", "recess")
 
 
 def at(extreme: str, value: str) -> Any:
@@ -42,7 +42,7 @@ def test_a_fine_answer_of_the_recess_model_is_backed_by_the_exact_one(extreme):
         (("contact stiffness", "time constant 0.1 steps"), GUIDED, "caught", "energy"),
         (("friction", "0"), RECESS, "inaccurate", "slips"),
         (("time step", "100 times the default"), RECESS, "n/a", ""),
-        (("contact stiffness", "time constant 0.1 steps"), ("PyBullet free", "pybullet", "free"), "n/a", ""),
+        (("contact stiffness", "time constant 0.1 steps"), ("PyBullet flat", "pybullet", "flat"), "n/a", ""),
     ],
 )
 def test_what_goes_wrong_is_refused_caught_or_said(extreme, method, verdict, words):

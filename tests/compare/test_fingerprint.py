@@ -22,8 +22,8 @@ VALUES = [
         MOTION,
         InitialState(0.1),
         InitialState(0.2),
-        Run("mujoco", "free"),
-        Run("mujoco", "guided"),
+        Run("mujoco", "flat"),
+        Run("mujoco", "recess"),
     ),
 ]
 
@@ -61,8 +61,8 @@ def test_what_has_no_bits_has_no_name():
 @pytest.mark.parametrize(
     "other",
     [
-        job("rolling"),
-        job(Run("mujoco", "guided")),
+        job("flat"),
+        job(Run("mujoco", "recess")),
         job(cylinder=Cylinder(semidiagonal=6.0, tan_alpha=0.2, height=11.0)),
         job(motion=MOTION.scaled(1.0 + 1e-15)),
         job(motion=GroundMotion(MOTION.acceleration, 0.11)),
@@ -77,7 +77,7 @@ def test_each_input_of_a_run_is_in_its_name(other):
 
 
 def test_engine_settings_are_in_the_name():
-    runs = [Run("mujoco", "free"), Run("mujoco", "free", 1e-4), Run("mujoco", "free", integrator="discrete")]
+    runs = [Run("mujoco", "flat"), Run("mujoco", "flat", 1e-4), Run("mujoco", "flat", integrator="discrete")]
     assert len({job_fingerprint(job(run)) for run in runs}) == 3
 
 

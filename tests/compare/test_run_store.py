@@ -20,7 +20,7 @@ from rockwobble.models import Case, Cylinder, InitialState, Run
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case("release", PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0)
 # the largest step that contact allows: what is tested is what becomes of a run
-GUIDED, FREE = Run("mujoco", "guided", 1e-3), Run("mujoco", "free", 1e-3)
+GUIDED, FREE = Run("mujoco", "recess", 1e-3), Run("mujoco", "flat", 1e-3)
 
 
 def runs_in(folder: Path) -> list[Path]:
@@ -54,7 +54,7 @@ def run(folder: Path, wanted: list[Job], **options) -> list:
 
 def test_a_second_comparison_repeats_nothing_and_finds_the_same(tmp_path, counted):
     first = compare(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
-    assert counted[:2] == ["recess", "mujoco guided"]
+    assert counted[:2] == ["recess", "mujoco recess"]
     counted.clear()
     second = compare(CASE, runs=[GUIDED], workers=1, resume=tmp_path)
     assert counted == []
@@ -113,8 +113,8 @@ def test_only_what_is_missing_runs(tmp_path, counted):
     run(tmp_path, jobs("recess", FREE))
     counted.clear()
     events = []
-    run(tmp_path, jobs("recess", GUIDED, FREE, "rolling"), progress=events.append)
-    assert counted == ["guided", "rolling"]
+    run(tmp_path, jobs("recess", GUIDED, FREE, "flat"), progress=events.append)
+    assert counted == ["recess", "flat"]
     assert [(event.state, event.done, event.total) for event in events] == [
         ("started", 2, 4),
         ("finished", 3, 4),
@@ -125,26 +125,26 @@ def test_only_what_is_missing_runs(tmp_path, counted):
 
 def test_results_come_in_the_order_of_the_jobs(tmp_path):
     run(tmp_path, jobs(FREE))
-    found = run(tmp_path, jobs("rolling", FREE, "recess", GUIDED))
+    found = run(tmp_path, jobs("flat", FREE, "recess", GUIDED))
     assert [getattr(trace, "support", None) or trace.model for trace in found] == [
-        *("rolling", "free", "recess", "guided")
+        *("flat", "flat", "recess", "recess")
     ]
 
 
 def test_an_interrupted_comparison_keeps_every_finished_run(tmp_path, counted):
     def interrupt(event):
-        if event.state == "started" and event.label == "guided":
+        if event.state == "started" and event.label == "recess":
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         run(tmp_path, jobs("recess", GUIDED), progress=interrupt)
     assert counted == ["recess"]
     run(tmp_path, jobs("recess", GUIDED))
-    assert counted == ["recess", "guided"]
+    assert counted == ["recess", "recess"]
 
 
 def test_runs_of_another_comparison_go_only_when_this_one_is_complete(tmp_path):
-    run(tmp_path, jobs("recess", "rolling"))
+    run(tmp_path, jobs("recess", "flat"))
     before = set(runs_in(tmp_path))
 
     def interrupt(_):

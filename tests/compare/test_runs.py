@@ -27,10 +27,10 @@ def case(cylinder):
 def test_default_runs_are_every_installed_engine_guided_and_free():
     runs = default_runs(engines=("mujoco", "pybullet"))
     assert [(run.engine, run.support) for run in runs] == [
-        ("mujoco", "guided"),
-        ("pybullet", "guided"),
-        ("mujoco", "free"),
-        ("pybullet", "free"),
+        ("mujoco", "recess"),
+        ("pybullet", "recess"),
+        ("mujoco", "flat"),
+        ("pybullet", "flat"),
     ]
 
 
@@ -41,7 +41,7 @@ def test_an_engine_without_a_wheel_is_left_out_and_refused_by_name(monkeypatch, 
     assert "pybullet" in missing_engines()
     assert "pybullet" not in {run.engine for run in default_runs()}
     with pytest.raises(ValueError, match=r"'pybullet' is not installed here: pip install pybullet"):
-        require_runnable(case, Run("pybullet", "guided"))
+        require_runnable(case, Run("pybullet", "recess"))
 
 
 def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeypatch, case):
@@ -50,14 +50,14 @@ def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeyp
     assert "exudyn" not in {run.engine for run in default_runs()}
     assert reserved_engines()["exudyn"] == "exudyn has no guided support and no uplift"
     # named, it runs on open ground; a support that is named stays, and is refused
-    assert default_runs(engines=("exudyn",)) == (Run("exudyn", "free"),)
-    (guided,) = default_runs(engines=("exudyn",), supports=("guided",))
-    with pytest.raises(ValueError, match="support must be free in exudyn, got 'guided'"):
+    assert default_runs(engines=("exudyn",)) == (Run("exudyn", "flat"),)
+    (guided,) = default_runs(engines=("exudyn",), supports=("recess",))
+    with pytest.raises(ValueError, match="support must be free in exudyn, got 'recess'"):
         require_runnable(case, guided)
     with pytest.raises(ValueError, match="exudyn cannot uplift a cylinder that stands"):
-        require_runnable(case, Run("exudyn", "free"))
+        require_runnable(case, Run("exudyn", "flat"))
     released = Case("released", case.cylinder, initial=InitialState(0.1), duration=1.0)
-    require_runnable(released, Run("exudyn", "free"))
+    require_runnable(released, Run("exudyn", "flat"))
     find = importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "exudyn" else find(name))
     # an extra that is not installed is nobody's loss, until it is named
@@ -65,28 +65,28 @@ def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeyp
     with pytest.raises(
         ValueError, match=r"'exudyn' is not installed here: pip install 'rockwobble\[exudyn\]'"
     ):
-        require_runnable(released, Run("exudyn", "free"))
+        require_runnable(released, Run("exudyn", "flat"))
 
 
 def test_unknown_engines_and_supports_are_refused(case):
     with pytest.raises(ValueError, match=r"engine must be one of mujoco, pybullet.*, got 'bullet'"):
-        require_runnable(case, Run("bullet", "guided"))
+        require_runnable(case, Run("bullet", "recess"))
     with pytest.raises(ValueError, match=r"support must be one of .*, got 'glued'"):
         require_runnable(case, Run("mujoco", "glued"))
 
 
 def test_a_time_step_too_large_for_the_size_is_refused(case):
-    require_runnable(case, Run("mujoco", "guided", 1e-3))
+    require_runnable(case, Run("mujoco", "recess", 1e-3))
     small = Case("small", Cylinder(semidiagonal=0.06, tan_alpha=0.2), duration=1.0)
     with pytest.raises(ValueError, match=r"time_step must be at most 0.0001 s"):
-        require_runnable(small, Run("mujoco", "guided", 1e-3))
+        require_runnable(small, Run("mujoco", "recess", 1e-3))
 
 
 def test_open_ground_is_held_against_both_models():
-    assert references_of(Run("mujoco", "guided"), "recess") == ("recess",)
-    assert references_of(Run("mujoco", "free"), "recess") == ("recess", "rolling")
-    assert references_of(Run("mujoco", "free"), "rolling") == ("rolling",)
-    assert references_of(Run("mujoco", "ring"), "recess") == ("recess", "rolling")
+    assert references_of(Run("mujoco", "recess"), "recess") == ("recess",)
+    assert references_of(Run("mujoco", "flat"), "recess") == ("recess", "flat")
+    assert references_of(Run("mujoco", "flat"), "flat") == ("flat",)
+    assert references_of(Run("mujoco", "ring"), "recess") == ("recess", "flat")
 
 
 def test_a_ring_that_is_not_touched_follows_the_model_of_its_support():
@@ -94,7 +94,7 @@ def test_a_ring_that_is_not_touched_follows_the_model_of_its_support():
     case = Case("release", pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=2.0)
     rows = compare(case, runs=[Run("mujoco", "ring")], workers=1).summary.set_index("reference")
     assert not rows["message"].str.contains("wall").any()
-    other = {"recess": "rolling", "rolling": "recess"}[own_model("ring")]
+    other = {"recess": "flat", "flat": "recess"}[own_model("ring")]
     assert rows.loc[own_model("ring"), "tilt_rms"] < FOLLOWS * rows.loc[other, "tilt_rms"]
 
 
@@ -108,32 +108,32 @@ def test_a_support_that_no_engine_has_is_refused(case):
 
 def test_a_ring_runs_with_the_engines_that_have_it_unless_others_are_named(case):
     assert [(run.engine, run.support) for run in default_runs(supports=["ring"])] == [("mujoco", "ring")]
-    both = default_runs(supports=["ring", "free"])
+    both = default_runs(supports=["ring", "flat"])
     assert ("pybullet", "ring") not in [(run.engine, run.support) for run in both]
     if "pybullet" in installed_engines():
-        assert unsupported(["ring", "free"]) == ("pybullet has no ring support and is left out there",)
-        assert ("pybullet", "free") in [(run.engine, run.support) for run in both]
+        assert unsupported(["ring", "flat"]) == ("pybullet has no ring support and is left out there",)
+        assert ("pybullet", "flat") in [(run.engine, run.support) for run in both]
         with pytest.raises(ValueError, match=r"one of guided, free in pybullet, got 'ring'"):
             require_runnable(case, *default_runs(["pybullet"], ["ring"]))
 
 
 def test_labels_tell_runs_apart_with_as_little_as_possible():
     runs = [
-        Run("mujoco", "guided"),
-        Run("mujoco", "free", 1e-4),
-        Run("mujoco", "free", 5e-5),
-        Run("mujoco", "free", 5e-5, integrator="RK4"),
-        Run("mujoco", "free", 5e-5, integrator="Euler"),
+        Run("mujoco", "recess"),
+        Run("mujoco", "flat", 1e-4),
+        Run("mujoco", "flat", 5e-5),
+        Run("mujoco", "flat", 5e-5, integrator="RK4"),
+        Run("mujoco", "flat", 5e-5, integrator="Euler"),
     ]
     assert run_labels(runs) == (
-        "mujoco guided",
-        "mujoco free 0.0001 s",
-        "mujoco free 5e-05 s",
-        "mujoco free 5e-05 s integrator=RK4",
-        "mujoco free 5e-05 s integrator=Euler",
+        "mujoco recess",
+        "mujoco flat 0.0001 s",
+        "mujoco flat 5e-05 s",
+        "mujoco flat 5e-05 s integrator=RK4",
+        "mujoco flat 5e-05 s integrator=Euler",
     )
 
 
 def test_the_same_run_twice_is_refused():
-    with pytest.raises(ValueError, match=r"must differ, got 'mujoco free' twice"):
-        run_labels([Run("mujoco", "free"), Run("mujoco", "free")])
+    with pytest.raises(ValueError, match=r"must differ, got 'mujoco flat' twice"):
+        run_labels([Run("mujoco", "flat"), Run("mujoco", "flat")])

@@ -25,13 +25,13 @@ def test_every_scene_is_counted(engine: str) -> None:
     }
     assert len(counts) == len(table)
     # a rim stands on one point, with a normal and two directions of friction
-    assert counts["free", "released"] == counts["guided", "released"] == (1, 3)
+    assert counts["flat", "released"] == counts["recess", "released"] == (1, 3)
     if engine == "mujoco":
         # the plane carries the cylinder itself on three points, and a prism on four
         for corners in (4, 12, 48):
-            assert counts["guided", f"standing on {corners} corners"] == (corners + 3, 3 * (corners + 3))
+            assert counts["recess", f"standing on {corners} corners"] == (corners + 3, 3 * (corners + 3))
         # a pyramid of four edges
-        assert counts["guided", "pyramidal cone"] == (1, 4)
+        assert counts["recess", "pyramidal cone"] == (1, 4)
         # walls that are out of reach are no contact
         assert counts["ring", "32 walls"] == (1, 3)
 

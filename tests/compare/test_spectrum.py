@@ -107,12 +107,12 @@ def test_below_a_grid_that_begins_high_the_lowest_is_found():
 
 def test_the_rolling_model_makes_another_spectrum(spectrum):
     rolling = overturning_spectrum(
-        0.1, EL_CENTRO, semidiagonals=SIZES[:2], intensities=INTENSITIES[:4], model="rolling", search_step=2.0
+        0.1, EL_CENTRO, semidiagonals=SIZES[:2], intensities=INTENSITIES[:4], model="flat", search_step=2.0
     )
     single = reduced.simulate(
         Cylinder(semidiagonal=4.0, tan_alpha=0.1),
         EL_CENTRO.scaled(rolling.scales[1]),
-        model="rolling",
+        model="flat",
         rtol=1e-8,
     )
     assert rolling.peak_tilt[SPATIAL][1, 1] == pytest.approx(single.peak_tilt, rel=SAME_RUN)
@@ -126,7 +126,7 @@ def test_the_rolling_model_makes_another_spectrum(spectrum):
         ({"semidiagonals": [0.0, 1.0]}, "semidiagonals must be positive"),
         ({"intensities": []}, "intensities must be a sequence"),
         ({"intensities": [1.0, math.nan]}, "intensities must be a sequence of finite"),
-        ({"model": "planar"}, "model must be one of recess, rolling, got 'planar'"),
+        ({"model": "planar"}, "model must be one of recess, flat, got 'planar'"),
         ({"search_step": 0.0}, "search_step must be positive and finite, got 0.0"),
     ],
 )
@@ -169,7 +169,7 @@ def test_a_wrong_cell_does_not_pass_the_check(drawn):
         motion=EL_CENTRO,
         gravity=9.81,
         model="recess",
-        seating=drawn.seating,
+        rest_tilt=drawn.rest_tilt,
         semidiagonals=drawn.semidiagonals,
         intensities=drawn.intensities,
         peak_tilt=wrong,

@@ -39,7 +39,7 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> OverturningSpectrum
         motion=GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.1),
         gravity=9.81,
         model="recess",
-        seating=0.0,
+        rest_tilt=0.0,
         semidiagonals=np.arange(1.0, len(space) + 1.0),
         intensities=levels,
         peak_tilt=peaks,

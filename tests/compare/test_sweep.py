@@ -141,9 +141,9 @@ def test_each_input_of_a_chunk_is_in_its_key():
         grid(motions=[GroundMotion(SHORT.acceleration * 1.1, SHORT.time_step, "short")]),
         grid(motions=[GroundMotion(SHORT.acceleration, 0.011, "short")]),
         grid(motions=[GroundMotion(SHORT.acceleration, SHORT.time_step, "renamed")]),
-        grid(models=["rolling"]),
+        grid(models=["flat"]),
         grid(rtol=1e-8),
-        grid(seating=1e-6),
+        grid(rest_tilt=1e-6),
         grid(gravity=9.8),
     ]
     keys = [next(other.chunks()).key() for other in others]
@@ -156,13 +156,13 @@ def test_cases_with_engines_and_models(tmp_path):
         Case(f"{tilt:g}", PIER, initial=InitialState(tilt * PIER.alpha, rolling_rate=0.5), duration=0.5)
         for tilt in (0.3, 0.5)
     ]
-    guided = Run("mujoco", "guided", 1e-3)
+    guided = Run("mujoco", "recess", 1e-3)
     table = sweep(CaseSweep(cases, ["recess", guided]), out=tmp_path, workers=1)
     assert table[["case", "run"]].to_numpy().tolist() == [
         ["0.3", "recess"],
         ["0.5", "recess"],
-        ["0.3", "mujoco guided"],
-        ["0.5", "mujoco guided"],
+        ["0.3", "mujoco recess"],
+        ["0.5", "mujoco recess"],
     ]
     assert table.peak_tilt_over_alpha.tolist() == pytest.approx([0.3, 0.5, 0.3, 0.5], rel=1e-3)
     again = sweep(Suite(cases, [guided]), workers=1)
@@ -196,7 +196,7 @@ def test_a_chunk_that_cannot_be_read_is_named(tmp_path):
         (lambda: grid(scales=[1.0, 1.0]), "scales must differ, got 1.0 twice"),
         (lambda: grid(tan_alphas=[math.nan]), "tan_alphas must be a sequence of finite numbers"),
         (lambda: grid(motions=[SHORT, SHORT]), "motions must differ, got 'short' twice"),
-        (lambda: grid(models=["flat"]), "models must be of recess, rolling, planar, got 'flat'"),
+        (lambda: grid(models=["flat"]), "models must be of recess, flat, planar, got 'flat'"),
         (lambda: grid(rtol=1.0), "rtol must be from"),
         (lambda: grid(speed=1.0), "the options of a grid are"),
         (lambda: CaseSweep([], ["recess"]), "at least one case"),

@@ -10,9 +10,9 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.studies.tradeoff import conclusions, fastest, plateaus, seating_price
+from rockwobble.compare.studies.tradeoff import conclusions, fastest, plateaus, rest_tilt_price
 from rockwobble.compare.studies.tradeoff.methods import methods_for
-from rockwobble.compare.studies.tradeoff.problem import FINE_SEATING, PIER, _turn, _wasserstein, problems
+from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, _turn, _wasserstein, problems
 
 # a release at a tolerance of 1e-8 turns by 1.5e-7 deg too much or too little
 TURN_ERROR = 1e-6
@@ -30,7 +30,7 @@ def test_the_reference_in_a_recess_is_the_quadrature_and_that_on_open_ground_has
     exact = math.degrees(reduced.angle_of_turn(PIER, case.initial))
     assert turn.references["recess"][0] == pytest.approx([exact], rel=1e-15)
     assert turn.doubt["recess"] == 0.0
-    assert 0.0 < turn.doubt["rolling"] < CONVERGED
+    assert 0.0 < turn.doubt["flat"] < CONVERGED
 
 
 def test_the_kernel_and_scipy_find_the_angle_of_turn(turn):
@@ -45,13 +45,13 @@ def test_the_kernel_and_scipy_find_the_angle_of_turn(turn):
 
 
 def test_an_engine_comes_closer_with_its_step(turn):
-    line = [m for m in methods_for(turn, quick=True) if m.line == "MuJoCo guided"]
+    line = [m for m in methods_for(turn, quick=True) if m.line == "MuJoCo recess"]
     errors = [turn.error(m.model, [m.solve(turn.cases[0]).quantity]) for m in line]
     assert errors[0] > 2.0 * errors[1] > 4.0 * errors[2] > 0.0
 
 
 def test_a_refused_run_has_a_message_and_no_error(turn):
-    method = next(m for m in methods_for(turn, quick=True) if m.line == "MuJoCo guided")
+    method = next(m for m in methods_for(turn, quick=True) if m.line == "MuJoCo recess")
     # a step that is right for a pier is not for a cylinder of 6 mm
     answer = method.solve(replace(turn.cases[0], cylinder=replace(PIER, semidiagonal=0.006)))
     assert answer.message.startswith("refused: time_step must be at most")
@@ -104,9 +104,11 @@ def test_a_plateau_begins_where_the_error_stops_falling():
 
 
 def test_the_price_of_seating_is_told_at_equal_tolerance():
-    none = points(f"reduced, seating {FINE_SEATING:g}", "reduced", [(1e-6, 2.0, 1e-7)], "tolerance")
-    coarse = points("reduced, seating 0.1", "reduced", [(1e-6, 1.0, 0.2), (1e-4, 1.0, 0.2)], "tolerance")
-    price = seating_price(pd.concat([none, coarse]))
+    none = points(f"reduced, rest threshold {FINE_REST_TILT:g}", "reduced", [(1e-6, 2.0, 1e-7)], "tolerance")
+    coarse = points(
+        "reduced, rest threshold 0.1", "reduced", [(1e-6, 1.0, 0.2), (1e-4, 1.0, 0.2)], "tolerance"
+    )
+    price = rest_tilt_price(pd.concat([none, coarse]))
     assert price[["tolerance", "speed_up", "error_without"]].to_numpy().tolist() == [[1e-6, 2.0, 1e-7]]
 
 

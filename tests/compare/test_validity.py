@@ -119,7 +119,7 @@ def test_over_records_agreement_is_said_where_the_interval_shows_it(tables, fact
     members = pd.DataFrame(
         [
             {"motion": f"record {i}", "level": 2.0, "method": method, "peak": peak, "outcome": "completed"}
-            for method, values in (("recess", peaks), ("engine, guided", scattered), ("engine, free", peaks))
+            for method, values in (("recess", peaks), ("engine, recess", scattered), ("engine, flat", peaks))
             for i, peak in enumerate(values)
         ]
     )

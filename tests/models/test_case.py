@@ -53,11 +53,11 @@ def test_refuses_a_friction_that_is_negative_or_no_number(bad: Any) -> None:
 
 def test_a_run_keeps_its_settings_and_nobody_changes_them() -> None:
     given = {"cone": "elliptic"}
-    run = Run("mujoco", "guided", 1e-4, **given)
+    run = Run("mujoco", "recess", 1e-4, **given)
     given["cone"] = "pyramidal"
     assert (run.engine, run.support, run.time_step, dict(run.settings)) == (
         "mujoco",
-        "guided",
+        "recess",
         1e-4,
         {"cone": "elliptic"},
     )
@@ -66,29 +66,29 @@ def test_a_run_keeps_its_settings_and_nobody_changes_them() -> None:
 
 
 def test_a_run_has_no_time_step_of_its_own_by_default() -> None:
-    assert Run("pybullet", "free").time_step is None
+    assert Run("pybullet", "flat").time_step is None
 
 
 def test_a_run_travels_to_another_process() -> None:
-    run = Run("mujoco", "guided", 1e-4, cone="elliptic")
+    run = Run("mujoco", "recess", 1e-4, cone="elliptic")
     assert pickle.loads(pickle.dumps(run)) == run
-    assert pickle.loads(pickle.dumps(run)) != Run("mujoco", "guided", 1e-4)
+    assert pickle.loads(pickle.dumps(run)) != Run("mujoco", "recess", 1e-4)
 
 
 @pytest.mark.parametrize("bad", [0.0, -1e-4, math.nan, "1e-4"])
 def test_refuses_a_time_step_that_is_no_positive_number(bad: Any) -> None:
     with pytest.raises(ValueError, match=r"^time_step must be .* \[s\], got "):
-        Run("mujoco", "guided", bad)
+        Run("mujoco", "recess", bad)
 
 
 def test_a_suite_takes_any_iterable_once() -> None:
-    suite = Suite((Case(name, PIER, SHORT) for name in "ab"), iter([Run("mujoco", "guided")]))
+    suite = Suite((Case(name, PIER, SHORT) for name in "ab"), iter([Run("mujoco", "recess")]))
     assert [case.name for case in suite.cases] == ["a", "b"]
     assert len(suite.runs) == 1
 
 
 def test_refuses_a_suite_of_nothing_and_two_cases_of_one_name() -> None:
     with pytest.raises(ValueError, match=r"^a suite must have at least one case$"):
-        Suite([], [Run("mujoco", "guided")])
+        Suite([], [Run("mujoco", "recess")])
     with pytest.raises(ValueError, match=r"^the cases of a suite must have different names, got 'b' twice$"):
         Suite([Case(name, PIER, SHORT) for name in "abcb"], [])

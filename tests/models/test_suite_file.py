@@ -28,7 +28,7 @@ def test_everything_that_is_given_arrives(write):
     text = """
     [[runs]]
     engine = "mujoco"
-    support = "free"
+    support = "flat"
     time_step = 1e-4
     settings = { iterations = 50 }
 
@@ -45,7 +45,7 @@ def test_everything_that_is_given_arrives(write):
     (case,), (run,) = suite.cases, suite.runs
     assert (run.engine, run.support, run.time_step, dict(run.settings)) == (
         "mujoco",
-        "free",
+        "flat",
         1e-4,
         {"iterations": 50},
     )
@@ -97,10 +97,10 @@ def test_lists_of_runs_make_each_combination(write):
     text = '[[runs]]\nengine = ["mujoco", "pybullet"]\ntime_step = [1e-4, 2e-4]\n' + CASE
     runs = read_suite(write(text)).runs
     assert [(run.engine, run.support, run.time_step) for run in runs] == [
-        ("mujoco", "guided", 1e-4),
-        ("mujoco", "guided", 2e-4),
-        ("pybullet", "guided", 1e-4),
-        ("pybullet", "guided", 2e-4),
+        ("mujoco", "recess", 1e-4),
+        ("mujoco", "recess", 2e-4),
+        ("pybullet", "recess", 1e-4),
+        ("pybullet", "recess", 2e-4),
     ]
 
 
@@ -251,10 +251,10 @@ WRONG = {
     CASE + CASE: "cases[1].name: must differ from cases[0].name, got 'release' twice",
     "": "cases: must be given",
     "cases = []": "cases: List should have at least 1 item",
-    '[[runs]]\nengine = "mujoco"\nsuport = "free"\n' + CASE: (
+    '[[runs]]\nengine = "mujoco"\nsuport = "flat"\n' + CASE: (
         "runs[0].suport: is not known here, did you mean support?"
     ),
-    '[[runs]]\nsupport = "free"\n' + CASE: "runs[0].engine: must be given",
+    '[[runs]]\nsupport = "flat"\n' + CASE: "runs[0].engine: must be given",
     '[[runs]]\nengine = "mujoco"\ntime_step = -1\n' + CASE: "runs[0].time_step: must be positive, got -1",
     '[run]\nengine = "mujoco"\n' + CASE: "run: is not known here, did you mean runs?",
     "[[cases]\n": "is not a TOML file: ",

@@ -18,7 +18,7 @@ ALPHA = 0.2
 ESTIMATE = 3.0
 
 
-@pytest.mark.parametrize(("support", "tan_alpha"), [("guided", 0.2), ("free", 3.0)])
+@pytest.mark.parametrize(("support", "tan_alpha"), [("recess", 0.2), ("flat", 3.0)])
 def test_the_error_is_as_estimated(
     engine: str, support: str, tan_alpha: float, solve_free: Callable[..., Any]
 ) -> None:
@@ -35,7 +35,7 @@ def test_the_error_is_as_estimated(
         step_tolerance=2e-4,
         progress=told.append,
     )
-    exact = solve_free(cylinder, release, run.time, rolls_out=support == "free")
+    exact = solve_free(cylinder, release, run.time, rolls_out=support == "flat")
     assert run.outcome == "completed"
     assert run.settled_until == 2.0
     error = float(np.abs(run.tilt - exact.tilt).max())
@@ -66,7 +66,7 @@ def made(tilt: Any, *, passes: tuple[float, ...] = (), outcome: str = "completed
     n = len(tilt)
     zeros, points = np.zeros(n), np.zeros((n, 3))
     return Trajectory(
-        engine="made", support="free", engine_version="", time_step=1.0, settings={}, wall_time=1.0,
+        engine="made", support="flat", engine_version="", time_step=1.0, settings={}, wall_time=1.0,
         time=0.01 * np.arange(n), tilt=np.asarray(tilt, dtype=float), tilt_rate=zeros, rolling_angle=zeros,
         rolling_rate=zeros, twist=zeros, contact_point=points[:, :2], contact_offset=zeros,
         contact_force=points, centre_of_mass=points, energy=zeros, energy_error=zeros, slip=zeros,
@@ -165,6 +165,6 @@ def test_what_is_refused(pier: Cylinder, arguments: dict[str, Any], line: str) -
 
 
 def test_a_run_takes_it() -> None:
-    assert Run("mujoco", "free", "auto").time_step == "auto"
+    assert Run("mujoco", "flat", "auto").time_step == "auto"
     with pytest.raises(ValueError, match="time_step"):
-        Run("mujoco", "free", "aut")  # type: ignore[arg-type]
+        Run("mujoco", "flat", "aut")  # type: ignore[arg-type]

@@ -16,7 +16,7 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 P = math.sqrt(12.0 * 9.81 / (6.0 * (15.0 + math.cos(PIER.alpha) ** 2)))  # [1/s], section of the equations
 
 
-@pytest.mark.parametrize("support", ["guided", "free"])
+@pytest.mark.parametrize("support", ["recess", "flat"])
 def test_a_small_motion_that_loses_its_energy_is_said(engine: str, support: str) -> None:
     # it loses a sixth in MuJoCo and half in Bullet: far less than 1e-3 of the energy of its balance
     start = InitialState(0.002 * PIER.alpha, rolling_rate=0.3 * P)

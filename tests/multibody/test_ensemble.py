@@ -32,7 +32,7 @@ def cases() -> list[Case]:
 def test_each_run_is_that_of_its_own_bit_for_bit(cases: list[Case], engine: str) -> None:
     if engine != "mujoco":
         cases = cases[:2]
-    support = "free" if engine == "exudyn" else "guided"
+    support = "flat" if engine == "exudyn" else "recess"
     runs = multibody.simulate_many(cases, engine=engine, support=support, workers=3)
     assert len(runs) == len(cases)
     for case, run in zip(cases, runs, strict=True):

@@ -1,4 +1,4 @@
-"""Exudyn's ideal rim against the equations of the rolling model, and what it refuses."""
+"""Exudyn's ideal rim against the equations of the flat-ground model, and what it refuses."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ Solve = Callable[..., Any]
 
 
 def free(cylinder: Cylinder, initial: InitialState, **changes: Any) -> multibody.Trajectory:
-    return multibody.simulate(cylinder, initial=initial, engine="exudyn", support="free", **changes)
+    return multibody.simulate(cylinder, initial=initial, engine="exudyn", support="flat", **changes)
 
 
 def table() -> list[tuple[float, ...]]:
@@ -88,7 +88,7 @@ def test_rolling_through_the_apex_ends_the_run(
     run = free(pier, release, duration=3.0)
     assert run.outcome == "failed"
     assert math.isnan(run.peak_tilt)
-    words = "the state is not finite; the engine warned: the rim rolled through the apex, where it has no"
+    words = "the state is not finite; the engine warned: the rim rolled through upright, where it has no"
     assert run.message.startswith(words)
     # it is cut where that happened, at the first pass, and was right until then
     assert 1.1 < run.time[-1] < 1.3
@@ -129,7 +129,7 @@ def test_a_step_that_does_not_converge_ends_the_run_in_silence(
     [
         ({"initial": None}, "exudyn cannot uplift a cylinder that stands: give a release with a tilt, got a"),
         ({"initial": InitialState(0.0)}, "exudyn cannot uplift a cylinder that stands: give a release"),
-        ({"support": "guided"}, "support must be free in exudyn, got 'guided'"),
+        ({"support": "recess"}, "support must be free in exudyn, got 'recess'"),
         ({"impedance": 0.9}, "'impedance' is not a setting of exudyn; allowed are integrator, "),
         ({"integrator": "RK44"}, "integrator must be one of trapezoidal, generalized-alpha, got 'RK44'"),
         ({"spectral_radius": 1.1}, "spectral_radius must be at least 0 and at most 1, got 1.1"),
@@ -139,7 +139,7 @@ def test_a_step_that_does_not_converge_ends_the_run_in_silence(
 )
 def test_what_it_cannot_do_is_refused_in_one_line(change: dict[str, Any], message: str) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    given: dict[str, Any] = {"initial": InitialState(0.1), "support": "free", "duration": 1.0, **change}
+    given: dict[str, Any] = {"initial": InitialState(0.1), "support": "flat", "duration": 1.0, **change}
     with pytest.raises(ValueError, match=r"must|setting|uplift") as caught:
         multibody.simulate(cylinder, engine="exudyn", **given)
     assert str(caught.value).startswith(message)

@@ -57,7 +57,7 @@ def test_a_guide_that_gives_way_fails() -> None:
     run = multibody.simulate(squat, initial=initial, duration=4.0, guide_stiffness=1e-3)
     assert run.outcome == "failed"
     assert "twist" in run.message
-    free = multibody.simulate(squat, initial=initial, duration=4.0, support="free")
+    free = multibody.simulate(squat, initial=initial, duration=4.0, support="flat")
     assert free.outcome == "completed"
     assert abs(free.residual_twist) > 0.02
 
@@ -98,8 +98,8 @@ def test_passes_too_close_to_the_apex_are_marked(engine: str) -> None:
         PIER, initial=InitialState(PIER.alpha / 2, rolling_rate=1e-6), duration=2.5, engine=engine
     )
     assert not near.passes["resolved"].any()
-    assert "passes are closer to the apex than" in near.message
-    # the tilt rate just before the apex, in steps; samples miss its largest value by a little
+    assert "passes are closer to upright than" in near.message
+    # the tilt rate just before upright, in steps; samples miss its largest value by a little
     assert near.contact_resolution == pytest.approx(1e-4 * np.abs(near.tilt_rate).max(), rel=0.02)
 
 

@@ -17,7 +17,7 @@ def at(engine: str, support: str, **given: Any) -> dict[str, Any]:
     return run(Trial(extreme="", value="", engine=engine, support=support, **given))
 
 
-@pytest.mark.parametrize("support", ["guided", "free"])
+@pytest.mark.parametrize("support", ["recess", "flat"])
 @pytest.mark.parametrize(
     "given",
     [
@@ -50,7 +50,7 @@ def test_sound_extremes_agree_and_say_nothing(engine: str, support: str, given: 
 def test_what_diverges_fails(engine: str, given: dict[str, Any], words: str) -> None:
     if engine not in multibody.available_engines():
         pytest.skip(f"no wheel of {engine} here")
-    row = at(engine, "guided", **given)
+    row = at(engine, "recess", **given)
     assert row["verdict"] == "failed"
     assert words in row["message"]
 
@@ -67,20 +67,20 @@ def test_what_diverges_fails(engine: str, given: dict[str, Any], words: str) -> 
 def test_what_is_doubtful_is_said(engine: str, arguments: dict[str, Any], words: str) -> None:
     if engine not in multibody.available_engines():
         pytest.skip(f"no wheel of {engine} here")
-    row = at(engine, "free", arguments=arguments, length=1.5)
+    row = at(engine, "flat", arguments=arguments, length=1.5)
     assert row["verdict"] in ("agrees", "said")
     assert words in row["message"]
 
 
 def test_a_step_that_contact_cannot_follow_is_refused(engine: str) -> None:
-    row = at(engine, "guided", arguments={"time_step": 1e-2})
+    row = at(engine, "recess", arguments={"time_step": 1e-2})
     assert row["verdict"] == "refused"
     assert "\n" not in row["message"]
     assert "time_step must be at most 0.001 s" in row["message"]
 
 
 def test_friction_that_does_not_suffice_is_said(engine: str) -> None:
-    row = at(engine, "guided", arguments={"friction": 0.05}, length=0.5)
+    row = at(engine, "recess", arguments={"friction": 0.05}, length=0.5)
     assert "contact slipped from" in row["message"]
     assert "contact took" in row["message"]
 
@@ -94,7 +94,7 @@ def test_a_run_that_disagrees_in_silence_is_called_wrong(monkeypatch: pytest.Mon
         pier, initial=InitialState(0.45 * pier.alpha, rolling_rate=0.5), duration=0.5, time_step=5e-4
     )
     monkeypatch.setattr(module.multibody, "simulate", lambda *_, **__: other)
-    row = at("mujoco", "guided", length=0.5)
+    row = at("mujoco", "recess", length=0.5)
     assert row["verdict"] == "wrong"
     assert row["error"] == pytest.approx(0.05, rel=0.5)
 

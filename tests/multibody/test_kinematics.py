@@ -122,7 +122,7 @@ def test_upright_has_no_rates_to_divide_by() -> None:
 @pytest.mark.parametrize("way", [1.0, -1.0])
 @pytest.mark.parametrize("turn_in_step", [0.3, 2.0, 3.2, 4.5])
 def test_rolling_angle_goes_on_the_way_of_the_momentum(way: float, turn_in_step: float) -> None:
-    # a pass turns by a little over pi, and at the apex all of it in one step
+    # a pass turns by a little over pi, and at upright all of it in one step
     steady = np.array([0.1, 0.2, 0.3])
     angle = way * np.concatenate([steady, steady[-1] + turn_in_step + steady])
     wrapped = np.angle(np.exp(1j * angle))

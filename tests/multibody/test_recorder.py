@@ -31,7 +31,7 @@ def scene_of(start: Start) -> Scene:
     return Scene(
         body=BODY,
         start=start,
-        support="free",
+        support="flat",
         friction=1.0,
         time_step=STEP,
         gravity=9.81,

@@ -58,12 +58,12 @@ def ring(
         ),
         ({"ring_stiffness": 1.0}, "'ring_stiffness' is not a setting of mujoco; allowed are "),
         (
-            {"support": "guided", "ring_facets": 8},
-            "ring_facets is for support 'ring' only, got support 'guided'",
+            {"support": "recess", "ring_facets": 8},
+            "ring_facets is for support 'ring' only, got support 'recess'",
         ),
         (
-            {"support": "free", "ring_clearance": 0.1, "ring_facets": 8},
-            "ring_clearance, ring_facets is for support 'ring' only, got support 'free'",
+            {"support": "flat", "ring_clearance": 0.1, "ring_facets": 8},
+            "ring_clearance, ring_facets is for support 'ring' only, got support 'flat'",
         ),
         ({"engine": "pybullet"}, "support must be one of guided, free in pybullet, got 'ring'"),
     ],
@@ -83,14 +83,14 @@ def test_settings_of_the_ring_are_reported_with_their_defaults() -> None:
     assert run.settings["ring_facets"] == 12
     assert run.settings["ring_inclination"] == pytest.approx(PIER.alpha)
     assert {"ring_clearance", "ring_friction"} <= set(run.settings)
-    free = multibody.simulate(PIER, initial=InitialState(0.1), duration=0.05, support="free")
+    free = multibody.simulate(PIER, initial=InitialState(0.1), duration=0.05, support="flat")
     assert not any(name.startswith("ring") for name in free.settings)
 
 
 def test_a_wide_ring_is_open_ground() -> None:
     initial = InitialState(SQUAT.alpha / 2, rolling_rate=0.5)
     wide = ring(ring_clearance=0.2)
-    free = multibody.simulate(SQUAT, initial=initial, duration=2.0, support="free")
+    free = multibody.simulate(SQUAT, initial=initial, duration=2.0, support="flat")
     # the same steps in the same order
     np.testing.assert_allclose(wide.tilt, free.tilt, atol=1e-12)
     assert math.isnan(wide.first_wall_contact)
@@ -145,7 +145,7 @@ def test_a_standing_cylinder_touches_no_wall_that_stands_back() -> None:
 def test_walls_stop_a_cylinder_that_slides() -> None:
     # 0.05 g on friction of 0.01, for half a second: 5 cm on open ground
     push = GroundMotion(np.tile([-0.05 * 9.81, 0.0], (51, 1)), 0.01)
-    free = multibody.simulate(SQUAT, push, support="free", friction=0.01, duration=0.5)
+    free = multibody.simulate(SQUAT, push, support="flat", friction=0.01, duration=0.5)
     held = multibody.simulate(SQUAT, push, support="ring", friction=0.01, duration=0.5, ring_clearance=1e-3)
     b = SQUAT.base_radius
     assert free.residual_displacement > 0.04

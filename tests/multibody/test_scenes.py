@@ -59,7 +59,7 @@ def test_scene_holds_the_defaults_of_a_run(path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("support", "guides", "walls", "sensors"), [("guided", 2, 0, 0), ("free", 0, 0, 0), ("ring", 0, 128, 2)]
+    ("support", "guides", "walls", "sensors"), [("recess", 2, 0, 0), ("flat", 0, 0, 0), ("ring", 0, 128, 2)]
 )
 @pytest.mark.parametrize("components", ["", "xy", "xyz"])
 @pytest.mark.parametrize(("standing", "prisms"), [(True, 12), (False, 0)])
@@ -96,7 +96,7 @@ def test_ring_has_the_walls_that_are_asked_for(facets: int) -> None:
 
 
 def test_corners_stand_evenly_on_the_rim() -> None:
-    model = _compiled("free", standing=True, components="", standing_corners=20)
+    model = _compiled("flat", standing=True, components="", standing_corners=20)
     prisms = [index for index in range(model.ngeom) if model.geom(index).name.startswith("prism")]
     angles = []
     for index in prisms:
@@ -111,7 +111,7 @@ def test_corners_stand_evenly_on_the_rim() -> None:
 
 def test_an_outline_off_the_mass_centre() -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.3, height=8.0)
-    model = _compiled("free", standing=True, components="", cylinder=cylinder)
+    model = _compiled("flat", standing=True, components="", cylinder=cylinder)
     for index in range(1, model.ngeom):
         bottom = model.geom_pos[index][2] - model.geom_size[index][1 if index == 1 else 2]
         assert bottom == pytest.approx(-cylinder.mass_centre_height)

@@ -123,9 +123,7 @@ def _structure() -> list[Mutation]:
         "uplift_in(*arguments)",
         "return 0.0 if without_fault(*arguments) == 0.0 else -1.0",
     )
-    rolling = Fault(
-        file="kernels.py", change=appended('MARCHES["recess"], SIZES["recess"] = march_rolling, 8')
-    )
+    rolling = Fault(file="kernels.py", change=appended('MARCHES["recess"], SIZES["recess"] = march_flat, 8'))
     leak = Fault(file=FILE, change=after_assignment("expand", "momentum_1", "momentum_1 -= 1e-6 * h * L"))
     return [
         Mutation(

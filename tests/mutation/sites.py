@@ -1,7 +1,7 @@
 """Faults generated from a source file: what each is called, what it changes, and the file with it.
 
-A fault is called file:scope:kind:ordinal, such as reduced/integration/uplift.py:uplift_in:strictness:2. It keeps
-that name while nothing is added to, or taken from, the same kind in the same function.
+A fault is called file:scope:kind:ordinal, such as reduced/integration/uplift.py:uplift_in:strictness:2. It
+keeps that name while nothing is added to, or taken from, the same kind in the same function.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Faults in every term of the equations of the recess model, found in the source itself.
 
 `reduced/integration/recurrences.py` builds (18) and (19) from sums with names of their own. Each term of each
-of these sums, at the start of a step and in its series, is one place for a fault: a factor of 1.01, or of -1. A
+of these sums, at the start of a step and in its series, is one place for a fault: a factor of 1.01, or -1. A
 rewritten kernel keeps its faults, as long as it keeps these names.
 """
 

@@ -30,7 +30,7 @@ def test_period_and_turn_to_1e_8(seed):
         cylinder, initial = random_release(rng)
         exact = reduced.free_response(cylinder, initial)
         response = reduced.simulate(
-            cylinder, initial=initial, duration=1.01 * exact.period, rtol=1e-10, seating=0.0
+            cylinder, initial=initial, duration=1.01 * exact.period, rtol=1e-10, rest_tilt=0.0
         )
         maxima = response.extrema[response.extrema[:, 3] > 0.0]
         assert maxima[1, 0] == pytest.approx(exact.period, rel=1e-8), (cylinder, initial)

@@ -13,7 +13,7 @@ SIZES = np.array([0.8, 3.0, 10.0])
 SCALES = np.linspace(0.3, 4.0, 12)
 
 
-@pytest.mark.parametrize("model", ["recess", "rolling", "planar"])
+@pytest.mark.parametrize("model", ["recess", "flat", "planar"])
 def test_cells_are_single_runs(model):
     peaks = reduced.peak_tilts(SIZES, 0.1, EL_CENTRO, SCALES, model=model)
     assert peaks.shape == (3, 12)
@@ -58,8 +58,8 @@ def test_an_interruption_passes_through_at_once():
 BARELY_LIFTED = [
     ("recess", 0.1, 0.5, 1.01727),
     ("recess", 0.3, 0.2, 1.00962),
-    ("rolling", 0.1, 0.5, 1.01727),
-    ("rolling", 0.1, 0.161, 1.00962),
+    ("flat", 0.1, 0.5, 1.01727),
+    ("flat", 0.1, 0.161, 1.00962),
 ]
 
 
@@ -73,7 +73,7 @@ def test_a_cell_that_chatters_is_its_single_run_to_the_bit(model, tan_alpha, siz
     assert 0.0 < peaks[0, 0] == single.peak_tilt < 0.01 * cylinder.alpha
 
 
-@pytest.mark.parametrize("model", ["recess", "rolling", "planar"])
+@pytest.mark.parametrize("model", ["recess", "flat", "planar"])
 def test_every_cell_is_its_single_run_to_the_bit(model):
     # factors that round, an azimuth that rounds, more tasks than threads
     sizes, scales = np.geomspace(0.3, 40.0, 5), np.linspace(0.31, 1.7, 7) / 3.0
@@ -99,7 +99,7 @@ def test_chatter_beyond_the_step_budget_is_masked():
     shape = np.sin(np.linspace(0.0, math.pi, 1001))
     angle = np.linspace(0.0, 2.0, 1001)
     wave = GroundMotion(9.81 * 0.2 * np.column_stack([shape * np.cos(angle), shape * np.sin(angle)]), 0.01)
-    peaks = reduced.peak_tilts([6.0], 0.2, wave, [0.9, 1.0 + 1e-6], seating=0.0)
+    peaks = reduced.peak_tilts([6.0], 0.2, wave, [0.9, 1.0 + 1e-6], rest_tilt=0.0)
     assert peaks[0, 0] == 0.0
     assert math.isnan(peaks[0, 1])
 

@@ -26,7 +26,7 @@ PROBLEMS = {
 }
 
 
-@pytest.mark.parametrize("model", ["recess", "rolling"])
+@pytest.mark.parametrize("model", ["recess", "flat"])
 @pytest.mark.parametrize("problem", PROBLEMS)
 def test_error_is_proportional_to_the_tolerance(model, problem):
     options = PROBLEMS[problem]

@@ -53,7 +53,7 @@ def test_release_at_1e_12_alpha_rocks_in_proportion_to_the_root_of_the_tilt():
     tilt = 1e-12 * PIER.alpha
     initial = InitialState(tilt, rolling_rate=1e-3)
     quarter = reduced.free_response(PIER, initial).half_period
-    response = simulate(PIER, initial=initial, duration=20.0 * quarter, sample_step=quarter, seating=0.0)
+    response = simulate(PIER, initial=initial, duration=20.0 * quarter, sample_step=quarter, rest_tilt=0.0)
     # the restoring moment is constant at such tilts: theta = tilt - p^2 sin(alpha) t^2/2
     p2 = response.problem.body.p2
     assert quarter == pytest.approx(math.sqrt(2.0 * tilt / (p2 * math.sin(PIER.alpha))), rel=1e-6)
@@ -188,7 +188,7 @@ def test_a_million_samples():
 
 def test_chatter_without_a_seating_rule_ends_as_failed_with_words():
     weak = turning_wave(THRESHOLD * (1.0 + 1e-6))
-    response = reduced.simulate(PIER, weak, seating=0.0)
+    response = reduced.simulate(PIER, weak, rest_tilt=0.0)
     assert response.outcome == "failed"
     assert math.isnan(response.peak_tilt)
     assert "step budget" in response.message
@@ -203,7 +203,7 @@ def test_chatter_without_a_seating_rule_ends_as_failed_with_words():
     [
         ({"rtol": 0.0}, "rtol"),
         ({"rtol": math.nan}, "rtol"),
-        ({"seating": -1.0}, "seating"),
+        ({"rest_tilt": -1.0}, "rest_tilt"),
         ({"gravity": -9.81}, "gravity"),
         ({"sample_step": 0.0}, "sample_step"),
         ({"duration": -1.0}, "duration"),

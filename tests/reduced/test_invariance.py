@@ -10,7 +10,7 @@ from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_19
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 EL_CENTRO = el_centro_1940()
-MODELS = ["recess", "rolling"]
+MODELS = ["recess", "flat"]
 
 
 def twin_difference(model, until):

@@ -30,7 +30,7 @@ def test_quarter_period_of_the_reference_table(alpha, row):
 
 
 def test_signed_tilt_is_continuous_and_the_unsigned_is_its_size():
-    response = reduced.simulate(PIER, el_centro_1940(), model="planar", sample_step=0.001, seating=0.0)
+    response = reduced.simulate(PIER, el_centro_1940(), model="planar", sample_step=0.001, rest_tilt=0.0)
     assert np.array_equal(np.abs(response.signed_tilt), response.tilt)
     # the first uplift is towards the inertia force
     first = int(np.argmax(response.tilt > 0.0))
@@ -76,7 +76,7 @@ def test_impacts_that_accumulate_end_at_rest():
     release = InitialState(0.5 * PIER.alpha)
     for restitution in (0.5, 0.0):
         response = reduced.simulate(
-            PIER, initial=release, duration=20.0, model="planar", restitution=restitution, seating=0.0
+            PIER, initial=release, duration=20.0, model="planar", restitution=restitution, rest_tilt=0.0
         )
         assert response.outcome == "rest"
         assert np.isnan(response.rolling_angle[-1])
@@ -86,7 +86,9 @@ def test_hops_shorter_than_a_step_land_where_they_must():
     """A release at 1e-4 alpha: a hop takes the time of a step and less."""
     initial = InitialState(1e-4 * PIER.alpha)
     quarter = reduced.planar_quarter_period(PIER, initial.tilt)
-    response = reduced.simulate(PIER, initial=initial, duration=2001.0 * quarter, model="planar", seating=0.0)
+    response = reduced.simulate(
+        PIER, initial=initial, duration=2001.0 * quarter, model="planar", rest_tilt=0.0
+    )
     impacts = response.extrema[response.extrema[:, 1] == 0.0]
     assert len(response.passes) == 1000
     assert impacts[:, 0] == pytest.approx(quarter * (2.0 * np.arange(len(impacts)) + 1.0), rel=1e-6)

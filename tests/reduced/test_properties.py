@@ -26,7 +26,7 @@ def changed(x: reduced.Response, y: reduced.Response) -> bool:
 def test_the_same_function_of_time_sampled_finer(parts):
     firm, off = 0, []
     for seed in range(140):
-        given = problem(seed, models=("recess", "rolling"), time_steps=(0.005, 0.01, 0.02))
+        given = problem(seed, models=("recess", "flat"), time_steps=(0.005, 0.01, 0.02))
         plain = given.simulate()
         if sensitivity(given, plain) < FIRM:
             firm += 1
@@ -44,7 +44,7 @@ def test_coarse_samples_of_large_cylinders_are_the_same_function_of_time():
             sizes=(20.0, 500.0),
             slenderness=(0.05, 0.4),
             time_steps=(0.1, 0.2, 0.5),
-            models=("recess", "rolling"),
+            models=("recess", "flat"),
         )
         step = given.motion.time_step
         if math.isnan(given.simulate().uplift_time):
@@ -86,13 +86,13 @@ def test_a_weak_foreshock_that_comes_to_rest_before_the_main_shock():
     for seed in range(90):
         given = problem(seed)
         first = foreshock(given, 10.0 ** -(1 + seed % 4), seed % 3)
-        weak = given.simulate(motion=first, seating=1e-2)  # so that it comes to rest in time
-        alone = given.simulate(seating=1e-2)
+        weak = given.simulate(motion=first, rest_tilt=1e-2)  # so that it comes to rest in time
+        alone = given.simulate(rest_tilt=1e-2)
         if weak.outcome != "rest" or not len(weak.rests) or weak.peak_tilt >= alone.peak_tilt:
             continue
-        if sensitivity(given, alone, seating=1e-2) < FIRM:
+        if sensitivity(given, alone, rest_tilt=1e-2) < FIRM:
             firm += 1
-            both = given.simulate(motion=joined(first, given.motion), seating=1e-2)
+            both = given.simulate(motion=joined(first, given.motion), rest_tilt=1e-2)
             off += [seed] * changed(alone, both)
     assert firm > 20
     assert not off
@@ -102,11 +102,11 @@ def test_after_a_rest_it_lifts_as_it_would_have_for_the_first_time():
     """Where the series of the uplift ends at a sample, the next step must not know of what was before."""
     count = 0
     for seed in range(200):
-        given = problem(seed, slenderness=(0.05, 1.0), time_steps=(0.005,), models=("recess", "rolling"))
+        given = problem(seed, slenderness=(0.05, 1.0), time_steps=(0.005,), models=("recess", "flat"))
         given = given._replace(motion=lifting_just_before_a_sample(given))
         first = foreshock(given, (0.1, 0.3, 0.6, 1.0)[seed % 4], 1 + seed % 3)
-        options = {"seating": 3e-2, "sample_step": given.motion.time_step, "duration": 30.0}
-        weak = given.simulate(motion=first, seating=3e-2)
+        options = {"rest_tilt": 3e-2, "sample_step": given.motion.time_step, "duration": 30.0}
+        weak = given.simulate(motion=first, rest_tilt=3e-2)
         if weak.outcome == "rest" and len(weak.rests):
             count += 1
             alone = given.simulate(**options)
@@ -126,17 +126,17 @@ def test_two_runs_joined_at_a_rest():
         given = problem(seed, time_steps=(0.01,), slenderness=(0.1, 1.0))
         first = given.motion.scaled(1.02 * given.threshold / given.motion.peak)
         first = joined(first, GroundMotion(np.zeros((40, 2)), first.time_step))
-        if not len(given.simulate(motion=first, seating=3e-2).rests):
+        if not len(given.simulate(motion=first, rest_tilt=3e-2).rests):
             continue
         second = given.motion.scaled(1.5 * given.threshold / given.motion.peak)
         other = given._replace(motion=second)
-        alone = other.simulate(seating=3e-2)
-        if given.simulate(motion=first, seating=3e-2).outcome != "rest":
+        alone = other.simulate(rest_tilt=3e-2)
+        if given.simulate(motion=first, rest_tilt=3e-2).outcome != "rest":
             continue
-        if sensitivity(other, alone, seating=3e-2) < FIRM:
+        if sensitivity(other, alone, rest_tilt=3e-2) < FIRM:
             firm += 1
-            both = other.simulate(motion=joined(first, second), seating=3e-2)
-            if both.peak_tilt > given.simulate(motion=first, seating=3e-2).peak_tilt:
+            both = other.simulate(motion=joined(first, second), rest_tilt=3e-2)
+            if both.peak_tilt > given.simulate(motion=first, rest_tilt=3e-2).peak_tilt:
                 off += [seed] * changed(alone, both)
     assert firm > 10
     assert not off
@@ -157,7 +157,7 @@ def planar_at_first(given: Problem, seed: int) -> GroundMotion:
 def test_rotated_by_any_angle(late):
     firm, off = 0, []
     for seed in range(100):
-        given = problem(seed, models=("recess", "rolling"), slenderness=(0.05, 1.0))
+        given = problem(seed, models=("recess", "flat"), slenderness=(0.05, 1.0))
         if late:
             given = given._replace(motion=planar_at_first(given, seed))
         plain = given.simulate()
@@ -193,7 +193,7 @@ def test_overturned_is_what_still_ground_for_as_long_as_it_takes_decides():
     assert fell > later
 
 
-@pytest.mark.parametrize("model", ["recess", "rolling", "planar"])
+@pytest.mark.parametrize("model", ["recess", "flat", "planar"])
 def test_a_cell_that_falls_after_the_record_is_its_single_run(model):
     motion = problem(9, models=(model,)).motion
     cut = GroundMotion(motion.acceleration[: len(motion.acceleration) // 2], motion.time_step)
@@ -257,7 +257,7 @@ def test_the_error_falls_with_the_tolerance():
 
 def test_free_response_run_backwards():
     for seed in range(12):
-        given = problem(seed, released=True, slenderness=(0.1, 1.0), models=("recess", "rolling"))
+        given = problem(seed, released=True, slenderness=(0.1, 1.0), models=("recess", "flat"))
         given = given._replace(model="recess")
         assert given.initial is not None
         duration = 3.0 * math.sqrt(given.cylinder.semidiagonal / G)

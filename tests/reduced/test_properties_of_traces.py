@@ -41,8 +41,8 @@ def test_turning_points_take_turns_within_a_motion():
 def test_a_near_pass_turns_to_the_side_of_the_momentum():
     count = 0
     for seed in range(60):
-        given = problem(seed, models=("recess", "rolling"), sizes=(2.0, 50.0), released=seed % 3 == 0)
-        response = given.simulate(seating=1e-4)  # less chatter
+        given = problem(seed, models=("recess", "flat"), sizes=(2.0, 50.0), released=seed % 3 == 0)
+        response = given.simulate(rest_tilt=1e-4)  # less chatter
         passes = response.passes
         solved, _ = response.problem.solve(passes.time.to_numpy())
         maxima = response.extrema[response.extrema[:, 3] > 0.0]
@@ -59,7 +59,7 @@ def test_no_pass_joins_two_motions_across_a_rest():
     across = 0
     for seed in range(100):
         given = problem(seed)
-        response = given.simulate(seating=0.1)  # many rests
+        response = given.simulate(rest_tilt=0.1)  # many rests
         maxima = response.extrema[response.extrema[:, 3] > 0.0, 0]
         for time in response.passes.time:
             after = int(np.searchsorted(maxima, time))
@@ -85,7 +85,7 @@ def test_demands_are_the_extrema_of_dense_samples(seed):
     least = 1e-9
     assert found.least_normal_force <= normal.min() + least
     assert found.largest_normal_force >= normal.max() - least
-    assert found.largest_couple >= np.abs(dense.recess_couple[moving]).max() - least
+    assert found.largest_couple >= np.abs(dense.restraining_moment[moving]).max() - least
     assert found.largest_friction_needed >= (1.0 - 1e-9) * friction.max()
     breaches = {breach.assumption: breach for breach in found.breaches}
     for name, broken in (
@@ -115,7 +115,7 @@ def test_the_default_rest_threshold_keeps_the_peaks():
         given = problem(seed, sizes=(3.0, 30.0), slenderness=(0.1, 0.5), models=("recess",))
         given = given._replace(motion=given.motion.scaled(1.05 * given.threshold / given.motion.peak))
         usual, tight = (given.simulate(rtol=rtol).peak_tilt for rtol in (1e-8, 1e-10))
-        least, tight_least = (given.simulate(seating=1e-10, rtol=rtol).peak_tilt for rtol in (1e-8, 1e-10))
+        least, tight_least = (given.simulate(rest_tilt=1e-10, rtol=rtol).peak_tilt for rtol in (1e-8, 1e-10))
         if abs(usual - tight) <= 1e-3 * tight and abs(least - tight_least) <= 1e-3 * tight_least:
             converged += 1
             off += [seed] * (abs(usual - least) > 0.02 * least)
@@ -157,7 +157,7 @@ def test_impacts_under_shaking_end_and_converge():
 
 def test_a_mirrored_problem_turns_the_other_way_to_the_bit():
     for seed in range(20):
-        given = problem(seed, models=("recess", "rolling"), released=seed % 2 == 0)
+        given = problem(seed, models=("recess", "flat"), released=seed % 2 == 0)
         mirror = np.array([1.0, -1.0, 1.0])[: given.motion.acceleration.shape[1]]
         initial = given.initial
         if initial is not None:

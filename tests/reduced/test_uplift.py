@@ -81,7 +81,7 @@ def test_an_uplift_within_a_hair_of_a_sample_is_the_same_as_one_at_it():
 
 def test_a_later_uplift_takes_the_nearest_branch():
     motion = el_centro_1940().scaled(0.8)
-    response = reduced.simulate(PIER, motion, seating=1e-2)
+    response = reduced.simulate(PIER, motion, rest_tilt=1e-2)
     moving = ~np.isnan(response.rolling_angle)
     lifts = np.flatnonzero(~moving[:-1] & moving[1:])
     stands = np.flatnonzero(moving[:-1] & ~moving[1:])

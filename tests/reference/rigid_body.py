@@ -236,7 +236,7 @@ def march(
 
 
 def integrate(given: Problem, *, rtol: float = 1e-12, rest: float = 1e-8) -> Result:
-    """Integrate a problem of the recess or the rolling model."""
+    """Integrate a problem of the recess or the flat-ground model."""
     body = body_of(given.cylinder, G)
     P = np.array([body.b, body.h, body.I1, body.I2, G, float(given.model == "recess")])
     record = np.zeros((len(given.motion.acceleration), 3))

@@ -13,7 +13,7 @@ from rockwobble import reduced
 from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
 
 G = 9.81
-MODELS = ("recess", "rolling", "planar")
+MODELS = ("recess", "flat", "planar")
 
 
 class Problem(NamedTuple):

@@ -26,8 +26,8 @@ class Disguised:
             "support": run.support,
             "time_step": run.time_step or 1e-4,
             "contact_resolution": 2e-5,
-            "residual_displacement": 1e-6 if run.support == "guided" else 0.4,
-            "residual_twist": 1e-7 if run.support == "guided" else 0.2,
+            "residual_displacement": 1e-6 if run.support == "recess" else 0.4,
+            "residual_twist": 1e-7 if run.support == "recess" else 0.2,
             "wall_time": 5.0,
             "message": "",
         } | fields
@@ -50,7 +50,7 @@ def disguised(job: Job, **fields: Any) -> Any:
     if isinstance(method, str):
         return reduced.simulate(case.cylinder, case.motion, model=method, **given)
     off = dataclasses.replace(case.cylinder, semidiagonal=case.cylinder.semidiagonal * (1.0 + 1e-5))
-    model = "rolling" if method.support == "free" else "recess"
+    model = "flat" if method.support == "flat" else "recess"
     return Disguised(reduced.simulate(off, case.motion, model=model, **given), method, **fields)
 
 
@@ -73,5 +73,5 @@ def comparison(no_engines: Callable[..., None], monkeypatch: pytest.MonkeyPatch)
     # no engine runs, so none needs to be installed: PyBullet is not everywhere
     monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
     case = Case("El Centro 1940", Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
-    runs = [Run(engine, support) for support in ("guided", "free") for engine in ("mujoco", "pybullet")]
+    runs = [Run(engine, support) for support in ("recess", "flat") for engine in ("mujoco", "pybullet")]
     return compare(case, runs=runs)

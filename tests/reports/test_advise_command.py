@@ -53,7 +53,7 @@ def options_of(records: Path, **names: str) -> list[str]:
         ({"x": "still", "y": "y"}, ["--scale", "2"], "Use the recess model", {"Largest tilt", "Couple"}),
         ({"x": "x", "y": "y"}, ["--scale", "6"], "the cylinder overturns", {"Overturning", "Trust"}),
         ({"x": "x", "y": "y"}, ["--friction", "0.1"], "Do not rely on the recess model", {"Friction"}),
-        ({"x": "x", "y": "y"}, ["--support", "free"], "Use the rolling model", {"Trust"}),
+        ({"x": "x", "y": "y"}, ["--support", "flat"], "Use the flat-ground model", {"Trust"}),
         ({}, ["--release-tilt-deg", "5", "--rolling-rate", "0.5"], "its trace holds to the end", {"Trust"}),
     ],
 )

@@ -59,10 +59,10 @@ def test_friction(values, words):
 
 
 def test_couple_in_units_of_a_designer():
-    said = couple_words(demands(), "guided")
+    said = couple_words(demands(), "recess")
     assert "up to 1.23 kN m for each tonne of its mass (0.1 weight × b)" in said
-    assert "no couple" in couple_words(demands(couple_in_radii=1e-17), "guided")
-    assert "rolling out of its place" in couple_words(demands(), "free")
+    assert "no couple" in couple_words(demands(couple_in_radii=1e-17), "recess")
+    assert "rolling out of its place" in couple_words(demands(), "flat")
 
 
 def test_contact():
@@ -74,7 +74,7 @@ def test_contact():
     )
 
 
-@pytest.mark.parametrize(("reason", "words"), [("pass", "closer to the apex"), ("growth", "multiplied")])
+@pytest.mark.parametrize(("reason", "words"), [("pass", "closer to upright"), ("growth", "multiplied")])
 def test_horizon_gives_its_reason(reason, words):
     said = horizon_words(7.0, reason, 2.0, 50.0)
     assert "for 7.0 s from uplift or release, until 9.0 s" in said
@@ -85,21 +85,21 @@ def test_horizon_gives_its_reason(reason, words):
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({}, "mujoco guided agreed for 20.0 s, as foretold. Its largest tilt is 0.25 α against 0.24 α."),
-        ({"parting": "later"}, "longer than foretold"),
-        ({"parting": "earlier"}, "do not rely on either"),
-        ({"parted": False, "parting": "never, as foretold"}, "agreed to the end"),
+        ({}, "mujoco recess agreed for 20.0 s, as predicted. Its largest tilt is 0.25 α against 0.24 α."),
+        ({"divergence": "later"}, "longer than predicted"),
+        ({"divergence": "earlier"}, "do not rely on either"),
+        ({"diverged": False, "divergence": "never, as predicted"}, "agreed to the end"),
         ({"outcome": "overturned"}, "It overturns."),
         ({"outcome": "failed", "message": "gained energy"}, "could not verify that: gained energy."),
     ],
 )
 def test_engine(values, words):
     found = {
-        "label": "mujoco guided",
+        "label": "mujoco recess",
         "outcome": "completed",
         "message": "",
-        "parted": True,
-        "parting": "in time",
+        "diverged": True,
+        "divergence": "in time",
         "agreement": 20.0,
         "peak_tilt": 0.25,
     }
@@ -114,7 +114,7 @@ def test_trust():
     statistics = Trust(kind="statistics", until=4.0, because="methods")
     said = trust_words(statistics, 5.0, 100, 1.0, what="fall", verified=False)
     assert "only statistics from then on, those of the fall (here at 5.0 s) included" in said
-    assert said.endswith("as foretold.")
+    assert said.endswith("as predicted.")
     assert "one plane" in trust_words(statistics, 5.0, 100, 1.0, in_one_plane=True)
 
 

@@ -81,12 +81,12 @@ BAD = {
         "engine must be one of mujoco, pybullet, exudyn, got 'bullet'",
     ),
     "no uplift": (
-        ["--engine", "exudyn", "--support", "free"],
+        ["--engine", "exudyn", "--support", "flat"],
         "exudyn cannot uplift a cylinder that stands: give",
     ),
     "not its support": (
-        ["--engine", "exudyn", "--support", "guided", "--release-tilt-deg", "5"],
-        "support must be free in exudyn, got 'guided'",
+        ["--engine", "exudyn", "--support", "recess", "--release-tilt-deg", "5"],
+        "support must be free in exudyn, got 'recess'",
     ),
     "unknown support": (
         ["--engine", "mujoco", "--support", "glued"],
@@ -127,7 +127,7 @@ def test_compare_prints_and_writes(folder, no_engines, capsys):
     out = capsys.readouterr().out
     assert "Cylinder: b = 1.177 m, 2h = 11.77 m, alpha = 11.31 deg" in out
     assert "Ground: El Centro 1940, 5346 samples of 0.01 s, 2 components, peak 0.430 g" in out
-    assert "mujoco guided" in out
+    assert "mujoco recess" in out
     assert "agrees" in out
     names = {path.name for path in (folder / "results").iterdir()}
     assert names == {
@@ -170,7 +170,7 @@ def test_naming_an_engine_that_is_not_installed_is_bad_input(folder, monkeypatch
 def test_free_response_from_the_command_line(folder, no_engines, capsys):
     no_engines()
     arguments = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2"]
-    assert call("compare", "--support", "guided", *arguments) == 0
+    assert call("compare", "--support", "recess", *arguments) == 0
     assert "Release: tilt 5 deg (0.442 alpha), rolling rate 0.5 rad/s" in capsys.readouterr().out
 
 
@@ -285,6 +285,6 @@ def test_a_run_that_takes_its_process_with_it_is_one_line_and_exit_code_1(folder
     assert call("simulate", "--engine", "mujoco") == 1
     assert (
         capsys.readouterr().err
-        == "rockwobble: mujoco guided left no result: the process ended with status -11\n"
+        == "rockwobble: mujoco recess left no result: the process ended with status -11\n"
     )
     assert not (folder / "rockwobble-out").exists()

@@ -35,7 +35,7 @@ def call(*arguments: str) -> int:
     return ended.value.code
 
 
-def made_up(factor: float = 1.1, model: str = "recess", engine: str = "mujoco guided") -> Ensemble:
+def made_up(factor: float = 1.1, model: str = "recess", engine: str = "mujoco recess") -> Ensemble:
     """Ten members by a model and an engine: one overturns by both, one by the engine alone."""
     first = np.array([*np.arange(1, 9) / 10.0, 0.9, FALLEN])
     peaks = {model: first, engine: np.array([*factor * first[:8], FALLEN, FALLEN])}
@@ -67,35 +67,35 @@ def test_tables_say_what_overturns_instead_of_its_tilt():
     found = made_up()
     # of ten the median is between the fifth and the sixth, of which 95 % exclude the largest two on each side
     assert method_rows(found)[1] == (
-        *("mujoco guided", "10", "10", "2", "0"),
+        *("mujoco recess", "10", "10", "2", "0"),
         "0.605 (0.272 to overturned)",
         "0.194 to overturned",
     )
     (row,) = contrast_rows(found)
-    assert row[:6] == ("mujoco guided", "recess", "9", "9", "0", "1.100 (1.100 to 1.100)")
+    assert row[:6] == ("mujoco recess", "recess", "9", "9", "0", "1.100 (1.100 to 1.100)")
     assert row[6:] == ("1.100 to ∞", "0.004", "0.004", "no", "-")
     assert overturning_rows(found) == [
-        ("mujoco guided", "recess", "1", "1", "0", "8", "+10 (-20 to +36)", "1.00")
+        ("mujoco recess", "recess", "1", "1", "0", "8", "+10 (-20 to +36)", "1.00")
     ]
 
 
 def test_sentences_say_what_agrees_what_is_told_and_what_cannot_be_seen():
     headline, pair, told, falls = statements(made_up())
     assert headline == (
-        "Peaks of the same member do not agree within 5 % in the median: mujoco guided with recess."
+        "Peaks of the same member do not agree within 5 % in the median: mujoco recess with recess."
     )
     assert pair == (
-        "mujoco guided against recess: median ratio 1.100 (1.100 to 1.100), higher in 9 and lower in 0 of 9 "
+        "mujoco recess against recess: median ratio 1.100 (1.100 to 1.100), higher in 9 and lower in 0 of 9 "
         "members (p = 0.004); 9 members so scattered tell no ratio on one side of 1; 2 and 1 of 10 "
         "overturn, 1 by both (p = 1.00)."
     )
-    assert told == "Told apart (p below 0.05): mujoco guided from recess (higher in 9, lower in 0)."
+    assert told == "Told apart (p below 0.05): mujoco recess from recess (higher in 9, lower in 0)."
     assert "it takes at least 6 that overturn by one of two methods alone" in falls
 
 
 def test_what_is_told_apart_may_agree_and_what_is_not_need_not():
     close = statements(made_up(1.001))
-    assert close[0] == "Peaks of the same member agree within 5 % in the median: mujoco guided with recess."
+    assert close[0] == "Peaks of the same member agree within 5 % in the median: mujoco recess with recess."
     assert close[2].startswith("Told apart")
     # the first five: so few bound no median, and nothing overturns
     found = made_up()
@@ -111,7 +111,7 @@ def test_what_is_told_apart_may_agree_and_what_is_not_need_not():
 def test_the_picture_marks_who_overturns_by_one_method_alone():
     found = made_up(1.2)
     (row,) = ratio_rows(found)
-    assert row.label == ("mujoco guided", "/ recess, n = 9")
+    assert row.label == ("mujoco recess", "/ recess, n = 9")
     assert row.members == [f"record {i}" for i in range(1, 10)]
     assert row.ratios.tolist() == pytest.approx([*[1.2] * 8, math.inf])
     low, high = ratio_span([row])
@@ -127,14 +127,14 @@ def test_the_picture_marks_who_overturns_by_one_method_alone():
     fallen = [curve.overturned for curve in curves(found)]
     assert fallen == [1, 2]
     assert [curve.share[-1] for curve in curves(found)] == [0.9, 0.8]
-    assert [curve.label for curve in curves(found)][1] == "mujoco guided (2 of 10 overturn)"
+    assert [curve.label for curve in curves(found)][1] == "mujoco recess (2 of 10 overturn)"
 
 
 @pytest.mark.parametrize(("columns", "intervals"), [(200, True), (80, False)])
 def test_a_narrow_terminal_leaves_out_the_intervals_and_cuts_nothing(monkeypatch, capsys, columns, intervals):
     monkeypatch.setenv("COLUMNS", str(columns))
     monkeypatch.setenv("FORCE_COLOR", "1")
-    found = made_up(model="pybullet free", engine="pybullet guided")
+    found = made_up(model="pybullet flat", engine="pybullet recess")
     # the widest words that its tables have
     found.contrasts["verdict"] = "undecided"
     print_ensemble(found)
@@ -147,7 +147,7 @@ def test_page_and_figure_show_every_method():
     found = made_up()
     page, figure = ensemble_page(found), ensemble_figure(found).decode()
     assert statements(found)[0] in page
-    for method in ("recess", "mujoco guided"):
+    for method in ("recess", "mujoco recess"):
         assert f'<td class="name">{method}</td>' in page
     assert figure == ensemble_figure(found).decode()
 

@@ -24,17 +24,17 @@ def row(**values):
     common = {
         "run": "table",
         "engine": "table",
-        "support": "foreign",
+        "support": "external",
         "reference": "recess",
         "outcome": "completed",
         "reference_outcome": "completed",
         "message": "",
         "peak_tilt": 0.25,
         "reference_peak_tilt": 0.25,
-        "agreement_horizon": 8.0,
-        "parted": False,
+        "agreement_time": 8.0,
+        "diverged": False,
         "agreed_passes": 3,
-        "predicted_horizon": 8.0,
+        "predicted_agreement_time": 8.0,
         "contact_resolution": math.nan,
         "closest_pass": 0.003,
         "uplift_time_difference": 0.004,
@@ -49,7 +49,7 @@ def table(*rows):
 
 def test_what_agrees_is_said_to_agree():
     assert headline(table(row()), 8.0) == (
-        "Brought from elsewhere (foreign), table follows the recess model within 1 % of alpha for the whole "
+        "Brought from elsewhere (external), table follows the recess model within 1 % of alpha for the whole "
         "run (8.0 s), in tilt, azimuth and path."
     )
     words = finding(row(), 8.0)
@@ -157,7 +157,7 @@ def printed(rows):
 
 
 def test_the_table_has_the_numbers_and_codes_of_each_external_trajectory():
-    engine = row(support="guided", run="mujoco guided")
+    engine = row(support="recess", run="mujoco recess")
     text = printed(table(engine, row(**WRONG, uplift_time_uncertainty=0.012)))
     assert "mujoco" not in text
     line = next(line for line in text.splitlines() if line.startswith("table"))

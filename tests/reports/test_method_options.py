@@ -52,7 +52,7 @@ def test_settings_are_whole_numbers_numbers_or_words() -> None:
 def test_bad_methods_are_one_line(
     command: str, given: list[str], complaint: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    place = ["--out", str(tmp_path / "out"), "--engine", "mujoco", "--support", "guided"]
+    place = ["--out", str(tmp_path / "out"), "--engine", "mujoco", "--support", "recess"]
     assert call(command, *RELEASE, *place, *given) == 2
     said = capsys.readouterr().err.strip()
     assert said.startswith(f"rockwobble: {complaint}")
@@ -73,14 +73,14 @@ def test_auto_says_what_error_is_left(tmp_path: Path, capsys: pytest.CaptureFixt
 
 
 def _summary(message: str, outcome: str = "completed") -> pd.DataFrame:
-    row = {"case": "a", "run": "mujoco free", "outcome": outcome, "reference_outcome": "completed"}
+    row = {"case": "a", "run": "mujoco flat", "outcome": outcome, "reference_outcome": "completed"}
     return pd.DataFrame([row | {"message": message}, row | {"message": message}])
 
 
 def test_a_remark_is_said_once_for_each_run() -> None:
     slipped = "contact slipped from 2 s on; the cylinder left the ground at 3 s"
     rows = _summary(f"compared up to 4 s; {slipped}; not defined here: turn_difference, wall_time")
-    assert remark_lines(rows) == [f"mujoco free, by its own account: {slipped}."]
+    assert remark_lines(rows) == [f"mujoco flat, by its own account: {slipped}."]
     assert counted_remarks(rows)[0].startswith(
         "By their own account, of the runs 1 slipped, 1 left the ground; see"
     )
@@ -93,7 +93,7 @@ def test_a_setting_goes_to_the_runs_that_know_it() -> None:
     # the release leans into the walls that a ring has by default
     squat = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
     case = Case("release", squat, None, InitialState(0.3), 1.0)
-    runs = [Run("mujoco", "ring", ring_facets=8), Run("mujoco", "free", "auto")]
+    runs = [Run("mujoco", "ring", ring_facets=8), Run("mujoco", "flat", "auto")]
     given = {"ring_clearance": 3, "ring_facets": 16, "cone": "pyramidal", "step_tolerance": 1e-4}
     ring, free = with_settings(case, runs, given)
     assert dict(ring.settings) == {"ring_clearance": 3, "ring_facets": 16, "cone": "pyramidal"}

@@ -68,9 +68,9 @@ def test_page_says_what_was_compared_and_found(comparison):
     assert "b = 1.177 m, 2h = 11.77 m, alpha = 11.31 deg" in text
     assert "In an ideal recess (guided), mujoco and pybullet follow the recess model" in text
     row = comparison.summary[
-        (comparison.summary.run == "mujoco free") & (comparison.summary.reference == "recess")
+        (comparison.summary.run == "mujoco flat") & (comparison.summary.reference == "recess")
     ]
-    assert f"for {row.agreement_horizon.iloc[0]:.1f} s from uplift or release" in text
+    assert f"for {row.agreement_time.iloc[0]:.1f} s from uplift or release" in text
     assert "rockwobble compare" in text
     for name in SUMMARY_COLUMNS:
         if name not in ("case", "run"):
@@ -91,7 +91,7 @@ def test_still_ground_has_no_excitation_and_markup_in_a_name_stays_text(no_engin
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
     case = Case("<b>name</b> & co", cylinder, initial=release, duration=2.0)
-    page = comparison_page(compare(case, runs=[Run("mujoco", "guided")]))
+    page = comparison_page(compare(case, runs=[Run("mujoco", "recess")]))
     assert "excitation-0" not in page
     assert "<b>name</b>" not in page
     assert "&lt;b&gt;name&lt;/b&gt; &amp; co" in page
@@ -101,11 +101,11 @@ def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case("still", cylinder, duration=1.0)
     no_engines()
-    still = compare(case, runs=[Run("mujoco", "guided")])
+    still = compare(case, runs=[Run("mujoco", "recess")])
     assert "both stay at rest" in comparison_page(still)
     assert comparison_figure(still)
     no_engines(outcome="failed", message="it gained energy", peak_tilt=float("nan"))
-    failed = compare(case, runs=[Run("mujoco", "guided")])
+    failed = compare(case, runs=[Run("mujoco", "recess")])
     assert "it gained energy" in comparison_page(failed)
     assert comparison_figure(failed)
 

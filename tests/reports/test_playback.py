@@ -25,7 +25,7 @@ def _numbers(text):
 def comparison():
     release = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5)
     case = Case("release", PIER, initial=release, duration=1.0)
-    return compare(case, runs=[Run("mujoco", "free", 1e-3)], workers=1)
+    return compare(case, runs=[Run("mujoco", "flat", 1e-3)], workers=1)
 
 
 def test_the_pose_of_the_page_puts_the_mass_centre_where_the_run_has_it(comparison):
@@ -49,24 +49,24 @@ def test_the_pose_of_the_page_puts_the_mass_centre_where_the_run_has_it(comparis
 
 def test_each_run_is_shown_with_the_model_of_its_support(comparison):
     spec = playback(case_views(comparison)[0])
-    assert spec["models"][spec["partners"][0]]["label"] == "rolling model"
+    assert spec["models"][spec["partners"][0]]["label"] == "flat-ground model"
 
 
 def test_a_fall_after_the_end_of_the_case_is_played():
     gone = Case("gone", PIER, initial=InitialState(tilt=1.1 * PIER.alpha, rolling_rate=0.1), duration=0.5)
-    found = compare(gone, runs=[Run("mujoco", "guided", 1e-3)], workers=1)
+    found = compare(gone, runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     ends = [float(trace.time[-1]) for trace in (*found.responses.values(), *found.trajectories.values())]
     assert max(ends) > 1.0
     assert playback(case_views(found)[0])["length"] == max(ends)
     # traces of different length are compared as far as both reach
     row = found.summary.iloc[0]
     assert (row["outcome"], row["reference_outcome"]) == ("overturned", "overturned")
-    assert 0.0 < row["agreement_horizon"] <= max(ends)
+    assert 0.0 < row["agreement_time"] <= max(ends)
 
 
 def test_nothing_is_played_where_nothing_moves():
     still = GroundMotion(np.zeros((20, 2)), 0.01, "still")
-    comparison = compare(Case("still", PIER, still), runs=[Run("mujoco", "guided", 1e-3)], workers=1)
+    comparison = compare(Case("still", PIER, still), runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     assert playback(case_views(comparison)[0]) is None
     assert view_page(comparison, "still") is None
 

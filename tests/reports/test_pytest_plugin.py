@@ -23,7 +23,7 @@ def modules_of_inner_runs() -> None:
 
     assert rockwobble.compare.check.LAYERS
     body = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    for model in ("recess", "rolling"):
+    for model in ("recess", "flat"):
         reduced.simulate(body, initial=InitialState(0.1), duration=0.1, model=model)
     pd.DataFrame({"text": ["some"]}).astype(str)  # with what pandas imports when it is used
 
@@ -31,7 +31,7 @@ def modules_of_inner_runs() -> None:
 SUITE = """
 [[runs]]
 engine = "mujoco"
-support = ["guided", "free"]
+support = ["recess", "flat"]
 
 [[cases]]
 name = "release"
@@ -58,10 +58,10 @@ def test_each_case_and_run_is_an_item(suite) -> None:
     result = suite().runpytest("--collect-only", "-q")
     result.stdout.fnmatch_lines(
         [
-            "*pier.suite.toml::release: tan_alpha 0.2, mujoco guided",
-            "*pier.suite.toml::release: tan_alpha 0.2, mujoco free",
-            "*pier.suite.toml::release: tan_alpha 1, mujoco guided",
-            "*pier.suite.toml::release: tan_alpha 1, mujoco free",
+            "*pier.suite.toml::release: tan_alpha 0.2, mujoco recess",
+            "*pier.suite.toml::release: tan_alpha 0.2, mujoco flat",
+            "*pier.suite.toml::release: tan_alpha 1, mujoco recess",
+            "*pier.suite.toml::release: tan_alpha 1, mujoco flat",
         ]
     )
 
@@ -77,8 +77,8 @@ def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite) -> 
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.fnmatch_lines(
         [
-            "*pier.suite.toml: release: tan_alpha 1, mujoco free*",
-            "release: tan_alpha 1, mujoco free against recess: tilt_rms: measured *, at most 1e-05 *",
+            "*pier.suite.toml: release: tan_alpha 1, mujoco flat*",
+            "release: tan_alpha 1, mujoco flat against recess: tilt_rms: measured *, at most 1e-05 *",
             "What the difference is made of (RMS in alpha until *",
             "  whole *engine minus recess",
             "  model form *",
@@ -98,7 +98,7 @@ def test_the_budget_can_be_left_out(suite) -> None:
 
 
 def test_a_run_that_fails_says_why(suite) -> None:
-    text = SUITE.replace('support = ["guided", "free"]', "settings = { contact_damping_ratio = 0.01 }")
+    text = SUITE.replace('support = ["recess", "flat"]', "settings = { contact_damping_ratio = 0.01 }")
     result = suite(text).runpytest("-k", "0.2")
     result.assert_outcomes(failed=1)
     result.stdout.fnmatch_lines(["*the engine gained energy*contact of mujoco*"])
@@ -112,7 +112,7 @@ def test_a_wrong_file_is_an_error_of_its_own(suite) -> None:
 
 
 def test_a_setting_that_an_engine_has_not_is_one_line(suite) -> None:
-    text = SUITE.replace('support = ["guided", "free"]', "settings = { softness = 1 }")
+    text = SUITE.replace('support = ["recess", "flat"]', "settings = { softness = 1 }")
     result = suite(text).runpytest("-k", "0.2")
     result.stdout.fnmatch_lines(["pier.suite.toml: 'softness' is not a setting of mujoco*"])
 

@@ -67,17 +67,17 @@ def test_a_sweep_that_was_ended_says_how_far_it_is(tmp_path, capsys):
 
 def test_a_comparison_and_one_that_is_not_finished(tmp_path, capsys):
     case = Case("release", PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.5)
-    compare(case, runs=[Run("mujoco", "guided", 1e-3)], workers=1, resume=tmp_path)
+    compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1, resume=tmp_path)
     result = described(tmp_path, capsys)
     assert result["kind"] == "a comparison that is not finished"
     kept = len(list((tmp_path / "runs").glob("*.parquet")))
     assert kept >= 2
     assert (result["complete"], result["runs_finished"]) == (False, kept)
-    compare(case, runs=[Run("mujoco", "guided", 1e-3)], workers=1, resume=tmp_path, out=tmp_path)
+    compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1, resume=tmp_path, out=tmp_path)
     result = described(tmp_path, capsys)
     assert (result["kind"], result["complete"], result["runs"]) == ("a comparison", True, 2)
     assert result["outcomes"] == {"completed": 1}
-    assert result["figures"][0]["run"] == "mujoco guided against recess"
+    assert result["figures"][0]["run"] == "mujoco recess against recess"
     assert len(result["inputs"]["fingerprint"]) == 32
 
 
@@ -126,7 +126,7 @@ def test_what_is_no_store_gets_one_clear_line(tmp_path, capsys, folder):
         (["--semidiagonal", "a"], "--semidiagonal must be a number, a list such as 1,2,6 or a range"),
         (["--scale", "1:2"], "--scale must be a number"),
         (["--tan-alpha", "1:2:1"], "--tan-alpha must be a number"),
-        (["--model", "flat"], "models must be of recess, rolling, planar, got 'flat'"),
+        (["--model", "flat"], "models must be of recess, flat, planar, got 'flat'"),
         (["--record-x", "a.at2"], "each record needs both horizontal components"),
         (["--units", "g"], "--record-z and --units belong to a record"),
         (["no-such-suite"], "no-such-suite"),

@@ -87,7 +87,7 @@ def test_any_record_will_do(tmp_path: Path, capsys):
         (["--smallest", "3", "--largest", "2"], "must be positive and increasing, got 3 and 2"),
         (["--smallest", "-1"], "must be positive and increasing, got -1 and 30"),
         (["--weakest", "nan"], "must be positive and increasing, got nan and 12"),
-        (["--model", "planar"], "--model must be one of recess, rolling, got 'planar'"),
+        (["--model", "planar"], "--model must be one of recess, flat, got 'planar'"),
         (["--search-step", "0"], "--search-step must be at least 1e-05 and finite, got 0"),
         (["--search-step", "inf"], "--search-step must be at least 1e-05 and finite, got inf"),
         (["--tan-alpha", "0"], "tan_alpha must be positive"),

@@ -25,7 +25,7 @@ CASES = 6
 SUITE = """
 [[runs]]
 engine = "mujoco"
-support = ["guided", "free"]
+support = ["recess", "flat"]
 
 [[cases]]
 name = "release"
@@ -105,7 +105,7 @@ def test_a_suite_is_echoed_run_summed_up_and_written(folder, no_engines, capsys)
     out = capsys.readouterr().out
     assert "Suite mine.suite.toml: 4 cases x 2 runs = 8 runs of engines" in out
     assert "Cases: release (4)" in out
-    assert re.search(r"release +mujoco guided +4 +4 +100", out)
+    assert re.search(r"release +mujoco recess +4 +4 +100", out)
     assert "8 of 8 runs stay within 1 % of alpha of the model of their support to the end." in out
     summary = pd.read_csv(folder / "results" / "summary.csv")
     assert summary["case"].nunique() == 4
@@ -116,25 +116,25 @@ def test_a_suite_is_echoed_run_summed_up_and_written(folder, no_engines, capsys)
 def test_runs_of_a_suite_that_part_are_named_the_worst_first(folder, no_engines, capsys):
     # an engine that has lost the case from the beginning
     no_engines(tilt=np.full(201, 0.3))
-    assert call("compare", "mine.suite.toml", "--engine", "mujoco", "--support", "guided") == 0
+    assert call("compare", "mine.suite.toml", "--engine", "mujoco", "--support", "recess") == 0
     out = capsys.readouterr().out
-    assert re.search(r"release +mujoco guided +4 +0 +0", out)
-    assert "- release: tan_alpha 0.1: mujoco guided agrees with the recess model for 0.00 s of 2 s" in out
+    assert re.search(r"release +mujoco recess +4 +0 +0", out)
+    assert "- release: tan_alpha 0.1: mujoco recess agrees with the recess model for 0.00 s of 2 s" in out
 
 
 @pytest.mark.parametrize(
     ("options", "expected"),
     [
-        ({}, ["mujoco guided", "mujoco free", "pybullet guided"]),
-        ({"engines": ["mujoco"]}, ["mujoco guided", "mujoco free"]),
-        ({"supports": ["free"]}, ["mujoco free"]),
+        ({}, ["mujoco recess", "mujoco flat", "pybullet recess"]),
+        ({"engines": ["mujoco"]}, ["mujoco recess", "mujoco flat"]),
+        ({"supports": ["flat"]}, ["mujoco flat"]),
         ({"supports": ["ring"]}, ["mujoco ring", "pybullet ring"]),
-        ({"engines": ["exudyn"]}, ["exudyn guided", "exudyn free"]),
-        ({"engines": ["pybullet"], "supports": ["guided"]}, ["pybullet guided"]),
+        ({"engines": ["exudyn"]}, ["exudyn recess", "exudyn flat"]),
+        ({"engines": ["pybullet"], "supports": ["recess"]}, ["pybullet recess"]),
     ],
 )
 def test_options_choose_among_the_runs_of_a_suite(write_suite, options, expected):
-    runs = '[[runs]]\nengine = "mujoco"\nsupport = ["guided", "free"]\nsettings = { iterations = 7 }\n'
+    runs = '[[runs]]\nengine = "mujoco"\nsupport = ["recess", "flat"]\nsettings = { iterations = 7 }\n'
     suite = write_suite(runs + '[[runs]]\nengine = "pybullet"\n' + SUITE[SUITE.index("[[cases]]") :])
     chosen = chosen_runs(suite, options.get("engines"), options.get("supports"), None)
     assert [f"{run.engine} {run.support}" for run in chosen] == expected
@@ -163,15 +163,15 @@ def test_a_trajectory_is_one_more_run(folder, no_engines, capsys):
     no_engines()
     arguments = [*RELEASE, "--trajectory", "table.csv", "--trajectory-angles", "rad"]
     assert call("compare", *arguments, "--engine", "none", "--out", "alone") == 0
-    assert re.search(r"table foreign +recess", capsys.readouterr().out)
+    assert re.search(r"table external +recess", capsys.readouterr().out)
     alone = pd.read_csv(folder / "alone" / "summary.csv")
     assert alone["run"].tolist() == ["table"]
     assert alone["tilt_rms"].max() < 1e-12  # written with all digits
     page = (folder / "alone" / "report.html").read_text()
     assert "table" in page
-    assert call("compare", *arguments, "--engine", "mujoco", "--support", "guided", "--out", "both") == 0
+    assert call("compare", *arguments, "--engine", "mujoco", "--support", "recess", "--out", "both") == 0
     both = pd.read_csv(folder / "both" / "summary.csv")
-    assert both["run"].tolist() == ["mujoco guided", "table"]
+    assert both["run"].tolist() == ["mujoco recess", "table"]
 
 
 def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, monkeypatch):
@@ -179,7 +179,7 @@ def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, 
     monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     one = Case("</script>", pier, initial=InitialState(tilt=0.1, rolling_rate=0.5), duration=60.0)
-    runs = [Run(engine, support) for engine in ("mujoco", "pybullet") for support in ("guided", "free")]
+    runs = [Run(engine, support) for engine in ("mujoco", "pybullet") for support in ("recess", "flat")]
     comparison = compare(one, runs=runs, workers=1)
     many = _repeated(comparison, CASES)
     page = suite_page(many)

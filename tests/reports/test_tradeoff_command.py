@@ -31,7 +31,7 @@ def found() -> Tradeoff:
     for family, line, knob, cost in (
         ("reduced", "reduced, recess", "tolerance", 1.0),
         ("scipy", "scipy LSODA, Python", "tolerance", 300.0),
-        ("mujoco", "MuJoCo guided", "time step", 700.0),
+        ("mujoco", "MuJoCo recess", "time step", 700.0),
     ):
         rows += [
             {
@@ -53,7 +53,7 @@ def found() -> Tradeoff:
         problems=pd.DataFrame([problem]),
         scenes=pd.DataFrame(
             [
-                scene | {"support": "free", "option": "released", "microseconds": 4.0, "ratio": 1.0},
+                scene | {"support": "flat", "option": "released", "microseconds": 4.0, "ratio": 1.0},
                 scene | {"support": "ring", "option": "128 walls", "microseconds": 10.0, "ratio": 2.5},
             ]
         ),

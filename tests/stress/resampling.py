@@ -35,7 +35,7 @@ def peaks(motions: list[GroundMotion], parts: int, rtol: float = 1e-8) -> np.nda
     """Return the peaks (motions, sizes, scales) [rad] at one sampling."""
     return np.array(
         [
-            peak_tilts(SIZES, TAN_ALPHA, divided(motion, parts), SCALES, rtol=rtol, seating=1e-8)
+            peak_tilts(SIZES, TAN_ALPHA, divided(motion, parts), SCALES, rtol=rtol, rest_tilt=1e-8)
             for motion in motions
         ]
     )

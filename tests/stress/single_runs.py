@@ -12,7 +12,7 @@ import numpy as np
 from rockwobble.compare.studies.ensemble.members import synthetic_motions
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
 from rockwobble.reduced import peak_tilts, simulate
-from rockwobble.reduced.problem import SEATING
+from rockwobble.reduced.problem import REST_TILT
 
 
 def grid_against_single_runs(motions: list[GroundMotion]) -> None:
@@ -44,10 +44,10 @@ def rest_threshold(motions: list[GroundMotion]) -> None:
                 shaken = motion.scaled(9.81 * tan_alpha * scale / motion.peak)
                 (with_it, tight_with), (without, tight_without) = (
                     [
-                        simulate(cylinder, shaken, seating=seating, rtol=rtol).peak_tilt
+                        simulate(cylinder, shaken, rest_tilt=rest_tilt, rtol=rtol).peak_tilt
                         for rtol in (1e-9, 1e-11)
                     ]
-                    for seating in (SEATING, 0.01 * SEATING)
+                    for rest_tilt in (REST_TILT, 0.01 * REST_TILT)
                 )
                 converged = (
                     abs(with_it - tight_with) <= 1e-3 * with_it

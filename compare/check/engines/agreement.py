@@ -1,6 +1,6 @@
 """Layer: whether the engines still follow the reduced models on a suite.
 
-Guided engines are held against the recess model, those on open ground against the rolling model. A ring
+Guided engines are held against the recess model, those on open ground against the flat-ground model. A ring
 of walls has no model of its own: until the first touch of a wall it is open ground, and after it only
 what every motion in a recess must show is asked for.
 """
@@ -14,7 +14,7 @@ from typing import Any
 from rockwobble.models import Case, Run
 
 from ...comparison.prediction import Prediction, estimated_error, predict_horizon, time_scale, verdict
-from ...metrics.agreement import agreement_horizon
+from ...metrics.agreement import agreement_time
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import own_model
 from ...traces.pair import make_pair
@@ -101,7 +101,7 @@ def _by_rule(
 ) -> Finding:
     """Return the finding where the suite states no bounds."""
     pair = make_pair(case.cylinder, response, trajectory, until=case.length if until is None else until)
-    horizon = agreement_horizon(pair)
+    horizon = agreement_time(pair)
     # what near passes have magnified says nothing: half of the way to where the traces have to part
     end = min(pair.end, pair.start + 0.5 * prediction.length) if prediction.reason else pair.end
     part = f"{run.engine} ({run.support}), its contact and step, or the reduced model"
@@ -109,7 +109,7 @@ def _by_rule(
     if not any(lifted) or end <= pair.start:
         why = "neither uplifts" if not any(lifted) else "traces have to part at once"
         return not_run(LAYER, name, part=part, note=f"{why}: there is nothing to compare")
-    words = verdict(horizon.length, horizon.parted, prediction.length, prediction.reason)
+    words = verdict(horizon.length, horizon.diverged, prediction.length, prediction.reason)
     return at_most(
         LAYER,
         name,
@@ -118,7 +118,7 @@ def _by_rule(
         unit="alpha",
         reason="error of contact at this step, first order in it",
         part=part,
-        note=f"to {end:.3g} s" + (f"; they part {words}" if horizon.parted else ""),
+        note=f"to {end:.3g} s" + (f"; they part {words}" if horizon.diverged else ""),
     )
 
 

@@ -32,7 +32,7 @@ def check(bench: Bench) -> Iterator[Finding]:
     yield from not_here(LAYER, "accelerations")
     engines = engines_here()
     wanted = [
-        (case, bench.adjust(Run(engine, "guided")), f"{engine} guided")
+        (case, bench.adjust(Run(engine, "recess")), f"{engine} guided")
         for engine in engines
         for case in cases
     ]

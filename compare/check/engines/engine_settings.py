@@ -38,9 +38,9 @@ def check(bench: Bench) -> Iterator[Finding]:
     exact = bench.response(CASE, "recess", rtol=1e-11)
     yield from not_here(LAYER, "contact and time step")
     for engine in engines_here():
-        run = bench.adjust(Run(engine, "guided", STEP))
+        run = bench.adjust(Run(engine, "recess", STEP))
         step = run.time_step if isinstance(run.time_step, float) else STEP
-        finer = Run(engine, "guided", 0.5 * step, **run.settings)
+        finer = Run(engine, "recess", 0.5 * step, **run.settings)
         coarse, fine = bench.engine_runs(
             [(CASE, run, f"{engine} guided"), (CASE, finer, f"{engine} guided, half the step")]
         )

@@ -30,12 +30,12 @@ def check(
     for column, bound in bounds.given().items():
         unit, meaning = SUMMARY_COLUMNS[column]
         value = abs(float(row[column]))
-        if column == "agreement_horizon":
+        if column == "agreement_time":
             # the shorter the worse: what is missing may be nothing
-            missing = max(0.0, bound - value) if row["parted"] else 0.0
+            missing = max(0.0, bound - value) if row["diverged"] else 0.0
             yield at_most(
                 LAYER,
-                f"{case.name}, {label} against {model}: agreement_horizon missing",
+                f"{case.name}, {label} against {model}: agreement_time missing",
                 missing,
                 0.0,
                 unit=unit,

@@ -51,7 +51,7 @@ FIELDS: Mapping[str, tuple[str, float]] = {
 }
 # rate [rad/s] and force [weights] as a mean over 65 steps, without the half window at either end; in the
 # recess the guide, which starts without twist, lets both swing about their mean
-SWINGS: Mapping[str, tuple[float, float]] = {"guided": (1.5e-3, 0.03), "free": (2e-5, 2e-5)}
+SWINGS: Mapping[str, tuple[float, float]] = {"recess": (1.5e-3, 0.03), "flat": (2e-5, 2e-5)}
 OFFSET, SLIP = 1e-5, 1e-5  # [m]
 BALANCE = 8e-5  # [m^2/s^2] of 20; 4e-5 was measured: work step by step, and samples between steps
 RAMP = GroundMotion(np.array([[0.0, 0.0, 0.0], [-1.6, 1.2, -2.5]]) * THRESHOLD, 0.8)
@@ -68,7 +68,7 @@ def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this layer."""
     yield from not_here(LAYER, "fields of a trace")
     for engine in engines_here():
-        for support in ("guided", "free"):
+        for support in ("recess", "flat"):
             yield from _shaken(bench, engine, support)
         yield from _uplift(bench, engine)
         yield from _passes(bench, engine)
@@ -141,7 +141,7 @@ def _shaken(bench: Bench, engine: str, support: str) -> Iterator[Finding]:
 
 def _uplift(bench: Bench, engine: str) -> Iterator[Finding]:
     """|a| rises and the weight falls: 2 t/0.8 = 1 - 0.5 t/0.8 at the uplift, in units of the threshold."""
-    run = bench.adjust(Run(engine, "guided"))
+    run = bench.adjust(Run(engine, "recess"))
     if engine == "pybullet":
         # its base rocks on four contacts before: what is checked is where the uplift is found
         run = Run(engine, run.support, run.time_step, **{**run.settings, "held_standing": True})
@@ -185,7 +185,7 @@ def _uplift(bench: Bench, engine: str) -> Iterator[Finding]:
 
 def _passes(bench: Bench, engine: str) -> Iterator[Finding]:
     """A release that passes the upright position once, and rises again to its peak."""
-    (trace,) = bench.engine_runs([(RELEASE, bench.adjust(Run(engine, "guided")), f"{engine} guided")])
+    (trace,) = bench.engine_runs([(RELEASE, bench.adjust(Run(engine, "recess")), f"{engine} guided")])
     if crashed(trace):
         yield _failed(f"{engine}, release", engine, trace)
         return
@@ -215,7 +215,7 @@ def _slides(bench: Bench, engine: str) -> Finding:
     # not of the size at which the engines run every scene, so that lengths and times differ from it
     small = replace(PIER, semidiagonal=1.5)
     case = Case("slide", small, steady([0.12 * GRAVITY, -0.09 * GRAVITY], time), friction=friction)
-    trace = run_engine(case, bench.adjust(Run(engine, "free")))
+    trace = run_engine(case, bench.adjust(Run(engine, "flat")))
     if crashed(trace):
         return _failed(f"{engine}, slide", engine, trace)
     distance = 0.5 * (0.15 - friction) * GRAVITY * time**2

@@ -19,7 +19,7 @@ LAYER = "studies"
 TEXT = """
 [[runs]]
 engine = ["mujoco", "pybullet"]
-support = ["guided", "free"]
+support = ["recess", "flat"]
 time_step = [1e-4, 2e-4]
 settings = { iterations = 50 }
 
@@ -110,7 +110,7 @@ def _expansion(suite: Suite) -> Finding:
             wrong.append(case.name)
     runs = [(run.engine, run.support, run.time_step, dict(run.settings)) for run in suite.runs]
     expected = itertools.product(
-        ("mujoco", "pybullet"), ("guided", "free"), (1e-4, 2e-4), ({"iterations": 50},)
+        ("mujoco", "pybullet"), ("recess", "flat"), (1e-4, 2e-4), ({"iterations": 50},)
     )
     if runs != list(expected):
         wrong.append("the runs")

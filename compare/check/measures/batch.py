@@ -26,7 +26,7 @@ ROUNDING = 1e-10
 PLANE = 0.4  # [rad] azimuth of planar runs
 METHODS: tuple[dict[str, Any], ...] = (
     {"model": "recess"},
-    {"model": "rolling"},
+    {"model": "flat"},
     {"model": "planar", "plane": PLANE, "restitution": "momentum"},
 )
 
@@ -35,7 +35,7 @@ def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part."""
     motion = _motion()
     for options in METHODS:
-        given = {"rtol": 1e-9, "seating": 1e-4, "gravity": GRAVITY, **options}
+        given = {"rtol": 1e-9, "rest_tilt": 1e-4, "gravity": GRAVITY, **options}
         grid = bench.reduced.peak_tilts(SIZES, TAN_ALPHA, motion, [*SCALES, *ROUNDED], **given)
         alone = np.array(
             [

@@ -15,7 +15,7 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder, InitialState
 
-from ...traces.trajectory import ExternalTrajectory, Foreign, read_trajectory
+from ...traces.trajectory import External, ExternalTrajectory, read_trajectory
 from ..bench import Bench
 from ..finding import Finding, worst_of
 from ..models import lagrange
@@ -154,7 +154,7 @@ def _csv(head: str, rows: Array) -> str:
 
 def _read(path: Path, text: str, offset: float) -> ExternalTrajectory:
     path.write_text(text, encoding="utf-8")
-    return read_trajectory(Foreign(path=path, time_offset=offset), CASE)
+    return read_trajectory(External(path=path, time_offset=offset), CASE)
 
 
 def _finding(name: str, errors: Mapping[str, float], bound: float, why: str) -> Finding:

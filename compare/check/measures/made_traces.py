@@ -50,7 +50,7 @@ class MadeTrace:
     wall_time: float = 1.0
     engine: str = "made"
     engine_version: str = "1"
-    support: str = "guided"
+    support: str = "recess"
     time_step: float = 1e-4
     contact_resolution: float = 0.0
     residual_displacement: float = math.nan

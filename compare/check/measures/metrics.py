@@ -15,7 +15,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion
 
 from ...comparison.prediction import Prediction
 from ...comparison.summary import summary_row
-from ...metrics.agreement import agreed_passes, agreement_horizon, closest_pass
+from ...metrics.agreement import agreed_passes, agreement_time, closest_pass
 from ...metrics.contact import contact_rms
 from ...metrics.energy import energy_loss
 from ...metrics.tilt import tilt_rms, tilt_rms_relative
@@ -146,19 +146,19 @@ def _agreement() -> dict[str, float]:
     for sign in (1.0, -1.0):
         ramp = sign * 0.01 * ALPHA * np.maximum(0.0, TIME - 5.005)
         pair = make_pair(CYLINDER, reference, made(TIME, reference.tilt + ramp))
-        horizon = agreement_horizon(pair)
-        if not (horizon.parted and horizon.end == TIME[601]):
+        horizon = agreement_time(pair)
+        if not (horizon.diverged and horizon.end == TIME[601]):
             return {f"a ramp of sign {sign:g}": math.nan}
-    same = agreement_horizon(make_pair(CYLINDER, reference, made(TIME, reference.tilt + 0.0099 * ALPHA)))
+    same = agreement_time(make_pair(CYLINDER, reference, made(TIME, reference.tilt + 0.0099 * ALPHA)))
     cut = make_pair(CYLINDER, reference, made(TIME[:501], reference.tilt[:501]))
-    broken = agreement_horizon(cut, broken=True)
-    early = agreement_horizon(make_pair(CYLINDER, reference, made(TIME, reference.tilt + 0.02 * ALPHA)))
+    broken = agreement_time(cut, broken=True)
+    early = agreement_time(make_pair(CYLINDER, reference, made(TIME, reference.tilt + 0.02 * ALPHA)))
     return {
         "length from the uplift": horizon.length - 5.01,
         "passes within it": agreed_passes(reference, horizon) - 3.0,
         "closest of them": closest_pass(reference, horizon) - 0.01,
-        "a difference just below 1 %": same.end - 10.0 + float(same.parted),
-        "end of a trace that failed": broken.length - 4.0 + (1.0 - float(broken.parted)),
+        "a difference just below 1 %": same.end - 10.0 + float(same.diverged),
+        "end of a trace that failed": broken.length - 4.0 + (1.0 - float(broken.diverged)),
         "a difference from the start": early.length,
     }
 
@@ -222,12 +222,12 @@ def _row() -> dict[str, float]:
         "turn_difference": math.degrees(0.2),
         "uplift_time_difference": 0.02,
         "uplift_direction_difference": 0.2,
-        "agreement_horizon": 10.0,
+        "agreement_time": 10.0,
         "residual_displacement": 0.3,
         "residual_twist": math.degrees(-7.0),
         "energy_loss": 0.0,
         "time_ratio": 2.0,
-        "predicted_horizon": 8.0,
+        "predicted_agreement_time": 8.0,
         "contact_resolution": 1e-4,
     }
     return {name: float(found[name]) - value for name, value in expected.items()}

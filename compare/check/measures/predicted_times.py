@@ -111,7 +111,7 @@ def _verdicts() -> dict[str, float]:
         (4.0, True, 9.0, "pass"): "earlier",
         (19.0, True, 9.0, "pass"): "later",
         (20.0, False, 9.0, "pass"): "later",
-        (20.0, False, 20.0, ""): "never, as foretold",
+        (20.0, False, 20.0, ""): "never, as predicted",
         (4.0, True, 20.0, ""): "earlier",
     }
     errors = {f"{given}": _unlike(verdict(*given), word) for given, word in words.items()}

@@ -39,7 +39,7 @@ def check(bench: Bench) -> Iterator[Finding]:
             "short motions reach their end",
             math.nan,
             0.0,
-            reason="a third of a swing, far from the apex",
+            reason="a third of a swing, far from upright",
             part="equation of motion (18) or (19), or step control",
             note=str(error),
         )

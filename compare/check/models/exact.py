@@ -48,7 +48,7 @@ def _free(bench: Bench, cylinder: Cylinder) -> Iterator[Finding]:
         duration=1.2 * time,
         sample_step=0.25 * time,
         rtol=1e-12,
-        seating=0.0,
+        rest_tilt=0.0,
         gravity=GRAVITY,
     )
     maxima = found.extrema[found.extrema[:, 3] > 0.0]
@@ -83,7 +83,7 @@ def _limit(bench: Bench, cylinder: Cylinder) -> Finding:
         duration=4.0,
         sample_step=1.0,
         rtol=1e-10,
-        seating=0.0,
+        rest_tilt=0.0,
         gravity=GRAVITY,
     )
     turns = np.asarray(found.passes["angle_of_turn"])
@@ -94,7 +94,7 @@ def _limit(bench: Bench, cylinder: Cylinder) -> Finding:
         LIMIT,
         unit="rad",
         reason="Srinivasan and Ruina's limit; the spin that is left is 1e-8 of p",
-        part="passes near the apex: step control or equation (19)",
+        part="passes near upright: step control or equation (19)",
     )
 
 
@@ -126,7 +126,7 @@ def _stated(bench: Bench, cylinder: Cylinder) -> Finding:
     quarter = quadrature.planar_quarter(shape, tilt)
     release = InitialState(tilt=tilt, rolling_rate=spin)
     stated = bench.reduced.free_response(cylinder, release, gravity=GRAVITY)
-    model = bench.reduced.simulate(cylinder, initial=release, duration=0.1, gravity=GRAVITY, seating=0.0)
+    model = bench.reduced.simulate(cylinder, initial=release, duration=0.1, gravity=GRAVITY, rest_tilt=0.0)
     errors = {
         "period": stated.period / time - 1.0,
         "half period": stated.half_period / (0.5 * time) - 1.0,
@@ -158,7 +158,7 @@ def _planar(bench: Bench, cylinder: Cylinder) -> Finding:
         duration=1.5 * quarter,
         sample_step=quarter,
         rtol=1e-12,
-        seating=0.0,
+        rest_tilt=0.0,
         gravity=GRAVITY,
         model="planar",
     )

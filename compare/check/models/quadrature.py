@@ -36,7 +36,7 @@ def turn_inertia(shape: Shape, tilt: Array) -> Array:
 
 
 def cone_inertia(shape: Shape) -> float:
-    """Return J of B = J theta^2 near the apex [m^2]."""
+    """Return J of B = J theta^2 near upright [m^2]."""
     small = 1e-4
     near, double = turn_inertia(shape, np.array([small, 2.0 * small]))
     # the next term is one of theta^3: extrapolated

@@ -89,7 +89,7 @@ def _first_sample(bench: Bench) -> Iterator[Finding]:
         reason="two terms of its series: K0 t^2/2 and the slope of the record",
         part=part,
     )
-    # (19) near the apex: phi' = W/(1 + 2 J K0/(h |a|))
+    # (19) near upright: phi' = W/(1 + 2 J K0/(h |a|))
     turning = float(a[0] * slope[1] - a[1] * slope[0]) / size**2
     rate = turning / (1.0 + 2.0 * quadrature.cone_inertia(shape) * jump / (shape.h * size))
     yield at_most(
@@ -171,7 +171,7 @@ def _threshold(bench: Bench) -> Finding:
                     initial=InitialState(tilt=share * scale * REST * CYLINDER.alpha, rolling_rate=rate),
                     duration=2.0,
                     sample_step=0.1,
-                    seating=REST,
+                    rest_tilt=REST,
                     gravity=GRAVITY,
                     model=model,
                 )

@@ -1,6 +1,6 @@
 """Short motions that together show every term of the equations: many tilts, spins and accelerations.
 
-Each is a run of a few samples of a made-up record, far from the apex, whose accelerations change from
+Each is a run of a few samples of a made-up record, far from upright, whose accelerations change from
 sample to sample. Positions alone are taken from it: rates and accelerations follow by differences, so
 that nothing a model says of itself is believed.
 """
@@ -95,7 +95,7 @@ def sample(reduced: Any, cylinder: Cylinder) -> Sampled:
             sample_step=step,
             gravity=GRAVITY,
             rtol=1e-13,
-            seating=0.0,
+            rest_tilt=0.0,
         )
         if found.outcome == "failed":
             raise FailedMotionError(found.message)

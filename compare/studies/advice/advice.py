@@ -40,7 +40,7 @@ class Advice:
     support : str
         What holds the cylinder in place.
     model, other : str
-        Reduced model of that support, and the other one: recess and rolling.
+        Reduced model of that support, and the other one: recess and flat.
     response, other_response : Response
         Their runs.
     uplift_factor : float
@@ -88,7 +88,7 @@ class Advice:
 
     @property
     def in_one_plane(self) -> bool:
-        """Whether the motion goes straight through the apex, as none out of its plane does."""
+        """Whether the motion goes straight through upright, as none out of its plane does."""
         return self.moves and bool(self.response.problem.is_planar())
 
     @property
@@ -165,7 +165,7 @@ class Advice:
             found["engine"] = (
                 "care"
                 if self.verification.outcome == "failed"
-                else grade_engine(self.verification.parting, differ)
+                else grade_engine(self.verification.divergence, differ)
             )
         return found
 

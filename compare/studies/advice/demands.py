@@ -75,7 +75,7 @@ def demands_of(response: Response, *, until: float = math.inf) -> Demands:
     """
     kept = response.time <= until
     time, moving = response.time[kept], response.tilt[kept] > 0.0
-    friction, couple = response.friction_needed[kept], np.abs(response.recess_couple[kept])
+    friction, couple = response.friction_needed[kept], np.abs(response.restraining_moment[kept])
     lengths = np.diff(time, append=time[-1])
     if math.isinf(until):
         found = _of_solution(response)

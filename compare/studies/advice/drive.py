@@ -26,17 +26,17 @@ from .scales import scan_scales
 from .spread import COUNT, PERTURBATION, SEED, Spread, spread_of_starts
 from .verification import Verification, predicted, verified
 
-SUPPORTS = ("guided", "free", "ring")
+SUPPORTS = ("recess", "flat", "ring")
 FEWEST, MOST = 20, 10_000  # members: one run stands for 5 % of them, and ten thousand take a minute
 _SAMPLES = 200_000  # of a run until its fall: closer than a near pass lasts, and computed in a second
-_OTHER = {"recess": "rolling", "rolling": "recess"}
+_OTHER = {"recess": "flat", "flat": "recess"}
 
 
 def advise(
     case: Case,
     run: Run | None = None,
     *,
-    support: str = "guided",
+    support: str = "recess",
     count: int = COUNT,
     perturbation: float = PERTURBATION,
     seed: int = SEED,
@@ -50,7 +50,7 @@ def advise(
     run : Run, optional
         Engine that verifies the prediction; without one it stays unverified.
     support : str, optional
-        What holds the cylinder in place; that of `run` where it is given. "free" asks for the rolling
+        What holds the cylinder in place; that of `run` where it is given. "flat" asks for the rolling
         model, any other for the recess.
     count, perturbation, seed
         Members, their relative standard deviation, and the seed of both draws: see `perturbed_starts`.
@@ -83,7 +83,7 @@ def advise(
         raise ValueError(f"count must be from {FEWEST} to {MOST}, got {count!r}")
     model = own_model(support)
     stages = _Stages(case.name, progress, total=3 if run is None else 4)
-    with stages.one("recess and rolling models (compiled on their first run)"):
+    with stages.one("recess and flat models (compiled on their first run)"):
         response = simulate(Job(case=case, method=model, label=model))
         if response.time[-1] > case.length:
             case = _to_the_fall(case, float(response.time[-1]))
@@ -210,7 +210,7 @@ def _trust(
         return Trust(kind="trace", until=case.length, because="")
     end = float(response.time[-1])
     if verification is not None and verification.outcome != "failed":
-        methods = verification.agreed_until if verification.parted else math.inf
+        methods = verification.agreed_until if verification.diverged else math.inf
     else:
         methods = response.uplift_time + prediction.length if prediction.reason else math.inf
     data = spread.followed_until if spread.followed_until < case.length else math.inf

@@ -96,9 +96,9 @@ def grade_overturning(overturned: bool, lowest: float, chance: float) -> str:
     return "care" if lowest < NEAR or chance >= CHANCE else "good"
 
 
-def grade_engine(parting: str, outcomes_differ: bool) -> str:
-    """Return the grade of a run of an engine: `parting` is that of the summary of a comparison."""
-    if parting == "earlier":
+def grade_engine(divergence: str, outcomes_differ: bool) -> str:
+    """Return the grade of a run of an engine: `divergence` is that of the summary of a comparison."""
+    if divergence == "earlier":
         return "bad"
     return "care" if outcomes_differ else "good"
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rockwobble import reduced
 from rockwobble.models import Case
 
-from ...metrics.agreement import agreement_horizon
+from ...metrics.agreement import agreement_time
 from ...metrics.distributions import Contrast, contrast
 from ...traces.pair import Trace, make_pair
 from ..ensemble.members import perturbed_starts
@@ -118,7 +118,7 @@ def spread_of_starts(
     low, high = np.quantile(known, [LOW, HIGH], axis=0) if known else np.full((2, len(time)), math.nan)
     others = [_run(member, models[1]) for member in members]
     pair = make_pair(case.cylinder, response, other_response)
-    parting = agreement_horizon(pair)
+    divergence = agreement_time(pair)
     return Spread(
         model=models[0],
         other=models[1],
@@ -133,7 +133,7 @@ def spread_of_starts(
         low=low,
         high=high,
         followed_until=_lost_from(time, high - low, response.peak_tilt / alpha, case.length),
-        agreed_until=parting.end if parting.parted else case.length,
+        agreed_until=divergence.end if divergence.diverged else case.length,
     )
 
 

@@ -12,7 +12,7 @@ from rockwobble.models import Case, Run
 
 from ...comparison.driver import compare
 from ...comparison.prediction import Prediction, estimated_error, predict_horizon, time_scale
-from ...metrics.agreement import agreement_horizon
+from ...metrics.agreement import agreement_time
 from ...runs.execution import Job, simulate
 from ...traces.pair import make_pair
 
@@ -41,9 +41,9 @@ class Verification:
         where there is none.
     agreed_until : float
         The same in the time of the run [s].
-    parted : bool
-    parting : str
-        Whether that was "in time", "later" or "earlier" than predicted, or "never, as foretold".
+    diverged : bool
+    divergence : str
+        Whether that was "in time", "later" or "earlier" than predicted, or "never, as predicted".
     """
 
     label: str
@@ -55,8 +55,8 @@ class Verification:
     peak_tilt: float
     agreement: float
     agreed_until: float
-    parted: bool
-    parting: str
+    diverged: bool
+    divergence: str
 
 
 def predicted(case: Case, response: Any, model: str, run: Run | None) -> Prediction:
@@ -86,7 +86,7 @@ def verified(case: Case, run: Run, model: str) -> tuple[Verification, Prediction
     agreed_until = 0.0
     if trajectory is not None:
         pair = make_pair(case.cylinder, found.responses[case.name, model], trajectory)
-        agreed_until = agreement_horizon(pair, broken=row.outcome == "failed").end
+        agreed_until = agreement_time(pair, broken=row.outcome == "failed").end
     verification = Verification(
         label=f"{run.engine} {run.support}",
         version=row.engine_version,
@@ -95,12 +95,12 @@ def verified(case: Case, run: Run, model: str) -> tuple[Verification, Prediction
         outcome=row.outcome,
         message=row.message,
         peak_tilt=float(row.peak_tilt),
-        agreement=float(row.agreement_horizon),
+        agreement=float(row.agreement_time),
         agreed_until=agreed_until,
-        parted=bool(row.parted),
-        parting=row.parting,
+        diverged=bool(row.diverged),
+        divergence=row.divergence,
     )
-    predicted = float(row.predicted_horizon)
+    predicted = float(row.predicted_agreement_time)
     if not math.isfinite(predicted):  # a crash left none
         return verification, Prediction(length=case.length, reason="")
     return verification, Prediction(length=predicted, reason=row.predicted_by)

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 KIND = "rockwobble ensemble"
 TABLE = "members.parquet"
-MODELS = ("recess", "rolling")
+MODELS = ("recess", "flat")
 # without which the members cannot be held against each other or described
 _NEEDED = ("methods", "members", "semidiagonal", "tan_alpha", "seeds", "versions")
 _COLUMNS = ("member", "method", "peak_tilt", "outcome")
@@ -82,7 +82,7 @@ def ensemble(
         One case is run with `size` perturbed starts, see `perturbed_starts`; several are the members,
         such as one body under many records.
     runs : iterable of Run, optional
-        Default: those of the suite, else every installed engine with supports "guided" and "free".
+        Default: those of the suite, else every installed engine with supports "recess" and "flat".
     models : sequence of str, optional
         Reduced models. The first is named first in every contrast.
     size : int, optional
@@ -113,7 +113,7 @@ def ensemble(
     >>> case = Case("pier", Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
     >>> found = ensemble(case, runs=[], size=5, workers=1)
     >>> found.methods[["method", "runs", "failed"]].values.tolist()
-    [['recess', 5, 0], ['rolling', 5, 0]]
+    [['recess', 5, 0], ['flat', 5, 0]]
     """
     about: dict[str, Any] = {}
     if isinstance(case_or_members, Case):

@@ -46,13 +46,13 @@ _STEP = 1e-4  # [s] the default at 6 m
 METHODS = (
     ("reduced planar", "planar", ""),
     ("reduced recess", "recess", ""),
-    ("reduced rolling", "rolling", ""),
-    ("MuJoCo guided", "mujoco", "guided"),
-    ("MuJoCo free", "mujoco", "free"),
+    ("reduced rolling", "flat", ""),
+    ("MuJoCo recess", "mujoco", "recess"),
+    ("MuJoCo flat", "mujoco", "flat"),
     ("MuJoCo ring", "mujoco", "ring"),
-    ("PyBullet guided", "pybullet", "guided"),
-    ("PyBullet free", "pybullet", "free"),
-    ("Exudyn free", "exudyn", "free"),
+    ("PyBullet recess", "pybullet", "recess"),
+    ("PyBullet flat", "pybullet", "flat"),
+    ("Exudyn flat", "exudyn", "flat"),
 )
 STAGES = ("extremes",)
 

@@ -15,7 +15,7 @@ from .lowest_overturning import uplift_factor
 
 SPATIAL, PLANAR_X, PLANAR_Y = "3d", "planar_x", "planar_y"
 SERIES = (SPATIAL, PLANAR_X, PLANAR_Y)
-SPATIAL_MODELS = ("recess", "rolling")
+SPATIAL_MODELS = ("recess", "flat")
 _AZIMUTH = {PLANAR_X: 0.0, PLANAR_Y: 0.5 * math.pi}  # of the plane [rad]
 
 

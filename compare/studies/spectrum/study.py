@@ -44,8 +44,8 @@ class OverturningSpectrum:
     gravity : float
         [m/s^2]
     model : str
-        The model in three dimensions, "recess" or "rolling".
-    seating : float
+        The model in three dimensions, "recess" or "flat".
+    rest_tilt : float
         As in `reduced.simulate`.
     semidiagonals : ndarray, shape (n_R,)
         Sizes R [m].
@@ -70,7 +70,7 @@ class OverturningSpectrum:
     motion: GroundMotion
     gravity: float
     model: str
-    seating: float
+    rest_tilt: float
     semidiagonals: Array
     intensities: Array
     peak_tilt: Mapping[str, Array]
@@ -168,7 +168,7 @@ def overturning_spectrum(
     intensities: ArrayLike,
     model: str = "recess",
     rtol: float = RTOL,
-    seating: float = reduced.SEATING,
+    rest_tilt: float = reduced.REST_TILT,
     gravity: float = 9.81,
     search_step: float = STEP,
     workers: int | None = None,
@@ -185,9 +185,9 @@ def overturning_spectrum(
         Sizes R, increasing [m].
     intensities : array_like, shape (n_I,)
         Peak of the horizontal resultant over g tan(alpha), increasing [-].
-    model : {"recess", "rolling"}, optional
+    model : {"recess", "flat"}, optional
         The model in three dimensions.
-    rtol, seating, gravity
+    rtol, rest_tilt, gravity
         As in `reduced.simulate`.
     search_step : float, optional
         Largest step of the search for the lowest overturning intensity [-].
@@ -229,7 +229,7 @@ def overturning_spectrum(
             tan_alpha=tan_alpha,
             motion=motion,
             rtol=rtol,
-            seating=seating,
+            rest_tilt=rest_tilt,
             gravity=gravity,
             **series_options(series, model),
         )
@@ -254,7 +254,7 @@ def overturning_spectrum(
         motion=motion,
         gravity=gravity,
         model=model,
-        seating=seating,
+        rest_tilt=rest_tilt,
         semidiagonals=sizes,
         intensities=levels,
         peak_tilt=peaks,

@@ -123,7 +123,7 @@ def _single(spectrum: OverturningSpectrum, series: str, i: int, scale: float) ->
         Cylinder(semidiagonal=float(spectrum.semidiagonals[i]), tan_alpha=spectrum.tan_alpha),
         spectrum.motion.scaled(scale),
         rtol=CHECK_RTOL,
-        seating=spectrum.seating,
+        rest_tilt=spectrum.rest_tilt,
         gravity=spectrum.gravity,
         sample_step=spectrum.motion.duration,
         **series_options(series, spectrum.model),

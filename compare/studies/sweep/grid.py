@@ -16,7 +16,7 @@ from ...metrics.tilt import overturned
 from ...storage.fingerprint import fingerprint
 from ...storage.provenance import reduced_makers
 
-MODELS = ("recess", "rolling", "planar")
+MODELS = ("recess", "flat", "planar")
 # The runs of a chunk take about a second together: little is lost with it, and keeping it takes a few
 # thousandths of that.
 _CHUNK_SIZE = 1000
@@ -98,9 +98,9 @@ class Grid:
         Factors on the motions, not negative [-].
     motions : sequence of GroundMotion
         With different names.
-    models : sequence of {"recess", "rolling", "planar"}, optional
+    models : sequence of {"recess", "flat", "planar"}, optional
     **options
-        rtol, seating, gravity, and for a grid of planar runs alone plane and restitution: as in
+        rtol, rest_tilt, gravity, and for a grid of planar runs alone plane and restitution: as in
         `reduced.peak_tilts`.
 
     Raises
@@ -207,7 +207,7 @@ class Grid:
             try:
                 reduced.peak_tilts([1.0], 0.2, self.motions[0], [], model=model, **self.options)
             except TypeError:
-                allowed = "rtol, seating, gravity, plane and restitution"
+                allowed = "rtol, rest_tilt, gravity, plane and restitution"
                 raise ValueError(
                     f"the options of a grid are {allowed}, got {', '.join(self.options)}"
                 ) from None

@@ -158,7 +158,7 @@ def _run(
     """Run the chunks that the store does not hold; return their columns where there is no store."""
     finished = set() if store is None else set(store.finished())
     keys = [None] * len(chunks) if store is None else store.keys
-    # in a mixed order the runs that take long are spread evenly, and so the time left can be foretold
+    # in a mixed order the runs that take long are spread evenly, and so the time left can be predicted
     order = np.random.default_rng(0).permutation(len(chunks)).tolist()
     waiting = [index for index in order if keys[index] not in finished]
     clock = _Clock(chunks, waiting, progress)

@@ -1,6 +1,6 @@
 """What accuracy costs: error against computing time of the reduced models, other solvers and the engines."""
 
-from .conclusions import Fastest, Plateau, fastest, plateaus, seating_price
+from .conclusions import Fastest, Plateau, fastest, plateaus, rest_tilt_price
 from .measure import STAGES, Tradeoff, measure_tradeoff
 from .methods import Method, methods_for
 from .problem import Problem, problems
@@ -19,6 +19,6 @@ __all__ = [
     "plateaus",
     "problems",
     "read_tradeoff",
-    "seating_price",
+    "rest_tilt_price",
     "tradeoff_tables",
 ]

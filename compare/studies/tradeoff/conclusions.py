@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .problem import FINE_SEATING
+from .problem import FINE_REST_TILT
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -126,15 +126,15 @@ def plateaus(points: pd.DataFrame) -> list[Plateau]:
     return found
 
 
-def seating_price(points: pd.DataFrame) -> pd.DataFrame:
-    """Return what the seating rule saves and costs: problem, line, tolerance, speed-up and both errors.
+def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
+    """Return what the rest rule saves and costs: problem, line, tolerance, speed-up and both errors.
 
     Each line is held against the one with next to no rule at the same tolerance.
     """
     import pandas as pd
 
     reduced = points[(points["family"] == "reduced") & (points["model"] == "recess")]
-    almost_none = f"reduced, seating {FINE_SEATING:g}"
+    almost_none = f"reduced, rest threshold {FINE_REST_TILT:g}"
     without = reduced[reduced["line"] == almost_none].set_index(["problem", "value"])
     rows = []
     for row in reduced[reduced["line"] != almost_none].to_dict("records"):

@@ -15,7 +15,7 @@ from rockwobble.models import Case, Run
 
 from ...runs.choice import own_model
 from ...runs.execution import run_engine
-from .problem import FINE_SEATING, Answer, Problem
+from .problem import FINE_REST_TILT, Answer, Problem
 from .scipy_equations import SOLVERS
 from .scipy_methods import Rates, compiled, plain, scipy_answer
 
@@ -40,7 +40,7 @@ class Method:
         The line: what is the same at all its points.
     family : str
         "reduced", "scipy" or the name of an engine.
-    model : {"recess", "rolling"}
+    model : {"recess", "flat"}
         Whose answer is the reference.
     knob : {"tolerance", "time step"}
     value : float
@@ -83,18 +83,18 @@ def _reduced(problem: Problem, quick: bool) -> list[Method]:
     tolerances = sorted({*chosen, BASE_TOLERANCE}, reverse=True)
     lines: list[tuple[str, str, float | None]] = [
         (_BASE_LINE, "recess", None),
-        ("reduced, rolling", "rolling", None),
+        ("reduced, rolling", "flat", None),
     ]
     if problem.name != "turn":  # still ground seats nobody
         lines[1:1] = [
-            (f"reduced, seating {FINE_SEATING:g}", "recess", FINE_SEATING),
-            ("reduced, seating 1e-05", "recess", 1e-5),
-            ("reduced, seating 0.1", "recess", 1e-1),
+            (f"reduced, rest threshold {FINE_REST_TILT:g}", "recess", FINE_REST_TILT),
+            ("reduced, rest threshold 1e-05", "recess", 1e-5),
+            ("reduced, rest threshold 0.1", "recess", 1e-1),
         ]
 
-    def solver(model: str, rtol: float, seating: float | None) -> Callable[[Case], Answer]:
+    def solver(model: str, rtol: float, rest_tilt: float | None) -> Callable[[Case], Answer]:
         def solve(case: Case) -> Answer:
-            given = {} if seating is None else {"seating": seating}
+            given = {} if rest_tilt is None else {"rest_tilt": rest_tilt}
             response = reduced.simulate(
                 case.cylinder,
                 case.motion,
@@ -116,10 +116,10 @@ def _reduced(problem: Problem, quick: bool) -> list[Method]:
             model=model,
             knob="tolerance",
             value=rtol,
-            solve=solver(model, rtol, seating),
-            settings={} if seating is None else {"seating": seating},
+            solve=solver(model, rtol, rest_tilt),
+            settings={} if rest_tilt is None else {"rest_tilt": rest_tilt},
         )
-        for line, model, seating in lines
+        for line, model, rest_tilt in lines
         for rtol in tolerances
     ]
 
@@ -167,20 +167,20 @@ def _engine_lines(problem: Problem, quick: bool) -> list[list[Method]]:
                 [_engine(problem, name, engine, support, step, given or {}, contact) for step in steps]
             )
 
-    line("MuJoCo guided", "mujoco", "guided", steps)
-    line("MuJoCo free", "mujoco", "free", steps)
+    line("MuJoCo recess", "mujoco", "recess", steps)
+    line("MuJoCo flat", "mujoco", "flat", steps)
     line("MuJoCo ring", "mujoco", "ring", few)
-    line("PyBullet guided", "pybullet", "guided", few)
-    line("PyBullet free", "pybullet", "free", few)
+    line("PyBullet recess", "pybullet", "recess", few)
+    line("PyBullet flat", "pybullet", "flat", few)
     if problem.name == "turn":  # its ideal rim cannot uplift
-        line("Exudyn free", "exudyn", "free", few)
+        line("Exudyn flat", "exudyn", "flat", few)
     if problem.name != "peaks":
         for integrator in ("RK4",) if quick else ("implicitfast", "implicit", "RK4", "discrete"):
-            line(f"MuJoCo {integrator}", "mujoco", "guided", few, {"integrator": integrator})
+            line(f"MuJoCo {integrator}", "mujoco", "recess", few, {"integrator": integrator})
         for contact in (20.0,) if quick else (4.0, 20.0):
-            line(f"MuJoCo contact {contact:g} steps", "mujoco", "guided", few, contact=contact)
+            line(f"MuJoCo contact {contact:g} steps", "mujoco", "recess", few, contact=contact)
         held = {"contact_time_constant": _HELD}
-        line(f"MuJoCo contact {1e3 * _HELD:g} ms", "mujoco", "guided", few, held)
+        line(f"MuJoCo contact {1e3 * _HELD:g} ms", "mujoco", "recess", few, held)
     return lines
 
 

@@ -5,7 +5,7 @@ One cylinder in all of them, R = 6 m and tan(alpha) = 0.2, so that computing tim
 * turn: free response from alpha/2; error of the angle of turn, exact by quadrature in a recess and
   converged on open ground, where no quadrature is known;
 * shaken: twice El Centro until ten seconds after uplift; largest error of the tilt. The factor takes its
-  passes away from the apex: as recorded they come so close that the trace is a matter of chance;
+  passes away from upright: as recorded they come so close that the trace is a matter of chance;
 * peaks: many synthetic ground motions; distance of the distributions of peak tilt.
 """
 
@@ -27,11 +27,11 @@ from ..ensemble.members import synthetic_motions, with_motions
 
 Array = NDArray[np.float64]
 
-MODELS = ("recess", "rolling")
-# of the tight solutions, and a seating rule a hundred times finer than the default: without any a cylinder
-# that just uplifts chatters at the apex without end, and there is no solution to hold a method against
+MODELS = ("recess", "flat")
+# of the tight solutions, and a rest rule a hundred times finer than the default: without any a cylinder
+# that just uplifts chatters at upright without end, and there is no solution to hold a method against
 TIGHT = 1e-12
-FINE_SEATING = 1e-10
+FINE_REST_TILT = 1e-10
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 _TURN_LENGTH = 2.6  # [s] a period of the tilt is 2.39 s
@@ -99,7 +99,7 @@ def problems(*, quick: bool = False) -> list[Problem]:
 
 
 def reference_run(case: Case, model: str, sample_step: float, rtol: float = TIGHT) -> reduced.Response:
-    """Return the tight solution of a case: the model with next to no seating rule.
+    """Return the tight solution of a case: the model with next to no rest rule.
 
     Raises
     ------
@@ -112,7 +112,7 @@ def reference_run(case: Case, model: str, sample_step: float, rtol: float = TIGH
         initial=case.initial,
         duration=case.duration,
         rtol=rtol,
-        seating=FINE_SEATING,
+        rest_tilt=FINE_REST_TILT,
         sample_step=sample_step,
         model=model,
     )
@@ -135,7 +135,7 @@ def _make(problem: Problem) -> Problem:
             for rtol in (TIGHT, 10.0 * TIGHT)
         )
         references[model], doubt[model] = tight, problem.distance(less, tight)
-        source[model] = f"{model} model at a tolerance of {TIGHT:g} and a seating of {FINE_SEATING:g}"
+        source[model] = f"{model} model, tolerance {TIGHT:g} and rest threshold {FINE_REST_TILT:g}"
     return dataclasses.replace(problem, references=references, doubt=doubt, source=source)
 
 

@@ -69,29 +69,29 @@ def variants(engine: str) -> list[Variant]:
         return Variant(engine=engine, support=support, option=option, **rest)
 
     common = [
-        scene("free", "released"),
-        scene("guided", "released"),
-        scene("guided", "ground motion x, y", components="xy"),
-        scene("guided", "ground motion x, y, z", components="xyz"),
+        scene("flat", "released"),
+        scene("recess", "released"),
+        scene("recess", "ground motion x, y", components="xy"),
+        scene("recess", "ground motion x, y, z", components="xyz"),
     ]
     if engine == "pybullet":
-        return [*common, scene("guided", "standing", standing=True, components="xy")]
+        return [*common, scene("recess", "standing", standing=True, components="xy")]
     if engine != "mujoco":
         raise ValueError(f"engine must be one of mujoco, pybullet, got {engine!r}")
     return [
         *common,
         *(
-            scene("guided", f"integrator {name}", settings={"integrator": name})
+            scene("recess", f"integrator {name}", settings={"integrator": name})
             for name in ("implicitfast", "implicit", "RK4", "discrete")
         ),
-        scene("guided", "pyramidal cone", settings={"cone": "pyramidal"}),
+        scene("recess", "pyramidal cone", settings={"cone": "pyramidal"}),
         *(
             scene("ring", f"{count} walls", settings={"ring_facets": count, "ring_clearance": clearance})
             for count, clearance in ((8, 0.1), (32, 0.1), (128, 0.1))
         ),
         *(
             scene(
-                "guided",
+                "recess",
                 f"standing on {corners} corners" if corners else "standing without prisms",
                 standing=True,
                 components="xy",

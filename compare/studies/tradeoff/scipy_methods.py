@@ -76,7 +76,7 @@ def scipy_answer(
 
     def solve(case: Case) -> Answer:
         quantity = _solve(problem, case, name, rates[case.name], rtol)
-        missing = "" if quantity.size else "failed: the solver gave up, or jumped over the apex"
+        missing = "" if quantity.size else "failed: the solver gave up, or jumped over upright"
         return Answer(quantity=quantity, message=missing)
 
     return solve

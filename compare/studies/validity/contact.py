@@ -63,7 +63,7 @@ def measure(inputs: Inputs) -> list[Row]:
 
 
 def _engine(case: Case, settings: dict[str, Any]) -> multibody.Trajectory:
-    return run_engine(case, Run(ENGINE, "guided", **settings))
+    return run_engine(case, Run(ENGINE, "recess", **settings))
 
 
 def _frequency(tan_alpha: float) -> float:

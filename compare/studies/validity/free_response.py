@@ -1,4 +1,4 @@
-"""Free response over slenderness, release and spin: recess against rolling, and what the recess needs."""
+"""Free response over slenderness, release and spin: recess against flat ground, and what the recess needs."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rockwobble.models import Cylinder, InitialState
 
 _RTOL = 1e-10
-_CYCLES = 10.0  # over which the rolling model may gather tilt
+_CYCLES = 10.0  # over which the flat-ground model may gather tilt
 _MAXIMUM = 1.0  # in the fourth column of `Response.extrema`
 
 
@@ -32,8 +32,8 @@ def measure(inputs: Inputs) -> list[Row]:
     """Return one row for each release and spin.
 
     The columns: tan_alpha, release, spin; period [s] and turn [rad] from tilt maximum to next maximum, exact
-    (recess) and integrated (rolling_period, rolling_turn; NaN where it overturns first), rolling_peak, the
-    largest tilt of the rolling model in ten periods over the release; needs of the recess model in one
+    (recess) and integrated (flat_period, flat_turn; NaN where it overturns first), flat_peak, the
+    largest tilt of the flat-ground model in ten periods over the release; needs of the recess model in one
     period: friction, least_normal [weights], couple over weight and base radius.
     """
     return [
@@ -47,16 +47,16 @@ def _row(inputs: Inputs, release: float, spin: float) -> Row:
     cylinder, initial = released(inputs["tan_alpha"], release, spin)
     exact = reduced.free_response(cylinder, initial)
     rolling = reduced.simulate(
-        cylinder, initial=initial, duration=_CYCLES * exact.period, model="rolling", rtol=_RTOL
+        cylinder, initial=initial, duration=_CYCLES * exact.period, model="flat", rtol=_RTOL
     )
     period, turn = next_maximum(rolling)
     needs = needs_of_one_period(cylinder, initial, exact.period)
     return {
         "period": exact.period,
-        "rolling_period": period,
+        "flat_period": period,
         "turn": exact.angle_of_turn,
-        "rolling_turn": turn,
-        "rolling_peak": rolling.peak_tilt / initial.tilt,
+        "flat_turn": turn,
+        "flat_peak": rolling.peak_tilt / initial.tilt,
         "friction": needs.largest_friction_needed,
         "least_normal": needs.least_normal_force,
         "couple": needs.largest_couple / cylinder.base_radius,
@@ -78,7 +78,7 @@ def needs_of_one_period(cylinder: Cylinder, initial: InitialState, period: float
 
 PART = Part(
     name="free_response",
-    title="free response, recess against rolling",
+    title="free response, recess against flat ground",
     tasks=_tasks,
     measure=measure,
     cost=lambda inputs: 0.02 * len(inputs["releases"]) * len(inputs["spins"]),

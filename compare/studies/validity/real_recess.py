@@ -30,7 +30,7 @@ _MEASURED = (
     "recess_peak",
     "contact_time",
 )
-_SUPPORTS = {OPEN: "free", IDEAL: "guided"}
+_SUPPORTS = {OPEN: "flat", IDEAL: "recess"}
 
 
 def _tasks(extent: Extent) -> Sequence[Inputs]:

@@ -1,7 +1,6 @@
 """What a real recess costs: energy, place and agreement of runs in rings of walls.
 
-Each is held against the recess model, which is the ideal of a ring, and against the rolling model, which is
-open ground.
+Each is held against the recess model, which is the ideal of a ring, and against the flat-ground model.
 """
 
 from __future__ import annotations
@@ -53,7 +52,7 @@ class RingRow:
         At the end [rad].
     peak, recess_peak : float
         Peak tilt of the run and of the recess model [alpha].
-    against_recess, against_rolling : float
+    against_recess, against_flat : float
         RMS of the tilt difference over that of the model's tilt.
     """
 
@@ -72,7 +71,7 @@ class RingRow:
     peak: float
     recess_peak: float
     against_recess: float
-    against_rolling: float
+    against_flat: float
 
 
 def ring_cases(
@@ -104,11 +103,11 @@ def measure(cases: Sequence[Case], runs: Sequence[Run], *, workers: int | None =
     rows = []
     for case in cases:
         possible = [run for run in runs if _possible(case, run)]
-        methods: list[Run | str] = ["recess", "rolling", *possible]
+        methods: list[Run | str] = ["recess", "flat", *possible]
         jobs = [Job(case=case, method=method, label=str(n)) for n, method in enumerate(methods)]
-        recess, rolling, *trials = simulate_all(jobs, workers=workers)
+        recess, flat, *trials = simulate_all(jobs, workers=workers)
         rows += [
-            _row(case, run, trial, recess, rolling)
+            _row(case, run, trial, recess, flat)
             for run, trial in zip(possible, trials, strict=True)
             if not isinstance(trial, Crash)
         ]
@@ -143,7 +142,7 @@ def _row(case: Case, run: Run, trial: Any, recess: Any, rolling: Any) -> RingRow
         peak=trial.peak_tilt / case.cylinder.alpha,
         recess_peak=recess.peak_tilt / case.cylinder.alpha,
         against_recess=tilt_rms_relative(make_pair(case.cylinder, recess, trial)),
-        against_rolling=tilt_rms_relative(make_pair(case.cylinder, rolling, trial)),
+        against_flat=tilt_rms_relative(make_pair(case.cylinder, rolling, trial)),
     )
 
 

@@ -29,7 +29,7 @@ def measure(inputs: Inputs) -> list[Row]:
     """Return one row for each intensity.
 
     The columns: motion, tan_alpha, semidiagonal [m], intensity; peak tilt over alpha of the recess model,
-    its twin under a record stronger by 0.1 %, the rolling model, and the recess model with the vertical
+    its twin under a record stronger by 0.1 %, the flat-ground model, and the recess model with the vertical
     component (NaN where the record has none); pi/2 over alpha if overturned. Needs of the recess model:
     friction, least_normal [weights], couple over weight and base
     radius; NaN where it does not move or overturns.
@@ -51,7 +51,7 @@ def _row(inputs: Inputs, intensity: float) -> Row:
         "recess": recess.peak_tilt / alpha,
         "twin": _run(shaken_case(name, tan_alpha, size, intensity * (1.0 + TWIN)), "recess").peak_tilt
         / alpha,
-        "rolling": _run(case, "rolling").peak_tilt / alpha,
+        "flat": _run(case, "flat").peak_tilt / alpha,
         "vertical": math.nan,
         "friction": math.nan,
         "least_normal": math.nan,

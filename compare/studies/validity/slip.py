@@ -46,7 +46,7 @@ def measure(inputs: Inputs) -> list[Row]:
             initial=initial,
             duration=duration,
             engine=ENGINE,
-            support="guided",
+            support="recess",
             friction=share * needed,
         )
         rows.append(

@@ -76,8 +76,8 @@ Supports = Annotated[
     list[str] | None,
     typer.Option(
         "--support",
-        help="guided (ideal recess), free (open ground) or ring (walls, MuJoCo only); may be repeated. "
-        "Default: guided and free.",
+        help="recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only); may be repeated. "
+        "Default: recess and flat.",
         rich_help_panel=_METHOD,
     ),
 ]

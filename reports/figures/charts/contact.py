@@ -62,7 +62,7 @@ def drift_charts(view: CaseView) -> list[tuple[str, go.Figure]]:
 
 
 def _free_model(label: str, support: str) -> bool:
-    return support == "free" and label == "rolling model"
+    return support == "flat" and label == "flat-ground model"
 
 
 def _drift(trace: Any, view: CaseView) -> NDArray[np.float64]:

@@ -30,7 +30,7 @@ def orbit_charts(view: CaseView) -> list[tuple[str, go.Figure]]:
         if model not in view.responses:
             model = next(iter(view.responses))
         row = view.rows[(view.rows["run"] == label) & (view.rows["reference"] == model)].iloc[0]
-        end = view.start(model) + row.agreement_horizon if row.parted else float(trace.time[-1])
+        end = view.start(model) + row.agreement_time if row.diverged else float(trace.time[-1])
         figure = new_figure("east-west / b [-]", "north-south / b [-]", height=340)
         _add_path(figure, view, view.responses[model], f"{model} model", model_style(model), end, 2.6)
         _add_path(figure, view, trace, label, view.styles[label], end, 1.4)

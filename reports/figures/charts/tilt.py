@@ -106,11 +106,11 @@ def difference_chart(view: CaseView) -> go.Figure:
             legendgroup=name,
             hovertemplate="%{y:.2e} α at %{x:.2f} s",
         )
-        if row.parted:
+        if row.diverged:
             filled = other.dash == "solid"
             figure.add_trace(
                 go.Scatter(
-                    x=[view.start(row.reference) + row.agreement_horizon],
+                    x=[view.start(row.reference) + row.agreement_time],
                     y=[AGREEMENT],
                     mode="markers",
                     name=name,

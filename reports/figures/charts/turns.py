@@ -1,4 +1,4 @@
-"""The angle of turn of each pass by the apex."""
+"""The angle of turn of each pass."""
 
 from __future__ import annotations
 

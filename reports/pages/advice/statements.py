@@ -66,7 +66,7 @@ def _reasons(advice: Advice) -> list[str]:
         f"{max(demands.friction_usual, advice.case.cylinder.tan_alpha):.3g} and more",
         "contact": "contact would be lost for "
         f"{100.0 * demands.lost_time / max(demands.moving_time, 1e-300):.2g} % of the time in motion",
-        "engine": "the engine leaves it earlier than foretold"
+        "engine": "the engine leaves it earlier than predicted"
         if grade == "bad"
         else "the engine comes to another end",
     }
@@ -137,7 +137,7 @@ def _of_motion(advice: Advice) -> list[Statement]:
             run=starts,
         ),
         Statement(
-            topic="Horizon",
+            topic="Agreement",
             grade="",
             text=words.horizon_words(
                 advice.prediction.length,

@@ -66,7 +66,7 @@ def friction_words(demands: Demands, tan_alpha: float) -> str:
 
 def couple_words(demands: Demands, support: str) -> str:
     """Say what couple holds the cylinder in its place."""
-    if support == "free":
+    if support == "flat":
         return "Open ground supplies no couple: nothing keeps the cylinder from rolling out of its place."
     if demands.couple_in_radii < _NO_COUPLE:
         return "In a motion without spin nothing rolls out, and the recess supplies no couple."
@@ -108,7 +108,7 @@ def horizon_words(length: float, reason: str, uplift: float, run_length: float) 
     if not reason:
         return f"Reduced model and engine should agree {within} to the end ({seconds(run_length)})."
     why = {
-        "pass": "a pass then comes closer to the apex than contact resolves",
+        "pass": "a pass then comes closer to upright than contact resolves",
         "growth": "by then near passes have multiplied the error of an engine's step to that size",
         "model form": "by then the two supports make a difference",
     }[reason]
@@ -122,13 +122,13 @@ def engine_words(found: Verification, peak: float) -> str:
     """Say what the run of the engine showed; `peak` is that of the reduced model [alpha]."""
     if found.outcome == "failed":
         return f"{found.label} could not verify that: {found.message}."
-    if found.parted:
-        foretold = {
-            "in time": "as foretold",
-            "later": "longer than foretold, which stays on the safe side",
-            "earlier": "less than half as long as foretold: do not rely on either before you know why",
-        }[found.parting]
-        said = f"{found.label} agreed for {seconds(found.agreement)}, {foretold}."
+    if found.diverged:
+        predicted = {
+            "in time": "as predicted",
+            "later": "longer than predicted, which stays on the safe side",
+            "earlier": "less than half as long as predicted: do not rely on either before you know why",
+        }[found.divergence]
+        said = f"{found.label} agreed for {seconds(found.agreement)}, {predicted}."
     else:
         said = f"{found.label} agreed to the end."
     if found.outcome == "overturned":
@@ -180,7 +180,7 @@ def _trust(trust: Trust, peak_time: float, count: int, percent: float, what: str
             f"a {percent:g} % change of the data ({count} starts) makes it another one."
         )
     why = {
-        "methods": "reduced model and engine part there" + ("" if verified else ", as foretold"),
+        "methods": "reduced model and engine part there" + ("" if verified else ", as predicted"),
         "data": f"{count} starts {percent:g} % off are spread over half of the largest tilt there",
     }[trust.because]
     if trust.kind == "peak":

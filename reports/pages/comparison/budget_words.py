@@ -6,7 +6,7 @@ from typing import Any
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, findings
 
-from .external_words import FOREIGN
+from .external_words import EXTERNAL
 from .findings import small
 
 _LISTED = 10
@@ -44,16 +44,16 @@ def budget_lines(summary: Any) -> list[str]:
 
 
 def parting_lines(summary: Any) -> list[str]:
-    """Return whether traces parted when they had to, those that did so too early by name.
+    """Return whether traces diverged when they had to, those that did so too early by name.
 
-    Of trajectories from elsewhere nobody can foretell that: the prediction rests on the errors of an engine.
+    Of trajectories from elsewhere nobody can predict that: the prediction rests on the errors of an engine.
     """
-    summary = summary[summary["support"] != FOREIGN]
-    counts = summary["parting"].value_counts()
+    summary = summary[summary["support"] != EXTERNAL]
+    counts = summary["divergence"].value_counts()
     words = ", ".join(f"{counts[word]} {word}" for word in counts.index if word)
     lines = [
-        f"{row.case}, {row.run} against {row.reference}: they part after {row.agreement_horizon:.2f} s, "
-        f"{row.predicted_horizon:.2f} s were foretold. Earlier than they had to: a finding."
-        for _, row in summary[summary["parting"] == "earlier"].iterrows()
+        f"{row.case}, {row.run} against {row.reference}: they part after {row.agreement_time:.2f} s, "
+        f"{row.predicted_agreement_time:.2f} s were predicted. Earlier than they had to: a finding."
+        for _, row in summary[summary["divergence"] == "earlier"].iterrows()
     ]
     return [*lines, f"Did traces part when they had to, within a factor of 2? {words}."] if words else lines

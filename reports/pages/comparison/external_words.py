@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     import pandas as pd
     from rich.table import Table
 
-FOREIGN = "foreign"  # support of what was not run here: nothing is known of its contact and its errors
+EXTERNAL = "external"  # support of what was not run here: nothing is known of its contact and its errors
 _PARTS = ("azimuth", "path")
 _NAMES = {
     "azimuth": "azimuth",
@@ -62,7 +62,7 @@ def external_table(summary: pd.DataFrame) -> Table | None:
     from rich.table import Table
     from rich.text import Text
 
-    rows = summary[summary["support"] == FOREIGN]
+    rows = summary[summary["support"] == EXTERNAL]
     if not len(rows) or "differs_in" not in rows:
         return None
     table = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False)

@@ -7,14 +7,14 @@ from typing import Any
 
 from rockwobble.compare import own_model
 
-from .external_words import FOREIGN, external_sentences, mistake_words, scope, within
+from .external_words import EXTERNAL, external_sentences, mistake_words, scope, within
 
 PEAK_WORTH_A_WORD = 0.01  # difference of peak tilts, relative
 PLACES = {
-    "guided": "In an ideal recess (guided)",
-    "free": "On open ground (free)",
+    "recess": "In an ideal recess (guided)",
+    "flat": "On open ground (free)",
     "ring": "In a recess of walls (ring)",
-    "foreign": "Brought from elsewhere (foreign)",
+    "external": "Brought from elsewhere (external)",
 }
 TOUCHED = "touched a wall"  # in the message of a run
 _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -37,25 +37,25 @@ def finding(row: Any, length: float) -> str:
     if "neither uplifted" in row.message:
         return f"{run} and {model} both stay at rest: this excitation does not uplift the cylinder."
     sentences = f"{_agreement(row, run, model, length)} {_peaks(row)}"
-    return f"{sentences} {external_sentences(row)}".strip() if row.support == FOREIGN else sentences
+    return f"{sentences} {external_sentences(row)}".strip() if row.support == EXTERNAL else sentences
 
 
 def _agreement(row: Any, run: str, model: str, length: float) -> str:
-    passes = f"{row.agreed_passes} pass{'' if row.agreed_passes == 1 else 'es'} by the apex"
-    if not row.parted:
+    passes = f"{row.agreed_passes} pass{'' if row.agreed_passes == 1 else 'es'} by upright"
+    if not row.diverged:
         return (
             f"{run} stays within {within(row)} of {model} for the whole run "
-            f"({row.agreement_horizon:.1f} s, {passes})."
+            f"({row.agreement_time:.1f} s, {passes})."
         )
     return (
-        f"{run} stays within {within(row)} of {model} for {seconds(row.agreement_horizon)} from uplift or "
+        f"{run} stays within {within(row)} of {model} for {seconds(row.agreement_time)} from uplift or "
         f"release ({passes}), then they part: {_reason(row, length)}."
     )
 
 
 def _reason(row: Any, length: float) -> str:
-    foretold = row.predicted_horizon
-    if row.support == "free" and row.reference == "recess":
+    predicted = row.predicted_agreement_time
+    if row.support == "flat" and row.reference == "recess":
         return (
             "on open ground the cylinder may roll out of its place, which a recess forbids; this is a "
             "difference of support, not of accuracy"
@@ -66,32 +66,32 @@ def _reason(row: Any, length: float) -> str:
             "and each touch takes energy, which neither model knows; this is a difference of support, not of "
             "accuracy"
         )
-    if row.support == FOREIGN:
-        return _foreign_reason(row)
+    if row.support == EXTERNAL:
+        return _external_reason(row)
     by_pass = getattr(row, "predicted_by", "pass") == "pass"
-    if by_pass and foretold < length and row.agreement_horizon >= foretold:
+    if by_pass and predicted < length and row.agreement_time >= predicted:
         return (
-            f"at {seconds(foretold)} a pass comes closer to the apex than the contact resolves "
+            f"at {seconds(predicted)} a pass comes closer to upright than the contact resolves "
             f"({small(row.contact_resolution)} rad); what is left to chance there grows from then on"
         )
     if math.isfinite(row.closest_pass):
         return (
             f"the contact resolves every pass until then, the closest of which comes within "
-            f"{small(row.closest_pass)} alpha of the apex; near passes amplify what small difference there is"
+            f"{small(row.closest_pass)} alpha of upright; near passes amplify what small difference there is"
         )
-    return "without a pass by the apex, so that it is an error of the method and not of chance"
+    return "without a pass, so that it is an error of the method and not of chance"
 
 
-def _foreign_reason(row: Any) -> str:
+def _external_reason(row: Any) -> str:
     if mistake_words(row):
         return "see the likely mistake"
     differs = "the body, its start, the ground motion or the method"
     if math.isfinite(row.closest_pass):
         return (
-            f"the closest pass until then comes within {small(row.closest_pass)} alpha of the apex; near "
+            f"the closest pass until then comes within {small(row.closest_pass)} alpha of upright; near "
             f"passes amplify what small difference there is in {differs}"
         )
-    return f"without a pass by the apex, so that not chance but {differs} differs"
+    return f"without a pass, so that not chance but {differs} differs"
 
 
 def _peaks(row: Any) -> str:
@@ -124,26 +124,26 @@ def small(value: float) -> str:
 def headline(summary: Any, length: float) -> str:
     """Return what stands above everything: how long the runs of each support follow their own model."""
     parts = []
-    parted = False
+    diverged = False
     for support in summary["support"].unique():
         rows = summary[(summary["support"] == support) & (summary["outcome"] != "failed")]
         own = rows[rows["reference"] == own_model(support)]
         rows = own if len(own) else rows
         if not len(rows):
             continue
-        if support == FOREIGN:
+        if support == EXTERNAL:
             # each is something else
             parts += [
                 f"{_followed(rows[rows.index == at], length)}{scope(row)}." for at, row in rows.iterrows()
             ]
-            parted = parted or any(row.parted and not mistake_words(row) for _, row in rows.iterrows())
+            diverged = diverged or any(row.diverged and not mistake_words(row) for _, row in rows.iterrows())
             continue
-        parted = parted or bool(rows["parted"].any())
+        diverged = diverged or bool(rows["diverged"].any())
         parts.append(f"{_followed(rows, length)}.")
     if not parts:
         return "No run could be compared."
-    if parted:
-        parts.append("Once traces have parted, compare distributions.")
+    if diverged:
+        parts.append("Once traces have diverged, compare distributions.")
     return " ".join(parts)
 
 
@@ -152,7 +152,7 @@ def _followed(rows: Any, length: float) -> str:
     models = " and ".join(rows["reference"].unique())
     follow = "follow" if len(rows) > 1 else "follows"
     engines = " and ".join(rows["engine"].unique())
-    bound = within(rows.iloc[0]) if support == FOREIGN else "1 % of alpha"
+    bound = within(rows.iloc[0]) if support == EXTERNAL else "1 % of alpha"
     return (
         f"{PLACES.get(support, f'With support {support}')}, {engines} {follow} the {models} model within "
         f"{bound} {_span(rows, length)}"
@@ -160,8 +160,8 @@ def _followed(rows: Any, length: float) -> str:
 
 
 def _span(rows: Any, length: float) -> str:
-    if not bool(rows["parted"].any()):
+    if not bool(rows["diverged"].any()):
         return f"for the whole run ({length:.1f} s)"
-    shortest, longest = rows["agreement_horizon"].min(), rows["agreement_horizon"].max()
+    shortest, longest = rows["agreement_time"].min(), rows["agreement_time"].max()
     span = seconds(longest) if shortest == longest else f"{seconds(shortest)} to {seconds(longest)}"
     return f"for {span} from uplift or release"

@@ -60,7 +60,7 @@ def _case(view: CaseView, index: int) -> dict[str, Any]:
         "findings": [*(finding(row, length) for _, row in view.rows.iterrows()), *remark_lines(view.rows)],
         "rows": [{name: _cell(value) for name, value in row.items()} for _, row in view.rows.iterrows()],
         "playback": playback(view) if index < _PLAYED else None,
-        "parting": parting_lines(view.rows),
+        "divergence": parting_lines(view.rows),
         "budget_words": budget_lines(view.rows),
         "budget": None if bars is None else _plot(bars, f"budget-{index}"),
         "budget_parts": _plots(charts.budget_charts(view), f"budget-part-{index}"),

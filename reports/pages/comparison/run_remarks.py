@@ -19,7 +19,7 @@ _KINDS = {
     "of the energy": "lost or gained energy",
     "not converged": "had steps whose solver did not converge",
     "not settled": "did not settle with the time step",
-    "closer to the apex": "had passes closer to the apex than contact resolves",
+    "closer to upright": "had passes closer to upright than contact resolves",
 }
 
 

@@ -130,7 +130,7 @@ def _figures(view: CaseView) -> Iterator[tuple[str, str, go.Figure]]:
     )
     yield (
         "Angle of turn of each pass",
-        "From one tilt maximum to the next; open symbols are closer to the apex than the contact resolves.",
+        "From one tilt maximum to the next; open symbols are closer to upright than the contact resolves.",
         charts.turn_chart(view),
     )
     bars = charts.budget_bars(view)

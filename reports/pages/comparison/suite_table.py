@@ -58,14 +58,14 @@ def group_table(summary: pd.DataFrame, lengths: Mapping[str, float]) -> Table:
 def worst_cases(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[str]:
     """Return a line for each of the runs that part first, the worst first."""
     rows = _with_shares(summary, lengths)
-    parted = rows[rows["parted"]].sort_values("share", kind="stable")
+    diverged = rows[rows["diverged"]].sort_values("share", kind="stable")
     lines = [
-        f"{row.case}: {row.run} agrees with the {row.reference} model for {row.agreement_horizon:.2f} s "
+        f"{row.case}: {row.run} agrees with the {row.reference} model for {row.agreement_time:.2f} s "
         f"of {lengths[row.case]:.4g} s"
-        for _, row in parted.head(_NAMED).iterrows()
+        for _, row in diverged.head(_NAMED).iterrows()
     ]
-    if len(parted) > _NAMED:
-        lines.append(f"and {len(parted) - _NAMED} more, see summary.csv")
+    if len(diverged) > _NAMED:
+        lines.append(f"and {len(diverged) - _NAMED} more, see summary.csv")
     return lines
 
 
@@ -79,8 +79,8 @@ def worst_first(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[dic
             "case": row["case"],
             "index": order[row["case"]],
             "run": row["run"],
-            "parted": bool(row["parted"]),
-            "agrees": f"{row['agreement_horizon']:.2f}",
+            "diverged": bool(row["diverged"]),
+            "agrees": f"{row['agreement_time']:.2f}",
             "length": f"{lengths[row['case']]:.4g}",
             "rms": _number(100.0 * row["tilt_rms_relative"]),
             "peak": _number(abs(row["peak_tilt_difference"])),
@@ -92,7 +92,7 @@ def worst_first(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[dic
 def suite_headline(summary: pd.DataFrame) -> str:
     """Return how many runs agree to their end, and with what."""
     rows = _own_rows(summary)
-    agree, failed = int((~rows["parted"]).sum()), int((rows["outcome"] == "failed").sum())
+    agree, failed = int((~rows["diverged"]).sum()), int((rows["outcome"] == "failed").sum())
     words = f"{agree} of {len(rows)} runs stay within 1 % of alpha of the model of their support to the end"
     return f"{words}; {failed} failed." if failed else f"{words}."
 
@@ -108,15 +108,15 @@ def _own_rows(summary: pd.DataFrame) -> pd.DataFrame:
 def _with_shares(summary: pd.DataFrame, lengths: Mapping[str, float]) -> pd.DataFrame:
     """Add the group of each case, and the share of the run for which the tilts agree."""
     rows = _own_rows(summary)
-    share = (rows["agreement_horizon"] / rows["case"].map(lengths)).clip(upper=1.0)
-    return rows.assign(group=rows["case"].map(group_of), share=share.where(rows["parted"], 1.0))
+    share = (rows["agreement_time"] / rows["case"].map(lengths)).clip(upper=1.0)
+    return rows.assign(group=rows["case"].map(group_of), share=share.where(rows["diverged"], 1.0))
 
 
 def _cells(rows: pd.DataFrame) -> list[str]:
     rms = 100.0 * rows["tilt_rms_relative"]
     return [
         str(len(rows)),
-        str(int((~rows["parted"]).sum())),
+        str(int((~rows["diverged"]).sum())),
         f"{100.0 * float(rows['share'].min()):.0f}",
         _number(float(rms.median())),
         _number(float(rms.max())),

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from rockwobble.compare.studies.tradeoff import Tradeoff
 
 TIME_TITLE = "time / that of the reduced model [-]"
-WHERE = {"recess": "in a recess", "rolling": "on open ground"}
+WHERE = {"recess": "in a recess", "flat": "on open ground"}
 _BASE_COLOUR = "#888888"
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.compare.studies.tradeoff import Fastest, Tradeoff, fastest, plateaus, seating_price
+from rockwobble.compare.studies.tradeoff import Fastest, Tradeoff, fastest, plateaus, rest_tilt_price
 
 from .charts import WHERE, records
 
@@ -44,7 +44,7 @@ def headline(found: Tradeoff) -> str:
 
 def statements(found: Tradeoff) -> list[str]:
     """Return the conclusions, the most useful first."""
-    lines = [*_by_problem(found), *_scipy(found), *_seating(found), *_flat(found), *_chance(found)]
+    lines = [*_by_problem(found), *_scipy(found), *_rest_tilt(found), *_flat(found), *_chance(found)]
     return [*lines, *_scenes(found), *_failures(found)]
 
 
@@ -116,8 +116,8 @@ def _scipy(found: Tradeoff) -> list[str]:
     ]
 
 
-def _seating(found: Tradeoff) -> list[str]:
-    prices = seating_price(found.points)
+def _rest_tilt(found: Tradeoff) -> list[str]:
+    prices = rest_tilt_price(found.points)
     titles = _titles(found)
     lines = []
     for (problem, line), rows in prices.groupby(["problem", "line"], sort=False):
@@ -126,8 +126,8 @@ def _seating(found: Tradeoff) -> list[str]:
         name = "of the default" if line == "reduced, recess" else str(line).removeprefix("reduced, ")
         effect = f"costs {tight['error']:.2g} α" if changed else "costs no accuracy that shows"
         lines.append(
-            f"Seating {name.removeprefix('seating ')} {effect} in “{titles[str(problem)]}”, and runs at "
-            f"{rows['speed_up'].median():.2f} times the speed of a rule that hardly ever acts."
+            f"Rest threshold {name.removeprefix('rest threshold ')} {effect} in “{titles[str(problem)]}”, "
+            f"and runs at {rows['speed_up'].median():.2f} times the speed of a rule that hardly ever acts."
         )
     return lines
 

@@ -34,7 +34,7 @@ def headline(limits: Sequence[Limit]) -> str:
     records = f"over {members['members']:.0f} records"
     return (
         f"In an ideal recess the reduced model is right: the engine has the same peak tilt to "
-        f"{percent(peaks['engine'])} (median), and {records} {_known(members, 'guided')}. A cylinder on open "
+        f"{percent(peaks['engine'])} (median), and {records} {_known(members, 'recess')}. A cylinder on open "
         f"ground leaves its trace after {short(traces['open'])} s, and nine in ten single peaks are within "
         f"{percent(peaks['nine_in_ten'])}; {records} {_known(members, 'open')}."
     )

@@ -1,4 +1,4 @@
-"""The pictures of what the engine did: verification, slip, rings, contact, horizons, distributions."""
+"""The pictures of what the engine did: verification, slip, rings, contact, agreement times, distributions."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _WIDEST = 1.2  # [alpha] beyond, single cylinders come back from a tilt that sho
 def verification_picture(table: pd.DataFrame) -> LinePicture:
     """Return how well the engine tells the models apart."""
     models = table.pivot_table("turn", ["tan_alpha", "release", "spin"], "model", dropna=False)
-    apart = (models["recess"] - models["rolling"]).abs()
+    apart = (models["recess"] - models["flat"]).abs()
     series = []
     for support, rows in table.groupby("support", sort=False):
         keys = rows.set_index(["tan_alpha", "release", "spin"]).index
@@ -159,12 +159,12 @@ def contact_pictures(table: pd.DataFrame) -> list[LinePicture]:
 
 
 def horizon_picture(table: pd.DataFrame) -> LinePicture:
-    """Return agreement measured over agreement foretold."""
+    """Return agreement measured over agreement predicted."""
     series = [
         Series(
             name=f"{support} against {reference}",
-            x=_of(rows, "predicted_horizon"),
-            y=_of(rows, "agreement_horizon"),
+            x=_of(rows, "predicted_agreement_time"),
+            y=_of(rows, "agreement_time"),
             marks=True,
         )
         for (support, reference), rows in table.groupby(["support", "reference"])
@@ -174,11 +174,11 @@ def horizon_picture(table: pd.DataFrame) -> LinePicture:
         title="How long traces agree",
         caption="Time from uplift until the tilts differ by more than 1 % of α, over the time that the "
         "reduced models "
-        "foretell. Runs that agree to their end are at the end.",
-        x_label="foretold [s]",
+        "predict. Runs that agree to their end are at the end.",
+        x_label="predicted [s]",
         y_label="measured [s]",
         series=series,
-        diagonal="as foretold",
+        diagonal="as predicted",
     )
 
 

@@ -18,14 +18,14 @@ _SIZE, _INTENSITY = "R [m]", "peak resultant / (g tan α) [-]"
 
 def free_maps(table: pd.DataFrame) -> dict[str, MapPicture]:
     """Return the maps of free response by name."""
-    turn = 100.0 * np.abs(table["rolling_turn"] / table["turn"] - 1.0)
-    period = 100.0 * np.abs(table["rolling_period"] / table["period"] - 1.0)
+    turn = 100.0 * np.abs(table["flat_turn"] / table["turn"] - 1.0)
+    period = 100.0 * np.abs(table["flat_period"] / table["period"] - 1.0)
     need = table["friction"] / table["tan_alpha"]
     return {
         "turn": MapPicture(
             name="free-turn",
             title="Angle of turn from tilt maximum to next maximum",
-            caption="How far the angle of turn of the rolling model (open ground) is off that of the "
+            caption="How far the angle of turn of the flat-ground model (open ground) is off that of the "
             "recess model, "
             "in per cent.",
             value_label="difference [%]",
@@ -35,7 +35,7 @@ def free_maps(table: pd.DataFrame) -> dict[str, MapPicture]:
         "period": MapPicture(
             name="free-period",
             title="Period from tilt maximum to next maximum",
-            caption="How far the period of the rolling model is off that of the recess model, in per cent.",
+            caption="Period of the flat-ground model: difference from that of the recess model, in per cent.",
             value_label="difference [%]",
             log=True,
             **_free(table, period),
@@ -64,16 +64,16 @@ def shaken_maps(table: pd.DataFrame) -> dict[str, MapPicture]:
     records, worst = ("Median of the records. ", "Largest of the records. ") if several else ("", "")
     need = (table["friction"] / table["tan_alpha"]).replace(np.inf, np.nan)
     return {
-        "rolling": MapPicture(
-            name="shaken-rolling",
+        "flat": MapPicture(
+            name="shaken-flat",
             title="Peak tilt, recess against open ground",
-            caption="How far the peak tilt of the rolling model is off that of the recess model. "
+            caption="How far the peak tilt of the flat-ground model is off that of the recess model. "
             f"{records}{grey}",
             value_label="difference [%]",
             log=True,
             smallest=0.1,
             largest=100.0,
-            **_shaken(table, off("rolling"), "median"),
+            **_shaken(table, off("flat"), "median"),
         ),
         "twin": MapPicture(
             name="shaken-twin",

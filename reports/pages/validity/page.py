@@ -18,7 +18,7 @@ HEADINGS = ("Limit", "Use the reduced model", "Error to expect", "Do not use it"
 _LEAD = (
     "The reduced model has two degrees of freedom, tilt and rolling angle, for a cylinder that neither "
     "slips nor "
-    "rolls out of its place, as in an ideal recess. Its neighbours are the rolling model, a cylinder on "
+    "rolls out of its place, as in an ideal recess. Its neighbours are the flat-ground model, a cylinder on "
     "open ground "
     "with friction enough, and a multibody engine, which knows contact and friction."
 )

@@ -12,7 +12,7 @@ from ...figures.palette import Style, model_style, run_styles
 
 Array = NDArray[np.float64]
 
-_MODELS = ("recess", "rolling")
+_MODELS = ("recess", "flat")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

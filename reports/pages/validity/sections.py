@@ -37,7 +37,7 @@ def sections_of(tables: Tables) -> list[Section]:
     """Return the sections in the order of the report, those that matter most first."""
     free, shaken = free_maps(tables["free_response"]), shaken_maps(tables["shaking"])
     found: list[tuple[Callable[[Tables], Limit], Sequence[Picture]]] = [
-        (peak_tilt, [shaken["rolling"], shaken["twin"]]),
+        (peak_tilt, [shaken["flat"], shaken["twin"]]),
         (distribution, lines.distribution_pictures(tables["statistics"])),
         (horizon, [lines.horizon_picture(tables["following"])]),
         (model_form, [free["turn"], free["period"], lines.verification_picture(tables["verification"])]),

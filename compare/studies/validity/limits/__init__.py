@@ -2,15 +2,15 @@
 
 from collections.abc import Callable
 
-from .couple_limit import couple
+from .agreement_limit import horizon
 from .distribution_limit import contrasts, distribution
 from .friction_limit import friction
-from .horizon_limit import horizon
 from .limit import Limit, Tables
 from .loss_of_contact_limit import loss_of_contact
 from .model_form_limit import model_form
 from .peak_tilt_limit import peak_tilt
 from .real_recess_limit import real_recess
+from .restraining_moment_limit import couple
 from .soft_contact_limit import soft_contact
 from .vertical_limit import vertical
 

@@ -10,8 +10,8 @@ from ..motions import source_of
 from .limit import Limit, Tables, percent
 
 # the first two are those of the places below
-METHODS = ("engine, guided", "engine, free", "rolling")
-_PLACES = {"guided": "in an ideal recess", "open": "on open ground"}
+METHODS = ("engine, recess", "engine, flat", "flat")
+_PLACES = {"recess": "in an ideal recess", "open": "on open ground"}
 
 
 def contrasts(tables: Tables) -> dict[tuple[float, str], Contrast]:
@@ -29,8 +29,8 @@ def distribution(tables: Tables) -> Limit:
     """Draw the limit from the ensemble."""
     found = contrasts(tables)
     by_place = {
-        "guided": [item for (_, method), item in found.items() if method == "engine, guided"],
-        "open": [item for (_, method), item in found.items() if method == "engine, free"],
+        "recess": [item for (_, method), item in found.items() if method == "engine, recess"],
+        "open": [item for (_, method), item in found.items() if method == "engine, flat"],
     }
     numbers = {"members": float(max((item.count for item in found.values()), default=0))}
     for place, items in by_place.items():

@@ -28,7 +28,7 @@ def friction(tables: Tables) -> Limit:
     sticks = share[~slipped]
     nearest = slip[share == slips_at]
     numbers = {
-        "free": largest(column(free, "friction") / column(free, "tan_alpha")),
+        "free_response": largest(column(free, "friction") / column(free, "tan_alpha")),
         "half": quantile(need, 0.5),
         "moderate_up_to": reached,
         "nine_in_ten": nine,
@@ -61,7 +61,7 @@ def _moderate(tan_alpha: Array, need: Array) -> tuple[float, float, float]:
 
 
 def _use(numbers: dict[str, float]) -> str:
-    free = f"Free response needs at most {short(numbers['free'])} tan α."
+    free = f"Free response needs at most {short(numbers['free_response'])} tan α."
     if math.isnan(numbers["moderate_up_to"]):
         return f"At no slenderness mapped is a friction of {MODERATE:g} tan α enough in nine of ten cases. "
         f"{free}"

@@ -1,4 +1,4 @@
-"""Free response: how far recess and rolling differ, and whether an engine tells them apart."""
+"""Free response: how far recess and flat differ, and whether an engine tells them apart."""
 
 from __future__ import annotations
 
@@ -19,13 +19,13 @@ def model_form(tables: Tables) -> Limit:
     """Draw the limit from the maps of free response and the engine at some of their points."""
     table = tables["free_response"]
     tan_alpha = column(table, "tan_alpha")
-    turn, rolling_turn = column(table, "turn"), column(table, "rolling_turn")
-    turns = np.abs(rolling_turn / turn - 1.0)
-    periods = np.abs(column(table, "rolling_period") / column(table, "period") - 1.0)
-    gained = column(table, "rolling_peak") - 1.0
+    turn, flat_turn = column(table, "turn"), column(table, "flat_turn")
+    turns = np.abs(flat_turn / turn - 1.0)
+    periods = np.abs(column(table, "flat_period") / column(table, "period") - 1.0)
+    gained = column(table, "flat_peak") - 1.0
     holds = (turns <= SMALL) & (periods <= SMALL)
     alike, apart = up_to(tan_alpha, holds), first_failing(tan_alpha, holds)
-    worst = int(np.nanargmax(np.abs(rolling_turn - turn)))
+    worst = int(np.nanargmax(np.abs(flat_turn - turn)))
     point = table.iloc[worst]
     confirmed, contradicted, points = _confirmed(tables)
     numbers = {
@@ -33,7 +33,7 @@ def model_form(tables: Tables) -> Limit:
         "apart_from": apart,
         "turn_median": quantile(turns, 0.5),
         "turn_largest": largest(turns),
-        "turn_largest_deg": math.degrees(largest(np.abs(rolling_turn - turn))),
+        "turn_largest_deg": math.degrees(largest(np.abs(flat_turn - turn))),
         "period_largest": largest(periods),
         "peak_gain": largest(gained),
         "confirmed": confirmed,
@@ -84,7 +84,7 @@ def _confirmed(tables: Tables) -> tuple[float, float, float]:
     table = tables["verification"]
     keys = ["tan_alpha", "release", "spin"]
     models = table.pivot_table("turn", keys, "model", dropna=False)
-    apart = (models["recess"] - models["rolling"]).abs()
+    apart = (models["recess"] - models["flat"]).abs()
     resolved = table[table["resolved"].astype(bool)]
     error = np.abs(column(resolved, "engine_turn") - column(resolved, "turn"))
     limits = apart.reindex(resolved.set_index(keys).index).to_numpy(dtype=np.float64)

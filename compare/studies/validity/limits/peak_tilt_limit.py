@@ -1,4 +1,4 @@
-"""Single peak tilts under shaking: recess against rolling, and against the model's own twin."""
+"""Single peak tilts under shaking: recess against flat ground, and against the model's own twin."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ def peak_tilt(tables: Tables) -> Limit:
     """Draw the limit from the maps under shaking, and the engine's peaks."""
     table = tables["shaking"]
     recess, overturning = column(table, "recess"), column(table, "overturning")
-    rolling = peak_difference(recess, column(table, "rolling"), overturning)
+    rolling = peak_difference(recess, column(table, "flat"), overturning)
     twin = peak_difference(recess, column(table, "twin"), overturning)
     guided = tables["following"]
-    guided = guided[guided["support"] == "guided"]
+    guided = guided[guided["support"] == "recess"]
     off = np.abs(column(guided, "peak_tilt") / column(guided, "reference_peak_tilt") - 1.0)
     engine, worst = quantile(off, 0.5), largest(off)
     numbers = {

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import Foreign, read_trajectory
+from rockwobble.compare import External, read_trajectory
 from rockwobble.models import Case, Cylinder, InitialState
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -64,7 +64,7 @@ def test_whatever_is_wrong_with_a_file_is_one_line_with_its_number(save, text):
 @pytest.mark.parametrize("mark", [";", "\t"])
 def test_other_marks_between_cells_and_units_by_option(save, mark):
     silent = GOOD.replace(" [deg]", "").replace(" [s]", "").replace(",", mark)
-    trajectory = read_trajectory(Foreign(path=save(silent), angle_unit="deg"), RELEASE)
+    trajectory = read_trajectory(External(path=save(silent), angle_unit="deg"), RELEASE)
     same = read_trajectory(save(GOOD), RELEASE)
     assert trajectory.tilt.tolist() == same.tilt.tolist()
     assert trajectory.tilt.max() == pytest.approx(math.radians(3.0))
@@ -74,9 +74,9 @@ def test_a_file_that_is_not_there_and_options_out_of_range(tmp_path):
     with pytest.raises(ValueError, match=r"cannot read the trajectory .*none\.csv: No such file"):
         read_trajectory(tmp_path / "none.csv", RELEASE)
     with pytest.raises(ValueError, match="time_offset must be finite"):
-        Foreign(path=tmp_path / "x.csv", time_offset=math.nan)
+        External(path=tmp_path / "x.csv", time_offset=math.nan)
     with pytest.raises(ValueError, match="noise must be above 0"):
-        Foreign(path=tmp_path / "x.csv", noise=0.0)
+        External(path=tmp_path / "x.csv", noise=0.0)
 
 
 @pytest.fixture(scope="module")
@@ -141,7 +141,7 @@ def test_uneven_samples_and_a_clock_that_does_not_start_at_zero(save):
     table["time"] += 7.0
     with pytest.raises(ValueError, match="if that is the start, give its time an offset of -7 s"):
         read_trajectory(save(table), RELEASE)
-    trajectory = read_trajectory(Foreign(path=save(table), time_offset=-7.0), RELEASE)
+    trajectory = read_trajectory(External(path=save(table), time_offset=-7.0), RELEASE)
     wanted = np.interp(trajectory.time, fine.time, fine.tilt)
     # a local cubic through samples up to 0.013 s apart, times p^3 of the tilt
     assert trajectory.tilt == pytest.approx(wanted, abs=2e-5)

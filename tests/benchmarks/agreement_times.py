@@ -1,10 +1,10 @@
 """Until when MuJoCo follows its reduced model under El Centro from rest, and what ends it.
 
-`python tests/benchmarks engine_horizons` prints the table: the record at 1, 1.5 and 2 times, on
+`python tests/benchmarks agreement_times` prints the table: the record at 1, 1.5 and 2 times, on
 cylinders of three sizes and slendernesses, guided against the recess model and free against the rolling
 model, and free against the recess model for contrast.
 
-What must end an agreement is read off the reduced model: its first pass closer to the apex than the
+What must end an agreement is read off the reduced model: its first pass closer to upright than the
 engine's contact resolves, or the growth of the engine's small error through the passes before that (a
 twin of the model, disturbed by as much as the engine errs, leaves it).
 """
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble.compare.comparison.prediction import estimated_error, predict_horizon, verdict
-from rockwobble.compare.metrics.agreement import agreement_horizon
+from rockwobble.compare.metrics.agreement import agreement_time
 from rockwobble.compare.runs.choice import SUPPORTS, own_model
 from rockwobble.compare.runs.execution import Job, ProgressCallback, simulate, simulate_all
 from rockwobble.compare.traces.pair import Pair, make_pair
@@ -31,9 +31,9 @@ if TYPE_CHECKING:
 
 CYLINDERS = ((6.0, 0.2), (10.0, 0.1), (2.0, 0.3))  # semidiagonal [m], tan alpha
 SCALES = (1.0, 1.5, 2.0)
-PAIRS = (("guided", "recess"), ("free", "rolling"), ("free", "recess"))
+PAIRS = (("recess", "recess"), ("flat", "flat"), ("flat", "recess"))
 CARRIED = 0.3  # weights
-_BETWEEN = 0.1  # of alpha; closer to the apex the force changes by weights from one sample to the next
+_BETWEEN = 0.1  # of alpha; closer to upright the force changes by weights from one sample to the next
 _AFTER = 0.1  # [s]
 _SAME = 1e-3  # of alpha: forces are those of the same motion, which traces about to part no longer are
 
@@ -52,7 +52,7 @@ def cases() -> tuple[Case, ...]:
     )
 
 
-def horizons(
+def agreement_times(
     chosen: Sequence[Case] | None = None,
     *,
     engine: str = "mujoco",
@@ -74,18 +74,18 @@ def horizons(
     -------
     DataFrame
         case, support, reference, outcome (of the engine), uplift [s], length [s, of the motion from
-        uplift], horizon [s from uplift], parted, rms (of the tilt difference up to the horizon) [alpha],
+        uplift], horizon [s from uplift], diverged, rms (of the tilt difference up to the horizon) [alpha],
         resolution (smallest tilt of a pass that the engine resolves) [rad], close_pass [s from uplift] and
         close_tilt [rad] (the first pass of the engine's own model below it; NaN without one), passes
-        (those before the horizon), closest (smallest tilt of them) [rad], foretold [s] and reason (what
+        (those before the horizon), closest (smallest tilt of them) [rad], predicted [s] and reason (what
         has to end the agreement, and when), agreed ("in time", "later", "earlier" or "never, as
-        foretold"), and force: see `force_error`.
+        predicted"), and force: see `force_error`.
     """
     import pandas as pd
 
     chosen = cases() if chosen is None else chosen
     methods: list[tuple[str, Run | str]] = [
-        *((model, model) for model in ("recess", "rolling")),
+        *((model, model) for model in ("recess", "flat")),
         *((support, Run(engine, support)) for support in SUPPORTS),
     ]
     jobs = [Job(case=case, method=method, label=label) for case in chosen for label, method in methods]
@@ -108,7 +108,7 @@ def _row(case: Case, traces: dict[str, Any], support: str, model: str) -> dict[s
         same = trial.outcome == reference.outcome
         return row | {"outcome": trial.outcome, "agreed": "both rest" if same else "only one uplifts"}
     pair = make_pair(case.cylinder, reference, trial)
-    horizon = agreement_horizon(pair, broken=trial.outcome == "failed")
+    horizon = agreement_time(pair, broken=trial.outcome == "failed")
     prediction = predict_horizon(
         case,
         reference=reference,
@@ -128,16 +128,16 @@ def _row(case: Case, traces: dict[str, Any], support: str, model: str) -> dict[s
         "uplift": start,
         "length": pair.end - start,
         "horizon": horizon.end - start,
-        "parted": horizon.parted,
+        "diverged": horizon.diverged,
         "rms": float(np.sqrt(np.mean(pair.tilt_difference[within] ** 2))),
         "resolution": trial.contact_resolution,
         "close_pass": float(times[close[0]]) - start if len(close) else math.nan,
         "close_tilt": float(minima[close[0]]) if len(close) else math.nan,
         "passes": len(before),
         "closest": float(before.min()) if len(before) else math.nan,
-        "foretold": prediction.length,
+        "predicted": prediction.length,
         "reason": prediction.reason,
-        "agreed": verdict(horizon.end - start, horizon.parted, prediction.length, prediction.reason),
+        "agreed": verdict(horizon.end - start, horizon.diverged, prediction.length, prediction.reason),
         "force": force_error(case, reference, trial, _same_until(pair)),
     }
 
@@ -170,15 +170,15 @@ def force_error(case: Case, model: Any, trial: Any, end: float) -> float:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
-    options = options_of("engine_horizons", "Until when MuJoCo follows its reduced model, and what ends it.")
+    options = options_of("agreement_times", "Until when MuJoCo follows its reduced model, and what ends it.")
     options.parse_args(arguments)
     formats = {
         "case": "", "support": "", "reference": "", "length": ".2f", "horizon": ".2f", "rms": ".1e",
         "passes": ".0f", "closest": ".1e", "resolution": ".1e", "close_pass": ".2f", "close_tilt": ".1e",
-        "foretold": ".2f", "reason": "", "agreed": "", "force": ".1e",
+        "predicted": ".2f", "reason": "", "agreed": "", "force": ".1e",
     }  # fmt: skip
     show(
-        horizons(progress=tell),
+        agreement_times(progress=tell),
         "MuJoCo and its reduced models, El Centro 1940 from rest",
         formats,
         "times in s from uplift, tilts of passes in rad, rms up to the horizon in alpha; close pass: the "

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from rockwobble import multibody, reduced
-from rockwobble.compare import Foreign, compare, make_pair, read_trajectory
+from rockwobble.compare import External, compare, make_pair, read_trajectory
 from rockwobble.models import Case, Cylinder, InitialState, Run, Suite, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -69,38 +69,38 @@ def rows(case, path, **given):
     """Rows of the engine, run again as in `guided`, and of the file."""
     found = compare(
         case,
-        runs=[Run("mujoco", "guided", 5e-4)],
-        foreign=[Foreign(path=path, **given)],
+        runs=[Run("mujoco", "recess", 5e-4)],
+        external=[External(path=path, **given)],
         workers=1,
     )
     table = found.summary.set_index("run")
-    return table.loc["mujoco guided"], table.loc[path.stem]
+    return table.loc["mujoco recess"], table.loc[path.stem]
 
 
 @pytest.mark.parametrize("name", CASES)
 def test_a_trajectory_that_goes_out_and_comes_back_has_the_same_metrics(guided, save, name):
-    engine, foreign = rows(CASES[name], save(angles(guided[name])))
-    assert foreign["support"] == "foreign"
+    engine, external = rows(CASES[name], save(angles(guided[name])))
+    assert external["support"] == "external"
     # an engine that turns softly at the first passes of a shaken cylinder is no mistake of a file
-    assert (foreign["differs_in"], foreign["likely_mistake"]) == ("", "")
+    assert (external["differs_in"], external["likely_mistake"]) == ("", "")
     for column in ("tilt_rms", "tilt_rms_relative"):
-        assert foreign[column] == pytest.approx(engine[column], abs=ROUNDING)
+        assert external[column] == pytest.approx(engine[column], abs=ROUNDING)
     # a parabola through samples 0.01 s apart instead of through the engine's steps: (p dt)^4 of the tilt
-    assert foreign["peak_tilt"] == pytest.approx(engine["peak_tilt"], abs=1e-5)
-    assert foreign["turn_difference"] == pytest.approx(engine["turn_difference"], abs=1e-6)
-    same = ["agreement_horizon", "parted", "agreed_passes", "outcome", "closest_pass"]
-    assert foreign[same].tolist() == engine[same].tolist()
-    assert math.isnan(foreign["energy_loss"])
-    assert "energy_loss" in foreign["message"]
+    assert external["peak_tilt"] == pytest.approx(engine["peak_tilt"], abs=1e-5)
+    assert external["turn_difference"] == pytest.approx(engine["turn_difference"], abs=1e-6)
+    same = ["agreement_time", "diverged", "agreed_passes", "outcome", "closest_pass"]
+    assert external[same].tolist() == engine[same].tolist()
+    assert math.isnan(external["energy_loss"])
+    assert "energy_loss" in external["message"]
 
 
 def test_quaternions_and_positions_bring_twist_and_place_back(guided, save):
-    engine, foreign = rows(SHAKEN, save(quaternions(guided["shaken"])))
-    assert foreign["tilt_rms"] == pytest.approx(engine["tilt_rms"], abs=ROUNDING)
+    engine, external = rows(SHAKEN, save(quaternions(guided["shaken"])))
+    assert external["tilt_rms"] == pytest.approx(engine["tilt_rms"], abs=ROUNDING)
     for column in ("residual_twist", "residual_displacement", "contact_rms"):
         assert engine[column] != 0.0
-        assert foreign[column] == pytest.approx(engine[column], abs=1e-6)  # rounding at small tilt
-    assert not math.isnan(foreign["contact_rms"])
+        assert external[column] == pytest.approx(engine[column], abs=1e-6)  # rounding at small tilt
+    assert not math.isnan(external["contact_rms"])
 
 
 def test_uplift_is_found_from_the_samples(guided, save):
@@ -165,8 +165,8 @@ CHANGES = {
 def test_what_is_wrong_with_a_trajectory_shows(guided, save, change):
     wrong, given, column, least = CHANGES[change]
     table = wrong(angles(guided["shaken"]))
-    engine, foreign = rows(SHAKEN, save(table), **given)
-    assert abs(foreign[column]) > abs(engine[column]) + least
+    engine, external = rows(SHAKEN, save(table), **given)
+    assert abs(external[column]) > abs(engine[column]) + least
 
 
 def test_a_time_offset_takes_back_a_late_clock(guided, save):
@@ -174,7 +174,7 @@ def test_a_time_offset_takes_back_a_late_clock(guided, save):
     late = table.assign(**{"time [s]": table["time [s]"] + 3.0})
     with pytest.raises(ValueError, match=r"table\.csv, line 2: the trajectory begins 3 s after the start"):
         read_trajectory(save(late), SHAKEN)
-    trajectory = read_trajectory(Foreign(path=save(late), time_offset=-3.0), SHAKEN)
+    trajectory = read_trajectory(External(path=save(late), time_offset=-3.0), SHAKEN)
     assert trajectory.tilt == pytest.approx(guided["shaken"].tilt, abs=1e-7)  # times rounded by the shift
 
 
@@ -184,9 +184,9 @@ def test_noise_of_a_measurement_is_no_uplift(guided, save):
     noisy = table.assign(**{"tilt [deg]": table["tilt [deg]"] + generator.uniform(0.0, 0.01, len(table))})
     noisy["azimuth [deg]"] = noisy["azimuth [deg]"].fillna(0.0)
     path = save(noisy)
-    assert read_trajectory(Foreign(path=path, noise=1e-6), SHAKEN).uplift_time == 0.0
+    assert read_trajectory(External(path=path, noise=1e-6), SHAKEN).uplift_time == 0.0
     for noise in (None, math.radians(0.02)):  # by its own scatter, and as it is told
-        quiet = read_trajectory(Foreign(path=path, noise=noise), SHAKEN)
+        quiet = read_trajectory(External(path=path, noise=noise), SHAKEN)
         # a ramp to 0.02 deg
         assert quiet.uplift_time == pytest.approx(guided["shaken"].uplift_time, abs=0.15)
 
@@ -196,7 +196,7 @@ def test_a_fall_ends_the_trajectory(save):
     case = Case("fall", PIER, initial=fall, duration=20.0)
     response = reduced.simulate(PIER, initial=fall, duration=20.0)
     assert response.outcome == "overturned"
-    found = compare(case, runs=[], foreign=[save(angles(response))], workers=1)
+    found = compare(case, runs=[], external=[save(angles(response))], workers=1)
     (row,) = found.summary.to_dict("records")
     assert (row["outcome"], row["message"].split(";")[0]) == ("overturned", "both overturned")
     assert row["peak_tilt"] == row["reference_peak_tilt"]
@@ -223,7 +223,7 @@ def test_a_fall_that_outlasts_the_run_is_followed_to_the_ground(save, tilt, outc
 
 def test_a_trajectory_alone_is_held_against_the_model(guided, save, tmp_path):
     found = compare(
-        RELEASE, runs=[], foreign=[save(angles(guided["release"]))], workers=1, out=tmp_path / "out"
+        RELEASE, runs=[], external=[save(angles(guided["release"]))], workers=1, out=tmp_path / "out"
     )
     assert found.summary[["run", "reference"]].to_numpy().tolist() == [["table", "recess"]]
     kept = pd.read_parquet(tmp_path / "out" / "trajectories.parquet")
@@ -233,6 +233,6 @@ def test_a_trajectory_alone_is_held_against_the_model(guided, save, tmp_path):
 def test_labels_and_cases_must_be_clear(guided, save):
     path = save(angles(guided["release"]))
     with pytest.raises(ValueError, match="each run must have its own label, got 'table' twice"):
-        compare(RELEASE, runs=[], foreign=[path, path])
+        compare(RELEASE, runs=[], external=[path, path])
     with pytest.raises(ValueError, match="a trajectory belongs to one case, got 2 cases"):
-        compare(Suite([RELEASE, SHAKEN], []), foreign=[path])
+        compare(Suite([RELEASE, SHAKEN], []), external=[path])

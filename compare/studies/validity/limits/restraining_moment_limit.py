@@ -19,7 +19,7 @@ def couple(tables: Tables) -> Limit:
     tan_alpha, needed = column(moving, "tan_alpha"), column(moving, "couple")
     slight, heavy = up_to(tan_alpha, needed <= SLIGHT), first_failing(tan_alpha, needed <= SLIGHT)
     numbers = {
-        "free": largest(column(free, "couple")),
+        "free_response": largest(column(free, "couple")),
         "half": quantile(needed, 0.5),
         "nine_in_ten": quantile(needed, 0.9),
         "shaken": largest(needed),
@@ -47,7 +47,7 @@ def couple(tables: Tables) -> Limit:
         error="None while the recess holds. Under shaking half of the cases ask for up to "
         f"{short(numbers['half'])} weight × base radius, nine in ten for up to "
         f"{short(numbers['nine_in_ten'])}, the "
-        f"worst for {short(numbers['shaken'])}{where}; free response for {short(numbers['free'])}.",
+        f"worst for {short(numbers['shaken'])}{where}; free response for {short(numbers['free_response'])}.",
         avoid=(
             f"On flat ground, which supplies no couple; nor, from tan α = {heavy:g} on, with a recess that "
             "holds "

@@ -11,18 +11,18 @@ from .limit import Limit, Tables, column, largest, percent, quantile, short
 def horizon(tables: Tables) -> Limit:
     """Draw the limit from engine runs held against the reduced models."""
     table = tables["following"]
-    guided = table[(table["support"] == "guided") & (table["reference"] == "recess")]
-    opened = table[(table["support"] == "free") & (table["reference"] == "recess")]
-    own = table[(table["support"] == "free") & (table["reference"] == "rolling")]
-    agreed, foretold = column(table, "agreement_horizon"), column(table, "predicted_horizon")
-    early = table["parted"].to_numpy(dtype=bool) & (agreed * IN_TIME < foretold)
+    guided = table[(table["support"] == "recess") & (table["reference"] == "recess")]
+    opened = table[(table["support"] == "flat") & (table["reference"] == "recess")]
+    own = table[(table["support"] == "flat") & (table["reference"] == "flat")]
+    agreed, predicted = column(table, "agreement_time"), column(table, "predicted_agreement_time")
+    early = table["diverged"].to_numpy(dtype=bool) & (agreed * IN_TIME < predicted)
     numbers = {
-        "guided": quantile(column(guided, "agreement_horizon"), 0.5),
-        "guided_whole": float((~guided["parted"].to_numpy(dtype=bool)).sum()),
+        "recess": quantile(column(guided, "agreement_time"), 0.5),
+        "guided_whole": float((~guided["diverged"].to_numpy(dtype=bool)).sum()),
         "guided_runs": float(len(guided)),
-        "open": quantile(column(opened, "agreement_horizon"), 0.5),
+        "open": quantile(column(opened, "agreement_time"), 0.5),
         "open_passes": quantile(column(opened, "agreed_passes"), 0.5),
-        "own": quantile(column(own, "agreement_horizon"), 0.5),
+        "own": quantile(column(own, "agreement_time"), 0.5),
         "early": float(early.sum()),
         "comparisons": float(len(table)),
         "duration": float(np.max(column(table, "duration"))),
@@ -33,15 +33,15 @@ def horizon(tables: Tables) -> Limit:
     return Limit(
         subject="Single traces",
         use="As a trace in an ideal recess: the engine follows it within 1 % of α for "
-        f"{short(numbers['guided'])} s "
+        f"{short(numbers['recess'])} s "
         f"(median), to the end of {numbers['guided_whole']:.0f} of {numbers['guided_runs']:.0f} runs of "
         f"{numbers['duration']:g} s.",
         error=f"On open ground the trace is good for {short(numbers['open'])} s (median; "
         f"{short(numbers['open_passes'])} "
-        f"passes), while the rolling model follows the engine for {short(numbers['own'])} s. "
-        f"{numbers['early']:.0f} of {numbers['comparisons']:.0f} comparisons parted in less than half of "
+        f"passes), while the flat-ground model follows the engine for {short(numbers['own'])} s. "
+        f"{numbers['early']:.0f} of {numbers['comparisons']:.0f} comparisons diverged in less than half of "
         "the time "
-        "foretold.",
+        "predicted.",
         avoid=f"As a trace on open ground beyond that: the peak of the run is off by up to "
         f"{percent(numbers['open_peak'])}. Past the horizon compare distributions.",
         numbers=numbers,

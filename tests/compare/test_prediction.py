@@ -25,7 +25,7 @@ def case(cylinder):
 
 @pytest.fixture
 def predict(case, cylinder, make_trace):
-    """Predict with twins whose distance grows by the factor e in each second, from their disturbance."""
+    """Predict with perturbed copies whose distance grows e-fold in each second, from their disturbance."""
 
     def call(error, *, passes=(), rolls_off=None):
         level = np.full_like(TIME, 0.3 * cylinder.alpha)
@@ -66,7 +66,7 @@ def test_the_first_of_the_three_counts(predict):
 
 
 def test_the_apex_itself_ends_an_agreement_though_a_fall_follows(cylinder):
-    # past the apex once, and over: no later maximum makes a pass of it
+    # past upright once, and over: no later maximum makes a pass of it
     time = np.arange(102) * 0.01
     pulse = 4.0 * 9.81 * cylinder.tan_alpha * np.sin(2.0 * np.pi * np.minimum(time, 1.0))
     motion = GroundMotion(np.column_stack([pulse, np.zeros_like(pulse)]), 0.01)
@@ -85,9 +85,9 @@ def test_a_small_error_and_no_close_pass_end_nothing(predict):
 
 
 @pytest.mark.parametrize(
-    ("measured", "parted", "predicted", "reason", "expected"),
+    ("measured", "diverged", "predicted", "reason", "expected"),
     [
-        (10.0, False, 10.0, "", "never, as foretold"),
+        (10.0, False, 10.0, "", "never, as predicted"),
         (5.0, True, 4.0, "growth", "in time"),
         (1.9, True, 4.0, "growth", "earlier"),
         (8.1, True, 4.0, "pass", "later"),
@@ -96,8 +96,8 @@ def test_a_small_error_and_no_close_pass_end_nothing(predict):
         (4.9, True, 10.0, "", "earlier"),
     ],
 )
-def test_verdict(measured, parted, predicted, reason, expected):
-    assert verdict(measured, parted, predicted, reason) == expected
+def test_verdict(measured, diverged, predicted, reason, expected):
+    assert verdict(measured, diverged, predicted, reason) == expected
 
 
 def test_the_estimated_error_is_of_first_order_in_the_step(case):

@@ -31,7 +31,7 @@ class Wrapped:
         return self._stepper.warnings()
 
 class Sound(MujocoEngine):
-    supports = ("free",)
+    supports = ("flat",)
     def change(self, acceleration):
         return acceleration
     @contextlib.contextmanager
@@ -84,7 +84,7 @@ class Slippery(Sound):
             yield stepper
 
 class Half:
-    supports = ("free",)
+    supports = ("flat",)
     def version(self):
         return "1"
 
@@ -100,26 +100,26 @@ Install = Callable[..., None]
 def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
     """Install a distribution that declares engines by name."""
 
-    def put(distribution: str = "foreign", **engines: str) -> None:
+    def put(distribution: str = "external", **engines: str) -> None:
         place = tmp_path / distribution
         about = place / f"{distribution}-1.0.dist-info"
         about.mkdir(parents=True)
-        (place / "foreign_engine.py").write_text(SOURCE)
+        (place / "external_engine.py").write_text(SOURCE)
         (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {distribution}\nVersion: 1.0\n")
         lines = [f"{name} = {value}" for name, value in engines.items()]
         (about / "entry_points.txt").write_text("\n".join(["[rockwobble.engines]", *lines]) + "\n")
-        monkeypatch.delitem(sys.modules, "foreign_engine", raising=False)
+        monkeypatch.delitem(sys.modules, "external_engine", raising=False)
         monkeypatch.syspath_prepend(str(place))
 
     return put
 
 
 def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(install: Install) -> None:
-    install(sound="foreign_engine:Sound")
+    install(sound="external_engine:Sound")
     assert multibody.engine_names() == ("mujoco", "pybullet", "exudyn", "sound")
     assert multibody.available_engines()[-1] == "sound"
     release = InitialState(PIER.alpha / 2, rolling_rate=0.5)
-    run = multibody.simulate(PIER, initial=release, duration=0.5, engine="sound", support="free")
+    run = multibody.simulate(PIER, initial=release, duration=0.5, engine="sound", support="flat")
     assert (run.engine, run.outcome) == ("sound", "completed")
     check_engine("sound")
 
@@ -140,18 +140,18 @@ def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(insta
     ],
 )
 def test_a_fault_is_found(install: Install, fault: str, rule: Callable[[str, str], None], words: str) -> None:
-    install(faulty=f"foreign_engine:{fault}")
+    install(faulty=f"external_engine:{fault}")
     with pytest.raises(AssertionError, match=f"faulty free {rule.__name__}: {words}"):
-        check_engine("faulty", [ContractCheck("faulty", "free", rule)])
+        check_engine("faulty", [ContractCheck("faulty", "flat", rule)])
 
 
 @pytest.mark.parametrize(
     ("factory", "words"),
     [
-        ("foreign_engine:Missing", "does not load: AttributeError: "),
+        ("external_engine:Missing", "does not load: AttributeError: "),
         ("no_such_module:Engine", "does not load: ModuleNotFoundError: No module named 'no_such_module'"),
-        ("foreign_engine:fails", "does not load: RuntimeError: no licence"),
-        ("foreign_engine:Half", "is no engine: it has no uplifts, settings, open"),
+        ("external_engine:fails", "does not load: RuntimeError: no licence"),
+        ("external_engine:Half", "is no engine: it has no uplifts, settings, open"),
         ("not an object reference", "does not load: "),
     ],
 )
@@ -160,25 +160,25 @@ def test_a_broken_engine_is_named_and_breaks_no_other(install: Install, factory:
     install(broken=factory)
     with pytest.raises(multibody.BrokenEngineError) as caught:
         find_engine("broken")
-    assert str(caught.value).startswith(f"engine 'broken' of the package foreign {words}")
+    assert str(caught.value).startswith(f"engine 'broken' of the package external {words}")
     assert "\n" not in str(caught.value)
     assert default_runs() == ours
     assert reserved_engines()["broken"] == str(caught.value)
     with pytest.raises(ValueError, match=r"engine must be one of mujoco, .*broken, got 'chrono'"):
         find_engine("chrono")
     still = Case("still", PIER, duration=1.0)
-    require_runnable(still, Run("mujoco", "guided"))
+    require_runnable(still, Run("mujoco", "recess"))
 
 
 def test_a_name_that_two_packages_claim_is_nobodys(install: Install) -> None:
-    install("one", shared="foreign_engine:Sound")
-    install("two", shared="foreign_engine:Loud")
+    install("one", shared="external_engine:Sound")
+    install("two", shared="external_engine:Loud")
     assert multibody.engine_names().count("shared") == 1
     with pytest.raises(multibody.BrokenEngineError, match="declared more than once, by one, two: uninstall"):
         find_engine("shared")
 
 
 def test_our_names_are_taken(install: Install) -> None:
-    install(mujoco="foreign_engine:fails")
+    install(mujoco="external_engine:fails")
     assert multibody.engine_names() == ("mujoco", "pybullet", "exudyn")
     assert type(find_engine("mujoco")).__module__ == "rockwobble.multibody.engines.mujoco_engine"
