@@ -1,4 +1,11 @@
-"""Reduced models and engines on the same problem: differences, and how long they agree."""
+"""Reduced models and engines on the same problem: differences, and how long they agree.
+
+The module may be called: ``rockwobble.compare(case)`` is ``rockwobble.compare.compare(case)``.
+"""
+
+import sys
+from types import ModuleType
+from typing import Any
 
 from .comparison.driver import compare
 from .comparison.error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
@@ -16,7 +23,7 @@ from .runs.choice import (
     reserved_engines,
     with_settings,
 )
-from .runs.execution import Crash, Job, Progress, simulate_all
+from .runs.execution import Job, Progress, simulate, simulate_all
 from .storage.files import replace_files, require_writable
 from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
 from .studies.ensemble.study import Ensemble, ensemble, read_ensemble
@@ -25,7 +32,7 @@ from .studies.sweep.grid import Grid
 from .studies.sweep.store import SweepStore, open_sweep_store
 from .studies.sweep.study import SweepIncompleteError, SweepProgress, sweep
 from .traces.pair import Pair, make_pair
-from .traces.trajectory import External, ExternalTrajectory, read_trajectory
+from .traces.trajectory import External, read_trajectory
 
 __all__ = [
     "AGREEMENT",
@@ -35,11 +42,9 @@ __all__ = [
     "WORTH_EXPLAINING",
     "CaseSweep",
     "Comparison",
-    "Crash",
     "Ensemble",
     "ErrorBudget",
     "External",
-    "ExternalTrajectory",
     "Grid",
     "Job",
     "Pair",
@@ -67,9 +72,19 @@ __all__ = [
     "require_runnable",
     "require_writable",
     "reserved_engines",
+    "simulate",
     "simulate_all",
     "sweep",
     "synthetic_motions",
     "with_motions",
     "with_settings",
 ]
+
+
+class _Callable(ModuleType):
+    def __call__(self, *arguments: Any, **options: Any) -> Comparison:
+        """Run engines and reduced models on the same problem; see the function `compare`."""
+        return compare(*arguments, **options)
+
+
+sys.modules[__name__].__class__ = _Callable

@@ -1,8 +1,10 @@
 """The problem, with no mechanics: bodies, ground motions, initial states, cases and runs."""
 
+from .assumptions import Assumptions
 from .bounds import Bounds
 from .case import Case, Run, Suite, run_duration
 from .cylinder import Cylinder
+from .diagnostic import Diagnostic
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
 from .pulses import pulse
@@ -10,15 +12,19 @@ from .records.el_centro import el_centro_1940
 from .records.files import read_record
 from .records.p695 import p695_far_field
 from .suites.file import read_suite, shipped_suites
+from .trace import Trace
 
 __all__ = [
+    "Assumptions",
     "Bounds",
     "Case",
     "Cylinder",
+    "Diagnostic",
     "GroundMotion",
     "InitialState",
     "Run",
     "Suite",
+    "Trace",
     "el_centro_1940",
     "p695_far_field",
     "pulse",

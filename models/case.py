@@ -14,14 +14,12 @@ from .ground_motion import GroundMotion
 from .initial_state import InitialState
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Case:
     """One problem: a cylinder, what moves it, and for how long.
 
     Parameters
     ----------
-    name : str
-        For tables, figures and file names.
     cylinder : Cylinder
     motion : GroundMotion, optional
         Without it the ground is still.
@@ -34,6 +32,8 @@ class Case:
     friction : float, optional
         Coulomb coefficient of the pair cylinder and ground [-]. Each engine converts it to its own
         convention; the reduced models assume that it suffices and say where it would not.
+    name : str, optional
+        For tables, figures and file names. Default: that of the motion, or "free response".
 
     Raises
     ------
@@ -41,21 +41,29 @@ class Case:
         If a number is out of range, or neither motion nor duration is given.
     """
 
-    name: str
     cylinder: Cylinder
     motion: GroundMotion | None = None
     initial: InitialState | None = None
     duration: float | None = None
     gravity: float = 9.81
     friction: float = 1.0
+    name: str = ""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gravity", require_positive("gravity", self.gravity, "m/s^2"))
         object.__setattr__(self, "friction", require_finite("friction", self.friction, ""))
         if self.friction < 0.0:
             raise ValueError(f"friction must not be negative, got {self.friction!r}")
+        if not self.name:
+            name = "free response" if self.motion is None else self.motion.name
+            object.__setattr__(self, "name", name or "record")
         # kept as it was given, so that a copy with another motion follows that motion
         run_duration(self.motion, self.duration)
+
+    def __repr__(self) -> str:
+        parts = [str(part) for part in (self.cylinder, self.motion, self.initial) if part is not None]
+        parts += [f"gravity={self.gravity:g}"] if self.gravity != 9.81 else []
+        return f"Case({self.name!r}, {', '.join(parts)}, {self.length:g} s, friction={self.friction:g})"
 
     @property
     def length(self) -> float:
@@ -78,21 +86,24 @@ def run_duration(motion: GroundMotion | None, duration: float | None) -> float:
     return motion.duration
 
 
-@dataclass(frozen=True, slots=True, init=False)
+_MODEL_NAMES = {"flat": "flat-ground model"}
+
+
+@dataclass(frozen=True, slots=True, init=False, repr=False)
 class Run:
-    """One method: an engine, its support, and its settings.
+    """One method: an engine or a reduced model, its support, and its settings.
 
     Parameters
     ----------
-    engine : str
-        Name of the engine, such as "mujoco" or "pybullet".
+    engine : str or None
+        Name of the engine, such as "mujoco" or "pybullet"; None is a reduced model.
     support : str
-        What holds the cylinder in place: "recess", "flat", ...
+        What holds the cylinder in place: "recess", "flat" or "ring".
     time_step : float or "auto", optional
         [s]; default: the engine's own choice for the size of the cylinder. "auto": halved until the
         result has settled.
     **settings
-        Passed to the engine as they are.
+        Passed to the engine, or to `reduced.simulate`, as they are.
 
     Raises
     ------
@@ -100,14 +111,14 @@ class Run:
         If the time step is neither positive nor "auto".
     """
 
-    engine: str
+    engine: str | None
     support: str
     time_step: float | Literal["auto"] | None
     settings: Mapping[str, Any]
 
     def __init__(
         self,
-        engine: str,
+        engine: str | None,
         support: str,
         time_step: float | Literal["auto"] | None = None,
         **settings: Any,
@@ -119,13 +130,24 @@ class Run:
         object.__setattr__(self, "time_step", time_step)
         object.__setattr__(self, "settings", MappingProxyType(dict(settings)))
 
+    def __repr__(self) -> str:
+        step = [] if self.time_step is None else [f"time_step={self.time_step}"]
+        given = [*step, *(f"{name}={value!r}" for name, value in self.settings.items())]
+        return f"Run({', '.join([repr(self.engine), repr(self.support), *given])})"
+
+    def __str__(self) -> str:
+        if self.engine is not None:
+            return f"{self.engine} {self.support}"
+        planar = self.settings.get("plane") is not None
+        return "planar model" if planar else _MODEL_NAMES.get(self.support, f"{self.support} model")
+
     def __reduce__(self) -> tuple[Any, ...]:
         # a mapping proxy does not pickle, and runs travel to worker processes
         return _restore_run, (self.engine, self.support, self.time_step, dict(self.settings))
 
 
 def _restore_run(
-    engine: str, support: str, time_step: float | Literal["auto"] | None, settings: dict[str, Any]
+    engine: str | None, support: str, time_step: float | Literal["auto"] | None, settings: dict[str, Any]
 ) -> Run:
     return Run(engine, support, time_step, **settings)
 

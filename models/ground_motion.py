@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._validation import require_finite, require_positive
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class GroundMotion:
     """Ground acceleration of two or three components, linear between samples and zero outside.
 
@@ -64,6 +64,13 @@ class GroundMotion:
         object.__setattr__(self, "acceleration", samples)
         object.__setattr__(self, "time_step", require_positive("time_step", time_step, "s"))
         object.__setattr__(self, "name", str(name))
+
+    def __repr__(self) -> str:
+        count, components = self.acceleration.shape
+        return (
+            f"GroundMotion({self.name!r}, {count} samples of {self.time_step:g} s, {components} components, "
+            f"peak {self.peak:.4g} m/s^2)"
+        )
 
     def __reduce__(self) -> tuple[Any, ...]:
         # a copy or a worker process must not get a writable array

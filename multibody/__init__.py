@@ -1,19 +1,16 @@
 """Physics engines hold the cylinder: a free rigid body in contact with rigid ground.
 
-`simulate` runs one case in one engine with one support and gives a `Trajectory`, with the fields of the
-reduced models as far as an engine has them. Nothing here knows the reduced models: inertia, kinematics
-and energy are derived from the pose of a rigid body.
+`simulate` runs one case in one engine with one support and gives a `Trace`. Nothing here knows the reduced
+models: inertia, kinematics and energy are derived from the pose of a rigid body.
 """
 
 from .engines.registry import BrokenEngineError, EngineNotInstalledError, available_engines, engine_names
 from .ensemble import simulate_many
-from .recording.trajectory import Trajectory
 from .simulation import simulate
 
 __all__ = [
     "BrokenEngineError",
     "EngineNotInstalledError",
-    "Trajectory",
     "available_engines",
     "engine_names",
     "simulate",

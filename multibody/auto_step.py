@@ -22,7 +22,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .recording.trajectory import Trajectory
+from rockwobble.models import Diagnostic, Trace
+
 from .scene.guard import LARGEST_STEP
 
 AUTO = "auto"
@@ -36,7 +37,7 @@ _ORDERS = 0.5, 2.0  # least and largest order that an estimate relies on
 
 assert COARSEST <= LARGEST_STEP
 
-Attempt = Callable[[float, Callable[[float], None]], Trajectory]
+Attempt = Callable[[float, Callable[[float], None]], Trace]
 Progress = Callable[[float], None]
 
 
@@ -61,7 +62,7 @@ class Closeness:
 
 def find_step(
     attempt: Attempt, unit_time: float, alpha: float, tolerance: float, progress: Progress | None
-) -> Trajectory:
+) -> Trace:
     """Return the run whose tilt has settled, or the best one with the reason why it has not.
 
     Parameters
@@ -83,14 +84,14 @@ def find_step(
     shares = _shares(steps)
     best, coarser = None, None  # the run to keep, and the last one
     found: list[Closeness] = []  # of the run to keep and all before it
-    verdict, spent = "it still changes at the smallest step that is tried", 0.0
+    verdict, spent = "still_changes", 0.0
     for index, step in enumerate(steps):
         run = attempt(step, _part(progress, shares[index], shares[index + 1]))
         spent += run.wall_time
         if best is None or best.outcome == "failed":
             best = run
         elif run.outcome == "failed":
-            verdict = f"at {run.time_step:.3g} s the run fails, because {run.message}"
+            verdict = "fails"
             break
         else:
             assert coarser is not None
@@ -108,7 +109,7 @@ def find_step(
     return replace(_reported(best, found, verdict, alpha), wall_time=spent)
 
 
-def closeness(coarse: Trajectory, fine: Trajectory, alpha: float) -> Closeness:
+def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
     """Return how close two traces are in tilt, by their samples."""
     count = min(len(coarse.time), len(fine.time))
     same = np.abs(coarse.time[:count] - fine.time[:count]) <= 1e-9 * max(fine.time[-1], 1.0)
@@ -142,9 +143,9 @@ def _judge(found: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
     if math.isfinite(last.divergence):
         # the one before diverged later: the smaller step is the worse one
         gain = last.divergence >= before.divergence / _PUT_OFF
-        return ("" if close and gain else "a smaller step does not put off the divergence"), gain
+        return ("" if close and gain else "no_later"), gain
     if last.difference > _CLOSER * before.difference:
-        return "a smaller step does not bring it closer", last.difference <= before.difference
+        return "no_closer", last.difference <= before.difference
     return None, True
 
 
@@ -158,31 +159,18 @@ def _estimate(found: list[Closeness]) -> tuple[float, float]:
     return last.difference / (2.0**order - 1.0), order
 
 
-def _reported(run: Trajectory, found: list[Closeness], verdict: str, alpha: float) -> Trajectory:
+def _reported(run: Trace, found: list[Closeness], verdict: str, alpha: float) -> Trace:
+    """The run with what halving found; `verdict` says why it has not settled, and is empty if it has."""
     if not found:
-        said = f"no other step can be held against {run.time_step:.3g} s: {verdict}"
-        return run if run.outcome == "failed" else replace(run, message=_joined(run.message, said))
+        fact = Diagnostic(code="unsettled", detail=verdict)
+        return run if run.outcome == "failed" else replace(run, facts=(*run.facts, fact))
     last = found[-1]
-    until = (
-        "" if math.isinf(last.divergence) else f" until {last.until:.4g} s, the last pass before traces part,"
-    )
     error, order = _estimate(found)
     if verdict:
-        said = (
-            f"the tilt has not settled by halving the step: {verdict}; at {run.time_step:.3g} s "
-            f"it differs{until} by {last.difference / alpha:.1e} alpha from that at twice the step"
-        )
+        fact = Diagnostic(code="unsettled", duration=last.until, size=last.difference / alpha, detail=verdict)
     else:
-        said = (
-            f"time step {run.time_step:.3g} s: the tilt is{until} within {error / alpha:.1e} alpha of its "
-            f"limit, by Richardson with order {order:.2g}"
-        )
-    message = _joined(run.message, said)
-    return replace(run, error_estimate=error, settled_until=last.until, message=message)
-
-
-def _joined(*parts: str) -> str:
-    return "; ".join(part for part in parts if part)
+        fact = Diagnostic(code="settled", duration=last.until, size=error / alpha, bound=order)
+    return replace(run, error_estimate=error, settled_until=last.until, facts=(*run.facts, fact))
 
 
 def _shares(steps: list[float]) -> list[float]:

@@ -14,12 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
 
 from .body import scaled_body
 from .engines.registry import find_engine
 from .protocol import Array, Scene
-from .recording.trajectory import Trajectory
 from .scene.froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, froude_scale
 from .scene.guard import energy_scale
 from .simulation import simulate
@@ -43,11 +42,13 @@ UPLIFT_DIRECTION = 1e-3  # [rad]
 CHUNKS = 1e-9  # [m], [-] what is carried from one call to the next, and no more
 
 
-def run(engine: str, support: str, **changes: Any) -> Trajectory:
+def run(engine: str, support: str, **changes: Any) -> Trace:
     """Run the release, or the problem that `changes` make of it."""
     given: dict[str, Any] = {"initial": RELEASE, "duration": PASS, **changes}
-    cylinder = given.pop("cylinder", PIER)
-    return simulate(cylinder, given.pop("motion", None), engine=engine, support=support, **given)
+    names = ("initial", "duration", "gravity", "friction", "motion")
+    stated = {name: given.pop(name) for name in names if name in given}
+    case = Case(given.pop("cylinder", PIER), **stated)
+    return simulate(case, engine=engine, support=support, **given)
 
 
 def describes_itself(engine: str, support: str) -> None:
@@ -96,7 +97,7 @@ def keeps_the_time_grid(engine: str, support: str) -> None:
     fields = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "energy", "centre_of_mass")
     for name in fields:
         _hold(bool(np.isfinite(getattr(found, name)).all()), f"{name} is not finite")
-    _hold(found.outcome == "completed", f"the outcome is {found.outcome}: {found.message}")
+    _hold(found.outcome == "completed", f"the outcome is {found.outcome}: {found.facts}")
 
 
 def starts_as_stated(engine: str, support: str) -> None:
@@ -192,7 +193,7 @@ def wobbles_steadily(engine: str, support: str) -> None:
 def overturns(engine: str, support: str) -> None:
     """A fall ends with the side on the ground, as data."""
     found = run(engine, support, initial=InitialState(1.5 * PIER.alpha, rolling_rate=0.1), duration=10.0)
-    _hold(found.outcome == "overturned", f"a falling cylinder ended as {found.outcome}: {found.message}")
+    _hold(found.outcome == "overturned", f"a falling cylinder ended as {found.outcome}: {found.facts}")
     _hold(found.tilt[-1] == found.peak_tilt == 0.5 * math.pi, f"it ended at {found.tilt[-1]} rad")
     _hold(bool((np.diff(found.time) > 0.0).all()), "time does not rise")
 
@@ -253,7 +254,7 @@ def _small(values: Any, limit: float, otherwise: str) -> None:
 def _refused(arguments: dict[str, Any], named: str) -> None:
     given: dict[str, Any] = {"initial": RELEASE, "duration": 0.01, **arguments}
     try:
-        simulate(PIER, **given)
+        simulate(Case(PIER), **given)
     except ValueError as error:
         text = str(error)
         _hold("\n" not in text and named in text, f"it is refused in other words than one line: {text!r}")
@@ -270,7 +271,7 @@ def _scene(support: str, initial: InitialState = RELEASE) -> Scene:
     """A release as a stepper meets it."""
     scale = froude_scale(PIER.semidiagonal, REFERENCE_GRAVITY)
     body = scaled_body(PIER, scale.length)
-    case = Case("contract", PIER, None, initial, PASS)
+    case = Case(PIER, initial=initial, duration=PASS, name="contract")
     return Scene(
         body=body,
         start=starting_state(body, case.initial, scale.time),

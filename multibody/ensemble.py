@@ -18,14 +18,13 @@ from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager
 from typing import Any, Literal
 
-from rockwobble.models import Case
+from rockwobble.models import Case, Trace
 
 from .engines.registry import find_engine
-from .recording.trajectory import Trajectory
 from .simulation import simulate
 from .stepping import Progress
 
-_Run = Callable[[Case, Progress], Trajectory]
+_Run = Callable[[Case, Progress], Trace]
 _Together = Callable[[], AbstractContextManager[None]]
 
 
@@ -43,7 +42,7 @@ def simulate_many(
     progress: Progress | None = None,
     workers: int | None = None,
     **settings: Any,
-) -> list[Trajectory]:
+) -> list[Trace]:
     """Run many cases in one engine with one support and the same settings.
 
     Parameters
@@ -59,9 +58,9 @@ def simulate_many(
 
     Returns
     -------
-    list of Trajectory
+    list of Trace
         In the order of the cases, each equal to that of `simulate` but for its wall time. A run that
-        fails is an outcome with a message and leaves the others alone.
+        fails is an outcome and leaves the others alone.
 
     Raises
     ------
@@ -74,7 +73,7 @@ def simulate_many(
     >>> from rockwobble.models import Case, Cylinder, InitialState
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> starts = [InitialState(share * pier.alpha, rolling_rate=0.3) for share in (0.2, 0.4, 0.6)]
-    >>> cases = [Case(f"start {n}", pier, None, start, 1.0) for n, start in enumerate(starts)]
+    >>> cases = [Case(pier, initial=start, duration=1.0, name=f"start {n}") for n, start in enumerate(starts)]
     >>> [run.outcome for run in simulate_many(cases)]
     ['completed', 'completed', 'completed']
     """
@@ -82,19 +81,14 @@ def simulate_many(
         raise ValueError(f"workers must be a positive whole number, got {workers!r}")
     together: _Together | None = getattr(find_engine(engine), "together", None)
 
-    def run(case: Case, told: Progress) -> Trajectory:
+    def run(case: Case, told: Progress) -> Trace:
         try:
             return simulate(
-                case.cylinder,
-                case.motion,
-                initial=case.initial,
-                duration=case.duration,
+                case,
                 engine=engine,
                 support=support,
                 time_step=time_step,
-                friction=case.friction,
                 sample_step=sample_step,
-                gravity=case.gravity,
                 progress=told,
                 **settings,
             )
@@ -124,7 +118,7 @@ class _Tally:
             self._progress(finished / sum(self.shares))
 
 
-def _side_by_side(cases: Sequence[Case], run: _Run, tally: _Tally, count: int) -> list[Trajectory]:
+def _side_by_side(cases: Sequence[Case], run: _Run, tally: _Tally, count: int) -> list[Trace]:
     told: queue.SimpleQueue[tuple[int, float | None]] = queue.SimpleQueue()
     stop = threading.Event()
 
@@ -133,14 +127,14 @@ def _side_by_side(cases: Sequence[Case], run: _Run, tally: _Tally, count: int) -
             raise _StoppedError
         told.put((index, done))
 
-    def one(index: int) -> Trajectory:
+    def one(index: int) -> Trace:
         try:
             tell(index, 0.0)
             return run(cases[index], lambda done: tell(index, done))
         finally:
             told.put((index, None))
 
-    futures: dict[int, Future[Trajectory]] = {}
+    futures: dict[int, Future[Trace]] = {}
     with ThreadPoolExecutor(count) as pool:
         try:
             # the longest first, so that no core is idle at the end

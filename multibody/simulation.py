@@ -1,4 +1,4 @@
-"""One run of an engine, from a stated problem to a trajectory."""
+"""One run of an engine, from a case to a trace."""
 
 from __future__ import annotations
 
@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, InitialState, Run, Trace
+from rockwobble.models.trace import Known
 
 from .auto_step import AUTO, STEP_TOLERANCE, find_step
 from .engines.ability import require_able
 from .engines.registry import find_engine
 from .protocol import Scene
-from .recording.passes import passes_between
+from .recording.diagnostics import diagnostics
+from .recording.passes import passes_between, true_swings
 from .recording.recorder import COLUMNS, Recorder
-from .recording.remarks import remarks
-from .recording.trajectory import Trajectory
 from .scene.excitation import StepMeans
 from .scene.froude import REFERENCE_TIME_STEP, Scale, froude_scale
 from .scene.guard import check_time_step
@@ -35,47 +35,34 @@ _SWING = 1e-9  # [rad] smallest difference of two turning points that is not rou
 
 
 def simulate(
-    cylinder: Cylinder,
-    motion: GroundMotion | None = None,
+    case: Case,
     *,
-    initial: InitialState | None = None,
-    duration: float | None = None,
     engine: str = "mujoco",
     support: str = "recess",
     time_step: float | Literal["auto"] | None = None,
-    friction: float = 1.0,
     sample_step: float = 0.01,
-    gravity: float = 9.81,
     progress: Progress | None = None,
     **settings: Any,
-) -> Trajectory:
+) -> Trace:
     """Run a rigid cylinder on rigid ground in a physics engine.
 
     Parameters
     ----------
-    cylinder : Cylinder
-    motion : GroundMotion, optional
-        Without it the ground is still.
-    initial : InitialState, optional
-        Default: standing at rest.
-    duration : float, optional
-        [s]; default that of the motion.
+    case : Case
+        Cylinder, ground motion, initial state, length, gravity, and the Coulomb coefficient of the pair
+        cylinder and ground.
     engine : {"mujoco", "pybullet", "exudyn"}
-        Or one that another package declares. Exudyn is an ideal rim: free, from a release only.
+        Or one that another package declares. Exudyn is an ideal rim: flat ground, from a release only.
     support : {"recess", "flat", "ring"}
-        The ideal recess, which holds the twist at zero; open ground; or a real recess of inclined walls,
-        which MuJoCo has.
+        The ideal recess, which holds the twist at zero; flat ground; or a recess of inclined walls with
+        clearance, which MuJoCo has.
     time_step : float or "auto", optional
         [s]; default 1e-4 s at a semidiagonal of 6 m and a gravity of 9.81 m/s^2, and so in proportion to
         sqrt(semidiagonal/gravity): accuracy does not depend on size. "auto" halves the step, from four
         times the default, until the tilt has settled within `step_tolerance`, another keyword, of alpha
         (default 1e-3), and says what error is left: see `auto_step`.
-    friction : float
-        Coulomb coefficient of the pair cylinder and ground [-].
     sample_step : float
         Of the result [s].
-    gravity : float
-        [m/s^2]
     progress : callable, optional
         Called now and then with the fraction done.
     **settings
@@ -84,10 +71,12 @@ def simulate(
 
     Returns
     -------
-    Trajectory
-        A numerical failure is an outcome with a message, not an exception. A run that ends while the cylinder
-        falls, or rises with the energy to pass its balance, is carried on over still ground: one that
-        overturns ends there, later than `duration`, and one whose tilt turns back ends at `duration`.
+    Trace
+        A numerical failure is an outcome with its diagnostics, not an exception. A run that ends while the
+        cylinder falls, or rises with the energy to pass its balance, is carried on over still ground: one
+        that overturns ends there, later than asked for, and one whose tilt turns back ends as asked for.
+        The contact force is a mean over 65 steps (a Hann window about the sample), from the change of the
+        engine's velocity: in a single step contact may be lost or carry twice the load.
 
     Raises
     ------
@@ -97,66 +86,66 @@ def simulate(
 
     Examples
     --------
-    >>> from rockwobble.models import Cylinder, InitialState
+    >>> from rockwobble.models import Case, Cylinder, InitialState
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> release = InitialState(tilt=pier.alpha / 2, rolling_rate=0.5)
-    >>> run = simulate(pier, initial=release, duration=1.0)
+    >>> run = simulate(Case(pier, initial=release, duration=1.0))
     >>> run.outcome, len(run.time)
     ('completed', 101)
     """
-    case = Case("run", cylinder, motion, initial, duration, gravity, friction)
+    run = Run(engine, support, time_step, **settings)
     if isinstance(time_step, str):
         if time_step != AUTO:
             raise ValueError(f'time_step must be a number [s] or "auto", got {time_step!r}')
         tolerance = _positive("step_tolerance", settings.pop("step_tolerance", STEP_TOLERANCE), "of alpha")
 
-        def attempt(step: float, tell: Progress) -> Trajectory:
-            return _simulate(case, engine, support, step, sample_step, tell, settings)
+        def attempt(step: float, tell: Progress) -> Trace:
+            return _simulate(case, run, engine, step, sample_step, tell, settings)
 
-        unit_time = froude_scale(cylinder.semidiagonal, gravity).time
-        return find_step(attempt, unit_time, cylinder.alpha, tolerance, progress)
+        unit_time = froude_scale(case.cylinder.semidiagonal, case.gravity).time
+        return find_step(attempt, unit_time, case.cylinder.alpha, tolerance, progress)
     if "step_tolerance" in settings:
         raise ValueError(f'step_tolerance goes with time_step="auto", got time_step={time_step!r}')
-    return _simulate(case, engine, support, time_step, sample_step, progress, settings)
+    return _simulate(case, run, engine, time_step, sample_step, progress, settings)
 
 
 def _simulate(
     case: Case,
+    run: Run,
     engine: str,
-    support: str,
     time_step: float | None,
     sample_step: float,
     progress: Progress | None,
     settings: Mapping[str, Any],
-) -> Trajectory:
+) -> Trace:
     """Run with one time step [s]; None is the default."""
     started = clock.perf_counter()
     backend = find_engine(engine)
-    require_able(backend, engine, case, support)
+    require_able(backend, engine, case, run.support)
     scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
     step = REFERENCE_TIME_STEP * scale.time if time_step is None else _positive("time_step", time_step)
     check_time_step(step, scale.time)
-    scene = make_scene(case, support, step, scale)
+    scene = make_scene(case, run.support, step, scale)
     resolved = backend.settings(settings, scene)
     samples = _sample_times(case.length, _positive("sample_step", sample_step)) / scale.time
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(scene, samples, release.rolling_angle, release.tilt_rate == 0.0)
     means = StepMeans(case.motion, scale, scene.time_step)
     recorder = run_steps(backend, scene, resolved, recorder, means, sample_step / scale.time, progress)
-    return _trajectory(
+    return _trace(
         recorder,
         scene,
         scale,
-        engine=engine,
-        support=support,
-        engine_version=backend.version(),
+        case=case,
+        run=run,
+        version=backend.version(),
         time_step=step,
         settings=dict(resolved),
         wall_time=clock.perf_counter() - started,
     )
 
 
-def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> Trajectory:
+def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Trace:
     rows = _rows_to_end(recorder)
     resting_at_end = recorder.uplift is None or recorder.rests.resting
     outcome = recorder.ended or ("rest" if resting_at_end else "completed")
@@ -170,35 +159,46 @@ def _trajectory(recorder: Recorder, scene: Scene, scale: Scale, **run: Any) -> T
         recorder.penetration / (1.5 * scene.body.base_radius), recorder.fastest * scene.time_step
     )
     passes = _passes(recorder, resolution, scale)
-    centre = np.column_stack([table["x"], table["y"], table["z"]])
-    return Trajectory(
+    sampled = {
+        "rolling_rate": np.where(resting, 0.0, table["rolling_rate"] / scale.time),
+        "contact_force": recorder.forces.at(table["time"]),
+        "energy": table["energy"] * scale.energy,
+        "energy_error": table["energy_error"] * scale.energy,
+        "slip": table["slip"] * scale.length,
+        "wall_contact": table["wall_contact"] * scale.time,
+        "wall_impulse": table["wall_impulse"] * scale.length / scale.time,
+    }
+    return Trace(
         time=table["time"] * scale.time,
         tilt=table["tilt"],
         tilt_rate=table["tilt_rate"] / scale.time,
         rolling_angle=table["rolling_angle"],
-        rolling_rate=np.where(resting, 0.0, table["rolling_rate"] / scale.time),
         twist=table["twist"],
         contact_point=contact * scale.length,
-        contact_offset=(np.hypot(contact[:, 0], contact[:, 1]) - scene.body.base_radius) * scale.length,
-        contact_force=recorder.forces.at(table["time"]),
-        centre_of_mass=centre * scale.length,
-        energy=table["energy"] * scale.energy,
-        energy_error=table["energy_error"] * scale.energy,
-        slip=table["slip"] * scale.length,
-        wall_contact=table["wall_contact"] * scale.time,
-        wall_impulse=table["wall_impulse"] * scale.length / scale.time,
-        first_wall_contact=recorder.walls.first * scale.time,
+        centre_of_mass=np.column_stack([table["x"], table["y"], table["z"]]) * scale.length,
         peak_tilt=_peak(recorder, outcome, rows),
         outcome=outcome,
-        message=remarks(recorder, passes, resolution, scale),
         uplift_time=uplift_time * scale.time,
         uplift_direction=uplift_direction,
+        source=Known(sampled),
         passes=passes,
+        facts=tuple(diagnostics(recorder, passes, resolution, scale.time)),
+        rests=np.array(recorder.rests.rests(), dtype=float).reshape(-1, 2) * scale.time,
+        extrema=_extrema(recorder, scale),
         contact_resolution=resolution,
         residual_displacement=float(np.hypot(table["base_x"][-1], table["base_y"][-1])) * scale.length,
-        residual_twist=float(table["twist"][-1]),
-        **run,
+        **method,
     )
+
+
+def _extrema(recorder: Recorder, scale: Scale) -> Array:
+    """Turning points (k, 4): time [s], tilt, rolling angle [rad], 1 for a maximum and -1 for a minimum."""
+    points = true_swings([point for point in recorder.points if point.time <= recorder.end], _SWING)
+    rows = [
+        (point.time * scale.time, point.tilt, point.rolling_angle, 1.0 if point.is_maximum else -1.0)
+        for point in points
+    ]
+    return np.array(rows, dtype=float).reshape(-1, 4)
 
 
 def _rows_to_end(recorder: Recorder) -> Array:

@@ -111,10 +111,8 @@ def _carried_on(
 def _advance(stepper: Stepper, recorder: Recorder, acceleration: Array, at_pose: Array) -> None:
     recorder.take(stepper.advance(acceleration), at_pose)
     warning = stepper.warnings()
-    if warning and not recorder.ended:
-        recorder.fail(f"the engine warned: {warning}")
-    elif warning and recorder.ended == "failed":
-        recorder.reason += f"; the engine warned: {warning}"
+    if warning:
+        recorder.warn(warning)
 
 
 def _turned_back(start: TurningPoint, recorder: Recorder) -> bool:

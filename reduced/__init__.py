@@ -1,5 +1,8 @@
 """The reduced models of a cylinder that rocks and wobbles, and their exact solutions."""
 
+from collections.abc import Mapping
+from typing import Any
+
 from .batch import peak_tilts
 from .exact import (
     FreeResponse,
@@ -11,15 +14,21 @@ from .exact import (
     steady_wobble_rate,
     wobbling_period,
 )
-from .problem import MODELS, REST_TILT, restitution_from_momentum
-from .response import Response
+from .problem import REST_TILT, SUPPORTS, restitution_from_momentum
 from .simulation import simulate
+
+# name of each reduced model: the options of `simulate` and `peak_tilts`
+MODELS: Mapping[str, Mapping[str, Any]] = {
+    "recess": {"support": "recess"},
+    "flat": {"support": "flat"},
+    "planar": {"plane": 0.0},
+}
 
 __all__ = [
     "MODELS",
     "REST_TILT",
+    "SUPPORTS",
     "FreeResponse",
-    "Response",
     "angle_of_turn",
     "free_response",
     "limiting_angle_of_turn",

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rockwobble.models import Assumptions, Diagnostic
 
 Array = NDArray[np.float64]
 
@@ -16,69 +17,6 @@ Array = NDArray[np.float64]
 # of a million steps, which is chatter, has fewer.
 _PARTS, _LEAST_PARTS, _MOST_TIMES = 8, 2, 400_000
 _ROUNDS = 5  # each looks eight times closer, so that a parabola is off by 8^-8 of what it was at first
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Breach:
-    """One assumption that did not hold.
-
-    Attributes
-    ----------
-    assumption : {"contact", "friction"}
-    first_time : float
-        When it first failed [s].
-    duration : float
-        For how long altogether, rest apart [s].
-    extreme : float
-        Least normal force in weights (contact), or largest friction needed (friction).
-    """
-
-    assumption: str
-    first_time: float
-    duration: float
-    extreme: float
-
-    def __str__(self) -> str:
-        when = f"first at {self.first_time:.4g} s, for {self.duration:.3g} s altogether"
-        if self.assumption == "contact":
-            return f"contact is lost, {when}: the ground would have to pull with {-self.extreme:.3g} weights"
-        need = "more than any friction" if math.isinf(self.extreme) else f"a friction of {self.extreme:.3g}"
-        return f"the cylinder slips, {when}: it would need {need}"
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Assumptions:
-    """The demands of a solution on ground and recess, and where they could not be met.
-
-    Attributes
-    ----------
-    held : bool
-    breaches : tuple of Breach
-    least_normal_force, largest_normal_force : float
-        In weights, while the cylinder is in motion; 1 if it never is.
-    largest_friction_needed : float
-        In motion; inf where contact is lost, 0 if it never moves.
-    largest_couple : float
-        Of the recess, over the weight [m].
-    friction : float
-        The coefficient it was held against.
-    """
-
-    held: bool
-    breaches: tuple[Breach, ...]
-    least_normal_force: float
-    largest_normal_force: float
-    largest_friction_needed: float
-    largest_couple: float
-    friction: float
-
-    def __str__(self) -> str:
-        if self.held:
-            return (
-                f"the assumptions held: normal force at least {self.least_normal_force:.3g} weights, "
-                f"friction needed at most {self.largest_friction_needed:.3g} of {self.friction:.3g}"
-            )
-        return "the assumptions broke: " + "; ".join(str(breach) for breach in self.breaches)
 
 
 class Demands(NamedTuple):
@@ -112,12 +50,11 @@ def review(
     found = demands_at(times)
     if not found.moving.any():
         return Assumptions(
-            held=True,
             breaches=(),
             least_normal_force=1.0,
             largest_normal_force=1.0,
             largest_friction_needed=0.0,
-            largest_couple=0.0,
+            largest_restraining_moment=0.0,
             friction=friction,
         )
 
@@ -130,16 +67,15 @@ def review(
 
     breaches = []
     if _lost(found).any():
-        breaches.append(_breach("contact", _lost, demands_at, times, found, -largest(_pull)))
+        breaches.append(_breach("tension", _lost, demands_at, times, found, -largest(_pull), 0.0))
     if slips(found).any():
-        breaches.append(_breach("friction", slips, demands_at, times, found, largest(_need)))
+        breaches.append(_breach("friction_needed", slips, demands_at, times, found, largest(_need), friction))
     return Assumptions(
-        held=not breaches,
         breaches=tuple(breaches),
         least_normal_force=-largest(_pull),
         largest_normal_force=largest(lambda found: found.normal),
         largest_friction_needed=largest(_need),
-        largest_couple=largest(lambda found: np.abs(found.couple)),
+        largest_restraining_moment=largest(lambda found: np.abs(found.couple)),
         friction=friction,
     )
 
@@ -157,24 +93,26 @@ def _lost(found: Demands) -> NDArray[np.bool_]:
 
 
 def _breach(
-    assumption: str,
+    code: str,
     broken_at: Callable[[Demands], NDArray[np.bool_]],
     demands_at: Callable[[Array], Demands],
     times: Array,
     found: Demands,
-    extreme: float,
-) -> Breach:
+    size: float,
+    bound: float,
+) -> Diagnostic:
     broken = broken_at(found)
     # where a breach begins or ends, ever closer: a step of a fall takes tenths of a second
     for _ in range(_ROUNDS - 1):
         changes = np.flatnonzero(broken[1:] != broken[:-1])
         times = np.unique(np.concatenate([times, *(_divided(times[i : i + 2], _PARTS) for i in changes)]))
         broken = broken_at(demands_at(times))
-    return Breach(
-        assumption=assumption,
-        first_time=float(times[broken.argmax()]),
+    return Diagnostic(
+        code=code,
+        time=float(times[broken.argmax()]),
         duration=float(np.diff(times)[broken[:-1] & broken[1:]].sum()),
-        extreme=extreme,
+        size=size,
+        bound=bound,
     )
 
 

@@ -11,7 +11,7 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Cylinder, GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion
 
 from .integration.march import OVERTURNED, March
 from .problem import REST_TILT, make_problem
@@ -28,12 +28,12 @@ def peak_tilts(
     motion: GroundMotion,
     scales: ArrayLike,
     *,
-    model: str = "recess",
+    support: str = "recess",
+    plane: float | None = None,
+    restitution: float | str = 1.0,
     rtol: float = 1e-7,
     rest_tilt: float = REST_TILT,
     gravity: float = 9.81,
-    plane: float = 0.0,
-    restitution: float | str = 1.0,
     workers: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> NDArray[np.float64]:
@@ -51,8 +51,10 @@ def peak_tilts(
     motion : GroundMotion
     scales : array_like, shape (n_scale,)
         Factors on the motion, not negative [-].
-    model, rtol, rest_tilt, gravity, plane, restitution
+    support, plane, restitution, rtol, rest_tilt
         As in `simulate`.
+    gravity : float, optional
+        g [m/s^2].
     workers : int, optional
         Number of threads; default: that of the cores.
     progress : callable, optional
@@ -78,23 +80,19 @@ def peak_tilts(
     sizes, factors = _axis("semidiagonals", semidiagonals), _axis("scales", scales)
     bodies = [
         make_problem(
-            model,
-            Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha),
-            motion,
-            None,
-            None,
-            gravity=gravity,
-            rtol=rtol,
-            rest_tilt=rest_tilt,
+            Case(Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha), motion, gravity=gravity),
+            support=support,
             plane=plane,
             restitution=restitution,
+            rtol=rtol,
+            rest_tilt=rest_tilt,
         )
         for size in sizes
     ]
     peaks = np.zeros((len(sizes), len(factors)))
     if peaks.size == 0:
         return peaks
-    make_ready("planar" if bodies[0].is_planar() else model)
+    make_ready("planar" if bodies[0].is_planar() else support)
 
     def run_cells(column: int, rows: slice) -> None:
         shaking = bodies[0].shaking(float(factors[column]))

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, GroundMotion, InitialState, run_duration
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from . import kernels
 from .body import Body, body_of
@@ -20,7 +20,8 @@ from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .integration.driver import spin_momentum
 from .integration.march import March, Options
 
-MODELS = tuple(kernels.MARCHES)
+SUPPORTS = ("recess", "flat")
+_OUT_OF_PLANE = 1e-9  # [rad] more than what rounding makes of an azimuth
 
 # Tilt (over alpha) below which the base is closed again. A rest forgets which way the cylinder leans, and
 # the speed that it forgets goes with the root of this tilt. Of 1291 problems (El Centro and FEMA P-695,
@@ -227,48 +228,71 @@ def restitution_from_momentum(cylinder: Cylinder) -> float:
 
 
 def make_problem(
-    model: str,
-    cylinder: Cylinder,
-    motion: GroundMotion | None,
-    initial: InitialState | None,
-    duration: float | None,
+    case: Case,
     *,
-    gravity: float,
+    support: str,
+    plane: float | None,
+    restitution: float | str,
     rtol: float,
     rest_tilt: float,
-    plane: float,
-    restitution: float | str,
 ) -> Problem:
     """Check the options of a run and put them together; see `simulate`."""
-    if model not in MODELS:
-        raise ValueError(f"model must be one of {', '.join(MODELS)}, got {model!r}")
-    if not (math.isfinite(gravity) and gravity > 0.0):
-        raise ValueError(f"gravity must be positive and finite [m/s^2], got {gravity!r}")
+    if support not in SUPPORTS:
+        raise ValueError(f"support must be one of {', '.join(SUPPORTS)} for a reduced model, got {support!r}")
     if not 1e-13 <= rtol <= 1e-2:
         raise ValueError(f"rtol must be from 1e-13 to 1e-2, got {rtol!r}")
     if not 0.0 <= rest_tilt <= LARGEST_REST_TILT:
-        raise ValueError(f"rest threshold must be from 0 (no rule) to 0.1 (of alpha), got {rest_tilt!r}")
-    if not math.isfinite(plane):
+        raise ValueError(f"rest_tilt must be from 0 (no rule) to 0.1 (of alpha), got {rest_tilt!r}")
+    if plane is not None and not math.isfinite(plane):
         raise ValueError(f"plane must be a finite azimuth [rad], got {plane!r}")
     if restitution == "momentum":
-        factor = restitution_from_momentum(cylinder)
+        factor = restitution_from_momentum(case.cylinder)
     elif isinstance(restitution, str) or not 0.0 <= restitution <= 1.0:
         raise ValueError(f"restitution must be from 0 to 1 or 'momentum', got {restitution!r}")
     else:
         factor = float(restitution)
-    if model != "planar" and factor != 1.0:
-        raise ValueError(f"restitution belongs to the planar model, got {restitution!r} with {model!r}")
-    if model == "planar" and initial is not None and initial.rolling_rate != 0.0:
-        raise ValueError(f"the planar model takes no rolling_rate, got {initial.rolling_rate!r}")
+    if plane is None and factor != 1.0:
+        raise ValueError(f"restitution belongs to planar motion, got {restitution!r} without a plane")
+    if plane is not None and case.initial is not None:
+        _require_in_plane(case.initial, plane)
     return Problem(
-        model=model,
-        cylinder=cylinder,
-        motion=motion,
-        initial=initial,
-        duration=run_duration(motion, duration),
-        gravity=float(gravity),
+        model=support if plane is None else "planar",
+        cylinder=case.cylinder,
+        motion=case.motion,
+        initial=case.initial,
+        duration=case.length,
+        gravity=case.gravity,
         rtol=float(rtol),
         rest_tilt=float(rest_tilt),
-        plane=float(plane),
+        plane=0.0 if plane is None else float(plane),
         restitution=factor,
     )
+
+
+def require_solvable(
+    case: Case,
+    *,
+    support: str = "recess",
+    plane: float | None = None,
+    restitution: float | str = 1.0,
+    rtol: float = 1e-8,
+    rest_tilt: float = REST_TILT,
+) -> None:
+    """Check the options of a run without running it.
+
+    Raises
+    ------
+    ValueError
+        As `simulate` does.
+    """
+    make_problem(case, support=support, plane=plane, restitution=restitution, rtol=rtol, rest_tilt=rest_tilt)
+
+
+def _require_in_plane(initial: InitialState, plane: float) -> None:
+    if initial.rolling_rate != 0.0:
+        raise ValueError(f"planar motion has no rolling_rate, got {initial.rolling_rate!r}")
+    if initial.tilt > 0.0 and abs(math.sin(initial.rolling_angle - plane)) > _OUT_OF_PLANE:
+        raise ValueError(
+            f"the release must lean in the plane {plane:g} rad or opposite to it, got a rolling_angle of "
+            f"{initial.rolling_angle:g} rad"
+        )

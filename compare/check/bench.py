@@ -75,12 +75,10 @@ class Bench:
     def response(self, case: Case, model: str, **options: Any) -> Any:
         """Return the response of a reduced model to a case, with the samples of an engine run."""
         return self.reduced.simulate(
-            case.cylinder,
-            case.motion,
-            initial=case.initial,
-            duration=case.duration,
-            gravity=case.gravity,
-            model=model,
+            Case(
+                case.cylinder, case.motion, initial=case.initial, duration=case.duration, gravity=case.gravity
+            ),
+            **self.reduced.MODELS[model],
             **options,
         )
 

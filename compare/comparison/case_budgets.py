@@ -4,30 +4,31 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Collection, Mapping, Sequence
-from typing import Any
+from collections.abc import Mapping, Sequence
 
-from rockwobble.models import Case, Run
+from rockwobble.models import Case, Run, Trace
 
 from ..metrics.agreement import Agreement, agreement_time
 from ..runs.choice import own_model, references_of
-from ..runs.execution import IMPACT, Crash, Job
+from ..runs.execution import Job
 from ..traces.pair import make_pair
 from .error_budget import ErrorBudget, error_budget
 from .prediction import landings
 from .refinement import Refined, Simulate, limits
 
 Key = tuple[str, str]
+# planar in the x z plane, with the loss of a base that lands flat
+_IMPACT = Run(None, "recess", plane=0.0, restitution="momentum")
 
 
 def case_budgets(
     cases: Sequence[Case],
     runs: Mapping[str, Run],
-    reference: str,
-    results: Mapping[Key, Any],
+    reference: Run | None,
+    results: Mapping[Key, Trace],
     simulate: Simulate,
 ) -> dict[tuple[str, str, str], ErrorBudget]:
-    """Return the budget of each run and reference: by names of case, run and reduced model.
+    """Return the budget of each run and reference: by name of the case, label and label of the reference.
 
     What crashed, failed or never moved has none.
 
@@ -36,10 +37,10 @@ def case_budgets(
     cases : sequence of Case
     runs : mapping
         Run of each label.
-    reference : str
-        Reduced model that every run is held against.
+    reference : Run or None
+        What every run is held against; None is what its support asks for.
     results : mapping
-        Responses by names of case and model, trajectories by names of case and run.
+        Traces by name of the case and label.
     simulate : callable
         Runs jobs, and returns their results in the same order.
     """
@@ -48,11 +49,11 @@ def case_budgets(
     for case in cases:
         for label, run in runs.items():
             trajectory = results[case.name, label]
-            if isinstance(trajectory, Crash) or trajectory.outcome == "failed":
+            if run.engine is None or trajectory.outcome == "failed":
                 continue
             found = {
                 model: horizon
-                for model in references_of(run, reference)
+                for model in references_of(case, run, label, reference)
                 if (horizon := _agreement(case, results[case.name, model], trajectory)) is not None
             }
             if not found:
@@ -72,10 +73,10 @@ def case_budgets(
             )
     extrapolations = limits(refined, simulate) if refined else {}
     by_name = {case.name: case for case in cases}
-    landings = _landings(cases, {run.support for run in runs.values()}, results, simulate)
+    landings = _landings(cases, runs, results, simulate)
 
-    def own(name: str, label: str) -> Any:
-        key = name, own_model(runs[label].support)
+    def own(name: str, label: str) -> Trace:
+        key = name, str(own_model(runs[label]))
         return landings.get(key, results[key])
 
     return {
@@ -93,17 +94,18 @@ def case_budgets(
 
 
 def _landings(
-    cases: Sequence[Case], supports: Collection[str], results: Mapping[Key, Any], simulate: Simulate
-) -> dict[Key, Any]:
+    cases: Sequence[Case], runs: Mapping[str, Run], results: Mapping[Key, Trace], simulate: Simulate
+) -> dict[Key, Trace]:
     """Return what an exact engine follows where a model goes through upright: by names of case and model.
 
-    Motion in one vertical plane passes upright itself, and there the base lands flat. Recess and rolling
-    model go on without loss, as the limit of a vanishing spin does. A rigid base takes the angular momentum
-    about its new edge (Housner), on any support, and so do both engines: the difference is model form.
+    Motion in one vertical plane passes upright itself, and there the base lands flat. The recess and
+    flat-ground models go on without loss, as the limit of a vanishing spin does. A rigid base takes the
+    angular momentum about its new edge (Housner), on any support, and so do both engines: the difference is
+    model form.
     """
     keys, jobs = [], []
     for case in cases:
-        for model in {own_model(support) for support in supports}:
+        for model in dict.fromkeys(str(own_model(run)) for run in runs.values()):
             response = results[case.name, model]
             if not len(landings(response)):
                 continue
@@ -114,11 +116,11 @@ def _landings(
                 initial=None if initial is None else dataclasses.replace(initial, rolling_angle=0.0),
             )
             keys.append((case.name, model))
-            jobs.append(Job(case=plane, method=IMPACT, label=IMPACT))
+            jobs.append(Job(case=plane, run=_IMPACT, label="planar with impact"))
     return dict(zip(keys, simulate(jobs), strict=True)) if jobs else {}
 
 
-def _agreement(case: Case, response: Any, trajectory: Any) -> Agreement | None:
+def _agreement(case: Case, response: Trace, trajectory: Trace) -> Agreement | None:
     if response.outcome == "failed" or not math.isfinite(response.uplift_time):
         return None
     horizon = agreement_time(make_pair(case.cylinder, response, trajectory, until=case.length))

@@ -1,32 +1,35 @@
-"""Drives both sides with the same case."""
+"""Comparison of runs with reference models, or with one another, on the same problem."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from rockwobble.models import Case, Run, Suite
+from rockwobble.models import Case, Run, Suite, Trace
 
 from ..runs.choice import default_runs, own_model, references_of, require_runnable, run_labels
-from ..runs.execution import Crash, Job, ProgressCallback, simulate_all
+from ..runs.execution import Job, ProgressCallback, simulate_all
 from ..runs.run_store import open_run_store
 from ..storage.files import require_writable
 from ..storage.provenance import package_versions
 from ..traces.trajectory import External, read_trajectories
 from .case_budgets import case_budgets
 from .error_budget import ErrorBudget
-from .prediction import Simulate, estimated_error, measured_error, predict_horizon
+from .prediction import Simulate, estimated_error, measured_error, predict
 from .result import Comparison
-from .summary import SUMMARY_COLUMNS, crashed_row, external_row, summary_row
+from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def compare(
     case_or_suite: Case | Suite,
     *,
     runs: Iterable[Run] | None = None,
-    reference: str = "recess",
+    reference: Run | None = None,
     out: str | Path | None = None,
     until: float | None = None,
     workers: int | None = None,
@@ -42,9 +45,10 @@ def compare(
     case_or_suite : Case or Suite
     runs : iterable of Run, optional
         Default: those of the suite, else every installed engine with supports "recess" and "flat".
-    reference : str, optional
-        Reduced model that each run is held against. A run on open ground ("flat") is also held
-        against the model that is free to roll out, "flat", and so is one in a ring of walls ("ring").
+    reference : Run, optional
+        What every run is held against, such as ``Run(None, "flat")`` or another engine. Default: the recess
+        model; runs on flat ground also the flat-ground model, and those in a ring themselves at half the
+        step.
     out : str or Path, optional
         Folder to save the results in; checked before anything runs.
     until : float, optional
@@ -78,9 +82,9 @@ def compare(
     >>> from rockwobble.models import Case, Cylinder, InitialState, Run
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
-    >>> case = Case("release", pier, initial=release, duration=0.5)
+    >>> case = Case(pier, initial=release, duration=0.5)
     >>> found = compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1)
-    >>> found.summary[["engine", "support", "reference", "diverged"]].values.tolist()
+    >>> found.summary[["engine", "support", "reference_support", "diverged"]].values.tolist()
     [['mujoco', 'recess', 'recess', False]]
     """
     if out is not None:
@@ -88,56 +92,39 @@ def compare(
     cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
     chosen = _runs(case_or_suite, runs, needed=not (external := tuple(external)))
     for case in cases:
-        for run in chosen:
+        for run in (*chosen, *(() if reference is None else (reference,))):
             require_runnable(case, run)
     labels = run_labels(chosen)
     brought = read_trajectories(external, cases, taken=labels)
-    models = [reference] if brought else []
-    for run in chosen:
-        models += [*references_of(run, reference), own_model(run.support)]
-    models = list(dict.fromkeys(models))
-    jobs = [Job(case=case, method=model, label=model) for case in cases for model in models]
-    jobs += [
-        Job(case=case, method=run, label=label)
-        for case in cases
-        for run, label in zip(chosen, labels, strict=True)
-    ]
+    by_label = dict(zip(labels, chosen, strict=True))
+    held_against = Run(None, "recess") if reference is None else reference
+    jobs = _jobs(cases, by_label, reference, also=(held_against,) if brought else ())
     with nullcontext() if resume is None else open_run_store(resume) as store:
 
-        def run_all(jobs: list[Job]) -> list[Any]:
+        def run_all(jobs: list[Job]) -> list[Trace]:
             return simulate_all(jobs, workers=workers, progress=progress, store=store)
 
-        by_label = {
-            (job.case.name, job.label): result for job, result in zip(jobs, run_all(jobs), strict=True)
-        }
-        by_run = dict(zip(labels, chosen, strict=True))
-        budgets = case_budgets(cases, by_run, reference, by_label, run_all) if budget else {}
+        found = dict(zip(jobs, run_all(list(jobs.values())), strict=True))
+        budgets = case_budgets(cases, by_label, reference, found, run_all) if budget else {}
 
-        def twin(case: Case, model: str) -> Any:
+        def copy_of(case: Case, run: Run) -> Trace:
             # milliseconds: not worth a process, nor a word about its progress
-            job = Job(case=case, method=model, label=f"twin of {model}")
-            return simulate_all([job], workers=1, store=store)[0]
+            return simulate_all([Job(case=case, run=run, label="copy")], workers=1, store=store)[0]
 
         rows = [
-            _row(case, model, by_label, label, run, budgets.get((case.name, label, model)), twin, until)
+            _row(case, name, found, label, run, budgets.get((case.name, label, name)), copy_of, until)
             for case in cases
-            for run, label in zip(chosen, labels, strict=True)
-            for model in references_of(run, reference)
+            for label, run in by_label.items()
+            for name in references_of(case, run, label, reference)
         ]
     rows += [
-        external_row(cases[0], reference, by_label[name, reference], label, trajectory, until=until)
+        external_row(cases[0], found[name, str(held_against)], label, trajectory, until=until)
         for (name, label), trajectory in brought.items()
     ]
     comparison = Comparison(
         summary=_table(rows),
         cases={case.name: case for case in cases},
-        responses={key: result for key, result in by_label.items() if key[1] in models},
-        trajectories={
-            key: result
-            for key, result in by_label.items()
-            if key[1] in labels and not isinstance(result, Crash)
-        }
-        | brought,
+        traces={key: trace for key, trace in found.items() if len(trace.time)} | brought,
         versions=package_versions(),
         until=until,
         budgets=budgets,
@@ -145,6 +132,21 @@ def compare(
     if out is not None:
         comparison.save(out)
     return comparison
+
+
+def _jobs(
+    cases: Iterable[Case], runs: Mapping[str, Run], reference: Run | None, *, also: Iterable[Run]
+) -> dict[tuple[str, str], Job]:
+    """Return what has to run, by name of the case and label: references, own models, then the runs."""
+    jobs: dict[tuple[str, str], Job] = {}
+    for case in cases:
+        needed = {str(run): run for run in also}
+        for label, run in runs.items():
+            needed |= {**references_of(case, run, label, reference), str(own_model(run)): own_model(run)}
+        jobs |= {(case.name, label): Job(case=case, run=run, label=label) for label, run in needed.items()}
+    for case in cases:
+        jobs |= {(case.name, label): Job(case=case, run=run, label=label) for label, run in runs.items()}
+    return jobs
 
 
 def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None, *, needed: bool) -> tuple[Run, ...]:
@@ -161,42 +163,31 @@ def _runs(case_or_suite: Case | Suite, runs: Iterable[Run] | None, *, needed: bo
 
 def _row(
     case: Case,
-    model: str,
-    results: Mapping[tuple[str, str], Any],
+    name: str,
+    found: Mapping[tuple[str, str], Trace],
     label: str,
     run: Run,
     budget: ErrorBudget | None,
-    twin: Simulate,
+    copy_of: Simulate,
     until: float | None,
 ) -> dict[str, Any]:
-    reference, own, trial = (
-        results[case.name, model],
-        results[case.name, own_model(run.support)],
-        results[case.name, label],
-    )
-    for name, response in ((model, reference), (own_model(run.support), own)):
-        if isinstance(response, Crash):
-            # the reduced models have no way to end a process: this is no result, but a broken installation
-            raise RuntimeError(  # noqa: TRY004
-                f"the {name} model left no response: {response.message}"
-            )
-    if isinstance(trial, Crash):
-        return crashed_row(case, model, reference, label, run, trial.message)
+    reference, own, trial = (found[case.name, each] for each in (name, str(own_model(run)), label))
+    if not len(trial.time) or not len(reference.time):
+        return lost_row(case, name, reference, label, trial)
     error = (
         estimated_error(case, run.engine, trial.time_step) if budget is None else measured_error(case, budget)
     )
-    prediction = predict_horizon(
+    prediction = predict(
         case,
         reference=reference,
         own=own,
-        own_model=own_model(run.support),
         contact_resolution=trial.contact_resolution,
         error=error,
-        simulate=twin,
+        simulate=copy_of,
     )
     return summary_row(
         case,
-        model,
+        name,
         reference,
         label,
         trial,
@@ -207,7 +198,7 @@ def _row(
     )
 
 
-def _table(rows: list[dict[str, Any]]) -> Any:
+def _table(rows: list[dict[str, Any]]) -> pd.DataFrame:
     import pandas as pd
 
     return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS)).astype({"diverged": bool, "agreed_passes": int})

@@ -20,10 +20,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder
+from rockwobble.models import Cylinder, Trace
 
 from ..metrics.agreement import Agreement
-from ..traces.pair import Trace
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,16 +1,16 @@
-"""When traces have to part, from the reduced models alone.
+"""Prediction of the agreement time, from the reduced models alone.
 
 Three things end an agreement, and the first of them is the prediction:
 
 * model form: the reduced model of the engine's support leaves the model that is asked about, as the
-  rolling one leaves the recess;
+  flat-ground one leaves the recess;
 * pass: a pass closer to upright than the engine's contact resolves, which leaves the side to chance;
-* growth: a twin of the reduced run, disturbed by as much as the engine errs, leaves it. Near passes
-  multiply whatever difference there is, and the twin goes through the same passes.
+* growth: a perturbed copy of the reduced run, off by as much as the engine errs, leaves it. Near passes
+  multiply whatever difference there is, and the copy goes through the same passes.
 
-The twin is disturbed through its gravity, which acts all the time as the error of a step does, and which
+The copy is perturbed through its gravity, which acts all the time as the error of a step does, and which
 shifts the uplift as a base does that stands on corners. The size of the disturbance is set so that the
-twin is as far off after the first second as the engine is.
+copy is as far off after the first second as the engine is.
 """
 
 from __future__ import annotations
@@ -24,20 +24,20 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case
+from rockwobble.models import Case, Run, Trace
 
 from ..metrics.agreement import agreement_time
-from ..traces.pair import FloatArray, Trace, make_pair
+from ..traces.pair import FloatArray, make_pair
 from .error_budget import ErrorBudget
 
-# a prediction is in time if the measured horizon is within this factor of it, either way
+# a prediction is in time if the measured agreement time is within this factor of it, either way
 IN_TIME = 2.0
 # [s] at a semidiagonal of 6 m and 9.81 m/s^2, and in proportion to the time scale of the cylinder
 FIRST_STRETCH = 1.0
 _REFERENCE_SIZE, _REFERENCE_GRAVITY, _REFERENCE_STEP = 6.0, 9.81, 1e-4
-# relative change of gravity of the twin whose distance sets the scale; far above rounding, far below 1
+# relative change of gravity of the copy whose distance sets the scale; far above rounding, far below 1
 _TRIAL = 1e-6
-# and the largest that still is a twin
+# and the largest that still is a copy
 _LARGEST = 1e-2
 
 # RMS of the tilt error in that first second after a release, over alpha tan^2(alpha), and after an uplift
@@ -48,7 +48,7 @@ _SMALLEST_ERROR = 1e-9  # [alpha] no engine is better than its contact
 
 _HALF_A_TURN = 1e-9  # [rad] rounding of half a turn: motion with spin takes longer than a sample for it
 
-Simulate = Callable[[Case, str], Trace]
+Simulate = Callable[[Case, Run], Trace]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -67,17 +67,19 @@ class Prediction:
     reason: str
 
 
-def estimated_error(case: Case, engine: str, time_step: float) -> float:
+def estimated_error(case: Case, engine: str | None, time_step: float) -> float:
     """Return the tilt error of an engine in the first second of motion, without running it [alpha].
 
     Parameters
     ----------
     case : Case
-    engine : str
-        One that nothing is known of counts as the better of those that are.
+    engine : str or None
+        One that nothing is known of counts as the better of those that are; a reduced model has none.
     time_step : float
         [s]
     """
+    if engine is None:
+        return _SMALLEST_ERROR
     step = time_step / time_scale(case) / _REFERENCE_STEP
     if case.initial is not None and case.initial.tilt > 0.0:
         error = _AFTER_RELEASE.get(engine, min(_AFTER_RELEASE.values())) * case.cylinder.tan_alpha**2
@@ -100,12 +102,11 @@ def close_pass(reference: Trace, contact_resolution: float, length: float) -> Pr
     return Prediction(length=max(0.0, end - _start(reference)), reason="pass")
 
 
-def predict_horizon(
+def predict(
     case: Case,
     *,
     reference: Trace,
     own: Trace,
-    own_model: str,
     contact_resolution: float,
     error: float,
     simulate: Simulate,
@@ -119,21 +120,19 @@ def predict_horizon(
         Response of the reduced model that is asked about.
     own : Trace
         Response of the reduced model of the engine's support; may be the reference itself.
-    own_model : str
-        Name of that model.
     contact_resolution : float
         Smallest minimum tilt of a pass that the engine resolves [rad].
     error : float
         RMS error of the engine's tilt in the first second of motion [alpha].
     simulate : callable
-        Runs a reduced model on a case; for the twin.
+        Runs a reduced model on a case; for the perturbed copy.
     """
     length = case.length
     start = _start(reference)
     ends = {
-        "model form": length if own is reference else _parting(case, reference, own),
+        "model form": length if own is reference else _diverges(case, reference, own),
         "pass": _close_pass(own, contact_resolution, length),
-        "growth": _twin_parting(case, own, own_model, error, simulate),
+        "growth": _copy_diverges(case, own, error, simulate),
     }
     reason = min(ends, key=ends.__getitem__)
     if ends[reason] >= length:
@@ -183,7 +182,7 @@ def _start(trace: Trace) -> float:
     return trace.uplift_time if math.isfinite(trace.uplift_time) else 0.0
 
 
-def _parting(case: Case, reference: Trace, other: Trace) -> float:
+def _diverges(case: Case, reference: Trace, other: Trace) -> float:
     """Time at which two responses part [s]; the length of the run where they do not."""
     horizon = agreement_time(make_pair(case.cylinder, reference, other, until=case.length))
     return horizon.end if horizon.diverged else case.length
@@ -195,17 +194,17 @@ def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:
     return float(min([*times[:1], *landings(own)[:1], length]))
 
 
-def _twin_parting(case: Case, own: Trace, model: str, error: float, simulate: Simulate) -> float:
+def _copy_diverges(case: Case, own: Trace, error: float, simulate: Simulate) -> float:
     if not math.isfinite(own.uplift_time):
         return case.length
-    disturbed = simulate(_disturbed(case, _TRIAL), model)
+    disturbed = simulate(_disturbed(case, _TRIAL), own.run)
     trial = make_pair(case.cylinder, own, disturbed, until=case.length)
     distance = early_rms(case, trial.time, trial.tilt_difference, _start(own))
     if distance == 0.0:
         return case.length
     disturbance = min(_TRIAL * error / distance, _LARGEST)
-    # what is disturbed by less than the reduced model's own tolerance is no twin of an engine
-    return _parting(case, own, simulate(_disturbed(case, disturbance), model))
+    # what is disturbed by less than the reduced model's own tolerance is no copy
+    return _diverges(case, own, simulate(_disturbed(case, disturbance), own.run))
 
 
 def _disturbed(case: Case, relative: float) -> Case:

@@ -22,10 +22,11 @@ from types import MappingProxyType
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rockwobble.models import Case, Run
+from rockwobble.models import Case, Run, Trace
 
-from ..runs.execution import SAMPLE_STEP, Crash, Job
+from ..runs.execution import SAMPLE_STEP, Job
 from .error_budget import COVERED, WORTH_EXPLAINING, Limit, common_count, extrapolated
 
 # of the step of the run: always two, and one more where the limit is uncertain
@@ -37,7 +38,7 @@ _FINER_SETTINGS: Mapping[str, Mapping[str, Any]] = MappingProxyType({"pybullet":
 # uncertainty of a limit, over the whole difference, that asks for a finer step
 _UNCERTAIN = 0.1
 
-Simulate = Callable[[list[Job]], list[Any]]
+Simulate = Callable[[list[Job]], list[Trace]]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -49,7 +50,7 @@ class Refined:
     case : Case
     run : Run
     label : str
-    trajectory : Any
+    trajectory : Trace
         Of the engine.
     end : float
         Until when the limit is needed [s].
@@ -60,9 +61,9 @@ class Refined:
     case: Case
     run: Run
     label: str
-    trajectory: Any
+    trajectory: Trace
     end: float
-    difference: Any
+    difference: NDArray[np.float64]
 
     @property
     def smooth(self) -> bool:
@@ -86,7 +87,7 @@ def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str,
     simulate : callable
         Runs jobs, and returns their results in the same order.
     """
-    found: dict[tuple[str, str], list[Any]] = {(r.case.name, r.label): [r.trajectory] for r in refined}
+    found: dict[tuple[str, str], list[Trace]] = {(r.case.name, r.label): [r.trajectory] for r in refined}
     waiting = list(refined)
     levels: Sequence[int] = range(1, _ALWAYS + 1)
     while waiting:
@@ -122,16 +123,16 @@ def _released(case: Case) -> bool:
 def _job(refined: Refined, level: int) -> Job:
     run = refined.run
     step = refined.trajectory.time_step * 0.5**level
-    more = {} if _released(refined.case) else _FINER_SETTINGS.get(run.engine, {})
+    more = {} if _released(refined.case) else _FINER_SETTINGS.get(run.engine or "", {})
     return Job(
         case=finer_case(refined),
-        method=Run(run.engine, run.support, step, **{**more, **run.settings}),
+        run=Run(run.engine, run.support, step, **{**more, **run.settings}),
         label=f"{refined.label}, step/{2**level}",
     )
 
 
-def _limit(refined: Refined, traces: Sequence[Any]) -> Limit | None:
-    if any(isinstance(trace, Crash) or trace.outcome == "failed" for trace in traces):
+def _limit(refined: Refined, traces: Sequence[Trace]) -> Limit | None:
+    if any(trace.outcome == "failed" for trace in traces):
         return None
     # a run that uplifts by chance has no part in the limit
     used = traces if refined.smooth else traces[1:]
@@ -143,7 +144,7 @@ def _limit(refined: Refined, traces: Sequence[Any]) -> Limit | None:
     return extrapolated(used[0].time[:count], tilts, steps, smooth=refined.finer_smooth)
 
 
-def _is_uncertain(refined: Refined, traces: Sequence[Any]) -> bool:
+def _is_uncertain(refined: Refined, traces: Sequence[Trace]) -> bool:
     limit = _limit(refined, traces)
     if limit is None or not refined.finer_smooth:
         return False
@@ -156,5 +157,5 @@ def _is_uncertain(refined: Refined, traces: Sequence[Any]) -> bool:
     return whole > WORTH_EXPLAINING and error > _UNCERTAIN * whole
 
 
-def _rms(values: Any) -> float:
+def _rms(values: NDArray[np.float64]) -> float:
     return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0

@@ -2,33 +2,31 @@
 
 from __future__ import annotations
 
-import json
+import importlib
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.models import Case
+from rockwobble.models import Case, Trace, plain_json
 
 from ..storage.files import replace_files
 from ..storage.fingerprint import fingerprint
 from ..storage.parquet_file import pack
 from ..storage.provenance import about_results
-from ..storage.stored_trace import stored
-from ..traces.pair import Trace
 from .error_budget import ErrorBudget
-from .file import RESTORE, ComparisonFields, load_comparison, restore_bytes
+from .file import ABOUT, load_fields, plain_fields
 
 if TYPE_CHECKING:
     import pandas as pd
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Comparison:
-    """Runs of engines held against reduced models.
+    """Runs held against reference models, or against one another.
 
     Parameters
     ----------
@@ -36,23 +34,20 @@ class Comparison:
         One row for each run and reference; the columns are those of `SUMMARY_COLUMNS`.
     cases : dict
         Case of each name.
-    responses : dict
-        Response of the reduced model for each (case name, model name).
-    trajectories : dict
-        Trajectory of the engine for each (case name, label of the run), such as
-        ("El Centro 1940", "mujoco recess"). A run whose process died is left out.
+    traces : dict
+        Trace for each (case name, label), of runs and references, such as ("El Centro 1940",
+        "mujoco recess") and ("El Centro 1940", "recess model"). A run whose process died is left out.
     versions : dict
         Version of each package and engine that took part.
     until : float or None
         End of the window of the RMS columns, in the time of the run [s]; None is the whole run.
     budgets : dict
-        Error budget for each (case, label of the run, reduced model), where it was asked for.
+        Error budget for each (case, label of the run, label of the reference), where it was asked for.
     """
 
     summary: pd.DataFrame
     cases: Mapping[str, Case]
-    responses: Mapping[tuple[str, str], Any]
-    trajectories: Mapping[tuple[str, str], Any]
+    traces: Mapping[tuple[str, str], Trace]
     versions: Mapping[str, str]
     until: float | None = None
     budgets: Mapping[tuple[str, str, str], ErrorBudget] = field(default_factory=dict)
@@ -60,9 +55,8 @@ class Comparison:
     def save(self, folder: str | Path) -> None:
         """Write the results to `folder`: whole files or none, other files there are left alone.
 
-        summary.csv is the summary; responses.parquet and trajectories.parquet hold the samples,
-        passes.parquet the passes, excitation.parquet the ground motions, and
-        comparison.json the cases and the versions.
+        summary.csv is the summary; traces.parquet holds the samples of runs and references, passes.parquet
+        the passes, excitation.parquet the ground motions, and comparison.json the rest.
 
         Raises
         ------
@@ -75,48 +69,59 @@ class Comparison:
     def load(cls, folder: str | Path) -> Comparison:
         """Return the comparison that was saved in `folder`, without running anything.
 
-        Responses and trajectories are `StoredTrace`: what was sampled and measured, with the same bits, under
-        the same names.
-
         Raises
         ------
         ValueError
             If the folder holds no comparison.
         """
-        return cls(**load_comparison(folder))
+        return cls(**load_fields(folder))
 
     def files(self) -> dict[str, bytes]:
         """Return name and content of each file that `save` writes."""
+        whole = plain_fields(self.cases, self.traces, self.versions, self.until, self.budgets)
         found = {
             "summary.csv": self.summary.to_csv(index=False).encode(),
             "summary.parquet": self._pack(self.summary),
-            "responses.parquet": self._pack(_stacked(self.responses, "model")),
-            "trajectories.parquet": self._pack(_stacked(self.trajectories, "run")),
+            "traces.parquet": self._pack(self._stacked()),
             "passes.parquet": self._pack(self._passes()),
             "excitation.parquet": self._pack(self._excitation()),
-            "comparison.json": (json.dumps(self._about(), indent=2, allow_nan=False) + "\n").encode(),
-            RESTORE: restore_bytes(self._fields()),
+            ABOUT: (plain_json.dumps(whole, indent=1) + "\n").encode(),
         }
         return found | ({"budget.parquet": self._pack(self._budget())} if self.budgets else {})
 
-    def _fields(self) -> ComparisonFields:
-        return ComparisonFields(
-            summary=self.summary,
-            cases=self.cases,
-            responses=self.responses,
-            trajectories=self.trajectories,
-            versions=self.versions,
-            until=self.until,
-            budgets=self.budgets,
-        )
+    def plot(self, case: str | None = None) -> Any:
+        """Return a matplotlib figure of one case, the first by default, drawn by `rockwobble.reports`."""
+        # by name: a result does not depend on who draws it
+        picture = importlib.import_module("rockwobble.reports.figures.comparison_picture")
+        return picture.draw(self, next(iter(self.cases)) if case is None else case)
+
+    def __repr__(self) -> str:
+        diverged = int(self.summary["diverged"].sum())
+        return f"Comparison({len(self.cases)} cases, {len(self.summary)} rows, {diverged} diverged)"
+
+    def _repr_html_(self) -> str:
+        names = ["case", "run", "reference", "outcome", "peak_tilt", "tilt_rms_relative", "agreement_time"]
+        return str(self.summary[[*names, "diverged", "diagnostics"]].to_html(index=False))
+
+    def _stacked(self) -> pd.DataFrame:
+        import pandas as pd
+
+        tables = []
+        for (case, label), trace in self.traces.items():
+            table = trace.to_frame()
+            table.insert(0, "case", case)
+            table.insert(1, "run", label)
+            tables.append(table)
+        whole: pd.DataFrame = pd.concat(tables, ignore_index=True)
+        return whole
 
     def _budget(self) -> pd.DataFrame:
         import pandas as pd
 
         tables = []
-        for (case, label, model), budget in self.budgets.items():
+        for key, budget in self.budgets.items():
             table = budget.to_frame()
-            for place, (name, value) in enumerate((("case", case), ("run", label), ("reference", model))):
+            for place, (name, value) in enumerate(zip(("case", "run", "reference"), key, strict=True)):
                 table.insert(place, name, value)
             tables.append(table)
         whole: pd.DataFrame = pd.concat(tables, ignore_index=True)
@@ -130,11 +135,7 @@ class Comparison:
     def _passes(self) -> pd.DataFrame:
         import pandas as pd
 
-        tables = [
-            trace.passes.assign(case=case, run=label)
-            for traces in (self.responses, self.trajectories)
-            for (case, label), trace in traces.items()
-        ]
+        tables = [trace.passes.assign(case=case, run=label) for (case, label), trace in self.traces.items()]
         passes: pd.DataFrame = pd.concat(tables, ignore_index=True)
         return passes.set_index(["case", "run"]).reset_index()
 
@@ -150,15 +151,6 @@ class Comparison:
             columns |= {f"acceleration_{axis}": a[:, i] for i, axis in enumerate("xyz"[: a.shape[1]])}
             tables.append(pd.DataFrame(columns))
         return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame({"case": [], "time": []})
-
-    def _about(self) -> dict[str, Any]:
-        return {
-            "until": self.until,
-            "versions": dict(self.versions),
-            "cases": {name: describe_case(case) for name, case in self.cases.items()},
-            "responses": _described(self.responses),
-            "trajectories": _described(self.trajectories),
-        }
 
 
 def describe_case(case: Case) -> dict[str, Any]:
@@ -193,51 +185,31 @@ def describe_case(case: Case) -> dict[str, Any]:
     }
 
 
-def describe_run(trace: Any) -> dict[str, Any]:
+def describe_run(trace: Trace) -> dict[str, Any]:
     """Return what there is to know of a run besides its samples, for a file; SI units and radians."""
     names = (
-        "model",
-        "engine",
-        "engine_version",
-        "support",
-        "time_step",
-        "outcome",
-        "message",
-        "peak_tilt",
-        "uplift_time",
-        "uplift_direction",
-        "contact_resolution",
-        "residual_displacement",
-        "residual_twist",
-        "first_wall_contact",
-        "error_estimate",
-        "settled_until",
-        "wall_time",
+        *("version", "time_step", "outcome", "peak_tilt", "uplift_time", "uplift_direction", "wall_time"),
+        *("contact_resolution", "residual_displacement", "residual_twist", "error_estimate", "settled_until"),
     )
-    found = {name: getattr(trace, name) for name in names if hasattr(trace, name)}
-    plain = {name: _number(value) if isinstance(value, float) else value for name, value in found.items()}
-    return plain | ({"settings": dict(trace.settings)} if hasattr(trace, "settings") else {})
-
-
-def _described(traces: Mapping[tuple[str, str], Any]) -> dict[str, Any]:
-    return {f"{case} / {label}": describe_run(trace) for (case, label), trace in traces.items()}
+    found = {name: getattr(trace, name) for name in names}
+    return {
+        "engine": trace.run.engine,
+        "support": trace.run.support,
+        **{name: _number(value) if isinstance(value, float) else value for name, value in found.items()},
+        "settings": dict(trace.settings),
+        "diagnostics": [
+            {
+                name: _number(value) if isinstance(value, float) else value
+                for name, value in asdict(fact).items()
+            }
+            for fact in trace.facts
+        ],
+    }
 
 
 def _number(value: float) -> float | None:
     """JSON knows no NaN."""
     return float(value) if math.isfinite(value) else None
-
-
-def _stacked(traces: Mapping[tuple[str, str], Trace], name: str) -> pd.DataFrame:
-    import pandas as pd
-
-    tables = []
-    for (case, label), trace in traces.items():
-        table = stored(trace).samples.copy()
-        table.insert(0, "case", case)
-        table.insert(1, name, label)
-        tables.append(table)
-    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame({"case": [], name: []})
 
 
 def _inputs(case: Case) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""One row of the summary: an engine's run held against one reduced model."""
+"""One row of the summary: a run held against one reference."""
 
 from __future__ import annotations
 
@@ -7,56 +7,58 @@ from collections.abc import Mapping
 from types import MappingProxyType
 from typing import Any
 
-import numpy as np
-
-from rockwobble.models import Case, Run
+from rockwobble.models import Case, Trace
 
 from ..metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
 from ..metrics.contact import contact_rms
 from ..metrics.energy import energy_loss
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
 from ..metrics.turning import direction_difference, first_unresolved_pass, turn_difference
-from ..traces.pair import EngineTrace, Trace, make_pair
-from ..traces.trajectory import ExternalTrajectory
+from ..traces.pair import make_pair
+from ..traces.trajectory import measurement
 from .error_budget import BUDGET_COLUMNS, ErrorBudget
 from .external.difference import allowance as noise_allowance
 from .external.verdict import VERDICT_COLUMNS, judge, no_verdict
 from .prediction import Prediction, close_pass, verdict
 
+REDUCED = "reduced"  # the engine of a reduced model, in tables
+
 # name: (unit, meaning); the order is that of the table
 SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         "case": ("", "name of the case"),
-        "reference": ("", "reduced model that the run is held against"),
-        "engine": ("", "multibody engine"),
-        "support": ("", "what holds the cylinder in place"),
+        "engine": ("", 'multibody engine, or "reduced"'),
+        "support": ("", "what holds the cylinder in place: recess, flat or ring"),
+        "reference_engine": ("", 'what the run is held against: an engine, or "reduced"'),
+        "reference_support": ("", "its support"),
         "time_step": ("s", "time step of the engine"),
-        "outcome": ("", "how the engine's run ended"),
-        "reference_outcome": ("", "how the reduced model's run ended"),
-        "message": ("", "what there is to know of either run, in words"),
-        "peak_tilt": ("alpha", "largest tilt of the engine's run"),
-        "reference_peak_tilt": ("alpha", "largest tilt of the reduced model"),
-        "peak_tilt_difference": ("alpha", "engine minus reduced model"),
+        "outcome": ("", "how the run ended: rest, completed, overturned or failed"),
+        "reference_outcome": ("", "how the reference ended"),
+        "diagnostics": ("", "codes of what ended or limits the run: see `rockwobble.models.diagnostic`"),
+        "peak_tilt": ("alpha", "largest tilt of the run"),
+        "reference_peak_tilt": ("alpha", "largest tilt of the reference"),
+        "peak_tilt_difference": ("alpha", "run minus reference"),
         "tilt_rms": ("alpha", "root mean square of the tilt difference"),
-        "tilt_rms_relative": ("", "the same over the root mean square of the reduced model's tilt"),
+        "tilt_rms_relative": ("", "the same over the root mean square of the reference's tilt"),
         "contact_rms": ("b", "RMS distance of the contact points where both tilts exceed 5 % of the peak"),
         "turn_difference": ("deg", "how far apart the contact points have rolled at the end of agreement"),
-        "uplift_time_difference": ("s", "engine minus reduced model"),
+        "uplift_time_difference": ("s", "run minus reference"),
         "uplift_direction_difference": ("rad", "azimuth of the contact point at uplift or release"),
         "agreement_time": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
-        "diverged": ("", "whether there was such a difference; if not, the horizon is the run's length"),
+        "diverged": ("", "whether there was such a difference; if not, the time is the length of the run"),
         "agreed_passes": ("", "passes within the agreement"),
-        "predicted_agreement_time": ("s", "when the traces have to part, from the reduced models alone"),
+        "predicted_agreement_time": ("s", "when the traces have to diverge, from the reduced models alone"),
         "residual_displacement": ("b", "distance of the base centre from its old place at the end"),
         "residual_twist": ("deg", "turn of the cylinder about its axis at the end"),
-        "energy_loss": ("", "energy lost by the engine's run over the largest energy reached"),
-        "wall_time": ("s", "computing time of the engine"),
-        "time_ratio": ("", "the same over that of the reduced model"),
-        "reference_wall_time": ("s", "computing time of the reduced model"),
+        "energy_loss": ("", "energy lost by the run over the largest energy reached"),
+        "wall_time": ("s", "computing time of the run"),
+        "time_ratio": ("", "the same over that of the reference"),
+        "reference_wall_time": ("s", "computing time of the reference"),
         "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine's contact resolves"),
-        "closest_pass": ("alpha", "smallest minimum tilt of the reduced model's passes within the agreement"),
+        "closest_pass": ("alpha", "smallest minimum tilt of the reference's passes within the agreement"),
         "engine_version": ("", "version of the engine"),
         "run": ("", "label of the run, as in the files of samples and in the figures"),
+        "reference": ("", "label of the reference"),
         "predicted_by": ("", "what ends the agreement there: a pass, growth or model form; empty: nothing"),
         "divergence": (
             "",
@@ -78,10 +80,10 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
 
 def summary_row(
     case: Case,
-    model: str,
+    name: str,
     reference: Trace,
     label: str,
-    trial: EngineTrace,
+    trial: Trace,
     *,
     prediction: Prediction,
     estimated_error: float = math.nan,
@@ -89,23 +91,21 @@ def summary_row(
     until: float | None = None,
     allowance: float = 0.0,
 ) -> dict[str, Any]:
-    """Return all columns of the summary for one engine run and one reduced model.
+    """Return all columns of the summary for one run and one reference.
 
     Parameters
     ----------
     case : Case
-    model : str
-        Name of the reduced model.
+    name : str
+        Label of the reference.
     reference : Trace
-        Its response.
     label : str
-        Label of the engine's run.
-    trial : EngineTrace
-        Trajectory of the engine.
+        Label of the run.
+    trial : Trace
     prediction : Prediction
         When the two have to part.
     estimated_error : float, optional
-        Error of the engine that the prediction rests on [alpha].
+        Error of the run that the prediction rests on [alpha].
     budget : ErrorBudget, optional
         What their difference is made of; without one its columns are NaN.
     until : float, optional
@@ -123,14 +123,8 @@ def summary_row(
     direction = direction_difference(reference, trial)
     turned_until = min(horizon.end, first_unresolved_pass(trial, start=whole.start))
     row = {
-        "case": case.name,
-        "reference": model,
-        "engine": trial.engine,
-        "support": trial.support,
+        **_methods(case, name, reference, label, trial),
         "time_step": trial.time_step,
-        "outcome": trial.outcome,
-        "reference_outcome": reference.outcome,
-        "message": "",
         "peak_tilt": trial.peak_tilt / alpha,
         "reference_peak_tilt": reference.peak_tilt / alpha,
         "peak_tilt_difference": (trial.peak_tilt - reference.peak_tilt) / alpha,
@@ -154,32 +148,46 @@ def summary_row(
         "reference_wall_time": reference.wall_time,
         "contact_resolution": trial.contact_resolution,
         "closest_pass": closest_pass(reference, horizon) / alpha,
-        "engine_version": trial.engine_version,
-        "run": label,
-    }
-    row["message"] = _message(model, reference, trial, whole.end, case.length, _undefined(row))
-    row |= {
+        "engine_version": trial.version,
         "predicted_by": prediction.reason,
-        "divergence": _parting(trial, horizon, prediction),
+        "divergence": _divergence(trial, horizon, prediction),
         "estimated_error": estimated_error,
         **no_verdict(),
     }
     return row | (dict.fromkeys(BUDGET_COLUMNS, math.nan) if budget is None else budget.columns())
 
 
-def _parting(trial: EngineTrace, horizon: Agreement, prediction: Prediction) -> str:
+def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> dict[str, Any]:
+    """Who is held against whom, and how both ended."""
+    return {
+        "case": case.name,
+        "engine": trial.run.engine or REDUCED,
+        "support": trial.run.support,
+        "reference_engine": reference.run.engine or REDUCED,
+        "reference_support": reference.run.support,
+        "outcome": trial.outcome,
+        "reference_outcome": reference.outcome,
+        "diagnostics": ", ".join(dict.fromkeys(fact.code for fact in trial.facts)),
+        "run": label,
+        "reference": name,
+    }
+
+
+def _divergence(trial: Trace, horizon: Agreement, prediction: Prediction) -> str:
     found = verdict(horizon.length, horizon.diverged, prediction.length, prediction.reason)
     # no reduced model knows of walls, so none predicts what they do
-    touched = getattr(trial, "first_wall_contact", math.inf) <= horizon.end
-    return "after it touched a wall" if found == "earlier" and touched else found
+    return (
+        "after it touched a wall"
+        if found == "earlier" and trial.first("wall_contact") <= horizon.end
+        else found
+    )
 
 
 def external_row(
     case: Case,
-    model: str,
     reference: Trace,
     label: str,
-    trial: ExternalTrajectory,
+    trial: Trace,
     *,
     until: float | None = None,
 ) -> dict[str, Any]:
@@ -190,13 +198,13 @@ def external_row(
     verdict = judge(trial, reference, case)
     row = summary_row(
         case,
-        model,
+        str(reference.run),
         reference,
         label,
         trial,
         prediction=close_pass(reference, trial.contact_resolution, case.length),
         until=until,
-        allowance=noise_allowance(trial.noise, case.cylinder.alpha),
+        allowance=noise_allowance(measurement(trial).noise, case.cylinder.alpha),
     )
     for name, part in (("uplift_time", verdict.uplift_time), ("uplift_direction", verdict.uplift_direction)):
         if part is not None:
@@ -204,67 +212,18 @@ def external_row(
     return row | verdict.columns()
 
 
-def crashed_row(
-    case: Case, model: str, reference: Trace, label: str, run: Run, message: str
-) -> dict[str, Any]:
-    """Return the row of a run that left no trajectory: what is not known is NaN, and the message says why."""
+def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> dict[str, Any]:
+    """Return the row of a run that left no samples: what is not known is NaN."""
     row: dict[str, Any] = dict.fromkeys(SUMMARY_COLUMNS, math.nan)
     row |= {
-        "case": case.name,
-        "reference": model,
-        "engine": run.engine,
-        "support": run.support,
-        "outcome": "failed",
-        "reference_outcome": reference.outcome,
-        "message": f"{run.engine} left no trajectory: {message}",
+        **_methods(case, name, reference, label, trial),
         "reference_peak_tilt": reference.peak_tilt / case.cylinder.alpha,
         "agreement_time": 0.0,
         "diverged": True,
         "agreed_passes": 0,
         "reference_wall_time": reference.wall_time,
         "engine_version": "",
-        "run": label,
         "predicted_by": "",
         "divergence": "",
     }
     return row | no_verdict()
-
-
-def _undefined(row: dict[str, Any]) -> list[str]:
-    """Names of the numbers of a row that are none."""
-    return [name for name, value in row.items() if isinstance(value, float) and not math.isfinite(value)]
-
-
-def _message(
-    model: str, reference: Trace, trial: EngineTrace, end: float, length: float, undefined: list[str]
-) -> str:
-    """Say in words what the numbers of a row must not hide."""
-    engine = trial.engine
-    notes = []
-    if trial.outcome == "failed":
-        notes.append(f"{engine} failed: {trial.message}")
-    if reference.outcome == "failed":
-        notes.append(f"the {model} model failed: {reference.message}")
-    fell = [
-        name
-        for name, trace in ((engine, trial), (f"the {model} model", reference))
-        if trace.outcome == "overturned"
-    ]
-    if len(fell) == 2:
-        notes.append("both overturned")
-    elif fell:
-        notes.append(f"only {fell[0]} overturned")
-    lifted = [math.isfinite(trace.uplift_time) for trace in (trial, reference)]
-    if not any(lifted):
-        notes.append("neither uplifted: there is no motion to compare")
-    elif not all(lifted):
-        notes.append(f"only {engine if lifted[0] else f'the {model} model'} uplifted")
-    elif not bool(np.any(trial.tilt > 0.0)):
-        notes.append(f"{engine} never tilted")
-    if end < length * (1.0 - 1e-9):
-        notes.append(f"compared up to {end:.4g} s")
-    if trial.message and trial.outcome != "failed":
-        notes.append(trial.message)
-    if undefined:
-        notes.append(f"not defined here: {', '.join(undefined)}")
-    return "; ".join(notes)

@@ -11,7 +11,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..traces.pair import Pair, Trace
+from rockwobble.models import Trace
+
+from ..traces.pair import Pair
 
 # tilt difference that ends the agreement, in units of alpha
 AGREEMENT = 0.01

@@ -9,9 +9,9 @@ import math
 
 import numpy as np
 
-from rockwobble.models import GroundMotion
+from rockwobble.models import GroundMotion, Trace
 
-from ..traces.pair import FloatArray, Trace
+from ..traces.pair import FloatArray
 
 
 def energy_loss(trace: Trace, motion: GroundMotion | None) -> float:

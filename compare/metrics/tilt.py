@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Cylinder
+from rockwobble.models import Cylinder, Trace
 
-from ..traces.pair import Pair, Trace, make_pair
+from ..traces.pair import Pair, make_pair
 
 
 def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
@@ -38,7 +38,6 @@ def relative_rms(cylinder: Cylinder, reference: Trace, trial: Trace, *, until: f
     ----------
     cylinder : Cylinder
     reference, trial : Trace
-        A response of a reduced model or a trajectory of an engine.
     until : float, optional
         In the time of the run [s]. Default: as far as both reach.
 

@@ -6,7 +6,9 @@ import math
 
 import numpy as np
 
-from ..traces.pair import Pair, Trace
+from rockwobble.models import Trace
+
+from ..traces.pair import Pair
 
 
 def direction_difference(reference: Trace, trial: Trace) -> float:

@@ -8,9 +8,10 @@ from typing import Any
 from rockwobble.models import Case, InitialState, Run
 from rockwobble.multibody import BrokenEngineError, available_engines
 from rockwobble.multibody.engines.registry import find_engine, standard_engines
-from rockwobble.multibody.scene.froude import froude_scale
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 from rockwobble.multibody.scene.guard import check_time_step
 from rockwobble.multibody.scene_of_case import resolved_settings
+from rockwobble.reduced.problem import require_solvable
 
 SUPPORTS = ("recess", "flat")
 _LEAN = 1e-3  # of alpha: a tilt that fits into any ring
@@ -60,6 +61,9 @@ def require_runnable(case: Case, run: Run) -> None:
         If the engine is unknown or not installed, does not have the support or cannot start the case,
         the time step is too large for contact, or a setting is unknown or out of range.
     """
+    if run.engine is None:
+        require_solvable(case, **run.settings, support=run.support)
+        return
     step = None if isinstance(run.time_step, str) else run.time_step
     if step is not None:
         check_time_step(step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
@@ -95,7 +99,11 @@ def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, Any]) 
 
 def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
     # from a release that every engine and every ring can start: what is to be set may be what the case needs
-    start = Case(case.name, case.cylinder, None, InitialState(_LEAN * case.cylinder.alpha), 1.0)
+    start = Case(
+        case.cylinder, initial=InitialState(_LEAN * case.cylinder.alpha), duration=1.0, name=case.name
+    )
+    if run.engine is None:
+        return ("plane", "restitution", "rtol", "rest_tilt")
     steps = ("step_tolerance",) if run.time_step == "auto" else ()
     return (*resolved_settings(start, run.engine, run.support, {}), *steps)
 
@@ -130,24 +138,44 @@ def unsupported(supports: Sequence[str]) -> tuple[str, ...]:
     return tuple(f"{name} has no {support} support and is left out there" for name, support in lacks)
 
 
-def references_of(run: Run, reference: str) -> tuple[str, ...]:
-    """Return the reduced models that a run is held against: `reference`, and that of its support."""
-    own = own_model(run.support)
-    return (reference,) if own in (reference, "recess") else (reference, own)
+def own_model(run: Run) -> Run:
+    """Return the reduced model of a run's support: what an exact engine would follow, short of walls."""
+    return Run(None, _OWN_MODELS.get(run.support, "recess"))
+
+
+def references_of(case: Case, run: Run, label: str, reference: Run | None = None) -> dict[str, Run]:
+    """Return what a run is held against, by label: `reference`, or what its support asks for.
+
+    A run in a recess is held against the recess model; one on flat ground against that and the flat-ground
+    model; one in a ring against the recess model and itself at half its step.
+    """
+    recess = Run(None, "recess")
+    if reference is not None:
+        chosen = {str(reference): reference}
+    elif run.support == "flat":
+        chosen = {str(model): model for model in (recess, Run(None, "flat"))}
+    elif run.support == "ring":
+        chosen = {str(recess): recess, f"{label}, half the step": _finer(case, run)}
+    else:
+        chosen = {str(recess): recess}
+    return {name: other for name, other in chosen.items() if other != run}
+
+
+def _finer(case: Case, run: Run) -> Run:
+    step = run.time_step
+    if not isinstance(step, float):
+        step = REFERENCE_TIME_STEP * froude_scale(case.cylinder.semidiagonal, case.gravity).time
+    settings = {name: value for name, value in run.settings.items() if name != "step_tolerance"}
+    return Run(run.engine, run.support, 0.5 * step, **settings)
 
 
 def _step_label(time_step: float | str) -> str:
     return time_step if isinstance(time_step, str) else f"{time_step:g} s"
 
 
-def own_model(support: str) -> str:
-    """Return the reduced model of a support: what an exact engine would follow, until it touches a wall."""
-    return _OWN_MODELS.get(support, "recess")
-
-
 def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
     """Return a label for each run: engine and support, and as much more as tells them apart."""
-    labels = [f"{run.engine} {run.support}" for run in runs]
+    labels = [str(run) for run in runs]
     if len(set(labels)) < len(labels):
         labels = [
             f"{label} {_step_label(run.time_step)}" if run.time_step and labels.count(label) > 1 else label

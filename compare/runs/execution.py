@@ -2,41 +2,41 @@
 
 from __future__ import annotations
 
+import inspect
 import math
 import os
 import queue
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, Literal, Protocol
+from typing import Any, Literal, Protocol
 
-from rockwobble.models import Case, Run
+from rockwobble.models import Case, Run, Trace
+from rockwobble.models.trace import lost_trace
 
 from .process_pool import ProcessPool, WorkerDiedError
 
-if TYPE_CHECKING:
-    from rockwobble.multibody import Trajectory
-
 SAMPLE_STEP = 0.01
-# a model for jobs: planar in the x z plane, with the loss of a base that lands flat
-IMPACT = "planar with impact"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Job:
-    """One run of one case: of an engine, or of a reduced model where `method` is a name.
+    """One run of one case.
 
     Parameters
     ----------
     case : Case
-    method : Run or str
-    label : str
-        For tables and figures, different for each job of a case.
+    run : Run
+    label : str, optional
+        For tables and figures, different for each job of a case. Default: engine and support.
     """
 
     case: Case
-    method: Run | str
-    label: str
+    run: Run
+    label: str = ""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "label", self.label or str(self.run))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -62,64 +62,94 @@ class Progress:
 ProgressCallback = Callable[[Progress], None]
 
 
-@dataclass(frozen=True, slots=True)
-class Crash:
-    """A run that took its process with it."""
-
-    message: str
-
-
 class FinishedRuns(Protocol):
     """Where finished runs are kept, as a `RunStore` does."""
 
-    def find(self, job: Job) -> Any:
+    def find(self, job: Job) -> Trace | None:
         """Return the run of a job, or None if it is not there."""
 
-    def keep(self, job: Job, trace: Any) -> None:
+    def keep(self, job: Job, trace: Trace) -> None:
         """Keep the run of a job."""
 
 
-def simulate(job: Job) -> Any:
-    """Run one job in this process; return a Response or a Trajectory."""
-    case, method = job.case, job.method
-    return _reduced(case, method) if isinstance(method, str) else run_engine(case, method)
+def simulate(
+    case: Case,
+    *,
+    support: str = "recess",
+    engine: str | None = None,
+    time_step: float | Literal["auto"] | None = None,
+    sample_step: float = SAMPLE_STEP,
+    **settings: Any,
+) -> Trace:
+    """Run a case in a reduced model or an engine.
+
+    Parameters
+    ----------
+    case : Case
+    support : {"recess", "flat", "ring"}, optional
+    engine : str, optional
+        Such as "mujoco" or "pybullet". Default: the reduced model.
+    time_step : float or "auto", optional
+        Of an engine [s].
+    sample_step : float, optional
+        Spacing of the samples [s].
+    **settings
+        Of `reduced.simulate` or `multibody.simulate`.
+
+    Returns
+    -------
+    Trace
+
+    Raises
+    ------
+    ValueError
+        If the engine or the support is unknown, or a setting is unknown or out of range.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
+    >>> rw.simulate(rw.Case(pier, initial=release, duration=2.0), support="flat").outcome
+    'completed'
+    """
+    return simulate_run(case, Run(engine, support, time_step, **settings), sample_step=sample_step)
 
 
-def run_engine(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> Trajectory:
-    """Run an engine on a case, with all that the case says: friction and gravity, too."""
+def simulate_run(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> Trace:
+    """Run a reduced model or an engine on a case, as `run` says.
+
+    Raises
+    ------
+    ValueError
+        What `reduced.simulate` or `multibody.simulate` raises.
+    """
+    if run.engine is None:
+        from rockwobble import reduced
+
+        if run.time_step is not None:
+            raise ValueError(f"a reduced model has no time_step, but a tolerance rtol, got {run.time_step!r}")
+        known = set(inspect.signature(reduced.simulate).parameters) - {"case", "support", "sample_step"}
+        for name in run.settings.keys() - known:
+            raise ValueError(f"a reduced model has the settings {', '.join(sorted(known))}, got {name!r}")
+        found = reduced.simulate(case, support=run.support, sample_step=sample_step, **run.settings)
+        _ = found.late  # computed here, so that it travels with the trace
+        return found
     from rockwobble import multibody
 
     return multibody.simulate(
-        case.cylinder,
-        case.motion,
-        initial=case.initial,
-        duration=case.duration,
+        case,
         engine=run.engine,
         support=run.support,
         time_step=run.time_step,
-        friction=case.friction,
         sample_step=sample_step,
-        gravity=case.gravity,
         **run.settings,
     )
 
 
-def _reduced(case: Case, model: str) -> Any:
-    from rockwobble import reduced
-
-    impact: dict[str, Any] = {"model": "planar", "restitution": "momentum"} if model == IMPACT else {}
-    response = reduced.simulate(
-        case.cylinder,
-        case.motion,
-        initial=case.initial,
-        duration=case.duration,
-        sample_step=SAMPLE_STEP,
-        gravity=case.gravity,
-        friction=case.friction,
-        **(impact or {"model": model}),
-    )
-    _ = response.energy  # computed here, so that it travels with the response
-    return response
+def run_job(job: Job) -> Trace:
+    """Run one job in this process."""
+    return simulate_run(job.case, job.run)
 
 
 def simulate_all(
@@ -128,7 +158,7 @@ def simulate_all(
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     store: FinishedRuns | None = None,
-) -> list[Any]:
+) -> list[Trace]:
     """Run all jobs; return their results in the same order.
 
     Parameters
@@ -144,16 +174,15 @@ def simulate_all(
 
     Returns
     -------
-    list
-        A Response, a Trajectory, a StoredTrace where it was found in the store or, where the process
-        died in a run, a Crash.
+    list of Trace
+        One whose process died has no samples, the outcome "failed" and the diagnostic "died".
 
     Raises
     ------
     ValueError
         What a job raises for bad input; the other jobs are given up.
     """
-    results: list[Any] = [None if store is None else store.find(job) for job in jobs]
+    results: list[Trace | None] = [None if store is None else store.find(job) for job in jobs]
     open_jobs = [index for index, result in enumerate(results) if result is None]
     found = len(jobs) - len(open_jobs)
 
@@ -161,17 +190,17 @@ def simulate_all(
         if progress is not None:
             progress(replace(event, done=found + event.done, total=len(jobs)))
 
-    def finished(index: int, result: Any) -> None:
+    def finished(index: int, result: Trace) -> None:
         results[open_jobs[index]] = result
-        if store is not None and not isinstance(result, Crash):
+        if store is not None and len(result.time):
             store.keep(jobs[open_jobs[index]], result)
 
     _run_all([jobs[index] for index in open_jobs], workers, told, finished)
-    return results
+    return [result for result in results if result is not None]
 
 
 def _run_all(
-    jobs: Sequence[Job], workers: int | None, tell: ProgressCallback, finished: Callable[[int, Any], None]
+    jobs: Sequence[Job], workers: int | None, tell: ProgressCallback, finished: Callable[[int, Trace], None]
 ) -> None:
     count = min(_cores(), len(jobs)) if workers is None else workers
     if count > 1 and jobs:
@@ -179,16 +208,16 @@ def _run_all(
         return
     for done, job in enumerate(jobs):
         tell(_progress(job, "started", done, len(jobs)))
-        finished(done, simulate(job))
+        finished(done, run_job(job))
         tell(_progress(job, "finished", done + 1, len(jobs)))
 
 
 def _in_parallel(
-    jobs: Sequence[Job], workers: int, tell: ProgressCallback, keep: Callable[[int, Any], None]
+    jobs: Sequence[Job], workers: int, tell: ProgressCallback, keep: Callable[[int, Trace], None]
 ) -> None:
     # the callback is called from the caller's thread, so that it may draw, raise or be interrupted
     finished: queue.SimpleQueue[int] = queue.SimpleQueue()
-    futures: dict[int, Future[Any]] = {}
+    futures: dict[int, Future[Trace]] = {}
     # the longest first, so that no core is idle at the end
     waiting = sorted(range(len(jobs)), key=lambda index: _cost(jobs[index]))
     with ProcessPool(workers) as pool:
@@ -196,7 +225,7 @@ def _in_parallel(
         def start(done: int) -> None:
             index = waiting.pop()
             tell(_progress(jobs[index], "started", done, len(jobs)))
-            futures[index] = pool.submit(simulate, jobs[index])
+            futures[index] = pool.submit(run_job, jobs[index])
             futures[index].add_done_callback(lambda _: finished.put(index))
 
         for _ in range(min(workers, len(jobs))):
@@ -206,7 +235,7 @@ def _in_parallel(
             try:
                 result = futures.pop(index).result()
             except WorkerDiedError as error:
-                result = Crash(str(error))
+                result = lost_trace(jobs[index].case, jobs[index].run, str(error))
             keep(index, result)
             tell(_progress(jobs[index], "finished", done, len(jobs)))
             if waiting:
@@ -219,10 +248,10 @@ def _progress(job: Job, state: Literal["started", "finished"], done: int, total:
 
 def _cost(job: Job) -> float:
     """Rough computing time of a job, in steps of MuJoCo."""
-    if isinstance(job.method, str):
+    if job.run.engine is None:
         return math.inf  # may compile
-    per_step = 1.0 if job.method.engine == "mujoco" else 3.0
-    step = job.method.time_step or 1e-4
+    per_step = 1.0 if job.run.engine == "mujoco" else 3.0
+    step = job.run.time_step or 1e-4
     # the usual search ends at half of the default step
     return job.case.length / (2.5e-5 if step == "auto" else step) * per_step
 

@@ -6,12 +6,14 @@ import dataclasses
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+
+from rockwobble.models import Trace
+from rockwobble.models.trace_file import facts_of, trace_of
 
 from ..storage.files import remove_leftovers, sole_writer, write_whole
 from ..storage.fingerprint import fingerprint
+from ..storage.parquet_file import pack, read
 from ..storage.provenance import engine_makers, reduced_makers
-from ..storage.stored_trace import StoredTrace, from_parquet, stored, to_parquet
 from .execution import SAMPLE_STEP, Job
 
 RUNS = "runs"
@@ -38,13 +40,16 @@ class RunStore:
         self._samples = samples
         self._used: set[Path] = set()
 
-    def find(self, job: Job) -> StoredTrace | None:
+    def find(self, job: Job) -> Trace | None:
         """Return the run of a job if it is there."""
         path = self._path(job)
-        return from_parquet(path.read_bytes()) if path.exists() else None
+        if not path.exists():
+            return None
+        table, about = read(path)
+        return dataclasses.replace(trace_of(about["trace"], table, job.case), run=job.run)
 
-    def keep(self, job: Job, trace: Any) -> None:
-        """Keep the run of a job: a response or a trajectory.
+    def keep(self, job: Job, trace: Trace) -> None:
+        """Keep the run of a job.
 
         Raises
         ------
@@ -58,11 +63,10 @@ class RunStore:
             "label": job.label,
             "inputs": path.stem,
             "made with": makers_of(job),
+            "trace": facts_of(trace),
         }
-        kept = stored(trace)
-        if not self._samples:
-            kept = dataclasses.replace(kept, samples=kept.samples.iloc[-1:])
-        write_whole(path, to_parquet(kept, about))
+        samples = trace.to_frame()
+        write_whole(path, pack(samples if self._samples else samples.iloc[-1:], about))
 
     def remove_others(self) -> None:
         """Remove the runs that nobody has asked for since this store was opened."""
@@ -97,7 +101,7 @@ def open_run_store(folder: str | Path, *, samples: bool = True) -> Iterator[RunS
 
 def makers_of(job: Job) -> dict[str, str]:
     """Return versions and code on which a job depends."""
-    return reduced_makers() if isinstance(job.method, str) else engine_makers(job.method.engine)
+    return reduced_makers() if job.run.engine is None else engine_makers(job.run.engine)
 
 
 def job_fingerprint(job: Job) -> str:
@@ -111,7 +115,7 @@ def job_fingerprint(job: Job) -> str:
             "length": case.length,
             "gravity": case.gravity,
             "friction": case.friction,
-            "method": job.method,
+            "method": job.run,
             "sample step": SAMPLE_STEP,
             "made with": makers_of(job),
         }

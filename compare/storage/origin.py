@@ -11,7 +11,8 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
-from . import plain_json
+from rockwobble.models import plain_json
+
 from .provenance import package_versions
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import plain_json
+from rockwobble.models import plain_json
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,6 +29,14 @@ def pack(table: pd.DataFrame | Mapping[str, Any], about: Mapping[str, Any]) -> b
     buffer = io.BytesIO()
     pq.write_table(packed.replace_schema_metadata(metadata), buffer)
     return buffer.getvalue()
+
+
+def read(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
+    """Return the table of a file that `pack` made, and what it says of itself."""
+    import pandas as pd
+
+    content = path.read_bytes()
+    return pd.read_parquet(io.BytesIO(content)), read_about(content)
 
 
 def read_about(source: bytes | Path) -> dict[str, Any]:

@@ -11,8 +11,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.models import Trace
+
 from .file import Array
-from .pair import Trace
 
 Complex = NDArray[np.complex128]
 

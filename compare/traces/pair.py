@@ -4,73 +4,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder
-
-if TYPE_CHECKING:
-    import pandas as pd
+from rockwobble.models import Cylinder, Trace
 
 FloatArray = NDArray[np.float64]
 
 # samples are multiples of one step; two that differ by less are the same [s]
 _SAME_TIME = 1e-9
-
-
-class Trace(Protocol):
-    """What a response of a reduced model and a trajectory of an engine have in common."""
-
-    @property
-    def time(self) -> FloatArray: ...  # noqa: D102
-    @property
-    def tilt(self) -> FloatArray: ...  # noqa: D102
-    @property
-    def rolling_angle(self) -> FloatArray: ...  # noqa: D102
-    @property
-    def contact_point(self) -> FloatArray: ...  # noqa: D102
-    @property
-    def centre_of_mass(self) -> FloatArray: ...  # noqa: D102
-    @property
-    def energy(self) -> FloatArray: ...  # noqa: D102
-    @property
-    def twist(self) -> FloatArray: ...  # noqa: D102
-    @property
-    def peak_tilt(self) -> float: ...  # noqa: D102
-    @property
-    def outcome(self) -> str: ...  # noqa: D102
-    @property
-    def message(self) -> str: ...  # noqa: D102
-    @property
-    def uplift_time(self) -> float: ...  # noqa: D102
-    @property
-    def uplift_direction(self) -> float: ...  # noqa: D102
-    @property
-    def passes(self) -> pd.DataFrame: ...  # noqa: D102
-    @property
-    def wall_time(self) -> float: ...  # noqa: D102
-    def to_frame(self) -> pd.DataFrame: ...  # noqa: D102
-
-
-class EngineTrace(Trace, Protocol):
-    """What only an engine's trajectory has."""
-
-    @property
-    def engine(self) -> str: ...  # noqa: D102
-    @property
-    def engine_version(self) -> str: ...  # noqa: D102
-    @property
-    def support(self) -> str: ...  # noqa: D102
-    @property
-    def time_step(self) -> float: ...  # noqa: D102
-    @property
-    def contact_resolution(self) -> float: ...  # noqa: D102
-    @property
-    def residual_displacement(self) -> float: ...  # noqa: D102
-    @property
-    def residual_twist(self) -> float: ...  # noqa: D102
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -123,7 +66,6 @@ def make_pair(cylinder: Cylinder, reference: Trace, trial: Trace, *, until: floa
     ----------
     cylinder : Cylinder
     reference, trial : Trace
-        A response of a reduced model or a trajectory of an engine.
     until : float, optional
         End of the window, in the time of the run [s]. Default: all that both have.
 

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.models import Case
+from rockwobble.models import Case, Diagnostic, Run, Trace
 
 from .file import Array, Columns, read_columns
 from .measures import passes, peak, places, resampled, sample_times
 from .motion import Motion, motion_of
 from .pose import SAME_TIME, Poses, poses_of
 from .uplift import uplift
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 SUPPORT = "external"
 # the side lies on the ground, as far as a measurement says [rad]
@@ -65,83 +61,73 @@ class External:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ExternalTrajectory:
-    """A external trajectory at the sample times of the reduced models; fields as of an engine's trajectory.
+class Measurement:
+    """What a file of an external trajectory told: the source of its trace.
 
-    What the file does not tell is NaN: energy, computing time, contact resolution; the twist without
-    quaternions; rolling angle, contact point and mass centre with the tilt alone; the residual displacement
-    without positions, where contact point and mass centre are those of a cylinder in a recess with the same
-    tilt and azimuth, equations (8) and (10).
+    The trace is at the sample times of the reduced models. What the file does not tell is NaN: energy,
+    contact resolution; the twist without quaternions; rolling angle, contact point and mass centre with the
+    tilt alone; the residual displacement without positions, where contact point and mass centre are those of
+    a cylinder in a recess with the same tilt and azimuth, equations (8) and (10).
 
-    Its own fields: `first_lean`, the first of its own samples that leans [s]; `told`, what the file tells of
-    "tilt", "azimuth" and "path"; `noise` and `position_noise`, the standard deviations of its scatter [rad],
-    [m]; `stands`, the tilt below which it stands [rad]; `uplift_time_uncertainty` [s] and
-    `uplift_direction_uncertainty` [rad]; `given` and `columns`, the file that it was read from.
+    Attributes
+    ----------
+    told : tuple of str
+        What the file tells of "tilt", "azimuth" and "path".
+    noise, position_noise : float
+        Standard deviations of its scatter [rad], [m].
+    stands : float
+        Tilt below which it stands [rad].
+    first_lean : float
+        First of its own samples that leans [s].
+    uplift_time_uncertainty, uplift_direction_uncertainty : float
+        [s], [rad]
+    given : External
+    columns : Columns
+        The file that it was read from.
     """
 
-    engine: str
-    time: Array
-    tilt: Array
-    rolling_angle: Array
-    twist: Array
-    contact_point: Array
-    centre_of_mass: Array
-    energy: Array
-    passes: pd.DataFrame
-    peak_tilt: float
-    outcome: str
-    message: str
-    uplift_time: float
-    uplift_direction: float
-    time_step: float
-    residual_displacement: float
-    residual_twist: float
-    uplift_time_uncertainty: float
-    uplift_direction_uncertainty: float
-    first_lean: float
     told: tuple[str, ...]
     noise: float
     position_noise: float
     stands: float
+    first_lean: float
+    uplift_time_uncertainty: float
+    uplift_direction_uncertainty: float
     given: External
     columns: Columns
-    support: str = SUPPORT
-    engine_version: str = ""
-    wall_time: float = math.nan
-    contact_resolution: float = math.nan
 
-    @property
-    def motion(self) -> Motion:
-        """What is compared: the tilt, the azimuth, also where it follows from the path, and the path."""
-        known = bool(np.isfinite(self.rolling_angle).any())
-        return motion_of(
-            self,
-            (*(("azimuth",) if known else ()), *self.told),
-            noise=self.noise,
-            path_noise=self.position_noise,
-        )
+    def sampled(self) -> Mapping[str, Array]:
+        """Return nothing: a file tells neither energies nor forces."""
+        return {}
 
-    def to_frame(self) -> pd.DataFrame:
-        """Return the sampled fields as a table with one row for each sample; SI units and radians."""
-        import pandas as pd
-
-        return pd.DataFrame(
-            {
-                "time": self.time,
-                "tilt": self.tilt,
-                "rolling_angle": self.rolling_angle,
-                "twist": self.twist,
-                "contact_x": self.contact_point[:, 0],
-                "contact_y": self.contact_point[:, 1],
-                "centre_x": self.centre_of_mass[:, 0],
-                "centre_y": self.centre_of_mass[:, 1],
-                "centre_z": self.centre_of_mass[:, 2],
-            }
-        )
+    def assumptions(self, until: float) -> None:
+        """Return nothing: a file does not tell."""
+        return
 
 
-def read_trajectory(external: External | str | Path, case: Case) -> ExternalTrajectory:
-    """Read a external trajectory of a case.
+def measurement(trace: Trace) -> Measurement:
+    """Return what the file of an external trajectory told.
+
+    Raises
+    ------
+    TypeError
+        If the trace comes from somewhere else.
+    """
+    if not isinstance(trace.source, Measurement):
+        raise TypeError(f"the trace must be an external trajectory, got {trace!r}")
+    return trace.source
+
+
+def external_motion(trace: Trace) -> Motion:
+    """Return what is compared: the tilt, the azimuth, also where it follows from the path, and the path."""
+    told = measurement(trace)
+    known = bool(np.isfinite(trace.rolling_angle).any())
+    names = (*(("azimuth",) if known else ()), *told.told)
+    return motion_of(trace, names, noise=told.noise, path_noise=told.position_noise)
+
+
+def read_trajectory(external: External | str | Path, case: Case) -> Trace:
+    """Read an external trajectory of a case.
 
     Parameters
     ----------
@@ -159,7 +145,7 @@ def read_trajectory(external: External | str | Path, case: Case) -> ExternalTraj
     return trajectory_of(read_columns(given.path, given.angle_unit), given, case)
 
 
-def trajectory_of(columns: Columns, given: External, case: Case) -> ExternalTrajectory:
+def trajectory_of(columns: Columns, given: External, case: Case) -> Trace:
     """Return the trajectory that the columns of a file hold; see `read_trajectory`."""
     poses = poses_of(columns, case, noise=given.noise, time_offset=given.time_offset)
     start = int(np.argmax(poses.time > -0.5 * float(poses.time[1] - poses.time[0])))
@@ -177,43 +163,47 @@ def trajectory_of(columns: Columns, given: External, case: Case) -> ExternalTraj
     angle = np.where((tilt > stands) & (time >= begin.time - SAME_TIME), angle, np.nan)
     contact, centre, moved = places(poses, time, axis, angle, case.cylinder)
     twist = np.full(len(time), np.nan) if poses.twist is None else np.interp(time, poses.time, poses.twist)
-    return ExternalTrajectory(
-        engine=given.label,
+    first_lean = 0.0
+    if begin.first is None:
+        first_lean = math.nan
+    elif begin.first:
+        first_lean = float(poses.time[begin.first])
+    return Trace(
+        case=case,
+        run=Run(given.label, SUPPORT),
+        version="",
         time=time,
         tilt=tilt,
+        tilt_rate=np.full(len(time), np.nan),
         rolling_angle=angle,
         twist=twist,
         contact_point=contact,
         centre_of_mass=centre,
-        energy=np.full(len(time), np.nan),
         passes=passes(poses, begin.time, stands),
         peak_tilt=0.5 * math.pi if fell else peak(poses),
         outcome="overturned" if fell else "rest" if bool((tilt[-100:] < stands).all()) else "completed",
-        message=_message(poses),
+        facts=tuple(_facts(poses)),
         uplift_time=begin.time,
         uplift_direction=begin.direction,
         time_step=float(np.median(np.diff(poses.time))),
         residual_displacement=moved,
-        residual_twist=float(twist[-1]),
-        uplift_time_uncertainty=begin.time_uncertainty,
-        uplift_direction_uncertainty=begin.direction_uncertainty,
-        first_lean=math.nan
-        if begin.first is None
-        else float(poses.time[begin.first])
-        if begin.first
-        else 0.0,
-        told=poses.told,
-        noise=poses.noise,
-        position_noise=poses.position_noise,
-        stands=stands,
-        given=given,
-        columns=columns,
+        source=Measurement(
+            told=poses.told,
+            noise=poses.noise,
+            position_noise=poses.position_noise,
+            stands=stands,
+            first_lean=first_lean,
+            uplift_time_uncertainty=begin.time_uncertainty,
+            uplift_direction_uncertainty=begin.direction_uncertainty,
+            given=given,
+            columns=columns,
+        ),
     )
 
 
 def read_trajectories(
     external: Sequence[External | str | Path], cases: Sequence[Case], *, taken: Collection[str] = ()
-) -> dict[tuple[str, str], ExternalTrajectory]:
+) -> dict[tuple[str, str], Trace]:
     """Read all trajectories that belong to the one case of a comparison.
 
     Parameters
@@ -235,10 +225,10 @@ def read_trajectories(
     """
     if external and len(cases) > 1:
         raise ValueError(f"a trajectory belongs to one case, got {len(cases)} cases")
-    found: dict[tuple[str, str], ExternalTrajectory] = {}
+    found: dict[tuple[str, str], Trace] = {}
     for item in external:
         trajectory = read_trajectory(item, cases[0])
-        label = trajectory.engine
+        label = str(trajectory.run.engine)
         if label in taken or (cases[0].name, label) in found:
             raise ValueError(f"each run must have its own label, got {label!r} twice")
         found[cases[0].name, label] = trajectory
@@ -258,9 +248,8 @@ def _from_start_to_end(poses: Poses, start: int, length: float) -> Poses:
     return poses.taken(chosen[: (landed if landed < last or falling else last) + 1])
 
 
-def _message(poses: Poses) -> str:
-    notes = list(poses.notes)
-    guessed = int(np.count_nonzero(~poses.followed))
-    if guessed:
-        notes.append(f"{guessed} near pass{'es' if guessed > 1 else ''} fell between two samples")
-    return "; ".join(notes)
+def _facts(poses: Poses) -> Iterator[Diagnostic]:
+    yield from (Diagnostic(code="note", detail=note) for note in poses.notes)
+    guessed = np.flatnonzero(~poses.followed)
+    if len(guessed):
+        yield Diagnostic(code="missed_pass", time=float(poses.time[guessed[0]]), size=len(guessed))

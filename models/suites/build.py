@@ -109,7 +109,7 @@ def _case(
         with located(f"{path}.release"):
             initial = _release(table.release, of("release"), cylinder)
     with located(path):
-        return Case(name, cylinder, motion, initial, **own)
+        return Case(cylinder, motion, initial=initial, name=name, **own)
 
 
 def _cylinder(table: CylinderTable, values: dict[str, float]) -> Cylinder:

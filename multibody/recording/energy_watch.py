@@ -66,8 +66,8 @@ class EnergyWatch:
         self._blocks.append(np.stack([time[starts], np.where(high > -low, high, low)]))
         self.largest = max(self.largest, float(energy.max()))
 
-    def remark(self, until: float) -> tuple[float, float]:
-        """Return from when the error was worth a remark [s] and its largest share, NaN and 0 if it never was.
+    def remark(self, until: float) -> tuple[float, float, float]:
+        """Return when the error became worth a remark [s], its largest share, and the bound; NaN, 0 if never.
 
         What happens after `until` [s] does not count.
         """
@@ -75,5 +75,5 @@ class EnergyWatch:
         error = error[time <= until]
         large = np.abs(error) > DRIFT * self.largest
         if self.largest < self._least or not large.any():
-            return math.nan, 0.0
-        return float(time[np.argmax(large)]), float(error[np.abs(error).argmax()]) / self.largest
+            return math.nan, 0.0, DRIFT
+        return float(time[np.argmax(large)]), float(error[np.abs(error).argmax()]) / self.largest, DRIFT

@@ -91,7 +91,8 @@ class Recorder:
         self.fastest = 0.0
         self.uplift: tuple[float, float] | None = None if start.standing else (0.0, rolling_angle)
         self.ended: str = ""
-        self.reason = ""
+        self.failure = ""  # code of the diagnostic that ended the run
+        self.warnings: list[str] = []
         self.end_time = math.inf
         self.undecided = False  # whether it falls after the end, and nobody knows how far
 
@@ -188,9 +189,12 @@ class Recorder:
         self._samples = np.append(self._samples, samples)
         self.forces.extend(samples)
 
-    def fail(self, reason: str) -> None:
-        """End the run at the last step analysed."""
-        self.ended, self.reason, self.end_time = "failed", reason, float(self._row[0])
+    def warn(self, text: str) -> None:
+        """Keep a warning of the engine, which ends the run at the last step analysed."""
+        if not self.ended:
+            self.ended, self.failure, self.end_time = "failed", "warning", float(self._row[0])
+        if self.ended == "failed":
+            self.warnings.append(text)
 
     def _pair(self, steps: Steps) -> tuple[Steps, Steps]:
         """Poses with the velocities before them, and the same one step later."""
@@ -239,7 +243,7 @@ class Recorder:
         )  # fmt: skip
         if breach is not None and breach.index < stop:
             stop = breach.index
-            self.ended, self.reason, self.end_time = "failed", breach.reason, float(time[stop])
+            self.ended, self.failure, self.end_time = "failed", breach.code, float(time[stop])
         # the start belongs to every run
         return max(stop, 1) if self._count == 0 else stop
 

@@ -31,10 +31,10 @@ LARGEST_STEP = 1e-3  # [s] at the reference size; contact needs it ten times sho
 
 @dataclass(frozen=True, slots=True)
 class Breach:
-    """The first step that breaks a rule, and the rule in words."""
+    """The first step that breaks a rule, and the code of its `Diagnostic`."""
 
     index: int
-    reason: str
+    code: str
 
 
 def energy_scale(body: Body, gravity: float) -> float:
@@ -77,13 +77,13 @@ def first_breach(
     with np.errstate(invalid="ignore"):
         reached = np.maximum(np.maximum.accumulate(state.energy), least)
         rules = [
-            (~finite, "the state is not finite"),
-            (energy_error > ENERGY_GAIN * reached, "the engine gained energy that nothing supplied"),
-            (state.depth > PENETRATION * body.base_radius, "the cylinder sank into the ground"),
+            (~finite, "not_finite"),
+            (energy_error > ENERGY_GAIN * reached, "energy_gain"),
+            (state.depth > PENETRATION * body.base_radius, "penetration"),
         ]
         if wall is not None:
-            rules.append((wall.depth > PENETRATION * body.base_radius, "the cylinder sank into a wall"))
+            rules.append((wall.depth > PENETRATION * body.base_radius, "wall_penetration"))
         if guided:
-            rules.append((np.abs(state.twist) > GUIDE_TWIST, "the guide did not hold the twist"))
-    breaches = [Breach(int(np.argmax(broken)), reason) for broken, reason in rules if broken.any()]
+            rules.append((np.abs(state.twist) > GUIDE_TWIST, "guide"))
+    breaches = [Breach(int(np.argmax(broken)), code) for broken, code in rules if broken.any()]
     return min(breaches, key=lambda breach: breach.index, default=None)

@@ -190,7 +190,7 @@ def print_advice(advice: Advice) -> None:
 
 def advice_files(advice: Advice, command: str = "") -> dict[str, bytes]:
     """Return name and content of each file of an advice."""
-    from rockwobble.compare.storage.plain_json import dumps, loads
+    from rockwobble.models.plain_json import dumps, loads
 
     from ..figures.advise_figure import advice_figure
     from ..pages.advice.document import advice_document

@@ -58,7 +58,7 @@ def _measured(quick: bool) -> Tradeoff:
     from ..pages.case_words import describe
     from ..pages.provenance import command_line
 
-    print(describe(Case("", PIER, duration=1.0))[0])
+    print(describe(Case(PIER, duration=1.0, name=""))[0])
     with shown_fraction(STAGES) as tell:
         return measure_tradeoff(quick=quick, command=command_line(), tell=tell)
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 def as_json(findings: Sequence[Finding], versions: Mapping[str, str], seconds: float) -> str:
     """Return everything, with the floats to the last bit."""
-    from rockwobble.compare.storage.plain_json import dumps
+    from rockwobble.models.plain_json import dumps
 
     content = {
         "passed": not any(finding.failed for finding in findings),

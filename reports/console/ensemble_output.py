@@ -69,8 +69,8 @@ def _table(headings: Sequence[str], rows: Sequence[Sequence[str]]) -> Table:
 
 def ensemble_files(found: Ensemble) -> dict[str, bytes]:
     """Return name and content of each file: the numbers, and the pages that are drawn from them."""
-    from rockwobble.compare.storage import plain_json
     from rockwobble.compare.storage.parquet_file import pack
+    from rockwobble.models import plain_json
 
     return {
         "members.csv": found.members.to_csv(index=False).encode(),

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
 from ..figures.drawing import drawn, drawn_samples, line, with_grid
 
@@ -134,7 +134,7 @@ def shaken() -> Shaken:
 
 
 def _run(motion: GroundMotion, sample_step: float = _SAMPLE_STEP) -> Response:
-    return reduced.simulate(CYLINDER, motion, rtol=_RTOL, sample_step=sample_step)
+    return reduced.simulate(Case(CYLINDER, motion), rtol=_RTOL, sample_step=sample_step)
 
 
 def strong_end(motion: GroundMotion) -> float:

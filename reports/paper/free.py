@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState
 
 from ..figures.drawing import drawn, drawn_samples, line, path, with_grid
 from ..figures.thinning import kept_samples
@@ -91,7 +91,7 @@ def free_modes() -> FreeModes:
 def _released(spin: float, sample_step: float = _SAMPLE_STEP) -> Response:
     release = InitialState(tilt=RELEASE * CYLINDER.alpha, rolling_rate=spin)
     return reduced.simulate(
-        CYLINDER, initial=release, duration=_DURATION, rtol=_RTOL, sample_step=sample_step
+        Case(CYLINDER, initial=release, duration=_DURATION), rtol=_RTOL, sample_step=sample_step
     )
 
 

@@ -43,9 +43,9 @@ def cases() -> tuple[Case, ...]:
     record = el_centro_1940()
     return tuple(
         Case(
-            f"R {size:g} m, tan alpha {tan_alpha:g}, times {scale:g}",
             Cylinder(semidiagonal=size, tan_alpha=tan_alpha),
             record.scaled(scale),
+            name=f"R {size:g} m, tan alpha {tan_alpha:g}, times {scale:g}",
         )
         for size, tan_alpha in CYLINDERS
         for scale in SCALES

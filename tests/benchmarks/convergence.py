@@ -56,18 +56,15 @@ def release_case(tan_alpha: float, part: float, size: float = 6.0) -> Case:
     time = math.sqrt(size / 6.0)
     release = InitialState(tilt=part * cylinder.alpha, rolling_rate=_RATE / time)
     name = f"R {size:g} m, tan alpha {tan_alpha:g}, {part:g} alpha"
-    return Case(name, cylinder, None, release, _LENGTH * time)
+    return Case(cylinder, initial=release, duration=_LENGTH * time, name=name)
 
 
 def reference(case: Case, support: str) -> reduced.Response:
     """Return the response of the reduced model of a support."""
     return reduced.simulate(
-        case.cylinder,
-        initial=case.initial,
-        duration=case.duration,
-        model=own_model(support),
+        Case(case.cylinder, initial=case.initial, duration=case.duration, friction=case.friction),
+        **reduced.MODELS[own_model(support)],
         rtol=_MODEL_TOLERANCE,
-        friction=case.friction,
     )
 
 
@@ -145,7 +142,13 @@ def convergence(
 def _frictional(case: Case) -> Case:
     """The case with more than enough friction: the models assume that it suffices."""
     return Case(
-        case.name, case.cylinder, case.motion, case.initial, case.duration, case.gravity, friction=5.0
+        case.cylinder,
+        case.motion,
+        initial=case.initial,
+        duration=case.duration,
+        gravity=case.gravity,
+        friction=5.0,
+        name=case.name,
     )
 
 
@@ -184,7 +187,7 @@ def angle_of_turn(
     engines = multibody.available_engines() if engines is None else engines
     cylinder = Cylinder.from_dimensions(base_radius=1.0, height=4.0)
     release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.1)
-    case = Case("b 1 m, h 2 b", cylinder, None, release, 2.0, friction=5.0)
+    case = Case(cylinder, initial=release, duration=2.0, friction=5.0, name="b 1 m, h 2 b")
     unit_time = math.sqrt(cylinder.semidiagonal / 6.0)
     keys = [
         (support, engine)

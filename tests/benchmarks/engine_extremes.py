@@ -25,7 +25,7 @@ import numpy as np
 from rockwobble import multibody, reduced
 from rockwobble.compare.runs.choice import own_model
 from rockwobble.compare.traces.pair import make_pair
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState
 
 from .console import options_of, show
 from .engine_trials import Trial, trials
@@ -57,10 +57,7 @@ def run(trial: Trial) -> dict[str, Any]:
     }
     try:
         result = multibody.simulate(
-            cylinder,
-            trial.motion,
-            initial=release,
-            duration=trial.length,
+            Case(cylinder, trial.motion, initial=release, duration=trial.length),
             engine=trial.engine,
             support=trial.support,
             **trial.arguments,
@@ -70,13 +67,15 @@ def run(trial: Trial) -> dict[str, Any]:
     if result.outcome == "failed":
         return row | {"verdict": "failed", "message": result.message}
     model = reduced.simulate(
-        cylinder,
-        trial.motion,
-        initial=release,
-        duration=trial.length,
-        model=own_model(trial.support),
+        Case(
+            cylinder,
+            trial.motion,
+            initial=release,
+            duration=trial.length,
+            friction=trial.arguments.get("friction", 1.0),
+        ),
+        **reduced.MODELS[own_model(trial.support)],
         rtol=1e-10,
-        friction=trial.arguments.get("friction", 1.0),
     )
     error, whole = _difference(cylinder, model, result, trial.length)
     agrees = error <= AGREES and (whole or bool(result.message))

@@ -118,18 +118,19 @@ def cases(turns: int = 1) -> tuple[Case, ...]:
         cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
         shaken += [
             Case(
-                f"El Centro, R {size:g} m, tan alpha {tan_alpha:g}, {turn:g} rad",
                 cylinder,
                 motion.rotated(turn),
-                None,
-                15.0,
+                duration=15.0,
+                name=f"El Centro, R {size:g} m, tan alpha {tan_alpha:g}, {turn:g} rad",
             )
             for turn in TURNS[:turns]
         ]
     for tan_alpha in (0.2, 1.0, 3.0):
         cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
         release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
-        released.append(Case(f"release, tan alpha {tan_alpha:g}", cylinder, None, release, 4.0))
+        released.append(
+            Case(cylinder, initial=release, duration=4.0, name=f"release, tan alpha {tan_alpha:g}")
+        )
     return (*shaken, *released)
 
 
@@ -143,9 +144,7 @@ def seconds_per_step(chosen: Sequence[Variant]) -> np.ndarray[Any, np.dtype[np.f
             run = variant.run("recess", STEP, 1.0)
             started = time.process_time()
             multibody.simulate(
-                case.cylinder,
-                initial=case.initial,
-                duration=_PILOT,
+                Case(case.cylinder, initial=case.initial, duration=_PILOT),
                 engine=run.engine,
                 support=run.support,
                 time_step=STEP,

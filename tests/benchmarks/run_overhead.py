@@ -53,7 +53,7 @@ def run_overheads(
     release = InitialState(0.5 * _PIER.alpha, rolling_rate=0.5)
     grounds: dict[str, GroundMotion | None] = {"still": None, "El Centro / 10": el_centro_1940().scaled(0.1)}
     cases = [
-        (support, ground, Case(f"{support}, {ground}", _PIER, motion, release, seconds))
+        (support, ground, Case(_PIER, motion, initial=release, duration=seconds, name=f"{support}, {ground}"))
         for support in ("recess", "flat")
         for ground, motion in grounds.items()
     ]
@@ -88,10 +88,7 @@ def _bare(case: Case, support: str, steps: int) -> float:
 def _whole(case: Case, support: str) -> float:
     begin = time.thread_time()
     multibody.simulate(
-        case.cylinder,
-        case.motion,
-        initial=case.initial,
-        duration=case.duration,
+        Case(case.cylinder, case.motion, initial=case.initial, duration=case.duration),
         support=support,
         time_step=_STEP,
     )

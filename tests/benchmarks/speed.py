@@ -27,7 +27,7 @@ from rockwobble.compare.studies.tradeoff.scipy_equations import (
     compiled_rates,
     python_rates,
 )
-from rockwobble.models import Cylinder, el_centro_1940
+from rockwobble.models import Case, Cylinder, el_centro_1940
 
 from .console import options_of
 
@@ -69,10 +69,10 @@ class Solver:
 def el_centro_problem() -> Problem:
     """Return the problem of the benchmark."""
     cylinder, motion = Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940()
-    uplift = reduced.simulate(cylinder, motion, rtol=1e-13).uplift_time
+    uplift = reduced.simulate(Case(cylinder, motion), rtol=1e-13).uplift_time
     end = uplift + _AFTER_UPLIFT
-    start = reduced.simulate(cylinder, motion, rtol=1e-13, duration=uplift + _START)
-    exact = reduced.simulate(cylinder, motion, rtol=1e-13, duration=end)
+    start = reduced.simulate(Case(cylinder, motion, duration=uplift + _START), rtol=1e-13)
+    exact = reduced.simulate(Case(cylinder, motion, duration=end), rtol=1e-13)
     state = np.array([start.tilt[-1], start.tilt_rate[-1], start.rolling_angle[-1], start.momentum[-1]])
     moving = InitialValueProblem(
         cylinder=cylinder, motion=motion, start=uplift + _START, end=end, state=state
@@ -87,7 +87,7 @@ def kernel(problem: Problem) -> Solver:
 
     def solve(rtol: float) -> tuple[State, int]:
         response = reduced.simulate(
-            moving.cylinder, moving.motion, duration=moving.end, rtol=rtol, sample_step=moving.end
+            Case(moving.cylinder, moving.motion, duration=moving.end), rtol=rtol, sample_step=moving.end
         )
         return np.array([response.tilt[-1], response.tilt_rate[-1]]), response.step_count
 

@@ -25,7 +25,7 @@ def test_the_order_is_a_slope() -> None:
 
 
 def test_a_convergence_row() -> None:
-    case = Case("short", PIER, None, RELEASE, 1.0)
+    case = Case(PIER, initial=RELEASE, duration=1.0, name="short")
     table = convergence.convergence([case], engines=["mujoco"], steps=(8e-4, 4e-4, 2e-4), workers=1)
     assert list(table["support"]) == ["recess", "flat"]
     assert (table["error_3"] < table["error_1"]).all()
@@ -35,15 +35,17 @@ def test_a_convergence_row() -> None:
 
 
 def test_a_release_that_flies_is_said() -> None:
-    spinning = Case("fast", PIER, None, InitialState(0.5 * PIER.alpha, rolling_rate=30.0), 0.2)
+    spinning = Case(
+        PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=30.0), duration=0.2, name="fast"
+    )
     assert "loses contact" in convergence.loses_contact(spinning)
-    assert convergence.loses_contact(Case("slow", PIER, None, RELEASE, 0.2)) == ""
+    assert convergence.loses_contact(Case(PIER, initial=RELEASE, duration=0.2, name="slow")) == ""
 
 
 def test_a_horizon_row() -> None:
     time = np.arange(0.0, 1.0, 0.01)
     push = np.column_stack([3.0 * np.sin(8.0 * time), 2.0 * np.cos(7.0 * time)])
-    table = agreement_times.agreement_times([Case("push", PIER, GroundMotion(push, 0.01))], workers=1)
+    table = agreement_times.agreement_times([Case(PIER, GroundMotion(push, 0.01), name="push")], workers=1)
     assert list(table["reference"]) == ["recess", "flat", "recess"]
     guided = table.iloc[0]
     assert not guided["diverged"]
@@ -70,9 +72,9 @@ def test_settings_are_measured_on_a_record_that_is_turned() -> None:
 
 
 def test_forces_are_compared_between_passes_while_the_motion_is_the_same() -> None:
-    case = Case("release", PIER, None, RELEASE, 0.5)
+    case = Case(PIER, initial=RELEASE, duration=0.5, name="release")
     model = convergence.reference(case, "recess")
-    run = multibody.simulate(PIER, initial=RELEASE, duration=0.5)
+    run = multibody.simulate(Case(PIER, initial=RELEASE, duration=0.5))
     # 0.4 % in free response at worst; a force that is 2 % off is seen
     assert agreement_times.force_error(case, model, run, np.inf) < 4e-3
     wrong = replace(run, contact_force=1.02 * run.contact_force)

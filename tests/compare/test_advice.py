@@ -57,7 +57,7 @@ STILL = Demands(
 
 
 def case(scale: float = 1.0, **fields) -> Case:
-    return Case("El Centro", PIER, el_centro_1940().scaled(scale), **fields)
+    return Case(PIER, el_centro_1940().scaled(scale), name="El Centro", **fields)
 
 
 @pytest.fixture(scope="module")
@@ -66,7 +66,7 @@ def advice():
 
 
 def test_demands_are_those_of_the_solution():
-    response = reduced.simulate(PIER, el_centro_1940(), friction=0.15)
+    response = reduced.simulate(Case(PIER, el_centro_1940(), friction=0.15))
     found = demands_of(response)
     assert found.slides
     assert found.friction_needed == response.assumptions.largest_friction_needed > found.friction_usual > 0.1
@@ -74,13 +74,13 @@ def test_demands_are_those_of_the_solution():
     assert found.couple == pytest.approx(9.81 * found.couple_in_radii * PIER.base_radius, rel=1e-12)
     assert found.couple >= found.couple_usual > 0.0
     assert found.moving_time == pytest.approx(53.45 - response.uplift_time, abs=0.02)
-    enough = demands_of(reduced.simulate(PIER, el_centro_1940(), friction=0.3))
+    enough = demands_of(reduced.simulate(Case(PIER, el_centro_1940(), friction=0.3)))
     assert (enough.slides, enough.slip_time) == (False, 0.0)
 
 
 def test_a_release_needs_no_friction_to_uplift():
     start = InitialState(tilt=0.1, rolling_rate=0.5)
-    assert not demands_of(reduced.simulate(PIER, initial=start, duration=1.0, friction=0.1)).slides
+    assert not demands_of(reduced.simulate(Case(PIER, initial=start, duration=1.0, friction=0.1))).slides
 
 
 @pytest.mark.parametrize(
@@ -130,26 +130,26 @@ def test_an_engine_that_parts_early_rules_out_and_the_worst_grade_counts():
 
 def test_scales_hold_what_single_runs_give():
     motion = GroundMotion(el_centro_1940().acceleration[:1000], 0.01)
-    scan = scan_scales(Case("x", PIER, motion))
+    scan = scan_scales(Case(PIER, motion, name="x"))
     assert scan.factors[scan.here] == 1.0
-    assert scan.peaks["3d"][scan.here] == reduced.simulate(PIER, motion).peak_tilt
-    in_y = reduced.simulate(PIER, motion, model="planar", plane=0.5 * math.pi).peak_tilt
+    assert scan.peaks["3d"][scan.here] == reduced.simulate(Case(PIER, motion)).peak_tilt
+    in_y = reduced.simulate(Case(PIER, motion), plane=0.5 * math.pi).peak_tilt
     assert scan.peaks["planar_y"][scan.here] == in_y
     for series, options in (("3d", {}), ("planar_x", {"model": "planar", "plane": 0.0})):
         lowest = scan.lowest[series]
-        assert reduced.simulate(PIER, motion.scaled(lowest), **options).outcome == "overturned"
+        assert reduced.simulate(Case(PIER, motion.scaled(lowest)), **options).outcome == "overturned"
         # nothing lower that a scan beside its steps would see
         start, step = scan.searched_from[series], scan.search_step
         scales = np.arange(start + 0.2 * step, lowest - step / 16.0, 0.5 * step)
         beside = reduced.peak_tilts([6.0], 0.2, motion, scales, rtol=1e-8, **options)
         assert not overturned(beside).any()
         assert lowest < scan.factors[overturned(scan.peaks[series]).argmax()]
-    assert scan_scales(Case("x", PIER, GroundMotion(np.zeros((9, 2)), 0.1))) is None
+    assert scan_scales(Case(PIER, GroundMotion(np.zeros((9, 2)), 0.1), name="x")) is None
 
 
 def test_advice_and_spectrum_find_the_same_lowest():
     motion = GroundMotion(el_centro_1940().acceleration[:1000], 0.01)
-    scan = scan_scales(Case("x", PIER, motion))
+    scan = scan_scales(Case(PIER, motion, name="x"))
     spectrum = overturning_spectrum(0.2, motion, semidiagonals=[6.0], intensities=[1.0, 2.0, 3.0])
     unit = intensity_unit(0.2, motion, 9.81)
     for series in SERIES:
@@ -161,16 +161,16 @@ def test_advice_and_spectrum_find_the_same_lowest():
 
 def test_the_lowest_of_a_release_is_searched_from_still_ground():
     motion = GroundMotion(el_centro_1940().acceleration[:300], 0.01)
-    held = scan_scales(Case("x", PIER, motion, InitialState(tilt=0.9 * PIER.alpha)))
+    held = scan_scales(Case(PIER, motion, initial=InitialState(tilt=0.9 * PIER.alpha), name="x"))
     assert held.searched_from == {"3d": 0.0}
     assert held.confirmed["3d"]
-    gone = scan_scales(Case("x", PIER, motion, InitialState(tilt=1.05 * PIER.alpha)))
+    gone = scan_scales(Case(PIER, motion, initial=InitialState(tilt=1.05 * PIER.alpha), name="x"))
     assert gone.lowest == {"3d": 0.0}
 
 
 def test_a_release_has_no_planar_analysis():
     motion = GroundMotion(el_centro_1940().acceleration[:500], 0.01)
-    scan = scan_scales(Case("x", PIER, motion, InitialState(tilt=0.05, rolling_rate=0.3)))
+    scan = scan_scales(Case(PIER, motion, initial=InitialState(tilt=0.05, rolling_rate=0.3), name="x"))
     assert list(scan.peaks) == ["3d"]
     assert planar_view(scan) is None
     assert planar_view(None) is None
@@ -238,11 +238,11 @@ def pulse(still: float) -> GroundMotion:
 
 @pytest.fixture(scope="module")
 def fallen():
-    return advise(Case("pulse", PIER, pulse(0.0)), count=20)
+    return advise(Case(PIER, pulse(0.0), name="pulse"), count=20)
 
 
 def test_a_fall_that_the_record_does_not_see_is_a_fall(fallen):
-    followed = advise(Case("pulse", PIER, pulse(20.0)), count=20)
+    followed = advise(Case(PIER, pulse(20.0), name="pulse"), count=20)
     for found in (fallen, followed):
         assert found.overturned
         assert found.overturning_share == 1.0
@@ -278,7 +278,7 @@ def test_what_stands_ends_when_it_was_asked_to():
 
 
 def test_demands_of_samples_are_those_of_the_solution():
-    response = reduced.simulate(PIER, el_centro_1940(), duration=8.0, friction=0.21, sample_step=4e-5)
+    response = reduced.simulate(Case(PIER, el_centro_1940(), duration=8.0, friction=0.21), sample_step=4e-5)
     whole, sampled = demands_of(response), demands_of(response, until=8.0)
     for name in ("friction_needed", "couple", "least_normal_force", "largest_normal_force", "slip_from"):
         assert getattr(sampled, name) == pytest.approx(getattr(whole, name), rel=1e-3), name
@@ -301,7 +301,7 @@ def test_what_a_falling_cylinder_asks_is_no_demand():
 
 def test_open_ground_asks_for_the_rolling_model():
     found = advise(
-        Case("x", PIER, initial=InitialState(0.05, rolling_rate=0.5), duration=2.0), support="flat"
+        Case(PIER, initial=InitialState(0.05, rolling_rate=0.5), duration=2.0, name="x"), support="flat"
     )
     assert (found.model, found.other) == ("flat", "recess")
     assert found.demands.couple == 0.0

@@ -27,14 +27,14 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, S
 ROUNDING = 1e-12
 STEP = 4e-4  # coarse, so that four runs take a second
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.5)
-CASE = Case("release", PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=2.0)
+CASE = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=2.0, name="release")
 TIME = np.arange(201) * 0.01
 WHOLE_RUN = Agreement(length=2.0, end=2.0, diverged=False)
 
 
 def run(case: Case, step: float):
     return multibody.simulate(
-        case.cylinder, case.motion, initial=case.initial, duration=case.duration, time_step=step
+        Case(case.cylinder, case.motion, initial=case.initial, duration=case.duration), time_step=step
     )
 
 
@@ -61,7 +61,7 @@ def limit(engine) -> Limit:
 
 
 def budget(engine, limit: Limit, cylinder: Cylinder = PIER) -> ErrorBudget:
-    model = reduced.simulate(cylinder, initial=CASE.initial, duration=2.0, rtol=1e-11)
+    model = reduced.simulate(Case(cylinder, initial=CASE.initial, duration=2.0), rtol=1e-11)
     return error_budget(PIER, engine, model, model, limit, WHOLE_RUN)
 
 
@@ -95,7 +95,7 @@ def test_a_model_half_a_per_cent_off_in_size_is_unexplained(engine, limit):
 
 def test_the_difference_of_two_models_is_model_form(engine, limit):
     models = [
-        reduced.simulate(PIER, initial=CASE.initial, duration=2.0, model=m, rtol=1e-11)
+        reduced.simulate(Case(PIER, initial=CASE.initial, duration=2.0), **reduced.MODELS[m], rtol=1e-11)
         for m in ("flat", "recess")
     ]
     found = error_budget(PIER, engine, *models, limit, WHOLE_RUN)
@@ -148,7 +148,7 @@ def test_the_end_of_the_agreement_is_left_out(make_trace, cylinder):
 @pytest.mark.parametrize(("engine_name", "turn"), [("mujoco", 0.0), ("pybullet", np.pi - 0.7)])
 def test_from_rest_the_finer_runs_are_turned_away_from_where_bullet_looks_first(engine, engine_name, turn):
     motion = GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.5)
-    case = Case("pulse", PIER, motion)
+    case = Case(PIER, motion, name="pulse")
     trajectory = dataclasses.replace(engine, uplift_direction=0.7)
     refined = Refined(
         case=case, run=Run(engine_name, "recess"), label="x", trajectory=trajectory, end=0.804, difference=0.0
@@ -163,7 +163,7 @@ def test_a_base_that_lands_flat_loses_what_the_model_keeps():
     time = np.arange(26) * 0.02
     pulse = np.column_stack([np.sin(2.0 * np.pi * time / 0.5), np.zeros_like(time)])
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    case = Case("pulse", pier, GroundMotion(2.0 * 9.81 * 0.2 * pulse, 0.02), duration=1.0)
+    case = Case(pier, GroundMotion(2.0 * 9.81 * 0.2 * pulse, 0.02), duration=1.0, name="pulse")
     run = Run("mujoco", "recess", 2e-4)
     found = compare(Suite([case], [run]), runs=[run], budget=True, workers=1)
     (row,) = found.summary.to_dict("records")

@@ -144,7 +144,15 @@ def test_records_that_are_not_installed_are_said(monkeypatch: pytest.MonkeyPatch
 
 def test_a_suite_that_is_expanded_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     def without(case: Case) -> Case:
-        return Case(case.name, case.cylinder, case.motion, case.initial, case.duration, 9.81, case.friction)
+        return Case(
+            case.cylinder,
+            case.motion,
+            initial=case.initial,
+            duration=case.duration,
+            gravity=9.81,
+            friction=case.friction,
+            name=case.name,
+        )
 
     changed(
         monkeypatch,

@@ -15,7 +15,7 @@ from rockwobble.compare.check import Bench
 from rockwobble.compare.check.finding import Finding
 from rockwobble.compare.check.measures import batch
 from rockwobble.compare.check.models import after_record, landing, properties, rest, turning_points
-from rockwobble.models import GroundMotion, read_suite
+from rockwobble.models import Case, GroundMotion, read_suite
 
 SUITE = read_suite("quick")
 PARTS = (rest, landing, after_record, properties, turning_points, batch)
@@ -27,7 +27,7 @@ def bench_with(change: Change | None = None, answer: Callable[[Any], Any] = lamb
 
     def simulate(cylinder: Any, motion: Any = None, **options: Any) -> Any:
         motion = motion if change is None else change(motion, options)
-        return answer(reduced.simulate(cylinder, motion, **options))
+        return answer(reduced.simulate(Case(cylinder, motion), **options))
 
     def peak_tilts(sizes: Any, tan_alpha: float, motion: Any, scales: Any, **options: Any) -> Any:
         motion = motion if change is None else change(motion, options)

@@ -49,7 +49,7 @@ CONTRACT = [
 @pytest.fixture
 def case(cylinder):
     ground = GroundMotion(np.zeros((2, 2)), 10.0, "still")
-    return Case("made up", cylinder, ground, InitialState(tilt=0.3 * cylinder.alpha))
+    return Case(cylinder, ground, initial=InitialState(tilt=0.3 * cylinder.alpha), name="made up")
 
 
 @pytest.fixture
@@ -212,7 +212,7 @@ def test_a_suite_is_cases_times_runs(made_up, case, cylinder, monkeypatch):
     made_up()
     # no engine runs, so none needs to be installed: PyBullet is not everywhere
     monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
-    other = Case("second", cylinder, case.motion)
+    other = Case(cylinder, case.motion, name="second")
     suite = Suite([case, other], [Run("mujoco", "recess"), Run("pybullet", "recess")])
     summary = compare(suite, workers=1).summary
     assert summary[["case", "engine"]].to_numpy().tolist() == [
@@ -271,7 +271,9 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_runs(monkeyp
 
 def test_the_same_run_in_other_processes_is_the_same(cylinder):
     release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
-    job = Job(case=Case("release", cylinder, initial=release, duration=1.0), method="recess", label="recess")
+    job = Job(
+        case=Case(cylinder, initial=release, duration=1.0, name="release"), method="recess", label="recess"
+    )
     here, there = (simulate_all([job, job], workers=workers)[1] for workers in (1, 2))
     assert np.array_equal(here.tilt, there.tilt)
     assert np.array_equal(here.energy, there.energy)

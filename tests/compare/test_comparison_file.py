@@ -16,9 +16,13 @@ SHAKE = GroundMotion(
 )
 CASES = [
     Case(
-        "release", PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0, gravity=9.8
+        PIER,
+        initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5),
+        duration=1.0,
+        gravity=9.8,
+        name="release",
     ),
-    Case("shake", Cylinder(semidiagonal=6.0, tan_alpha=0.1), SHAKE, friction=2.0),
+    Case(Cylinder(semidiagonal=6.0, tan_alpha=0.1), SHAKE, friction=2.0, name="shake"),
 ]
 
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Cylinder, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 
 # Of the force: the goal. Measured: 0.4 % in free response, 0.5 % under El Centro.
 FORCE = 0.01
@@ -40,8 +40,8 @@ def _agree(run: multibody.Trajectory, model: reduced.Response, alpha: float, sta
 def test_force_of_a_free_response(engine: str, support: str, tan_alpha: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     initial = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
-    run = multibody.simulate(cylinder, initial=initial, duration=4.0, engine=engine, support=support)
-    model = reduced.simulate(cylinder, initial=initial, duration=4.0, model=MODELS[support])
+    run = multibody.simulate(Case(cylinder, initial=initial, duration=4.0), engine=engine, support=support)
+    model = reduced.simulate(Case(cylinder, initial=initial, duration=4.0), **reduced.MODELS[MODELS[support]])
     _agree(run, model, cylinder.alpha, 0.0)
 
 
@@ -49,8 +49,8 @@ def test_force_of_a_free_response(engine: str, support: str, tan_alpha: float) -
 def test_force_under_el_centro(support: str) -> None:
     # standing, uplift and two passes; the record has a kink at every sample
     cylinder, motion = Cylinder(semidiagonal=10.0, tan_alpha=0.1), el_centro_1940()
-    run = multibody.simulate(cylinder, motion, duration=6.0, support=support)
-    model = reduced.simulate(cylinder, motion, duration=6.0, model=MODELS[support])
+    run = multibody.simulate(Case(cylinder, motion, duration=6.0), support=support)
+    model = reduced.simulate(Case(cylinder, motion, duration=6.0), **reduced.MODELS[MODELS[support]])
     _agree(run, model, cylinder.alpha, model.uplift_time + 0.1)
     standing = model.time < model.uplift_time - 0.1
     # the window of the mean, 8 ms, rounds the corners of the record
@@ -65,13 +65,15 @@ def test_a_steady_wobble_holds_where_friction_suffices_and_says_where_not(engine
     period = reduced.wobbling_period(cylinder, tilt)
     initial = InitialState(tilt, rolling_rate=2.0 * math.pi / period)
     needed = float(
-        reduced.simulate(cylinder, initial=initial, duration=period, model=MODELS[support])
+        reduced.simulate(Case(cylinder, initial=initial, duration=period), **reduced.MODELS[MODELS[support]])
         .friction_needed.max()
     )  # fmt: skip
 
     def wobble(friction: float, duration: float) -> multibody.Trajectory:
         return multibody.simulate(
-            cylinder, initial=initial, duration=duration, friction=friction, engine=engine, support=support
+            Case(cylinder, initial=initial, duration=duration, friction=friction),
+            engine=engine,
+            support=support,
         )
 
     held = wobble(1.2 * needed, period)

@@ -34,7 +34,7 @@ def run():
         key = (semidiagonal, tan_alpha, scale)
         if key not in done:
             cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
-            case = Case("El Centro", cylinder, el_centro_1940().scaled(scale), duration=duration)
+            case = Case(cylinder, el_centro_1940().scaled(scale), duration=duration, name="El Centro")
             done[key] = compare(case, runs=[Run("mujoco", "recess", STEP)])
         return done[key]
 
@@ -62,7 +62,7 @@ def test_engine_agrees_with_the_recess_model(run, problem):
 def test_the_comparison_has_teeth(run, factor):
     case, _, trajectory = traces(run(10.0, 0.1, 1.0))
     off = dataclasses.replace(case.cylinder, semidiagonal=factor * case.cylinder.semidiagonal)
-    wrong = reduced.simulate(off, case.motion, duration=WINDOW)
+    wrong = reduced.simulate(Case(off, case.motion, duration=WINDOW))
     assert relative_rms(case.cylinder, wrong, trajectory, until=WINDOW) > TEETH
 
 

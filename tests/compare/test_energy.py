@@ -7,7 +7,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.energy import energy_loss
-from rockwobble.models import GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, GroundMotion, InitialState, el_centro_1940
 
 # the path is known at samples 0.01 s apart: what the fourth differences leave of the work
 SAMPLING = 2e-5
@@ -43,10 +43,10 @@ def test_work_of_the_ground_is_no_loss(make_trace, record_step):
 
 def test_the_reduced_model_loses_nothing(cylinder):
     release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
-    free = reduced.simulate(cylinder, initial=release, duration=8.0)
+    free = reduced.simulate(Case(cylinder, initial=release, duration=8.0))
     assert energy_loss(free, None) == pytest.approx(0.0, abs=1e-6)  # rtol 1e-8 over some hundred steps
     motion = el_centro_1940()
-    shaken = reduced.simulate(cylinder, motion)
+    shaken = reduced.simulate(Case(cylinder, motion))
     assert energy_loss(shaken, motion) == pytest.approx(0.0, abs=SAMPLING)
 
 

@@ -18,7 +18,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 ROUNDING = 1e-12
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-CASE = Case("release", PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0)
+CASE = Case(PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0, name="release")
 
 
 def test_starts_are_perturbed_by_the_stated_size():

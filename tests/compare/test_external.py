@@ -12,12 +12,12 @@ from rockwobble.models import Case, Cylinder, InitialState, Run, Suite, el_centr
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = Case(
-    "release",
     PIER,
     initial=InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.3, rolling_angle=1.0),
     duration=4.0,
+    name="release",
 )
-SHAKEN = Case("shaken", PIER, el_centro_1940().scaled(2.0), duration=8.0)
+SHAKEN = Case(PIER, el_centro_1940().scaled(2.0), duration=8.0, name="shaken")
 CASES = {"release": RELEASE, "shaken": SHAKEN}
 ROUNDING = 1e-9  # of degrees and quaternions in double precision, [alpha] and [rad]
 
@@ -59,7 +59,7 @@ def quaternions(trace) -> pd.DataFrame:
 def guided():
     return {
         name: multibody.simulate(
-            PIER, case.motion, initial=case.initial, duration=case.duration, time_step=5e-4
+            Case(PIER, case.motion, initial=case.initial, duration=case.duration), time_step=0.0005
         )
         for name, case in CASES.items()
     }
@@ -124,9 +124,9 @@ def test_passes_and_whole_turns_are_those_of_the_engine(guided, save):
 
 @pytest.mark.parametrize("every", [2, 3])
 def test_other_samples_are_brought_to_those_of_the_comparison(save, every):
-    response = reduced.simulate(PIER, initial=RELEASE.initial, duration=4.0, sample_step=0.004)
+    response = reduced.simulate(Case(PIER, initial=RELEASE.initial, duration=4.0), sample_step=0.004)
     trajectory = read_trajectory(save(angles(response).iloc[::every]), RELEASE)
-    reference = reduced.simulate(PIER, initial=RELEASE.initial, duration=4.0)
+    reference = reduced.simulate(Case(PIER, initial=RELEASE.initial, duration=4.0))
     pair = make_pair(PIER, reference, trajectory)
     assert len(pair.time) >= 400
     # a local cubic through samples 0.012 s apart at most, times p^3 of the tilt
@@ -136,8 +136,8 @@ def test_other_samples_are_brought_to_those_of_the_comparison(save, every):
 
 def test_a_pass_between_two_samples_is_guessed_by_the_sense_of_the_turning_and_said(save):
     start = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.01)
-    case = Case("near", PIER, initial=start, duration=5.0)
-    response = reduced.simulate(PIER, initial=start, duration=5.0)
+    case = Case(PIER, initial=start, duration=5.0, name="near")
+    response = reduced.simulate(Case(PIER, initial=start, duration=5.0))
     trajectory = read_trajectory(save(angles(response)), case)
     assert not trajectory.passes["resolved"].all()
     assert "fell between two samples" in trajectory.message
@@ -193,8 +193,8 @@ def test_noise_of_a_measurement_is_no_uplift(guided, save):
 
 def test_a_fall_ends_the_trajectory(save):
     fall = InitialState(tilt=1.01 * PIER.alpha, tilt_rate=0.1)
-    case = Case("fall", PIER, initial=fall, duration=20.0)
-    response = reduced.simulate(PIER, initial=fall, duration=20.0)
+    case = Case(PIER, initial=fall, duration=20.0, name="fall")
+    response = reduced.simulate(Case(PIER, initial=fall, duration=20.0))
     assert response.outcome == "overturned"
     found = compare(case, runs=[], external=[save(angles(response))], workers=1)
     (row,) = found.summary.to_dict("records")
@@ -205,9 +205,9 @@ def test_a_fall_ends_the_trajectory(save):
 @pytest.mark.parametrize(("tilt", "outcome"), [(1.2, "overturned"), (0.9, "completed")])
 def test_a_fall_that_outlasts_the_run_is_followed_to_the_ground(save, tilt, outcome):
     start = InitialState(tilt=tilt * PIER.alpha, tilt_rate=0.01)
-    response = reduced.simulate(PIER, initial=start, duration=20.0)
+    response = reduced.simulate(Case(PIER, initial=start, duration=20.0))
     length = 0.5 * float(response.time[-1]) if outcome == "overturned" else 1.0
-    case = Case("short", PIER, initial=start, duration=length)
+    case = Case(PIER, initial=start, duration=length, name="short")
     trajectory = read_trajectory(save(angles(response)), case)
     assert trajectory.outcome == outcome
     if outcome == "overturned":

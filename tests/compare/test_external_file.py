@@ -12,7 +12,7 @@ from rockwobble.models import Case, Cylinder, InitialState
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 START = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.3, rolling_angle=1.0)
-RELEASE = Case("release", PIER, initial=START, duration=4.0)
+RELEASE = Case(PIER, initial=START, duration=4.0, name="release")
 ROUNDING = 1e-9  # of degrees and quaternions in double precision [rad]
 
 TURN = "time,qw,qx,qy,qz"
@@ -81,7 +81,7 @@ def test_a_file_that_is_not_there_and_options_out_of_range(tmp_path):
 
 @pytest.fixture(scope="module")
 def response():
-    return reduced.simulate(PIER, initial=START, duration=4.0)
+    return reduced.simulate(Case(PIER, initial=START, duration=4.0))
 
 
 def columns(response, **others) -> pd.DataFrame:
@@ -98,10 +98,10 @@ def test_an_azimuth_may_be_wrapped_in_any_way(save, response):
 
 def test_a_signed_tilt_leans_to_the_other_side(save):
     start = InitialState(tilt=0.5 * PIER.alpha, rolling_angle=0.4)
-    planar = reduced.simulate(PIER, initial=start, duration=4.0)
+    planar = reduced.simulate(Case(PIER, initial=start, duration=4.0))
     assert planar.signed_tilt.min() < -0.4 * PIER.alpha
     table = columns(planar, **{"tilt [rad]": planar.signed_tilt, "azimuth [rad]": 0.4})
-    case = Case("planar", PIER, initial=start, duration=4.0)
+    case = Case(PIER, initial=start, duration=4.0, name="planar")
     trajectory = read_trajectory(save(table), case)
     assert trajectory.tilt == pytest.approx(planar.tilt, abs=ROUNDING)
     apart = np.exp(1j * trajectory.rolling_angle) - np.exp(1j * planar.rolling_angle)
@@ -135,7 +135,7 @@ def test_lost_samples_are_left_out_and_counted(save, response):
 
 
 def test_uneven_samples_and_a_clock_that_does_not_start_at_zero(save):
-    fine = reduced.simulate(PIER, initial=START, duration=4.0, sample_step=0.001)
+    fine = reduced.simulate(Case(PIER, initial=START, duration=4.0), sample_step=0.001)
     uneven = np.cumsum(np.tile([8, 13, 9, 12], 95))
     table = columns(fine, **{"tilt [rad]": fine.tilt, "azimuth [rad]": fine.rolling_angle}).iloc[[0, *uneven]]
     table["time"] += 7.0

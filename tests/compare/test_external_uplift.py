@@ -42,11 +42,11 @@ def test_a_release_has_no_uncertain_uplift_and_a_body_at_rest_has_none():
 
 
 def shaken(body, scale):
-    return Case("shaken", body, el_centro_1940().scaled(scale), duration=6.0)
+    return Case(body, el_centro_1940().scaled(scale), duration=6.0, name="shaken")
 
 
 def trace_of(case, sample_step):
-    return reduced.simulate(case.cylinder, case.motion, duration=case.duration, sample_step=sample_step)
+    return reduced.simulate(Case(case.cylinder, case.motion, duration=case.duration), sample_step=sample_step)
 
 
 def file_of(trace, noise=0.0, seed=0):

@@ -9,7 +9,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.compare.studies.extremes import EXTREMES, METHODS, conditions, scan
-from rockwobble.models import InitialState
+from rockwobble.models import Case, InitialState
 
 RECESS = ("reduced recess", "recess", "")
 GUIDED = ("MuJoCo recess", "mujoco", "recess")
@@ -56,7 +56,7 @@ def test_the_answer_to_another_question_is_called_silent(monkeypatch):
     longer = replace(condition, case=replace(condition.case, duration=0.2))
     case = longer.case
     other = multibody.simulate(
-        case.cylinder, initial=InitialState(0.45 * case.cylinder.alpha, rolling_rate=0.5), duration=0.2
+        Case(case.cylinder, initial=InitialState(0.45 * case.cylinder.alpha, rolling_rate=0.5), duration=0.2)
     )
     monkeypatch.setattr(scan.multibody, "simulate", lambda *_, **__: other)
     row = scan.run(longer, GUIDED)

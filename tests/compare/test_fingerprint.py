@@ -30,7 +30,7 @@ VALUES = [
 
 def job(method: str | Run = "recess", name: str = "a", label: str = "b", **changes) -> Job:
     case = {"cylinder": PIER, "motion": MOTION} | changes
-    return Job(case=Case(name, **case), method=method, label=label)
+    return Job(case=Case(name=name, **case), method=method, label=label)
 
 
 def test_different_values_have_different_names():

@@ -16,7 +16,7 @@ from rockwobble.compare.studies.spectrum.lowest_overturning import (
     search_lowest,
     uplift_factor,
 )
-from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
 FALL = 0.5 * math.pi
 ALPHA = 0.1
@@ -147,8 +147,10 @@ def test_nothing_moves_below_the_factor_of_uplift(options):
     if "plane" in options:
         run |= {"model": "planar", "plane": options["plane"]}
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    assert math.isnan(reduced.simulate(pier, motion.scaled(factor * (1.0 - HAIR)), **run).uplift_time)
-    assert math.isfinite(reduced.simulate(pier, motion.scaled(factor * (1.0 + HAIR)), **run).uplift_time)
+    assert math.isnan(reduced.simulate(Case(pier, motion.scaled(factor * (1.0 - HAIR))), **run).uplift_time)
+    assert math.isfinite(
+        reduced.simulate(Case(pier, motion.scaled(factor * (1.0 + HAIR))), **run).uplift_time
+    )
 
 
 def test_the_end_of_a_run_between_two_samples_counts():

@@ -20,7 +20,7 @@ TIME = np.arange(1001) * 0.01
 
 @pytest.fixture
 def case(cylinder):
-    return Case("made up", cylinder, initial=InitialState(0.3 * cylinder.alpha), duration=10.0)
+    return Case(cylinder, initial=InitialState(0.3 * cylinder.alpha), duration=10.0, name="made up")
 
 
 @pytest.fixture
@@ -70,7 +70,7 @@ def test_the_apex_itself_ends_an_agreement_though_a_fall_follows(cylinder):
     time = np.arange(102) * 0.01
     pulse = 4.0 * 9.81 * cylinder.tan_alpha * np.sin(2.0 * np.pi * np.minimum(time, 1.0))
     motion = GroundMotion(np.column_stack([pulse, np.zeros_like(pulse)]), 0.01)
-    response = reduced.simulate(cylinder, motion, duration=6.0)
+    response = reduced.simulate(Case(cylinder, motion, duration=6.0))
     assert response.outcome == "overturned"
     assert response.passes.empty
     (landed,) = landings(response)

@@ -24,7 +24,7 @@ def test_the_cases_turn():
 
 
 def test_rows_hold_each_support_against_its_model():
-    case = Case("short", SQUAT, initial=InitialState(SQUAT.alpha / 2, rolling_rate=0.5), duration=1.2)
+    case = Case(SQUAT, initial=InitialState(SQUAT.alpha / 2, rolling_rate=0.5), duration=1.2, name="short")
     steep = Run("mujoco", "ring", ring_inclination=0.1)
     rows = measure(
         [case], [Run("mujoco", "recess"), Run("mujoco", "flat"), Run("mujoco", "ring"), steep], workers=1

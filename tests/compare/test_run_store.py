@@ -18,7 +18,7 @@ from rockwobble.compare.storage.stored_trace import from_parquet, stored, to_par
 from rockwobble.models import Case, Cylinder, InitialState, Run
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-CASE = Case("release", PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0)
+CASE = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0, name="release")
 # the largest step that contact allows: what is tested is what becomes of a run
 GUIDED, FREE = Run("mujoco", "recess", 1e-3), Run("mujoco", "flat", 1e-3)
 
@@ -85,7 +85,7 @@ def test_every_field_of_a_trajectory_is_kept_to_the_last_bit(tmp_path):
 
 
 def test_a_response_keeps_what_can_be_asked_of_it():
-    response = reduced.simulate(PIER, initial=CASE.initial, duration=1.0)
+    response = reduced.simulate(Case(PIER, initial=CASE.initial, duration=1.0))
     kept = from_parquet(to_parquet(stored(response), {}))
     for name in (
         "contact_point",
@@ -103,7 +103,7 @@ def test_a_response_keeps_what_can_be_asked_of_it():
 
 
 def test_a_run_that_never_uplifts_is_kept_with_its_nan():
-    response = reduced.simulate(PIER, duration=0.5)
+    response = reduced.simulate(Case(PIER, duration=0.5))
     kept = from_parquet(to_parquet(stored(response), {}))
     assert np.isnan(kept.uplift_time)
     assert kept.passes.dtypes.to_dict() == response.passes.dtypes.to_dict()

@@ -21,7 +21,7 @@ FOLLOWS = 1e-2
 
 @pytest.fixture
 def case(cylinder):
-    return Case("still", cylinder, duration=1.0)
+    return Case(cylinder, duration=1.0, name="still")
 
 
 def test_default_runs_are_every_installed_engine_guided_and_free():
@@ -56,7 +56,7 @@ def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeyp
         require_runnable(case, guided)
     with pytest.raises(ValueError, match="exudyn cannot uplift a cylinder that stands"):
         require_runnable(case, Run("exudyn", "flat"))
-    released = Case("released", case.cylinder, initial=InitialState(0.1), duration=1.0)
+    released = Case(case.cylinder, initial=InitialState(0.1), duration=1.0, name="released")
     require_runnable(released, Run("exudyn", "flat"))
     find = importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "exudyn" else find(name))
@@ -77,7 +77,7 @@ def test_unknown_engines_and_supports_are_refused(case):
 
 def test_a_time_step_too_large_for_the_size_is_refused(case):
     require_runnable(case, Run("mujoco", "recess", 1e-3))
-    small = Case("small", Cylinder(semidiagonal=0.06, tan_alpha=0.2), duration=1.0)
+    small = Case(Cylinder(semidiagonal=0.06, tan_alpha=0.2), duration=1.0, name="small")
     with pytest.raises(ValueError, match=r"time_step must be at most 0.0001 s"):
         require_runnable(small, Run("mujoco", "recess", 1e-3))
 
@@ -91,7 +91,7 @@ def test_open_ground_is_held_against_both_models():
 
 def test_a_ring_that_is_not_touched_follows_the_model_of_its_support():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    case = Case("release", pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=2.0)
+    case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=2.0, name="release")
     rows = compare(case, runs=[Run("mujoco", "ring")], workers=1).summary.set_index("reference")
     assert not rows["message"].str.contains("wall").any()
     other = {"recess": "flat", "flat": "recess"}[own_model("ring")]
@@ -128,9 +128,9 @@ def test_labels_tell_runs_apart_with_as_little_as_possible():
     assert run_labels(runs) == (
         "mujoco recess",
         "mujoco flat 0.0001 s",
-        "mujoco flat 5e-05 s",
-        "mujoco flat 5e-05 s integrator=RK4",
-        "mujoco flat 5e-05 s integrator=Euler",
+        "mujoco flat 5e-5 s",
+        "mujoco flat 5e-5 s integrator=RK4",
+        "mujoco flat 5e-5 s integrator=Euler",
     )
 
 

@@ -10,7 +10,7 @@ from rockwobble import reduced
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
 from rockwobble.compare.studies.spectrum.study import OverturningSpectrum, overturning_spectrum
 from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
-from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
 EL_CENTRO = el_centro_1940()
 SIZES = np.array([1.0, 4.0, 12.0, 24.0])
@@ -38,8 +38,10 @@ def test_each_series_is_driven_by_its_part_of_the_same_shaking(spectrum, series,
     for i, j in ((0, 1), (1, 4), (2, 3), (3, 6), (3, 10)):
         # the recess model under one component stays in its plane, by another way than the planar model
         run = reduced.simulate(
-            Cylinder(semidiagonal=SIZES[i], tan_alpha=0.1),
-            motion.scaled(INTENSITIES[j] * 0.1 * 9.81 / EL_CENTRO.peak),
+            Case(
+                Cylinder(semidiagonal=SIZES[i], tan_alpha=0.1),
+                motion.scaled(INTENSITIES[j] * 0.1 * 9.81 / EL_CENTRO.peak),
+            ),
             rtol=1e-8,
         )
         if run.outcome != "failed":
@@ -110,9 +112,8 @@ def test_the_rolling_model_makes_another_spectrum(spectrum):
         0.1, EL_CENTRO, semidiagonals=SIZES[:2], intensities=INTENSITIES[:4], model="flat", search_step=2.0
     )
     single = reduced.simulate(
-        Cylinder(semidiagonal=4.0, tan_alpha=0.1),
-        EL_CENTRO.scaled(rolling.scales[1]),
-        model="flat",
+        Case(Cylinder(semidiagonal=4.0, tan_alpha=0.1), EL_CENTRO.scaled(rolling.scales[1])),
+        support="flat",
         rtol=1e-8,
     )
     assert rolling.peak_tilt[SPATIAL][1, 1] == pytest.approx(single.peak_tilt, rel=SAME_RUN)

@@ -153,7 +153,7 @@ def test_each_input_of_a_chunk_is_in_its_key():
 
 def test_cases_with_engines_and_models(tmp_path):
     cases = [
-        Case(f"{tilt:g}", PIER, initial=InitialState(tilt * PIER.alpha, rolling_rate=0.5), duration=0.5)
+        Case(PIER, initial=InitialState(tilt * PIER.alpha, rolling_rate=0.5), duration=0.5, name=f"{tilt:g}")
         for tilt in (0.3, 0.5)
     ]
     guided = Run("mujoco", "recess", 1e-3)
@@ -200,8 +200,8 @@ def test_a_chunk_that_cannot_be_read_is_named(tmp_path):
         (lambda: grid(rtol=1.0), "rtol must be from"),
         (lambda: grid(speed=1.0), "the options of a grid are"),
         (lambda: CaseSweep([], ["recess"]), "at least one case"),
-        (lambda: CaseSweep([Case("a", PIER, duration=1.0)], ["flat"]), "got 'flat'"),
-        (lambda: CaseSweep([Case("a", PIER, duration=1.0)] * 2, ["recess"]), "got 'a' twice"),
+        (lambda: CaseSweep([Case(PIER, duration=1.0, name="a")], ["flat"]), "got 'flat'"),
+        (lambda: CaseSweep([Case(PIER, duration=1.0, name="a")] * 2, ["recess"]), "got 'a' twice"),
         (lambda: sweep_function(grid(), chunk_size=0), "chunk_size must be at least 1"),
         (lambda: open_sweep_store("/"), "must be the folder of a sweep"),
     ],

@@ -16,24 +16,24 @@ LONG = GroundMotion(np.zeros((21, 2)), 0.1)
 
 
 def test_a_case_lasts_as_long_as_its_motion_unless_told_otherwise() -> None:
-    assert Case("a", PIER, SHORT).length == 1.0
-    assert Case("a", PIER, SHORT, duration=5.0).length == 5.0
-    assert Case("a", PIER, initial=InitialState(tilt=0.1), duration=8).length == 8.0
+    assert Case(PIER, SHORT, name="a").length == 1.0
+    assert Case(PIER, SHORT, duration=5.0, name="a").length == 5.0
+    assert Case(PIER, initial=InitialState(tilt=0.1), duration=8, name="a").length == 8.0
 
 
 def test_a_copy_with_another_motion_follows_that_motion() -> None:
-    assert dataclasses.replace(Case("a", PIER, SHORT), motion=LONG).length == 2.0
+    assert dataclasses.replace(Case(PIER, SHORT, name="a"), motion=LONG).length == 2.0
 
 
 def test_gravity_and_friction_have_defaults() -> None:
-    case = Case("a", PIER, SHORT)
+    case = Case(PIER, SHORT, name="a")
     assert (case.gravity, case.friction) == (9.81, 1.0)
-    assert Case("a", PIER, SHORT, friction=0).friction == 0.0
+    assert Case(PIER, SHORT, friction=0, name="a").friction == 0.0
 
 
 def test_a_still_ground_needs_a_duration() -> None:
     with pytest.raises(ValueError, match=r"^duration \[s\] must be given where there is no ground motion$"):
-        Case("a", PIER, initial=InitialState(tilt=0.1))
+        Case(PIER, initial=InitialState(tilt=0.1), name="a")
     with pytest.raises(ValueError, match="must be given"):
         run_duration(None, None)
 
@@ -42,13 +42,13 @@ def test_a_still_ground_needs_a_duration() -> None:
 @pytest.mark.parametrize(("name", "unit"), [("duration", "s"), ("gravity", "m/s\\^2")])
 def test_refuses_a_duration_or_a_gravity_that_is_no_positive_number(name: str, unit: str, bad: Any) -> None:
     with pytest.raises(ValueError, match=rf"^{name} must be .* \[{unit}\], got "):
-        Case("a", PIER, SHORT, **{name: bad})
+        Case(PIER, SHORT, name="a", **{name: bad})
 
 
 @pytest.mark.parametrize("bad", [-1e-9, math.nan, math.inf, "1"])
 def test_refuses_a_friction_that_is_negative_or_no_number(bad: Any) -> None:
     with pytest.raises(ValueError, match=r"^friction must (not be negative|be a finite number), got "):
-        Case("a", PIER, SHORT, friction=bad)
+        Case(PIER, SHORT, friction=bad, name="a")
 
 
 def test_a_run_keeps_its_settings_and_nobody_changes_them() -> None:
@@ -82,7 +82,7 @@ def test_refuses_a_time_step_that_is_no_positive_number(bad: Any) -> None:
 
 
 def test_a_suite_takes_any_iterable_once() -> None:
-    suite = Suite((Case(name, PIER, SHORT) for name in "ab"), iter([Run("mujoco", "recess")]))
+    suite = Suite((Case(PIER, SHORT, name=name) for name in "ab"), iter([Run("mujoco", "recess")]))
     assert [case.name for case in suite.cases] == ["a", "b"]
     assert len(suite.runs) == 1
 
@@ -91,4 +91,4 @@ def test_refuses_a_suite_of_nothing_and_two_cases_of_one_name() -> None:
     with pytest.raises(ValueError, match=r"^a suite must have at least one case$"):
         Suite([], [Run("mujoco", "recess")])
     with pytest.raises(ValueError, match=r"^the cases of a suite must have different names, got 'b' twice$"):
-        Suite([Case(name, PIER, SHORT) for name in "abcb"], [])
+        Suite([Case(PIER, SHORT, name=name) for name in "abcb"], [])

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody import stepping
 from rockwobble.multibody.recording.passes import TurningPoint
 from rockwobble.multibody.scene.excitation import StepMeans
@@ -29,8 +29,8 @@ def one_sine(times_uplift: float, still: float = 0.0) -> GroundMotion:
 
 
 def test_a_fall_that_the_record_cuts_off_overturns(engine: str) -> None:
-    short = multibody.simulate(PIER, one_sine(4.0), engine=engine)
-    whole = multibody.simulate(PIER, one_sine(4.0, still=6.0), engine=engine)
+    short = multibody.simulate(Case(PIER, one_sine(4.0)), engine=engine)
+    whole = multibody.simulate(Case(PIER, one_sine(4.0, still=6.0)), engine=engine)
     for run in (short, whole):
         assert run.outcome == "overturned"
         assert run.peak_tilt == run.tilt[-1] == 0.5 * np.pi
@@ -50,15 +50,15 @@ def test_a_fall_that_the_record_cuts_off_overturns(engine: str) -> None:
 @pytest.mark.parametrize("duration", [1.3, 1.6, 2.4, 5.69])
 def test_wherever_still_ground_is_cut_the_fall_ends_alike(duration: float) -> None:
     # at 1.3 s the base still comes down on the side from which it will rise and fall
-    whole = multibody.simulate(PIER, one_sine(4.0, still=6.0))
-    cut = multibody.simulate(PIER, one_sine(4.0, still=6.0), duration=duration)
+    whole = multibody.simulate(Case(PIER, one_sine(4.0, still=6.0)))
+    cut = multibody.simulate(Case(PIER, one_sine(4.0, still=6.0), duration=duration))
     assert (cut.outcome, cut.time[-1]) == ("overturned", pytest.approx(whole.time[-1], abs=1e-9))
 
 
 def test_a_run_that_stands_ends_at_its_duration_and_keeps_its_peak(engine: str) -> None:
     # at its end the tilt rises, but without the energy to pass the balance
-    run = multibody.simulate(PIER, one_sine(2.0), engine=engine)
-    later = multibody.simulate(PIER, one_sine(2.0, still=2.0), engine=engine)
+    run = multibody.simulate(Case(PIER, one_sine(2.0)), engine=engine)
+    later = multibody.simulate(Case(PIER, one_sine(2.0, still=2.0)), engine=engine)
     assert (run.outcome, run.time[-1]) == ("completed", PERIOD)
     assert run.tilt_rate[-1] > 0.0
     assert run.peak_tilt == run.tilt[-1] < 0.5 * later.peak_tilt
@@ -68,10 +68,10 @@ def test_a_look_ahead_leaves_no_trace(engine: str, monkeypatch: pytest.MonkeyPat
     # it wobbles with more energy than that of its balance, and turns back after the end
     start = InitialState(0.55 * PIER.alpha, tilt_rate=0.02, rolling_rate=0.95)
     given: dict[str, Any] = {"initial": start, "duration": 0.51303}
-    looked = multibody.simulate(PIER, engine=engine, **given)
-    later = multibody.simulate(PIER, engine=engine, **given | {"duration": 3.0})
+    looked = multibody.simulate(Case(PIER), engine=engine, **given)
+    later = multibody.simulate(Case(PIER), engine=engine, **given | {"duration": 3.0})
     monkeypatch.setattr(stepping, "may_overturn", lambda *_: False)
-    alone = multibody.simulate(PIER, engine=engine, **given)
+    alone = multibody.simulate(Case(PIER), engine=engine, **given)
     assert looked.energy[-1] > 9.81 * (PIER.semidiagonal - PIER.mass_centre_height)
     for field in dataclasses.fields(looked):
         one, other = getattr(looked, field.name), getattr(alone, field.name)
@@ -89,9 +89,9 @@ def test_ground_that_is_cut_off_keeps_still(engine: str) -> None:
     # the push would turn round after the cut, which is at a sample
     push = np.zeros((400, 3))
     push[:60, 0], push[60:, 0], push[60:, 2] = 3.0 * UPLIFT, -6.0 * UPLIFT, 3.0
-    cut = multibody.simulate(PIER, GroundMotion(push, 0.01), duration=0.59, engine=engine)
+    cut = multibody.simulate(Case(PIER, GroundMotion(push, 0.01), duration=0.59), engine=engine)
     push[60:] = 0.0
-    ended = multibody.simulate(PIER, GroundMotion(push, 0.01), duration=0.59, engine=engine)
+    ended = multibody.simulate(Case(PIER, GroundMotion(push, 0.01), duration=0.59), engine=engine)
     assert cut.outcome == ended.outcome == "overturned"
     np.testing.assert_array_equal(cut.time[:-1], ended.time[:-1])
     # until the rim leaves the ground and comes back, which multiplies rounding
@@ -122,17 +122,21 @@ def test_the_step_after_a_cut_takes_back_what_goes_beyond_it(centre: float) -> N
 
 def test_what_is_not_decided_in_time_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(stepping, "LONGEST_FALL", 0.5)
-    run = multibody.simulate(PIER, one_sine(4.0))
+    run = multibody.simulate(Case(PIER, one_sine(4.0)))
     assert (run.outcome, run.time[-1]) == ("completed", PERIOD)
     assert "it ends in the middle of a fall, and whether that overturns it is not decided" in run.message
-    assert "not decided" not in multibody.simulate(PIER, one_sine(2.0)).message
+    assert "not decided" not in multibody.simulate(Case(PIER, one_sine(2.0))).message
 
 
 def test_a_cylinder_beyond_its_balance_falls_without_energy_to_spare(engine: str) -> None:
     # less energy than that of the balance, on its far side
-    run = multibody.simulate(PIER, initial=InitialState(1.05 * PIER.alpha), duration=0.05, engine=engine)
+    run = multibody.simulate(
+        Case(PIER, initial=InitialState(1.05 * PIER.alpha), duration=0.05), engine=engine
+    )
     assert run.outcome == "overturned"
-    short = multibody.simulate(PIER, initial=InitialState(0.95 * PIER.alpha), duration=0.05, engine=engine)
+    short = multibody.simulate(
+        Case(PIER, initial=InitialState(0.95 * PIER.alpha), duration=0.05), engine=engine
+    )
     assert (short.outcome, short.time[-1]) == ("completed", 0.05)
 
 
@@ -155,13 +159,13 @@ def test_noise_of_a_slow_rise_is_no_turn() -> None:
 
 def test_progress_stays_at_one_while_it_is_carried_on() -> None:
     seen: list[float] = []
-    multibody.simulate(PIER, one_sine(4.0), progress=seen.append)
+    multibody.simulate(Case(PIER, one_sine(4.0)), progress=seen.append)
     assert seen == sorted(seen)
     assert seen.count(1.0) > 2
 
 
 def test_a_fall_after_the_end_is_sampled_as_the_rest(engine: str) -> None:
-    run = multibody.simulate(PIER, one_sine(4.0), duration=1.2034, sample_step=0.02, engine=engine)
+    run = multibody.simulate(Case(PIER, one_sine(4.0), duration=1.2034), sample_step=0.02, engine=engine)
     grid = 0.02 * np.arange(61)
     np.testing.assert_allclose(run.time[:61], grid, rtol=1e-12)
     assert run.time[61] == 1.2034

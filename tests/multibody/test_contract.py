@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)
@@ -21,7 +21,7 @@ RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)
 
 def test_fields_and_shapes(engine: str) -> None:
     run = multibody.simulate(
-        PIER, initial=RELEASE, duration=0.5037, sample_step=0.02, engine=engine, support="flat"
+        Case(PIER, initial=RELEASE, duration=0.5037), sample_step=0.02, engine=engine, support="flat"
     )
     n = len(run.time)
     # multiples of the sample step and the exact end
@@ -56,7 +56,7 @@ def test_fields_and_shapes(engine: str) -> None:
 
 def test_starts_in_the_stated_state(engine: str) -> None:
     initial = InitialState(0.12, tilt_rate=0.3, rolling_angle=-2.0, rolling_rate=0.7)
-    run = multibody.simulate(PIER, initial=initial, duration=0.05, engine=engine)
+    run = multibody.simulate(Case(PIER, initial=initial, duration=0.05), engine=engine)
     # loaded penetration is 1e-11 m
     assert run.tilt[0] == pytest.approx(0.12, rel=1e-12)
     assert run.tilt_rate[0] == pytest.approx(0.3, rel=1e-9)
@@ -69,22 +69,22 @@ def test_starts_in_the_stated_state(engine: str) -> None:
 
 def test_a_run_repeats_bit_for_bit(engine: str) -> None:
     motion = el_centro_1940().scaled(2.0)
-    first, second = (multibody.simulate(PIER, motion, duration=2.0, engine=engine) for _ in range(2))
+    first, second = (multibody.simulate(Case(PIER, motion, duration=2.0), engine=engine) for _ in range(2))
     np.testing.assert_array_equal(first.tilt, second.tilt)
 
 
 def test_rotated_problem_has_a_rotated_answer(engine: str) -> None:
     # a release does not know the axes of the scene
     turned = InitialState(RELEASE.tilt, rolling_angle=1.234, rolling_rate=RELEASE.rolling_rate)
-    first = multibody.simulate(PIER, initial=RELEASE, duration=1.0, engine=engine)
-    second = multibody.simulate(PIER, initial=turned, duration=1.0, engine=engine)
+    first = multibody.simulate(Case(PIER, initial=RELEASE, duration=1.0), engine=engine)
+    second = multibody.simulate(Case(PIER, initial=turned, duration=1.0), engine=engine)
     # solvers stop at a tolerance: friction rows are not isotropic below it
     np.testing.assert_allclose(second.tilt, first.tilt, atol=1e-8)
     np.testing.assert_allclose(second.rolling_angle - 1.234, first.rolling_angle, atol=1e-6)
 
 
 def test_overturning_ends_with_the_side_on_the_ground(engine: str) -> None:
-    run = multibody.simulate(PIER, initial=InitialState(1.3 * PIER.alpha), duration=10.0, engine=engine)
+    run = multibody.simulate(Case(PIER, initial=InitialState(1.3 * PIER.alpha), duration=10.0), engine=engine)
     assert run.outcome == "overturned"
     assert run.tilt[-1] == run.peak_tilt == 0.5 * np.pi
     assert run.time[-1] < 10.0
@@ -94,7 +94,7 @@ def test_overturning_ends_with_the_side_on_the_ground(engine: str) -> None:
 
 def test_progress_rises_to_one_and_interrupts(engine: str) -> None:
     seen: list[float] = []
-    multibody.simulate(PIER, initial=RELEASE, duration=3.0, engine=engine, progress=seen.append)
+    multibody.simulate(Case(PIER, initial=RELEASE, duration=3.0), engine=engine, progress=seen.append)
     assert seen == sorted(seen)
     assert seen[-1] == 1.0
     assert len(seen) > 2
@@ -103,7 +103,7 @@ def test_progress_rises_to_one_and_interrupts(engine: str) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        multibody.simulate(PIER, initial=RELEASE, duration=3.0, engine=engine, progress=interrupt)
+        multibody.simulate(Case(PIER, initial=RELEASE, duration=3.0), engine=engine, progress=interrupt)
 
 
 def test_clients_are_closed_and_nothing_is_printed(
@@ -115,9 +115,11 @@ def test_clients_are_closed_and_nothing_is_printed(
         raise RuntimeError
 
     with pytest.raises(RuntimeError):
-        multibody.simulate(PIER, initial=RELEASE, duration=0.1, engine=engine, progress=fail)
+        multibody.simulate(Case(PIER, initial=RELEASE, duration=0.1), engine=engine, progress=fail)
     # one that diverges is where MuJoCo would write a file
-    multibody.simulate(PIER, initial=RELEASE, duration=0.1, engine=engine, guide_stiffness=1e12)
+    multibody.simulate(
+        Case(PIER, initial=RELEASE, duration=0.1), engine=engine, guide_stiffness=1000000000000.0
+    )
     if engine == "pybullet":
         import pybullet
 
@@ -171,7 +173,7 @@ def test_bad_input_is_refused_in_one_line(change: dict[str, Any], message: str) 
         pytest.skip("no wheel of pybullet here")
     arguments: dict[str, Any] = {"initial": RELEASE, "duration": 1.0, **change}
     with pytest.raises(ValueError, match=r"must|setting") as caught:
-        multibody.simulate(PIER, **arguments)
+        multibody.simulate(Case(PIER), **arguments)
     assert str(caught.value).startswith(message)
     assert "\n" not in str(caught.value)
 
@@ -179,7 +181,7 @@ def test_bad_input_is_refused_in_one_line(change: dict[str, Any], message: str) 
 def test_the_largest_step_scales_with_the_cylinder() -> None:
     small = Cylinder(semidiagonal=0.06, tan_alpha=0.2)
     with pytest.raises(ValueError, match=r"at most 0\.0001 s"):
-        multibody.simulate(small, initial=RELEASE, duration=0.1, time_step=2e-4)
+        multibody.simulate(Case(small, initial=RELEASE, duration=0.1), time_step=0.0002)
 
 
 def test_an_engine_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -194,11 +196,11 @@ def test_an_engine_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatc
     with pytest.raises(
         multibody.EngineNotInstalledError, match="'pybullet' is not installed here: pip install"
     ):
-        multibody.simulate(PIER, initial=RELEASE, duration=0.1, engine="pybullet")
+        multibody.simulate(Case(PIER, initial=RELEASE, duration=0.1), engine="pybullet")
 
 
 def test_without_a_motion_but_standing_it_stands(engine: str) -> None:
-    run = multibody.simulate(PIER, duration=1.0, engine=engine)
+    run = multibody.simulate(Case(PIER, duration=1.0), engine=engine)
     assert run.outcome == "rest"
     assert run.peak_tilt < 1e-8
     assert run.energy == pytest.approx(np.zeros(len(run.time)), abs=1e-8)
@@ -206,7 +208,7 @@ def test_without_a_motion_but_standing_it_stands(engine: str) -> None:
 
 def test_motion_ends_and_the_run_goes_on(engine: str) -> None:
     pulse = GroundMotion([[0.0, 0.0], [4.0, 1.0], [-1.0, 2.0], [0.0, 0.0]], 0.2)
-    run = multibody.simulate(PIER, pulse, duration=1.5, engine=engine)
+    run = multibody.simulate(Case(PIER, pulse, duration=1.5), engine=engine)
     assert run.time[-1] == 1.5
     after = run.time > 0.6
     # no excitation, no work: contact takes 1e-6 of the energy scale, 1.1 m^2/s^2
@@ -216,7 +218,9 @@ def test_motion_ends_and_the_run_goes_on(engine: str) -> None:
 def test_a_squat_cylinder_falls_flat_and_rests(engine: str) -> None:
     # planar rocking loses almost everything in each impact at tan alpha 1.2
     squat = Cylinder(semidiagonal=6.0, tan_alpha=1.2)
-    run = multibody.simulate(squat, initial=InitialState(0.2 * squat.alpha), duration=4.0, engine=engine)
+    run = multibody.simulate(
+        Case(squat, initial=InitialState(0.2 * squat.alpha), duration=4.0), engine=engine
+    )
     assert run.outcome == "rest"
     # it stands: MuJoCo does not see a lean below 1e-8 rad
     assert run.tilt[-1] < 1e-7

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
 # RMS(difference)/RMS(tilt) from uplift to 15 s at h = 1e-4 s: 1.7e-4 and 3.1e-4 in MuJoCo, 2.6e-4 and 8.3e-4
 # in Bullet. The budget is twice that: any other step, setting or version lands elsewhere in that range.
@@ -30,7 +30,7 @@ def test_traces_agree_and_a_wrong_size_shows(
 ) -> None:
     motion = el_centro_1940().scaled(scale)
     cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
-    run = multibody.simulate(cylinder, motion, duration=15.0, engine=engine, time_step=1e-4)
+    run = multibody.simulate(Case(cylinder, motion, duration=15.0), engine=engine, time_step=0.0001)
     assert relative_difference(run, solve_forced(cylinder, motion, 15.0), 15.0) < TRACE[engine]
     # the work of the excitation is all that changes the energy: contact takes 1e-5 m^2/s^2 in fifteen seconds
     assert np.abs(run.energy_error).max() < 4e-5
@@ -42,7 +42,7 @@ def test_traces_agree_and_a_wrong_size_shows(
 def test_small_tilts_agree_beyond_twenty_seconds(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
     # passes at 1e-5 rad amplify everything: within 1 % of alpha until 22.9 s; 20 s are asked for
     motion = el_centro_1940()
-    run = multibody.simulate(pier, motion, duration=20.5)
+    run = multibody.simulate(Case(pier, motion, duration=20.5))
     exact = solve_forced(pier, motion, 20.5)
     tilt = np.interp(exact.time, run.time, run.tilt)
     assert np.abs(tilt - exact.tilt).max() < 0.01 * pier.alpha
@@ -69,7 +69,7 @@ def test_uplift(case: int, solve_forced: Callable[..., Any]) -> None:
     motion = motion.rotated(random.uniform(0.0, 2.0 * np.pi))
     cylinder = Cylinder(semidiagonal=10.0 ** random.uniform(0.0, 1.5), tan_alpha=tan_alpha)
     exact = solve_forced(cylinder, motion, 4.0)
-    run = multibody.simulate(cylinder, motion, duration=exact.uplift_time + 0.3)
+    run = multibody.simulate(Case(cylinder, motion, duration=exact.uplift_time + 0.3))
     assert run.uplift_time == pytest.approx(exact.uplift_time, abs=UPLIFT_STEPS * run.time_step)
     turned = np.angle(np.exp(1j * (run.uplift_direction - exact.uplift_direction)))
     assert abs(turned) < UPLIFT_ANGLE
@@ -84,11 +84,11 @@ def test_uplift(case: int, solve_forced: Callable[..., Any]) -> None:
 
 def test_an_engine_that_tips_early_is_seen(pier: Cylinder, monkeypatch: pytest.MonkeyPatch) -> None:
     motion = el_centro_1940().scaled(2.0)
-    turned, many = (multibody.simulate(pier, motion, duration=2.0, standing_corners=n) for n in (4, 48))
+    turned, many = (multibody.simulate(Case(pier, motion, duration=2.0), standing_corners=n) for n in (4, 48))
     assert turned.uplift_time == pytest.approx(many.uplift_time, abs=UPLIFT_STEPS * many.time_step)
     # four corners that stay where they are: between two of them the base tips at cos(45 deg) of the load
     monkeypatch.setattr("rockwobble.multibody.engines.mujoco_engine._LOADED", np.inf)
-    early = multibody.simulate(pier, motion, duration=2.0, standing_corners=4)
+    early = multibody.simulate(Case(pier, motion, duration=2.0), standing_corners=4)
     assert early.uplift_time < many.uplift_time - 5 * many.time_step
 
 
@@ -102,7 +102,7 @@ def test_an_uplift_under_a_turning_load_is_of_first_order(
     exact = solve_forced(pier, motion, 0.25, rolls_out=support == "flat")
     errors = []
     for step in (1e-4, 5e-5):
-        run = multibody.simulate(pier, motion, duration=0.25, support=support, time_step=step)
+        run = multibody.simulate(Case(pier, motion, duration=0.25), support=support, time_step=step)
         errors.append((run.tilt[-1] - np.interp(0.25, exact.time, exact.tilt)) / pier.alpha)
     # 4.9e-7 and 1.9e-7 of alpha guided; corners that stay where they are leave 1e-6 at every step
     assert abs(errors[0]) < 7e-7
@@ -120,9 +120,7 @@ def test_held_until_its_load_is_on_the_rim_bullet_uplifts_without_chance(
     errors = []
     for step in (1e-4, 5e-5):
         run = multibody.simulate(
-            pier,
-            turned,
-            duration=0.25,
+            Case(pier, turned, duration=0.25),
             engine="pybullet",
             support="flat",
             time_step=step,
@@ -137,7 +135,7 @@ def test_held_until_its_load_is_on_the_rim_bullet_uplifts_without_chance(
 
 def test_vertical_motion(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
     motion = el_centro_1940(vertical=True).scaled(2.0)
-    run = multibody.simulate(pier, motion, duration=5.0)
+    run = multibody.simulate(Case(pier, motion, duration=5.0))
     exact = solve_forced(pier, motion, 5.0)
     assert relative_difference(run, exact, 5.0) < TRACE["mujoco"]
     flat = solve_forced(pier, GroundMotion(motion.acceleration[:, :2], motion.time_step), 5.0)
@@ -146,7 +144,7 @@ def test_vertical_motion(pier: Cylinder, solve_forced: Callable[..., Any]) -> No
 
 def test_open_ground_follows_the_rolling_model(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
     motion = el_centro_1940().scaled(2.0)
-    run = multibody.simulate(pier, motion, duration=6.0, support="flat")
+    run = multibody.simulate(Case(pier, motion, duration=6.0), support="flat")
     # the same resolution as in the recess
     assert relative_difference(run, solve_forced(pier, motion, 6.0, rolls_out=True), 6.0) < TRACE["mujoco"]
     assert relative_difference(run, solve_forced(pier, motion, 6.0), 6.0) > 3 * TRACE["mujoco"]
@@ -154,14 +152,14 @@ def test_open_ground_follows_the_rolling_model(pier: Cylinder, solve_forced: Cal
 
 def test_step_load_uplifts_at_once(engine: str, pier: Cylinder) -> None:
     pulse = GroundMotion([[3.0, 4.0], [3.0, 4.0], [0.0, 0.0]], 0.2)
-    run = multibody.simulate(pier, pulse, engine=engine)
+    run = multibody.simulate(Case(pier, pulse), engine=engine)
     # within a step in MuJoCo; in Bullet the four contacts of standing take over from one another
     assert run.uplift_time <= {"mujoco": 1, "pybullet": 5}[engine] * run.time_step
     assert run.uplift_direction == pytest.approx(np.arctan2(-4.0, -3.0), abs=1e-3)
 
 
 def test_weak_motion_leaves_it_standing(engine: str, pier: Cylinder) -> None:
-    run = multibody.simulate(pier, el_centro_1940().scaled(0.5), duration=2.5, engine=engine)
+    run = multibody.simulate(Case(pier, el_centro_1940().scaled(0.5), duration=2.5), engine=engine)
     assert run.outcome == "rest"
     assert np.isnan(run.uplift_time)
     assert np.isnan(run.rolling_angle).all()

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.recording.energy_watch import DRIFT, EnergyWatch
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -20,7 +20,7 @@ P = math.sqrt(12.0 * 9.81 / (6.0 * (15.0 + math.cos(PIER.alpha) ** 2)))  # [1/s]
 def test_a_small_motion_that_loses_its_energy_is_said(engine: str, support: str) -> None:
     # it loses a sixth in MuJoCo and half in Bullet: far less than 1e-3 of the energy of its balance
     start = InitialState(0.002 * PIER.alpha, rolling_rate=0.3 * P)
-    run = multibody.simulate(PIER, initial=start, duration=1.0, engine=engine, support=support)
+    run = multibody.simulate(Case(PIER, initial=start, duration=1.0), engine=engine, support=support)
     lost = 1.0 - run.energy[-1] / run.energy[0]
     assert lost > 0.02
     share = float(run.message.split("contact took ")[1].split()[0])
@@ -34,7 +34,7 @@ def test_a_small_motion_that_loses_its_energy_is_said(engine: str, support: str)
 @pytest.mark.parametrize("tilt", [0.02, 0.1, 0.6])
 def test_a_motion_that_is_resolved_says_nothing(engine: str, tilt: float) -> None:
     start = InitialState(tilt * PIER.alpha, rolling_rate=0.3 * P)
-    run = multibody.simulate(PIER, initial=start, duration=1.0, engine=engine)
+    run = multibody.simulate(Case(PIER, initial=start, duration=1.0), engine=engine)
     assert run.message == ""
     assert np.abs(run.energy_error).max() < DRIFT * run.energy.max()
 
@@ -42,7 +42,7 @@ def test_a_motion_that_is_resolved_says_nothing(engine: str, tilt: float) -> Non
 def test_a_base_that_opens_and_closes_at_once_says_nothing(engine: str) -> None:
     # 15 % over the uplift for 26 ms: the base closes again and that takes all there was
     push = 9.81 * PIER.tan_alpha * np.array([0.0, 1.15, 0.0, 0.0, 0.0])
-    run = multibody.simulate(PIER, GroundMotion(np.outer(push, [1.0, 0.0]), 0.1), engine=engine)
+    run = multibody.simulate(Case(PIER, GroundMotion(np.outer(push, [1.0, 0.0]), 0.1)), engine=engine)
     assert 2e-6 < run.peak_tilt < 1e-4 * PIER.alpha
     assert run.outcome == "rest"
     assert "energy" not in run.message
@@ -50,7 +50,7 @@ def test_a_base_that_opens_and_closes_at_once_says_nothing(engine: str) -> None:
 
 def test_a_fall_from_beyond_the_balance_has_no_energy_and_says_nothing(engine: str) -> None:
     # until the rim of the falling side slips
-    run = multibody.simulate(PIER, initial=InitialState(0.6), duration=0.3, engine=engine)
+    run = multibody.simulate(Case(PIER, initial=InitialState(0.6), duration=0.3), engine=engine)
     assert run.outcome == "overturned"
     assert run.energy[0] < 0.0
     assert run.message == ""

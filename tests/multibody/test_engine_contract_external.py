@@ -119,7 +119,7 @@ def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(insta
     assert multibody.engine_names() == ("mujoco", "pybullet", "exudyn", "sound")
     assert multibody.available_engines()[-1] == "sound"
     release = InitialState(PIER.alpha / 2, rolling_rate=0.5)
-    run = multibody.simulate(PIER, initial=release, duration=0.5, engine="sound", support="flat")
+    run = multibody.simulate(Case(PIER, initial=release, duration=0.5), engine="sound", support="flat")
     assert (run.engine, run.outcome) == ("sound", "completed")
     check_engine("sound")
 
@@ -166,7 +166,7 @@ def test_a_broken_engine_is_named_and_breaks_no_other(install: Install, factory:
     assert reserved_engines()["broken"] == str(caught.value)
     with pytest.raises(ValueError, match=r"engine must be one of mujoco, .*broken, got 'chrono'"):
         find_engine("chrono")
-    still = Case("still", PIER, duration=1.0)
+    still = Case(PIER, duration=1.0, name="still")
     require_runnable(still, Run("mujoco", "recess"))
 
 

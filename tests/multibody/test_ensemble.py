@@ -19,13 +19,29 @@ PULSE = GroundMotion([[0.0, 0.0], [4.0, 1.0], [-1.0, 2.0], [0.0, 0.0]], 0.2)
 def cases() -> list[Case]:
     """Released and standing, of several sizes, frictions and lengths, two that overturn."""
     found = [
-        Case(f"start {n}", PIER, None, InitialState(0.05 + 0.02 * n, rolling_rate=0.4), 0.4 + 0.3 * n)
+        Case(
+            PIER,
+            initial=InitialState(0.05 + 0.02 * n, rolling_rate=0.4),
+            duration=0.4 + 0.3 * n,
+            name=f"start {n}",
+        )
         for n in range(3)
     ]
-    found.append(Case("small", Cylinder(semidiagonal=0.06, tan_alpha=0.2), PULSE.scaled(0.7), None, 0.15))
-    found.append(Case("slips", PIER, None, InitialState(0.1, rolling_rate=0.5), 1.0, 9.81, 0.01))
-    found.append(Case("falls", PIER, None, InitialState(1.3 * PIER.alpha), 6.0))
-    found.append(Case("moon", PIER, PULSE, None, 0.5, 1.62))
+    found.append(
+        Case(Cylinder(semidiagonal=0.06, tan_alpha=0.2), PULSE.scaled(0.7), duration=0.15, name="small")
+    )
+    found.append(
+        Case(
+            PIER,
+            initial=InitialState(0.1, rolling_rate=0.5),
+            duration=1.0,
+            gravity=9.81,
+            friction=0.01,
+            name="slips",
+        )
+    )
+    found.append(Case(PIER, initial=InitialState(1.3 * PIER.alpha), duration=6.0, name="falls"))
+    found.append(Case(PIER, PULSE, duration=0.5, gravity=1.62, name="moon"))
     return found
 
 
@@ -37,14 +53,16 @@ def test_each_run_is_that_of_its_own_bit_for_bit(cases: list[Case], engine: str)
     assert len(runs) == len(cases)
     for case, run in zip(cases, runs, strict=True):
         alone = multibody.simulate(
-            case.cylinder,
-            case.motion,
-            initial=case.initial,
-            duration=case.duration,
+            Case(
+                case.cylinder,
+                case.motion,
+                initial=case.initial,
+                duration=case.duration,
+                friction=case.friction,
+                gravity=case.gravity,
+            ),
             engine=engine,
             support=support,
-            friction=case.friction,
-            gravity=case.gravity,
         )
         assert run.to_frame().equals(alone.to_frame()), case.name
         assert run.passes.equals(alone.passes), case.name
@@ -87,7 +105,10 @@ def test_an_interrupt_leaves_nothing_behind(cases: list[Case], workers: int) -> 
 
     reporter = mujoco.get_mju_user_warning()
     before = threading.active_count()
-    long = [Case(f"{n}", PIER, None, InitialState(0.1, rolling_rate=0.5), 1000.0) for n in range(4)]
+    long = [
+        Case(PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1000.0, name=f"{n}")
+        for n in range(4)
+    ]
     with pytest.raises(KeyboardInterrupt):
         multibody.simulate_many(long, progress=told, workers=workers)
     assert threading.active_count() == before

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 pytest.importorskip("exudyn", reason="exudyn is not installed")
 
@@ -26,7 +26,7 @@ Solve = Callable[..., Any]
 
 
 def free(cylinder: Cylinder, initial: InitialState, **changes: Any) -> multibody.Trajectory:
-    return multibody.simulate(cylinder, initial=initial, engine="exudyn", support="flat", **changes)
+    return multibody.simulate(Case(cylinder, initial=initial), engine="exudyn", support="flat", **changes)
 
 
 def table() -> list[tuple[float, ...]]:
@@ -141,6 +141,6 @@ def test_what_it_cannot_do_is_refused_in_one_line(change: dict[str, Any], messag
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     given: dict[str, Any] = {"initial": InitialState(0.1), "support": "flat", "duration": 1.0, **change}
     with pytest.raises(ValueError, match=r"must|setting|uplift") as caught:
-        multibody.simulate(cylinder, engine="exudyn", **given)
+        multibody.simulate(Case(cylinder), engine="exudyn", **given)
     assert str(caught.value).startswith(message)
     assert "\n" not in str(caught.value)

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.35)
 RELEASE = InitialState(0.4 * PIER.alpha, rolling_angle=0.6, rolling_rate=0.9)
@@ -27,7 +27,7 @@ SHAKING = GroundMotion(
 def run(engine: str) -> multibody.Trajectory:
     """A release under all three components, free to twist, and still ground from 0.8 s on."""
     return multibody.simulate(
-        PIER, SHAKING, initial=RELEASE, duration=1.0, engine=engine, support="flat", sample_step=SAMPLE
+        Case(PIER, SHAKING, initial=RELEASE, duration=1.0), engine=engine, support="flat", sample_step=SAMPLE
     )
 
 
@@ -122,12 +122,12 @@ def test_force_is_what_the_mass_centre_needs(run: Any) -> None:
 def test_a_constant_vertical_acceleration_is_gravity(engine: str, vertical: float) -> None:
     motion = GroundMotion(np.tile([0.0, 0.0, vertical], (2, 1)), 1.0)
     moved, heavy = (
-        multibody.simulate(PIER, initial=RELEASE, duration=0.9, engine=engine, **given)
+        multibody.simulate(Case(PIER, initial=RELEASE, duration=0.9), engine=engine, **given)
         for given in ({"motion": motion}, {"gravity": 9.81 + vertical, "time_step": 1e-4})
     )
     # the scene of the other gravity has another step, and the first half step feels no ground yet
     np.testing.assert_allclose(moved.tilt, heavy.tilt, atol=2e-4 * PIER.alpha)
-    still = multibody.simulate(PIER, initial=RELEASE, duration=0.9, engine=engine)
+    still = multibody.simulate(Case(PIER, initial=RELEASE, duration=0.9), engine=engine)
     assert np.abs(still.tilt - heavy.tilt).max() > 0.02 * PIER.alpha
     part = slice(5, -5)
     np.testing.assert_allclose(
@@ -142,7 +142,7 @@ def test_the_vertical_component_moves_the_uplift(engine: str, solve_forced: Call
     uplifts = []
     for vertical in (-3.0, 0.0, 3.0):
         ramp = GroundMotion([[0.0, 0.0, vertical], [3.0, 0.1, vertical], [6.0, 0.2, vertical]], 0.4)
-        found = multibody.simulate(PIER, ramp, engine=engine, **held)
+        found = multibody.simulate(Case(PIER, ramp), engine=engine, **held)
         due = 0.8 * (9.81 + vertical) * PIER.tan_alpha / np.hypot(6.0, 0.2)
         assert found.uplift_time == pytest.approx(due, abs=1e-4)
         assert found.uplift_direction == pytest.approx(np.arctan2(-0.2, -6.0), abs=1e-2)
@@ -158,7 +158,7 @@ def test_the_ground_keeps_still_after_the_last_sample(engine: str) -> None:
     ended = GroundMotion(push, 0.1)
     followed = dataclasses.replace(ended, acceleration=np.vstack([push, np.zeros((2, 3))]))
     given: dict[str, Any] = {"initial": RELEASE, "duration": 0.5, "engine": engine}
-    first, still = (multibody.simulate(PIER, motion, **given) for motion in (ended, followed))
+    first, still = (multibody.simulate(Case(PIER, motion), **given) for motion in (ended, followed))
     # a record goes down to its first zero in a straight line, which one that ends does not
     until = first.time <= 0.2
     np.testing.assert_allclose(first.tilt[until], still.tilt[until], atol=1e-8)
@@ -171,8 +171,7 @@ def test_the_twist_of_a_whole_earthquake_does_not_jump(engine: str) -> None:
     # on open ground it goes beyond a turn; a quaternion tells it up to two, and Bullet changes its sign
     coarse = {"mujoco": 4e-4, "pybullet": 1e-3}[engine]
     run = multibody.simulate(
-        Cylinder(semidiagonal=6.0, tan_alpha=0.2),
-        el_centro_1940(),
+        Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940()),
         engine=engine,
         support="flat",
         time_step=coarse,

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState
 
 # Largest tilt difference over 8 s at the default step, in alpha, for each tan(alpha). What is left is the
 # creep of the rim while it rolls, (1/1.8 - 1/2) h of its acceleration in MuJoCo and h/2 in Bullet: 8e-7,
@@ -35,7 +35,7 @@ def test_free_response_follows_the_model_of_its_support(
 ) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     initial = release(cylinder)
-    run = multibody.simulate(cylinder, initial=initial, duration=8.0, engine=engine, support=support)
+    run = multibody.simulate(Case(cylinder, initial=initial, duration=8.0), engine=engine, support=support)
     exact = solve_free(cylinder, initial, run.time, rolls_out=support == "flat")
     assert run.outcome == "completed"
     assert run.message == ""
@@ -56,9 +56,9 @@ def test_accuracy_does_not_depend_on_size(engine: str, semidiagonal: float) -> N
     reference = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=0.2)
     time = (semidiagonal / 6.0) ** 0.5
-    there = multibody.simulate(reference, initial=release(reference), duration=2.0, engine=engine)
+    there = multibody.simulate(Case(reference, initial=release(reference), duration=2.0), engine=engine)
     here = multibody.simulate(
-        cylinder, initial=release(cylinder), duration=2.0 * time, sample_step=0.01 * time, engine=engine
+        Case(cylinder, initial=release(cylinder), duration=2.0 * time), sample_step=0.01 * time, engine=engine
     )
     assert here.time_step == pytest.approx(1e-4 * time, rel=1e-12)
     np.testing.assert_allclose(here.tilt, there.tilt, rtol=SIZE)
@@ -71,13 +71,12 @@ def test_accuracy_does_not_depend_on_size(engine: str, semidiagonal: float) -> N
 
 def test_weak_gravity_is_a_slow_run(pier: Cylinder) -> None:
     slow = multibody.simulate(
-        pier,
-        initial=InitialState(pier.alpha / 2, rolling_rate=0.25),
-        duration=4.0,
+        Case(pier, initial=InitialState(pier.alpha / 2, rolling_rate=0.25), duration=4.0, gravity=9.81 / 4),
         sample_step=0.02,
-        gravity=9.81 / 4,
     )
-    fast = multibody.simulate(pier, initial=InitialState(pier.alpha / 2, rolling_rate=0.5), duration=2.0)
+    fast = multibody.simulate(
+        Case(pier, initial=InitialState(pier.alpha / 2, rolling_rate=0.5), duration=2.0)
+    )
     np.testing.assert_allclose(slow.tilt, fast.tilt, rtol=SIZE)
     np.testing.assert_allclose(slow.energy, fast.energy / 4, rtol=1e-7)
     np.testing.assert_allclose(slow.rolling_rate, fast.rolling_rate / 2, rtol=1e-6)
@@ -87,7 +86,7 @@ def test_a_body_with_inertias_of_its_own(engine: str, solve_free: Callable[..., 
     # a pier that carries a deck, of a size of its own: mass high up, an outline not twice the mass centre
     column = Cylinder(semidiagonal=3.0, tan_alpha=0.3, height=4.0, transverse_inertia=1.25, axial_inertia=1.0)
     initial = release(column)
-    run = multibody.simulate(column, initial=initial, duration=3.0, engine=engine)
+    run = multibody.simulate(Case(column, initial=initial, duration=3.0), engine=engine)
     exact = solve_free(column, initial, run.time)
     assert np.abs(run.tilt - exact.tilt).max() < TILT[engine][0.3] * column.alpha
     homogeneous = Cylinder(semidiagonal=3.0, tan_alpha=0.3)
@@ -103,7 +102,7 @@ def test_error_falls_with_the_step(pier: Cylinder, solve_free: Callable[..., Any
     def errors(**settings: float) -> np.ndarray:
         found = []
         for step in steps:
-            run = multibody.simulate(squat, initial=initial, duration=4.0, time_step=step, **settings)
+            run = multibody.simulate(Case(squat, initial=initial, duration=4.0), time_step=step, **settings)
             exact = solve_free(squat, initial, run.time)
             found.append(np.abs(run.tilt - exact.tilt).max() / squat.alpha)
         return np.array(found)
@@ -121,9 +120,7 @@ def test_angle_of_turn(engine: str, support: str, turn: float) -> None:
     # reference/finite_release.csv, h = 2b, 0.1 rad/s
     cylinder = Cylinder.from_dimensions(base_radius=1.0, height=4.0)
     run = multibody.simulate(
-        cylinder,
-        initial=InitialState(cylinder.alpha / 2, rolling_rate=0.1),
-        duration=3.2,
+        Case(cylinder, initial=InitialState(cylinder.alpha / 2, rolling_rate=0.1), duration=3.2),
         engine=engine,
         support=support,
     )
@@ -134,7 +131,7 @@ def test_angle_of_turn(engine: str, support: str, turn: float) -> None:
 
 
 def test_energy_is_kept(engine: str, pier: Cylinder) -> None:
-    run = multibody.simulate(pier, initial=release(pier), duration=4.0, engine=engine)
+    run = multibody.simulate(Case(pier, initial=release(pier), duration=4.0), engine=engine)
     # a kinetic energy of 0.5 m^2/s^2; the creep of the rim takes or gives 1e-6 of it
     assert np.abs(run.energy_error).max() < 5e-6
     np.testing.assert_allclose(run.energy, run.energy[0], atol=5e-6)

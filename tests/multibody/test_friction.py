@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.scene.friction import body_friction
 
 SQUAT = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
@@ -26,7 +26,7 @@ def test_sliding_distance(engine: str, friction: float, direction: float) -> Non
     a = 0.5 * 9.81
     push = a * np.array([np.cos(direction), np.sin(direction)])
     motion = GroundMotion([push, push], 1.0)
-    run = multibody.simulate(SQUAT, motion, friction=friction, engine=engine, support="flat")
+    run = multibody.simulate(Case(SQUAT, motion, friction=friction), engine=engine, support="flat")
     # relative to the ground it is left behind with a - mu g
     distance = 0.5 * (a - friction * 9.81)
     # MuJoCo's convex friction lifts what slides: it hops by centimetres and loses a percent of the way.
@@ -40,7 +40,7 @@ def test_sliding_distance(engine: str, friction: float, direction: float) -> Non
 
 def test_enough_friction_holds(engine: str) -> None:
     motion = GroundMotion([[0.5 * 9.81, 0.0], [0.5 * 9.81, 0.0]], 1.0)
-    run = multibody.simulate(SQUAT, motion, friction=0.6, engine=engine, support="flat")
+    run = multibody.simulate(Case(SQUAT, motion, friction=0.6), engine=engine, support="flat")
     # friction has no memory: it creeps by 1e-4 of the load in the time constant of contact
     assert run.slip[-1] < 1e-4
     assert run.message == ""
@@ -49,8 +49,8 @@ def test_enough_friction_holds(engine: str) -> None:
 def test_too_little_friction_in_a_release_is_said(engine: str) -> None:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     initial = InitialState(pier.alpha / 2, rolling_rate=0.5)
-    enough = multibody.simulate(pier, initial=initial, duration=2.0, friction=0.3, engine=engine)
-    little = multibody.simulate(pier, initial=initial, duration=2.0, friction=0.1, engine=engine)
+    enough = multibody.simulate(Case(pier, initial=initial, duration=2.0, friction=0.3), engine=engine)
+    little = multibody.simulate(Case(pier, initial=initial, duration=2.0, friction=0.1), engine=engine)
     assert enough.message == ""
     # rolling creeps by 1e-5 b
     assert enough.slip[-1] < 1e-4 * pier.base_radius

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.kinematics import Kinematics, kinematics
 from rockwobble.multibody.protocol import Steps
@@ -39,7 +39,7 @@ BODY = scaled_body(PIER, 1.0)
 def test_failures_are_outcomes(settings: dict[str, Any], reason: str) -> None:
     if settings.get("engine") == "pybullet" and "pybullet" not in multibody.available_engines():
         pytest.skip("no wheel of pybullet here")
-    run = multibody.simulate(PIER, initial=RELEASE, duration=2.0, **settings)
+    run = multibody.simulate(Case(PIER, initial=RELEASE, duration=2.0), **settings)
     assert run.outcome == "failed"
     assert reason in run.message
     assert np.isnan(run.peak_tilt)
@@ -54,10 +54,10 @@ def test_failures_are_outcomes(settings: dict[str, Any], reason: str) -> None:
 def test_a_guide_that_gives_way_fails() -> None:
     squat = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
     initial = InitialState(squat.alpha / 2, rolling_rate=0.5)
-    run = multibody.simulate(squat, initial=initial, duration=4.0, guide_stiffness=1e-3)
+    run = multibody.simulate(Case(squat, initial=initial, duration=4.0), guide_stiffness=0.001)
     assert run.outcome == "failed"
     assert "twist" in run.message
-    free = multibody.simulate(squat, initial=initial, duration=4.0, support="flat")
+    free = multibody.simulate(Case(squat, initial=initial, duration=4.0), support="flat")
     assert free.outcome == "completed"
     assert abs(free.residual_twist) > 0.02
 
@@ -67,7 +67,7 @@ def test_a_guide_that_gives_way_fails() -> None:
 def test_extremes_are_sound_or_say_so(engine: str, tan_alpha: float, friction: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     initial = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
-    run = multibody.simulate(cylinder, initial=initial, duration=2.0, friction=friction, engine=engine)
+    run = multibody.simulate(Case(cylinder, initial=initial, duration=2.0, friction=friction), engine=engine)
     scale = energy_scale(scaled_body(cylinder, 1.0), 9.81)
     assert run.outcome == "completed"
     # no engine makes energy: largest gain 1e-4 of the scale, at tan alpha 10
@@ -78,7 +78,7 @@ def test_extremes_are_sound_or_say_so(engine: str, tan_alpha: float, friction: f
 def test_flight_is_said(engine: str) -> None:
     # thirty radians in a second at half of alpha throw it up
     run = multibody.simulate(
-        PIER, initial=InitialState(PIER.alpha / 2, rolling_rate=30.0), duration=0.2, engine=engine
+        Case(PIER, initial=InitialState(PIER.alpha / 2, rolling_rate=30.0), duration=0.2), engine=engine
     )
     assert "left the ground at 0.0" in run.message
 
@@ -87,7 +87,7 @@ def test_strong_shaking_overturns(engine: str) -> None:
     # 10 g
     time = np.arange(0.0, 3.0, 0.01)
     shaking = np.column_stack([98.1 * np.sin(6.0 * time), 60.0 * np.cos(5.0 * time)])
-    run = multibody.simulate(PIER, GroundMotion(shaking, 0.01), engine=engine)
+    run = multibody.simulate(Case(PIER, GroundMotion(shaking, 0.01)), engine=engine)
     assert run.outcome == "overturned"
     assert run.peak_tilt == 0.5 * np.pi
 
@@ -95,7 +95,7 @@ def test_strong_shaking_overturns(engine: str) -> None:
 def test_passes_too_close_to_the_apex_are_marked(engine: str) -> None:
     # a spin of 1e-6 rad/s passes at 1e-7 rad, far less than the tilt that a step crosses
     near = multibody.simulate(
-        PIER, initial=InitialState(PIER.alpha / 2, rolling_rate=1e-6), duration=2.5, engine=engine
+        Case(PIER, initial=InitialState(PIER.alpha / 2, rolling_rate=1e-6), duration=2.5), engine=engine
     )
     assert not near.passes["resolved"].any()
     assert "passes are closer to upright than" in near.message

@@ -9,7 +9,7 @@ from benchmarks.engine_extremes import AGREES, run
 from benchmarks.engine_trials import Trial, trials
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState
 
 
 def at(engine: str, support: str, **given: Any) -> dict[str, Any]:
@@ -91,7 +91,7 @@ def test_a_run_that_disagrees_in_silence_is_called_wrong(monkeypatch: pytest.Mon
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     # the run of another release
     other = multibody.simulate(
-        pier, initial=InitialState(0.45 * pier.alpha, rolling_rate=0.5), duration=0.5, time_step=5e-4
+        Case(pier, initial=InitialState(0.45 * pier.alpha, rolling_rate=0.5), duration=0.5), time_step=0.0005
     )
     monkeypatch.setattr(module.multibody, "simulate", lambda *_, **__: other)
     row = at("mujoco", "recess", length=0.5)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.recording.passes import TurningPoint, passes_between
 from rockwobble.multibody.recording.rests import SHORTEST, RestWatch
 
@@ -67,7 +67,7 @@ def test_between_a_release_that_lands_and_a_later_pulse_there_is_no_pass(engine:
     push = np.zeros((201, 2))
     push[140:, 0], push[140:, 1] = 16.5 * np.sin(np.pi * time / 0.3), 11.8 * np.sin(np.pi * time / 0.3) ** 2
     run = multibody.simulate(
-        squat, GroundMotion(push, 0.01), initial=InitialState(0.2 * squat.alpha), engine=engine
+        Case(squat, GroundMotion(push, 0.01), initial=InitialState(0.2 * squat.alpha)), engine=engine
     )
     standing = (run.time > 1.0) & (run.time < 1.4)
     assert run.tilt[standing].max() < 1e-7

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody import Trajectory
 from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.kinematics import kinematics
@@ -36,7 +36,7 @@ def ring(
 ) -> Trajectory:
     """Release at a tilt in alpha."""
     initial = InitialState(tilt * cylinder.alpha, rolling_rate=rolling_rate)
-    return multibody.simulate(cylinder, initial=initial, duration=duration, support="ring", **settings)
+    return multibody.simulate(Case(cylinder, initial=initial, duration=duration), support="ring", **settings)
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def test_what_is_refused(settings: dict[str, Any], message: str) -> None:
         pytest.skip("no wheel of pybullet here")
     arguments = {"support": "ring", **settings}
     with pytest.raises(ValueError, match=r"must|only|needs|not a setting") as caught:
-        multibody.simulate(SQUAT, initial=InitialState(SQUAT.alpha / 2), duration=1.0, **arguments)
+        multibody.simulate(Case(SQUAT, initial=InitialState(SQUAT.alpha / 2), duration=1.0), **arguments)
     assert str(caught.value).startswith(message)
     assert "\n" not in str(caught.value)
 
@@ -83,14 +83,14 @@ def test_settings_of_the_ring_are_reported_with_their_defaults() -> None:
     assert run.settings["ring_facets"] == 12
     assert run.settings["ring_inclination"] == pytest.approx(PIER.alpha)
     assert {"ring_clearance", "ring_friction"} <= set(run.settings)
-    free = multibody.simulate(PIER, initial=InitialState(0.1), duration=0.05, support="flat")
+    free = multibody.simulate(Case(PIER, initial=InitialState(0.1), duration=0.05), support="flat")
     assert not any(name.startswith("ring") for name in free.settings)
 
 
 def test_a_wide_ring_is_open_ground() -> None:
     initial = InitialState(SQUAT.alpha / 2, rolling_rate=0.5)
     wide = ring(ring_clearance=0.2)
-    free = multibody.simulate(SQUAT, initial=initial, duration=2.0, support="flat")
+    free = multibody.simulate(Case(SQUAT, initial=initial, duration=2.0), support="flat")
     # the same steps in the same order
     np.testing.assert_allclose(wide.tilt, free.tilt, atol=1e-12)
     assert math.isnan(wide.first_wall_contact)
@@ -125,10 +125,7 @@ def test_first_contact_is_when_the_geometry_says() -> None:
     inclination = 0.3
     clearance = clearance_needed(SQUAT, tilt, inclination) + 1e-3
     fall = InitialState(tilt, tilt_rate=0.3)
-    run = multibody.simulate(
-        SQUAT, initial=fall, duration=1.0, support="ring", sample_step=1e-3,
-        ring_clearance=clearance, ring_inclination=inclination,
-    )  # fmt: skip
+    run = multibody.simulate(Case(SQUAT, initial=fall, duration=1.0), support='ring', sample_step=0.001, ring_clearance=clearance, ring_inclination=inclination)  # fmt: skip
     first = run.first_wall_contact
     touching = float(np.interp(first, run.time, run.tilt))
     assert touching > tilt
@@ -137,7 +134,7 @@ def test_first_contact_is_when_the_geometry_says() -> None:
 
 
 def test_a_standing_cylinder_touches_no_wall_that_stands_back() -> None:
-    run = multibody.simulate(PIER, duration=0.3, support="ring", ring_clearance=1e-6)
+    run = multibody.simulate(Case(PIER, duration=0.3), support="ring", ring_clearance=1e-6)
     assert run.outcome == "rest"
     assert math.isnan(run.first_wall_contact)
 
@@ -145,8 +142,10 @@ def test_a_standing_cylinder_touches_no_wall_that_stands_back() -> None:
 def test_walls_stop_a_cylinder_that_slides() -> None:
     # 0.05 g on friction of 0.01, for half a second: 5 cm on open ground
     push = GroundMotion(np.tile([-0.05 * 9.81, 0.0], (51, 1)), 0.01)
-    free = multibody.simulate(SQUAT, push, support="flat", friction=0.01, duration=0.5)
-    held = multibody.simulate(SQUAT, push, support="ring", friction=0.01, duration=0.5, ring_clearance=1e-3)
+    free = multibody.simulate(Case(SQUAT, push, friction=0.01, duration=0.5), support="flat")
+    held = multibody.simulate(
+        Case(SQUAT, push, friction=0.01, duration=0.5), support="ring", ring_clearance=0.001
+    )
     b = SQUAT.base_radius
     assert free.residual_displacement > 0.04
     # the clearance, and the hop of a wedge that leans: the impact is plastic, so that it stays within twice
@@ -159,10 +158,7 @@ def test_impulse_is_that_of_the_force_of_the_wall() -> None:
     # is left of the impact
     push, steep = 0.05 * 9.81, 0.4
     motion = GroundMotion(np.tile([-push, 0.0], (51, 1)), 0.01)
-    run = multibody.simulate(
-        PIER, motion, support="ring", friction=0.0, duration=0.5, ring_clearance=1e-4, ring_friction=0.0,
-        ring_inclination=steep,
-    )  # fmt: skip
+    run = multibody.simulate(Case(PIER, motion, friction=0.0, duration=0.5), support='ring', ring_clearance=0.0001, ring_friction=0.0, ring_inclination=steep)  # fmt: skip
     late = run.time > 0.3
     slope = np.polyfit(run.time[late], run.wall_impulse[late], 1)[0]
     assert slope == pytest.approx(push / math.cos(steep), rel=1e-3)
@@ -185,7 +181,7 @@ def test_a_turn_by_one_facet_changes_nothing() -> None:
     turn = 2.0 * math.pi / facets
     starts = [InitialState(SQUAT.alpha / 2, rolling_rate=0.5, rolling_angle=angle) for angle in (0.0, turn)]
     one, other = (
-        multibody.simulate(SQUAT, initial=start, duration=1.0, support="ring", ring_facets=facets)
+        multibody.simulate(Case(SQUAT, initial=start, duration=1.0), support="ring", ring_facets=facets)
         for start in starts
     )
     # each touch multiplies what rounding leaves: 3e-15 before the first, 5e-12 after 20 ms of them, and 3e-4

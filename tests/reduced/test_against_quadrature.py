@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState
 
 COUNT = 200
 
@@ -30,7 +30,7 @@ def test_period_and_turn_to_1e_8(seed):
         cylinder, initial = random_release(rng)
         exact = reduced.free_response(cylinder, initial)
         response = reduced.simulate(
-            cylinder, initial=initial, duration=1.01 * exact.period, rtol=1e-10, rest_tilt=0.0
+            Case(cylinder, initial=initial, duration=1.01 * exact.period), rtol=1e-10, rest_tilt=0.0
         )
         maxima = response.extrema[response.extrema[:, 3] > 0.0]
         assert maxima[1, 0] == pytest.approx(exact.period, rel=1e-8), (cylinder, initial)
@@ -43,7 +43,7 @@ def test_steady_wobble_turns_at_the_exact_rate():
         tilt = share * cylinder.alpha
         rate = reduced.steady_wobble_rate(cylinder, tilt)
         response = reduced.simulate(
-            cylinder, initial=InitialState(tilt, rolling_rate=rate), duration=10.0, rtol=1e-11
+            Case(cylinder, initial=InitialState(tilt, rolling_rate=rate), duration=10.0), rtol=1e-11
         )
         assert response.rolling_angle[-1] == pytest.approx(10.0 * rate, rel=1e-9)
         assert reduced.wobbling_period(cylinder, tilt) == pytest.approx(2.0 * math.pi / rate, rel=1e-14)

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 SQUAT = Cylinder(semidiagonal=2.0, tan_alpha=3.0)
 
 
 def test_free_rocking_of_a_squat_cylinder_loses_contact_and_says_so():
     initial = InitialState(0.8 * SQUAT.alpha, rolling_rate=1e-3)
-    response = reduced.simulate(SQUAT, initial=initial, duration=3.0, sample_step=1e-3)
+    response = reduced.simulate(Case(SQUAT, initial=initial, duration=3.0), sample_step=0.001)
     review = response.assumptions
     assert not review.held
     contact = review.breaches[0]
@@ -32,7 +32,7 @@ def test_steady_wobble_needs_the_friction_of_its_centripetal_force():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     tilt = 0.5 * pier.alpha
     rate = reduced.steady_wobble_rate(pier, tilt)
-    response = reduced.simulate(pier, initial=InitialState(tilt, rolling_rate=rate), duration=2.0)
+    response = reduced.simulate(Case(pier, initial=InitialState(tilt, rolling_rate=rate), duration=2.0))
     radius = math.hypot(*response.centre_of_mass[0, :2])
     review = response.assumptions
     # the mass centre goes round on a circle at constant height: N is the weight
@@ -43,6 +43,6 @@ def test_steady_wobble_needs_the_friction_of_its_centripetal_force():
 
 
 def test_a_cylinder_that_stands_demands_nothing_of_the_model():
-    still = reduced.simulate(SQUAT, GroundMotion(np.zeros((10, 2)), 0.1))
+    still = reduced.simulate(Case(SQUAT, GroundMotion(np.zeros((10, 2)), 0.1)))
     assert still.assumptions.held
     assert still.assumptions.largest_friction_needed == 0.0

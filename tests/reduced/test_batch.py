@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
 EL_CENTRO = el_centro_1940()
 SIZES = np.array([0.8, 3.0, 10.0])
@@ -22,9 +22,8 @@ def test_cells_are_single_runs(model):
     for i, size in enumerate(SIZES):
         for j in (0, 2, 5, 11):
             single = reduced.simulate(
-                Cylinder(semidiagonal=size, tan_alpha=0.1),
-                EL_CENTRO.scaled(SCALES[j]),
-                model=model,
+                Case(Cylinder(semidiagonal=size, tan_alpha=0.1), EL_CENTRO.scaled(SCALES[j])),
+                **reduced.MODELS[model],
                 rtol=1e-7,
             )
             # the same steps of the same kernel, but for the factor applied before or inside
@@ -68,7 +67,7 @@ def test_a_cell_that_chatters_is_its_single_run_to_the_bit(model, tan_alpha, siz
     scale = intensity * 9.81 * tan_alpha / EL_CENTRO.peak
     peaks = reduced.peak_tilts([size], tan_alpha, EL_CENTRO, [scale], model=model)
     cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
-    single = reduced.simulate(cylinder, EL_CENTRO.scaled(scale), rtol=1e-7, model=model)
+    single = reduced.simulate(Case(cylinder, EL_CENTRO.scaled(scale)), rtol=1e-7, **reduced.MODELS[model])
     assert single.step_count > 10 * len(EL_CENTRO.acceleration)
     assert 0.0 < peaks[0, 0] == single.peak_tilt < 0.01 * cylinder.alpha
 
@@ -82,10 +81,9 @@ def test_every_cell_is_its_single_run_to_the_bit(model):
     single = [
         [
             reduced.simulate(
-                Cylinder(semidiagonal=size, tan_alpha=0.1),
-                turned.scaled(scale),
+                Case(Cylinder(semidiagonal=size, tan_alpha=0.1), turned.scaled(scale)),
                 rtol=1e-7,
-                model=model,
+                **reduced.MODELS[model],
                 plane=0.7,
             ).peak_tilt
             for scale in scales

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
@@ -20,7 +20,7 @@ def test_the_default_inertias_by_name_are_the_same_body():
         transverse_inertia=(3.0 * b * b + 4.0 * h * h) / 12.0,
         axial_inertia=0.5 * b * b,
     )
-    plain, other = (reduced.simulate(c, el_centro_1940(), duration=10.0) for c in (PIER, named))
+    plain, other = (reduced.simulate(Case(c, el_centro_1940(), duration=10.0)) for c in (PIER, named))
     assert np.array_equal(plain.tilt, other.tilt)
 
 
@@ -29,7 +29,7 @@ def test_a_point_mass_on_a_light_column_is_a_pendulum_of_the_length_of_the_semid
     bob = Cylinder(semidiagonal=4.0, tan_alpha=0.2, transverse_inertia=1e-12, axial_inertia=1e-12)
     initial = InitialState(0.3 * bob.alpha)
     period = reduced.rocking_period(bob, initial.tilt)
-    response = reduced.simulate(bob, initial=initial, duration=1.1 * period, rtol=1e-11)
+    response = reduced.simulate(Case(bob, initial=initial, duration=1.1 * period), rtol=1e-11)
     assert response.problem.body.p2 == pytest.approx(9.81 / 4.0, rel=1e-12)
     # two passes in a full cycle
     assert response.extrema[4, 0] == pytest.approx(period, rel=1e-9)
@@ -44,7 +44,7 @@ def test_a_deck_mass_raises_the_centre_and_rocks_more_slowly():
     for cylinder in (plain, decked):
         threshold = 9.81 / cylinder.mass_centre_height
         wave = np.column_stack([np.linspace(0.0, 2.0 * threshold, 101), np.zeros(101)])
-        response = reduced.simulate(cylinder, GroundMotion(wave, 0.01))
+        response = reduced.simulate(Case(cylinder, GroundMotion(wave, 0.01)))
         assert response.uplift_time == pytest.approx(0.5, abs=1e-12)
 
 
@@ -56,8 +56,8 @@ def with_vertical(motion, vertical):
 def test_a_steady_vertical_acceleration_is_gravity(model):
     motion = el_centro_1940()
     lifted = with_vertical(motion, np.full(len(motion.acceleration), 2.0))
-    response = reduced.simulate(PIER, lifted, model=model, duration=12.0)
-    heavier = reduced.simulate(PIER, motion, model=model, duration=12.0, gravity=11.81)
+    response = reduced.simulate(Case(PIER, lifted, duration=12.0), **reduced.MODELS[model])
+    heavier = reduced.simulate(Case(PIER, motion, duration=12.0, gravity=11.81), **reduced.MODELS[model])
     assert response.uplift_time == pytest.approx(heavier.uplift_time, abs=1e-12)
     # the same equations, summed in another order; passes multiply the rounding
     assert np.abs(response.tilt - heavier.tilt).max() <= 1e-7 * PIER.alpha
@@ -71,10 +71,13 @@ def test_the_vertical_component_decides_the_uplift():
     horizontal = np.full(201, 0.98 * 9.81 * PIER.tan_alpha)
     vertical = np.linspace(0.0, -9.81 * 0.04, 201)
     motion = GroundMotion(np.column_stack([horizontal, np.zeros(201), vertical]), 0.01)
-    response = reduced.simulate(PIER, motion)
+    response = reduced.simulate(Case(PIER, motion))
     # |a| = (g + az) tan(alpha) where az = -0.02 g, halfway
     assert response.uplift_time == pytest.approx(1.0, abs=1e-12)
-    assert reduced.simulate(PIER, with_vertical(motion_without_z(motion), 0.0 * vertical)).outcome == "rest"
+    assert (
+        reduced.simulate(Case(PIER, with_vertical(motion_without_z(motion), 0.0 * vertical))).outcome
+        == "rest"
+    )
 
 
 def motion_without_z(motion):
@@ -82,8 +85,8 @@ def motion_without_z(motion):
 
 
 def test_el_centro_with_its_vertical_component_is_another_motion():
-    flat = reduced.simulate(PIER, el_centro_1940())
-    full = reduced.simulate(PIER, el_centro_1940(vertical=True))
+    flat = reduced.simulate(Case(PIER, el_centro_1940()))
+    full = reduced.simulate(Case(PIER, el_centro_1940(vertical=True)))
     assert full.outcome in {"rest", "completed"}
     assert math.isfinite(full.peak_tilt)
     assert full.uplift_time != flat.uplift_time

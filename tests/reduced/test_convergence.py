@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 TOLERANCES = 10.0 ** np.arange(-5.0, -10.5, -1.0)
@@ -30,9 +30,11 @@ PROBLEMS = {
 @pytest.mark.parametrize("problem", PROBLEMS)
 def test_error_is_proportional_to_the_tolerance(model, problem):
     options = PROBLEMS[problem]
-    exact = reduced.simulate(PIER, rtol=1e-13, model=model, **options)
+    exact = reduced.simulate(Case(PIER), rtol=1e-13, **reduced.MODELS[model], **options)
     errors = [
-        np.abs(reduced.simulate(PIER, rtol=rtol, model=model, **options).tilt - exact.tilt).max()
+        np.abs(
+            reduced.simulate(Case(PIER), rtol=rtol, **reduced.MODELS[model], **options).tilt - exact.tilt
+        ).max()
         for rtol in TOLERANCES
     ]
     slope = np.polyfit(np.log10(TOLERANCES), np.log10(errors), 1)[0]

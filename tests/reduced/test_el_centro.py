@@ -7,14 +7,14 @@ import pytest
 from paper_equations import PaperModel
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, el_centro_1940
+from rockwobble.models import Case, Cylinder, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
 @pytest.fixture(scope="module")
 def response():
-    return reduced.simulate(PIER, el_centro_1940(), rtol=1e-10)
+    return reduced.simulate(Case(PIER, el_centro_1940()), rtol=1e-10)
 
 
 def test_uplift_and_motion_follow_the_printed_equations(response):
@@ -35,7 +35,7 @@ def test_uplift_and_motion_follow_the_printed_equations(response):
 
 def test_work_of_the_ground_is_the_change_of_energy(response):
     motion = el_centro_1940()
-    fine = reduced.simulate(PIER, motion, rtol=1e-10, sample_step=5e-4, duration=6.0)
+    fine = reduced.simulate(Case(PIER, motion, duration=6.0), rtol=1e-10, sample_step=0.0005)
     velocity = np.gradient(fine.centre_of_mass[:, :2], fine.time, axis=0, edge_order=2)
     ground = np.column_stack([np.interp(fine.time, np.arange(5346) * 0.01, c) for c in motion.acceleration.T])
     power = -(ground * velocity).sum(axis=1)
@@ -67,10 +67,10 @@ def test_friction_needed_at_uplift_is_tan_alpha(response):
 
 
 def test_peak_is_that_of_the_continuous_solution(response):
-    coarse = reduced.simulate(PIER, el_centro_1940(), rtol=1e-10, sample_step=0.7)
+    coarse = reduced.simulate(Case(PIER, el_centro_1940()), rtol=1e-10, sample_step=0.7)
     assert coarse.peak_tilt == response.peak_tilt
     assert response.peak_tilt >= response.tilt.max()
-    fine = reduced.simulate(PIER, el_centro_1940(), rtol=1e-10, sample_step=1e-4)
+    fine = reduced.simulate(Case(PIER, el_centro_1940()), rtol=1e-10, sample_step=0.0001)
     # samples 1e-4 s apart miss a maximum by at most theta'' (5e-5)^2/2
     assert response.peak_tilt == pytest.approx(fine.tilt.max(), abs=2e-9)
 
@@ -89,7 +89,7 @@ def test_assumptions_hold_and_name_their_extremes(response):
     assert review.held
     assert 0.0 < review.least_normal_force < 1.0
     assert PIER.tan_alpha < review.largest_friction_needed < 0.3
-    slippery = reduced.simulate(PIER, el_centro_1940(), friction=0.21)
+    slippery = reduced.simulate(Case(PIER, el_centro_1940(), friction=0.21))
     assert not slippery.assumptions.held
     (breach,) = slippery.assumptions.breaches
     assert breach.assumption == "friction"
@@ -99,7 +99,7 @@ def test_assumptions_hold_and_name_their_extremes(response):
 
 def test_an_overturned_run_ends_at_tilt_half_pi():
     motion = el_centro_1940().scaled(5.0)
-    response = reduced.simulate(PIER, motion)
+    response = reduced.simulate(Case(PIER, motion))
     assert response.outcome == "overturned"
     assert response.peak_tilt == response.tilt[-1] == 0.5 * math.pi
     assert response.time[-1] < motion.duration

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 THRESHOLD = 9.81 * 0.2
@@ -188,7 +188,7 @@ def test_a_million_samples():
 
 def test_chatter_without_a_seating_rule_ends_as_failed_with_words():
     weak = turning_wave(THRESHOLD * (1.0 + 1e-6))
-    response = reduced.simulate(PIER, weak, rest_tilt=0.0)
+    response = reduced.simulate(Case(PIER, weak), rest_tilt=0.0)
     assert response.outcome == "failed"
     assert math.isnan(response.peak_tilt)
     assert "step budget" in response.message
@@ -214,4 +214,4 @@ def test_chatter_without_a_seating_rule_ends_as_failed_with_words():
 )
 def test_bad_options_are_named(options, words):
     with pytest.raises(ValueError, match=words):
-        reduced.simulate(PIER, el_centro_1940(), **options)
+        reduced.simulate(Case(PIER, el_centro_1940()), **options)

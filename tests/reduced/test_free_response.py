@@ -9,7 +9,7 @@ import pytest
 from paper_equations import PaperModel
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState
 from rockwobble.reduced.equations import energy
 
 TABLES = Path(__file__).parents[1] / "reference"
@@ -23,7 +23,9 @@ def release(cylinder, spin, tilt_over_alpha=0.5):
 
 @pytest.mark.parametrize("spin", SPINS)
 def test_energy_and_momentum_are_conserved_in_every_step(spin):
-    response = reduced.simulate(PIER, initial=release(PIER, spin), duration=20.0, rtol=1e-10, rest_tilt=0.0)
+    response = reduced.simulate(
+        Case(PIER, initial=release(PIER, spin), duration=20.0), rtol=1e-10, rest_tilt=0.0
+    )
     march, _ = response.problem.solve(np.empty(0), record_steps=True)
     body = response.problem.body
     energies = np.array([energy(body, *row[[1, 2, 4]], 0.0) for row in march.steps])
@@ -36,7 +38,9 @@ def test_energy_and_momentum_are_conserved_in_every_step(spin):
 
 @pytest.mark.parametrize("spin", SPINS)
 def test_energy_of_the_samples_is_conserved(spin):
-    response = reduced.simulate(PIER, initial=release(PIER, spin), duration=20.0, rtol=1e-10, rest_tilt=0.0)
+    response = reduced.simulate(
+        Case(PIER, initial=release(PIER, spin), duration=20.0), rtol=1e-10, rest_tilt=0.0
+    )
     assert np.ptp(response.energy) <= 1e-8 * response.energy[0]
 
 
@@ -54,7 +58,9 @@ def test_turn_and_period_of_the_reference_table(model, row):
     cylinder = Cylinder.from_dimensions(base_radius=1.0, height=2.0 * h)
     # the table's release: at rest in tilt, rolling rate phi_rate
     initial = release(cylinder, float(row["phi_rate"]))
-    response = reduced.simulate(cylinder, initial=initial, duration=4.0, rtol=1e-12, model=model)
+    response = reduced.simulate(
+        Case(cylinder, initial=initial, duration=4.0), rtol=1e-12, **reduced.MODELS[model]
+    )
     maxima = response.extrema[response.extrema[:, 3] > 0.0]
     # the table has six decimals: half a digit, and as much again for the tolerance
     assert math.degrees(response.passes.angle_of_turn[0]) == pytest.approx(
@@ -68,7 +74,7 @@ def test_turn_and_period_of_the_reference_table(model, row):
 def test_recess_follows_the_printed_equations(tan_alpha, tilt_over_alpha):
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     initial = release(cylinder, 0.5, tilt_over_alpha)
-    response = reduced.simulate(cylinder, initial=initial, duration=8.0, rtol=1e-11)
+    response = reduced.simulate(Case(cylinder, initial=initial, duration=8.0), rtol=1e-11)
     paper = PaperModel(cylinder.base_radius, cylinder.half_height)
     reference = paper.free([initial.tilt, 0.0, 0.0, 0.5], response.time)
     # scipy at 1e-12 cannot do better near upright, where the printed sums cancel
@@ -81,7 +87,7 @@ def test_steady_wobble_stays_at_its_tilt():
     tilt = 0.6 * PIER.alpha
     rate = float(2.0 * math.pi / reduced.wobbling_period(PIER, tilt))
     response = reduced.simulate(
-        PIER, initial=InitialState(tilt=tilt, rolling_rate=rate), duration=30.0, rtol=1e-11
+        Case(PIER, initial=InitialState(tilt=tilt, rolling_rate=rate), duration=30.0), rtol=1e-11
     )
     # an error of the tolerance in the balance makes the tilt oscillate by as much
     assert np.abs(response.tilt - tilt).max() <= 1e-9 * tilt
@@ -89,8 +95,8 @@ def test_steady_wobble_stays_at_its_tilt():
 
 
 def test_samples_do_not_influence_the_solution():
-    coarse = reduced.simulate(PIER, initial=release(PIER, 1e-3), duration=10.0, sample_step=0.5)
-    fine = reduced.simulate(PIER, initial=release(PIER, 1e-3), duration=10.0, sample_step=0.003)
+    coarse = reduced.simulate(Case(PIER, initial=release(PIER, 0.001), duration=10.0), sample_step=0.5)
+    fine = reduced.simulate(Case(PIER, initial=release(PIER, 0.001), duration=10.0), sample_step=0.003)
     assert coarse.step_count == fine.step_count
     assert np.array_equal(coarse.extrema, fine.extrema)
     assert coarse.tilt[-1] == fine.tilt[-1]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 EL_CENTRO = el_centro_1940()
@@ -15,16 +15,18 @@ MODELS = ["recess", "flat"]
 
 def twin_difference(model, until):
     """Largest difference that one rounding of the record makes, in alpha: what sensitivity does."""
-    plain = reduced.simulate(PIER, EL_CENTRO, model=model, duration=until)
-    twin = reduced.simulate(PIER, EL_CENTRO.scaled(1.0 + 2e-16), model=model, duration=until)
+    plain = reduced.simulate(Case(PIER, EL_CENTRO, duration=until), **reduced.MODELS[model])
+    twin = reduced.simulate(
+        Case(PIER, EL_CENTRO.scaled(1.0 + 2e-16), duration=until), **reduced.MODELS[model]
+    )
     return np.abs(plain.tilt - twin.tilt).max() / PIER.alpha
 
 
 @pytest.mark.parametrize("model", MODELS)
 def test_mirror_to_the_last_bit(model):
-    plain = reduced.simulate(PIER, EL_CENTRO, model=model)
+    plain = reduced.simulate(Case(PIER, EL_CENTRO), **reduced.MODELS[model])
     mirrored = GroundMotion(EL_CENTRO.acceleration * [1.0, -1.0], EL_CENTRO.time_step)
-    mirror = reduced.simulate(PIER, mirrored, model=model)
+    mirror = reduced.simulate(Case(PIER, mirrored), **reduced.MODELS[model])
     assert np.array_equal(plain.tilt, mirror.tilt)
     assert np.array_equal(plain.rolling_angle, -mirror.rolling_angle, equal_nan=True)
     assert np.array_equal(plain.twist, -mirror.twist)
@@ -32,11 +34,13 @@ def test_mirror_to_the_last_bit(model):
 
 @pytest.mark.parametrize("model", MODELS)
 def test_four_times_the_size_in_twice_the_time_to_the_last_bit(model):
-    plain = reduced.simulate(PIER, EL_CENTRO, model=model)
+    plain = reduced.simulate(Case(PIER, EL_CENTRO), **reduced.MODELS[model])
     large = reduced.simulate(
-        Cylinder(semidiagonal=24.0, tan_alpha=0.2),
-        GroundMotion(EL_CENTRO.acceleration, 2.0 * EL_CENTRO.time_step),
-        model=model,
+        Case(
+            Cylinder(semidiagonal=24.0, tan_alpha=0.2),
+            GroundMotion(EL_CENTRO.acceleration, 2.0 * EL_CENTRO.time_step),
+        ),
+        **reduced.MODELS[model],
         sample_step=0.02,
     )
     assert np.array_equal(plain.tilt, large.tilt)
@@ -48,7 +52,7 @@ def test_four_times_the_size_in_twice_the_time_to_the_last_bit(model):
 @pytest.mark.parametrize("change", ["size", "gravity", "rotation", "shift"])
 def test_other_changes_of_scale_and_frame_cost_no_more_than_rounding(model, change):
     until = 15.0
-    plain = reduced.simulate(PIER, EL_CENTRO, model=model, duration=until)
+    plain = reduced.simulate(Case(PIER, EL_CENTRO, duration=until), **reduced.MODELS[model])
     acceleration, step, cylinder, gravity, delay = EL_CENTRO.acceleration, 0.01, PIER, 9.81, 0.0
     if change == "size":
         cylinder, step = Cylinder(semidiagonal=6.0 * 3.0, tan_alpha=0.2), 0.01 * math.sqrt(3.0)
@@ -60,11 +64,10 @@ def test_other_changes_of_scale_and_frame_cost_no_more_than_rounding(model, chan
         delay = 0.64
         acceleration = np.vstack([np.zeros((64, 2)), acceleration])
     other = reduced.simulate(
-        cylinder,
-        GroundMotion(acceleration, step),
-        model=model,
-        gravity=gravity,
-        duration=until * step / 0.01 + delay,
+        Case(
+            cylinder, GroundMotion(acceleration, step), gravity=gravity, duration=until * step / 0.01 + delay
+        ),
+        **reduced.MODELS[model],
         sample_step=step,
     )
     skip = round(delay / 0.01)
@@ -79,9 +82,9 @@ def test_other_changes_of_scale_and_frame_cost_no_more_than_rounding(model, chan
 @pytest.mark.parametrize("model", MODELS)
 def test_motion_of_one_component_stays_planar_at_any_azimuth(model, azimuth):
     one = GroundMotion(EL_CENTRO.acceleration * [1.5, 0.0], EL_CENTRO.time_step)
-    planar = reduced.simulate(PIER, one, model="planar")
-    twin = reduced.simulate(PIER, one.scaled(1.0 + 2.0**-52), model="planar")
-    turned = reduced.simulate(PIER, one.rotated(azimuth), model=model)
+    planar = reduced.simulate(Case(PIER, one), plane=0.0)
+    twin = reduced.simulate(Case(PIER, one.scaled(1.0 + 2.0 ** (-52))), plane=0.0)
+    turned = reduced.simulate(Case(PIER, one.rotated(azimuth)), **reduced.MODELS[model])
     moving = turned.tilt > 0.0
     off = np.sin(turned.rolling_angle[moving] - azimuth)
     assert np.abs(off).max() <= 1e-14
@@ -93,7 +96,7 @@ def test_motion_of_one_component_stays_planar_at_any_azimuth(model, azimuth):
 
 def test_tilt_after_a_release_does_not_depend_on_the_azimuth():
     for azimuth in (0.4, 3.0, -2.0):
-        plain = reduced.simulate(PIER, initial=InitialState(0.1, 0.0, 0.0, 0.01), duration=10.0)
-        turned = reduced.simulate(PIER, initial=InitialState(0.1, 0.0, azimuth, 0.01), duration=10.0)
+        plain = reduced.simulate(Case(PIER, initial=InitialState(0.1, 0.0, 0.0, 0.01), duration=10.0))
+        turned = reduced.simulate(Case(PIER, initial=InitialState(0.1, 0.0, azimuth, 0.01), duration=10.0))
         assert np.array_equal(plain.tilt, turned.tilt)
         assert np.abs(turned.rolling_angle - plain.rolling_angle - azimuth).max() <= 1e-13

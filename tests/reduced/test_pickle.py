@@ -5,14 +5,14 @@ import pickle
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
 def test_a_response_from_elsewhere_is_solved_again_with_the_compiled_march():
     # compiled code that travels with a response would be compiled again where it arrives, for many seconds
-    response = reduced.simulate(PIER, initial=InitialState(tilt=0.1, rolling_rate=0.1), duration=1.0)
+    response = reduced.simulate(Case(PIER, initial=InitialState(tilt=0.1, rolling_rate=0.1), duration=1.0))
     sent = pickle.loads(pickle.dumps(response))
     assert sent.problem.solve(np.empty(0))[0].peak == response.problem.solve(np.empty(0))[0].peak
     assert sent.problem._set_up.march is response.problem._set_up.march

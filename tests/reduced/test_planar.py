@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 TABLES = Path(__file__).parents[1] / "reference"
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -24,13 +24,13 @@ def table(name):
 def test_quarter_period_of_the_reference_table(alpha, row):
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=math.tan(alpha))
     initial = InitialState(row["theta0_over_alpha"] * cylinder.alpha)
-    response = reduced.simulate(cylinder, initial=initial, duration=8.0, rtol=1e-12, model="planar")
+    response = reduced.simulate(Case(cylinder, initial=initial, duration=8.0), rtol=1e-12, plane=0.0)
     impact = response.extrema[1, 0]
     assert impact * math.sqrt(response.problem.body.p2) == pytest.approx(row[f"alpha_{alpha}"], abs=2e-11)
 
 
 def test_signed_tilt_is_continuous_and_the_unsigned_is_its_size():
-    response = reduced.simulate(PIER, el_centro_1940(), model="planar", sample_step=0.001, rest_tilt=0.0)
+    response = reduced.simulate(Case(PIER, el_centro_1940()), plane=0.0, sample_step=0.001, rest_tilt=0.0)
     assert np.array_equal(np.abs(response.signed_tilt), response.tilt)
     # the first uplift is towards the inertia force
     first = int(np.argmax(response.tilt > 0.0))
@@ -57,10 +57,8 @@ def test_restitution_from_momentum_is_the_closed_form():
 @pytest.mark.parametrize("restitution", [0.9, "momentum"])
 def test_each_impact_takes_its_share_of_energy(restitution):
     response = reduced.simulate(
-        PIER,
-        initial=InitialState(0.5 * PIER.alpha),
-        duration=12.0,
-        model="planar",
+        Case(PIER, initial=InitialState(0.5 * PIER.alpha), duration=12.0),
+        plane=0.0,
         restitution=restitution,
         rtol=1e-11,
     )
@@ -76,7 +74,7 @@ def test_impacts_that_accumulate_end_at_rest():
     release = InitialState(0.5 * PIER.alpha)
     for restitution in (0.5, 0.0):
         response = reduced.simulate(
-            PIER, initial=release, duration=20.0, model="planar", restitution=restitution, rest_tilt=0.0
+            Case(PIER, initial=release, duration=20.0), plane=0.0, restitution=restitution, rest_tilt=0.0
         )
         assert response.outcome == "rest"
         assert np.isnan(response.rolling_angle[-1])
@@ -87,7 +85,7 @@ def test_hops_shorter_than_a_step_land_where_they_must():
     initial = InitialState(1e-4 * PIER.alpha)
     quarter = reduced.planar_quarter_period(PIER, initial.tilt)
     response = reduced.simulate(
-        PIER, initial=initial, duration=2001.0 * quarter, model="planar", rest_tilt=0.0
+        Case(PIER, initial=initial, duration=2001.0 * quarter), plane=0.0, rest_tilt=0.0
     )
     impacts = response.extrema[response.extrema[:, 1] == 0.0]
     assert len(response.passes) == 1000
@@ -100,9 +98,7 @@ def test_hops_shorter_than_a_step_land_where_they_must():
 def test_planar_runs_from_chatter_into_rocking_do_not_hang(intensity):
     motion = el_centro_1940().scaled(intensity * 0.1 * 9.81 / el_centro_1940().peak)
     for plane in (0.0, 0.5 * math.pi):
-        response = reduced.simulate(
-            Cylinder(semidiagonal=0.5, tan_alpha=0.1), motion, model="planar", plane=plane
-        )
+        response = reduced.simulate(Case(Cylinder(semidiagonal=0.5, tan_alpha=0.1), motion), plane=plane)
         assert response.outcome == "overturned", response.message
 
 
@@ -118,13 +114,16 @@ def one_sine(amplitude, omega, cylinder, p):
 def test_overturning_by_a_one_sine_pulse_without_impact(row):
     """The slender limit: at alpha = 1e-4 what is left out is of the order alpha^2, 1e-8."""
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=math.tan(1e-4))
-    p = reduced.simulate(cylinder, duration=1.0, model="planar").problem.body.p
+    p = reduced.simulate(Case(cylinder, duration=1.0), plane=0.0).problem.body.p
     verdicts = []
     for factor in (1.0 - 2e-8, 1.0 + 2e-8):
         motion = one_sine(factor * row["a"], row["w_over_p"], cylinder, p)
         # a difference of 1e-8 takes log(1e8)/p to become one of alpha, and log(1e4)/p to fall
         response = reduced.simulate(
-            cylinder, motion, duration=motion.duration + 50.0 / p, model="planar", rtol=1e-12, sample_step=1.0
+            Case(cylinder, motion, duration=motion.duration + 50.0 / p),
+            plane=0.0,
+            rtol=1e-12,
+            sample_step=1.0,
         )
         impacts = response.extrema[:, 1] == 0.0
         verdicts.append(response.outcome == "overturned" and not impacts.any())

@@ -12,7 +12,7 @@ import pytest
 from shaken_problems import G, Problem, joined, problem, resampled, sensitivity
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion
 
 FIRM = 1e-4  # of the peak that perturbed copies may differ by: beyond it a problem says nothing
 SAME = 2e-3  # of the peak: the tolerance of 1e-9, amplified as that of a perturbed copy of 1e-7 may be
@@ -202,7 +202,9 @@ def test_a_cell_that_falls_after_the_record_is_its_single_run(model):
     single = [
         [
             reduced.simulate(
-                Cylinder(semidiagonal=size, tan_alpha=0.2), cut.scaled(scale), model=model, rtol=1e-7
+                Case(Cylinder(semidiagonal=size, tan_alpha=0.2), cut.scaled(scale)),
+                **reduced.MODELS[model],
+                rtol=1e-7,
             )
             for scale in scales
         ]
@@ -233,7 +235,7 @@ def test_samples_however_short_lift():
         time = np.arange(round(0.02 / time_step) + 1) * time_step
         swell = 3.0 * np.sin(50.0 * math.pi * time)
         motion = GroundMotion(np.column_stack([swell, 0.3 * swell**2 / 3.0]), time_step)
-        peaks.append(reduced.simulate(cylinder, motion, duration=0.05).peak_tilt)
+        peaks.append(reduced.simulate(Case(cylinder, motion, duration=0.05)).peak_tilt)
     # a polygon of twenty corners is not the sine
     assert peaks == pytest.approx([peaks[-1]] * 4, rel=2e-2)
 

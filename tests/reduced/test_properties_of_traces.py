@@ -8,7 +8,7 @@ import pytest
 from shaken_problems import problem
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 DENSE = 1e-4  # s; of the samples that the extrema of the continuous solution are held against
@@ -104,7 +104,7 @@ def test_any_rolling_rate_turns_by_its_exact_angle(tan_alpha):
     for exponent in (-300, -200, -150, -110, -101, -99, -50, -12, -6, -3, -1, 0):
         initial = InitialState(0.4 * cylinder.alpha, rolling_rate=10.0**exponent)
         exact = reduced.free_response(cylinder, initial)
-        response = reduced.simulate(cylinder, initial=initial, duration=1.1 * exact.period, rtol=1e-10)
+        response = reduced.simulate(Case(cylinder, initial=initial, duration=1.1 * exact.period), rtol=1e-10)
         assert response.passes.angle_of_turn[0] == pytest.approx(exact.angle_of_turn, rel=1e-7), exponent
 
 
@@ -130,7 +130,7 @@ def test_impacts_lose_energy_and_nothing_else_does(restitution):
     factor = reduced.restitution_from_momentum(PIER) if restitution == "momentum" else restitution
     initial = InitialState(0.5 * PIER.alpha)
     response = reduced.simulate(
-        PIER, initial=initial, duration=8.0, model="planar", restitution=restitution, rtol=1e-11
+        Case(PIER, initial=initial, duration=8.0), plane=0.0, restitution=restitution, rtol=1e-11
     )
     maxima = response.extrema[response.extrema[:, 3] > 0.0, 1]
     heights = 2.0 * np.sin(0.5 * maxima) * np.sin(PIER.alpha - 0.5 * maxima)  # potential energy over g R

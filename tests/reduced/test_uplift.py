@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 from rockwobble.reduced.body import body_of
 from rockwobble.reduced.integration import tsit5, uplift
 
@@ -19,7 +19,7 @@ def test_a_ramp_lifts_where_it_crosses_the_threshold():
     ramp = np.linspace(0.0, 4.0, 41)
     for azimuth in (0.0, 1.0, -2.5):
         motion = GroundMotion(np.outer(ramp, [math.cos(azimuth), math.sin(azimuth)]), 0.1)
-        response = reduced.simulate(PIER, motion)
+        response = reduced.simulate(Case(PIER, motion))
         assert response.uplift_time == pytest.approx(THRESHOLD, abs=1e-13)
         # towards the inertia force, opposite to the acceleration: (26)
         assert math.cos(response.uplift_direction - azimuth) == pytest.approx(-1.0, abs=1e-14)
@@ -27,7 +27,7 @@ def test_a_ramp_lifts_where_it_crosses_the_threshold():
 
 def test_a_step_lifts_at_once_with_the_acceleration_of_a_jump():
     motion = GroundMotion(np.tile([3.0, 1.0], (101, 1)), 0.01)
-    response = reduced.simulate(PIER, motion, sample_step=1e-3)
+    response = reduced.simulate(Case(PIER, motion), sample_step=0.001)
     assert response.uplift_time == 0.0
     size = math.hypot(3.0, 1.0)
     jump = BODY.p2 * (math.cos(PIER.alpha) * size / 9.81 - math.sin(PIER.alpha))
@@ -73,15 +73,15 @@ def spin_momentum(theta, rate):
 def test_an_uplift_within_a_hair_of_a_sample_is_the_same_as_one_at_it():
     for miss in (1e-15, 1e-12, 1e-9, 1e-7):
         crossing = np.array([0.0, THRESHOLD * (1.0 + miss), 3.0, 3.5])
-        late = reduced.simulate(PIER, GroundMotion(np.column_stack([crossing, 0.1 * crossing**2]), 0.2))
+        late = reduced.simulate(Case(PIER, GroundMotion(np.column_stack([crossing, 0.1 * crossing**2]), 0.2)))
         exact = np.array([0.0, THRESHOLD, 3.0, 3.5])
-        at = reduced.simulate(PIER, GroundMotion(np.column_stack([exact, 0.1 * exact**2]), 0.2))
+        at = reduced.simulate(Case(PIER, GroundMotion(np.column_stack([exact, 0.1 * exact**2]), 0.2)))
         assert late.peak_tilt == pytest.approx(at.peak_tilt, rel=1e-5)
 
 
 def test_a_later_uplift_takes_the_nearest_branch():
     motion = el_centro_1940().scaled(0.8)
-    response = reduced.simulate(PIER, motion, rest_tilt=1e-2)
+    response = reduced.simulate(Case(PIER, motion), rest_tilt=0.01)
     moving = ~np.isnan(response.rolling_angle)
     lifts = np.flatnonzero(~moving[:-1] & moving[1:])
     stands = np.flatnonzero(moving[:-1] & ~moving[1:])

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 G = 9.81
 MODELS = ("recess", "flat", "planar")
@@ -27,7 +27,7 @@ class Problem(NamedTuple):
         options: dict[str, Any] = {"model": self.model, "initial": self.initial, "rtol": 1e-9}
         options["sample_step"] = 1.0
         motion = changes.pop("motion", self.motion)
-        return reduced.simulate(changes.pop("cylinder", self.cylinder), motion, **(options | changes))
+        return reduced.simulate(Case(changes.pop("cylinder", self.cylinder), motion), **options | changes)
 
     @property
     def threshold(self) -> float:

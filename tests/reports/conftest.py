@@ -48,10 +48,12 @@ def disguised(job: Job, **fields: Any) -> Any:
     case, method = job.case, job.method
     given = {"initial": case.initial, "duration": case.duration}
     if isinstance(method, str):
-        return reduced.simulate(case.cylinder, case.motion, model=method, **given)
+        return reduced.simulate(Case(case.cylinder, case.motion), **reduced.MODELS[method], **given)
     off = dataclasses.replace(case.cylinder, semidiagonal=case.cylinder.semidiagonal * (1.0 + 1e-5))
     model = "flat" if method.support == "flat" else "recess"
-    return Disguised(reduced.simulate(off, case.motion, model=model, **given), method, **fields)
+    return Disguised(
+        reduced.simulate(Case(off, case.motion), **reduced.MODELS[model], **given), method, **fields
+    )
 
 
 @pytest.fixture
@@ -72,6 +74,6 @@ def comparison(no_engines: Callable[..., None], monkeypatch: pytest.MonkeyPatch)
     no_engines()
     # no engine runs, so none needs to be installed: PyBullet is not everywhere
     monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
-    case = Case("El Centro 1940", Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
+    case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940(), name="El Centro 1940")
     runs = [Run(engine, support) for support in ("recess", "flat") for engine in ("mujoco", "pybullet")]
     return compare(case, runs=runs)

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockwobble.compare.storage.plain_json import loads
 from rockwobble.models import el_centro_1940
+from rockwobble.models.plain_json import loads
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.advice.document import advice_document
 

@@ -49,14 +49,14 @@ def validity() -> str:
 
 
 def advice() -> str:
-    case = Case("El Centro", Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
+    case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940(), name="El Centro")
     return advice_page(advise(case, count=20), "rockwobble advise")
 
 
 def ensemble() -> str:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
-    case = Case("release", pier, initial=release, duration=1.0)
+    case = Case(pier, initial=release, duration=1.0, name="release")
     return ensemble_page(compare.ensemble(case, runs=[], size=8, workers=1))
 
 

@@ -92,7 +92,7 @@ def test_a_remark_is_said_once_for_each_run() -> None:
 def test_a_setting_goes_to_the_runs_that_know_it() -> None:
     # the release leans into the walls that a ring has by default
     squat = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
-    case = Case("release", squat, None, InitialState(0.3), 1.0)
+    case = Case(squat, initial=InitialState(0.3), duration=1.0, name="release")
     runs = [Run("mujoco", "ring", ring_facets=8), Run("mujoco", "flat", "auto")]
     given = {"ring_clearance": 3, "ring_facets": 16, "cone": "pyramidal", "step_tolerance": 1e-4}
     ring, free = with_settings(case, runs, given)

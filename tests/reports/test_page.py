@@ -90,7 +90,7 @@ def test_still_ground_has_no_excitation_and_markup_in_a_name_stays_text(no_engin
     no_engines()
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
-    case = Case("<b>name</b> & co", cylinder, initial=release, duration=2.0)
+    case = Case(cylinder, initial=release, duration=2.0, name="<b>name</b> & co")
     page = comparison_page(compare(case, runs=[Run("mujoco", "recess")]))
     assert "excitation-0" not in page
     assert "<b>name</b>" not in page
@@ -99,7 +99,7 @@ def test_still_ground_has_no_excitation_and_markup_in_a_name_stays_text(no_engin
 
 def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    case = Case("still", cylinder, duration=1.0)
+    case = Case(cylinder, duration=1.0, name="still")
     no_engines()
     still = compare(case, runs=[Run("mujoco", "recess")])
     assert "both stay at rest" in comparison_page(still)

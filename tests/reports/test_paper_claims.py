@@ -12,7 +12,7 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
-from rockwobble.models import Cylinder, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 from rockwobble.reports.paper import earthquake, earthquake_claims, free, overturning, period
 from rockwobble.reports.paper.claim import DOES_NOT_HOLD, HOLDS, HOLDS_IN_PART, Claim, in_words, verdict_of
 
@@ -91,7 +91,7 @@ def test_the_claims_on_figure_4_can_fail(modes):
 
 @pytest.fixture(scope="module")
 def response() -> reduced.Response:
-    return reduced.simulate(earthquake.CYLINDER, el_centro_1940(), rtol=1e-10, sample_step=1e-3)
+    return reduced.simulate(Case(earthquake.CYLINDER, el_centro_1940()), rtol=1e-10, sample_step=0.001)
 
 
 def shaken(response: reduced.Response, **fields: Any) -> earthquake.Shaken:
@@ -116,11 +116,9 @@ def test_half_of_a_turn_takes_what_the_exact_solution_takes():
     tilt = 0.5 * cylinder.alpha
     spin = 0.98 * float(reduced.steady_wobble_rate(cylinder, tilt))
     run = reduced.simulate(
-        cylinder,
-        initial=InitialState(tilt=tilt, rolling_rate=spin),
-        duration=20.0,
+        Case(cylinder, initial=InitialState(tilt=tilt, rolling_rate=spin), duration=20.0),
         rtol=1e-10,
-        sample_step=1e-3,
+        sample_step=0.001,
     )
     half = earthquake.half_turn_times(run)
     inner = half[~np.isnan(half)]
@@ -166,7 +164,9 @@ def test_the_neighbours_are_counted(response):
 
 
 def test_a_run_that_twists_has_a_residual():
-    run = reduced.simulate(earthquake.CYLINDER, el_centro_1940(), model="flat", rtol=1e-9, sample_step=1e-3)
+    run = reduced.simulate(
+        Case(earthquake.CYLINDER, el_centro_1940()), support="flat", rtol=1e-9, sample_step=0.001
+    )
     assert verdicts(earthquake_claims.earthquake_claims(shaken(run)))[2] != HOLDS
 
 

@@ -24,7 +24,7 @@ def _numbers(text):
 @pytest.fixture(scope="module")
 def comparison():
     release = InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5)
-    case = Case("release", PIER, initial=release, duration=1.0)
+    case = Case(PIER, initial=release, duration=1.0, name="release")
     return compare(case, runs=[Run("mujoco", "flat", 1e-3)], workers=1)
 
 
@@ -53,7 +53,9 @@ def test_each_run_is_shown_with_the_model_of_its_support(comparison):
 
 
 def test_a_fall_after_the_end_of_the_case_is_played():
-    gone = Case("gone", PIER, initial=InitialState(tilt=1.1 * PIER.alpha, rolling_rate=0.1), duration=0.5)
+    gone = Case(
+        PIER, initial=InitialState(tilt=1.1 * PIER.alpha, rolling_rate=0.1), duration=0.5, name="gone"
+    )
     found = compare(gone, runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     ends = [float(trace.time[-1]) for trace in (*found.responses.values(), *found.trajectories.values())]
     assert max(ends) > 1.0
@@ -66,7 +68,7 @@ def test_a_fall_after_the_end_of_the_case_is_played():
 
 def test_nothing_is_played_where_nothing_moves():
     still = GroundMotion(np.zeros((20, 2)), 0.01, "still")
-    comparison = compare(Case("still", PIER, still), runs=[Run("mujoco", "recess", 1e-3)], workers=1)
+    comparison = compare(Case(PIER, still, name="still"), runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     assert playback(case_views(comparison)[0]) is None
     assert view_page(comparison, "still") is None
 

@@ -24,7 +24,7 @@ def modules_of_inner_runs() -> None:
     assert rockwobble.compare.check.LAYERS
     body = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     for model in ("recess", "flat"):
-        reduced.simulate(body, initial=InitialState(0.1), duration=0.1, model=model)
+        reduced.simulate(Case(body, initial=InitialState(0.1), duration=0.1), **reduced.MODELS[model])
     pd.DataFrame({"text": ["some"]}).astype(str)  # with what pandas imports when it is used
 
 
@@ -78,7 +78,7 @@ def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite) -> 
     result.stdout.fnmatch_lines(
         [
             "*pier.suite.toml: release: tan_alpha 1, mujoco flat*",
-            "release: tan_alpha 1, mujoco flat against recess: tilt_rms: measured *, at most 1e-05 *",
+            "release: tan_alpha 1, mujoco flat against recess: tilt_rms: measured *, at most 1e-5 *",
             "What the difference is made of (RMS in alpha until *",
             "  whole *engine minus recess",
             "  model form *",

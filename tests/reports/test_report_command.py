@@ -11,10 +11,10 @@ import pytest
 from rockwobble.compare import read_ensemble
 from rockwobble.compare.describe import folder as describe_store
 from rockwobble.compare.storage import origin, provenance
-from rockwobble.compare.storage.plain_json import dumps, loads
 from rockwobble.compare.studies.extremes import read_extremes
 from rockwobble.compare.studies.tradeoff import read_tradeoff
 from rockwobble.compare.studies.validity import motions, read_validity
+from rockwobble.models.plain_json import dumps, loads
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.ensemble.document import ensemble_document
 from rockwobble.reports.pages.extremes.page import extremes_markdown

@@ -66,7 +66,7 @@ def test_a_sweep_that_was_ended_says_how_far_it_is(tmp_path, capsys):
 
 
 def test_a_comparison_and_one_that_is_not_finished(tmp_path, capsys):
-    case = Case("release", PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.5)
+    case = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.5, name="release")
     compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1, resume=tmp_path)
     result = described(tmp_path, capsys)
     assert result["kind"] == "a comparison that is not finished"

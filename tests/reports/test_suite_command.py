@@ -48,7 +48,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "mine.suite.toml").write_text(SUITE)
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     start = InitialState(tilt=math.radians(5.0), rolling_rate=0.5)
-    response = reduced.simulate(pier, initial=start, duration=2.0)
+    response = reduced.simulate(Case(pier, initial=start, duration=2.0))
     table = {"time": response.time, "tilt": response.tilt, "azimuth": response.rolling_angle}
     pd.DataFrame(table).to_csv(tmp_path / "table.csv", index=False)
     return tmp_path
@@ -178,7 +178,7 @@ def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, 
     no_engines()
     monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    one = Case("</script>", pier, initial=InitialState(tilt=0.1, rolling_rate=0.5), duration=60.0)
+    one = Case(pier, initial=InitialState(tilt=0.1, rolling_rate=0.5), duration=60.0, name="</script>")
     runs = [Run(engine, support) for engine in ("mujoco", "pybullet") for support in ("recess", "flat")]
     comparison = compare(one, runs=runs, workers=1)
     many = _repeated(comparison, CASES)

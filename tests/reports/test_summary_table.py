@@ -24,7 +24,7 @@ def test_table_fits_its_terminal_whole(comparison, width):
 
 def test_a_failed_run_is_no_number(no_engines):
     no_engines(outcome="failed", peak_tilt=float("nan"), residual_displacement=float("nan"))
-    case = Case("still", Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0)
+    case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0, name="still")
     console = Console(width=100, record=True, file=io.StringIO())
     console.print(summary_table(compare(case, runs=[Run("mujoco", "recess")]).summary, 100))
     text = console.export_text()

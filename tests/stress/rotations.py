@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from rockwobble.compare.studies.ensemble.members import synthetic_motions
-from rockwobble.models import Cylinder, GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion
 from rockwobble.reduced import simulate
 
 COUNT = 400
@@ -30,7 +30,7 @@ def main() -> None:
         shaken = GroundMotion(acceleration, motion.time_step).scaled(scale)
         copies = [shaken.scaled(1.0 + size) for size in (1e-9, -1e-9, 1e-7, -1e-7)]
         runs = (shaken, shaken.rotated(random.uniform(-np.pi, np.pi)), *copies)
-        plain, rotated, *perturbed = (simulate(cylinder, run, rtol=1e-9).peak_tilt for run in runs)
+        plain, rotated, *perturbed = (simulate(Case(cylinder, run), rtol=1e-9).peak_tilt for run in runs)
         if not all(abs(peak - plain) <= 1e-3 * plain for peak in perturbed):
             continue
         firm[late] += 1

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from rockwobble.compare.studies.ensemble.members import synthetic_motions
-from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 from rockwobble.reduced import peak_tilts, simulate
 from rockwobble.reduced.problem import REST_TILT
 
@@ -24,7 +24,7 @@ def grid_against_single_runs(motions: list[GroundMotion]) -> None:
             peaks = peak_tilts(sizes, tan_alpha, motion, factors)
             for i, j in np.ndindex(peaks.shape):
                 cylinder = Cylinder(semidiagonal=float(sizes[i]), tan_alpha=tan_alpha)
-                single = simulate(cylinder, motion.scaled(float(factors[j])), rtol=1e-7).peak_tilt
+                single = simulate(Case(cylinder, motion.scaled(float(factors[j]))), rtol=1e-7).peak_tilt
                 cells += 1
                 other += not np.array_equal(peaks[i, j], single, equal_nan=True)
                 off += not abs(peaks[i, j] - single) <= 0.02 * single
@@ -44,7 +44,7 @@ def rest_threshold(motions: list[GroundMotion]) -> None:
                 shaken = motion.scaled(9.81 * tan_alpha * scale / motion.peak)
                 (with_it, tight_with), (without, tight_without) = (
                     [
-                        simulate(cylinder, shaken, rest_tilt=rest_tilt, rtol=rtol).peak_tilt
+                        simulate(Case(cylinder, shaken), rest_tilt=rest_tilt, rtol=rtol).peak_tilt
                         for rtol in (1e-9, 1e-11)
                     ]
                     for rest_tilt in (REST_TILT, 0.01 * REST_TILT)

@@ -71,7 +71,11 @@ def _cases() -> Iterator[Case]:
             ground = 9.81 * cylinder.tan_alpha * random.uniform(-0.5, 0.5, 2)
             motion = GroundMotion(np.tile(ground, (3, 1)), _TIME)
             yield Case(
-                f"state {index + 1}, tan alpha = {cylinder.tan_alpha:g}", cylinder, motion, release, _TIME
+                cylinder,
+                motion,
+                initial=release,
+                duration=_TIME,
+                name=f"state {index + 1}, tan alpha = {cylinder.tan_alpha:g}",
             )
 
 

@@ -21,10 +21,10 @@ from ..finding import Finding, at_most
 LAYER = "agreement"
 CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case(
-    "release, tan alpha = 0.2",
     CYLINDER,
     initial=InitialState(tilt=0.5 * CYLINDER.alpha, rolling_rate=0.5),
     duration=2.0,
+    name="release, tan alpha = 0.2",
 )
 STEP = 1e-4  # [s] the default at this size
 # [alpha]; 9e-9 was measured for both engines at 1e-4 s, and the error is first order in the step

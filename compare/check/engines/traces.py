@@ -30,12 +30,12 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 THRESHOLD = GRAVITY * PIER.tan_alpha
 GROUND = np.array([0.10, -0.06, 0.30]) * GRAVITY
 SHAKEN = Case(
-    "even acceleration in three components",
     SQUAT,
     steady(GROUND, 0.9),
-    InitialState(0.5 * SQUAT.alpha, tilt_rate=-0.1, rolling_angle=0.7, rolling_rate=1.1),
-    0.9,
+    initial=InitialState(0.5 * SQUAT.alpha, tilt_rate=-0.1, rolling_angle=0.7, rolling_rate=1.1),
+    duration=0.9,
     friction=2.0,
+    name="even acceleration in three components",
 )
 SAMPLE = 0.00437  # [s] no multiple of a step
 # errors of contact at steps of 7e-5 s, five times what was measured; a sample off by half a step would be
@@ -59,7 +59,7 @@ RISE = 5e-5  # [rad]; 1e-5 was measured with PyBullet
 UPLIFT, AZIMUTH = 1e-6, 1e-9  # [s], [rad]; 1e-8 and 3e-15 were measured
 SLIDE = 0.05
 RELEASE = Case(
-    "release", PIER, None, InitialState(0.3 * PIER.alpha, rolling_rate=0.4), duration=1.9
+    PIER, initial=InitialState(0.3 * PIER.alpha, rolling_rate=0.4), duration=1.9, name="release"
 )  # one pass, at 0.1 alpha
 PEAK, PASS = 1e-7, 1e-6  # [rad]; [s, rad]
 
@@ -145,7 +145,7 @@ def _uplift(bench: Bench, engine: str) -> Iterator[Finding]:
     if engine == "pybullet":
         # its base rocks on four contacts before: what is checked is where the uplift is found
         run = Run(engine, run.support, run.time_step, **{**run.settings, "held_standing": True})
-    case = Case("ramp", PIER, RAMP, duration=0.6, friction=2.0)
+    case = Case(PIER, RAMP, duration=0.6, friction=2.0, name="ramp")
     trace = run_engine(case, run, sample_step=0.05)
     if crashed(trace):
         yield _failed(f"{engine}, ramp", engine, trace)
@@ -214,7 +214,7 @@ def _slides(bench: Bench, engine: str) -> Finding:
     friction, time = 0.1, 0.5
     # not of the size at which the engines run every scene, so that lengths and times differ from it
     small = replace(PIER, semidiagonal=1.5)
-    case = Case("slide", small, steady([0.12 * GRAVITY, -0.09 * GRAVITY], time), friction=friction)
+    case = Case(small, steady([0.12 * GRAVITY, -0.09 * GRAVITY], time), friction=friction, name="slide")
     trace = run_engine(case, bench.adjust(Run(engine, "flat")))
     if crashed(trace):
         return _failed(f"{engine}, slide", engine, trace)

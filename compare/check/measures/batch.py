@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Cylinder, GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion
 
 from ..bench import Bench
 from ..finding import Finding, at_most
@@ -77,7 +77,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 def _peak(bench: Bench, size: float, motion: GroundMotion, options: dict[str, Any]) -> float:
     cylinder = Cylinder(semidiagonal=size, tan_alpha=TAN_ALPHA)
-    return float(bench.reduced.simulate(cylinder, motion, sample_step=1.0, **options).peak_tilt)
+    return float(bench.reduced.simulate(Case(cylinder, motion), sample_step=1.0, **options).peak_tilt)
 
 
 def _motion() -> GroundMotion:

@@ -15,7 +15,7 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder, InitialState
 
-from ...traces.trajectory import External, ExternalTrajectory, read_trajectory
+from ...traces.trajectory import External, Trace, read_trajectory
 from ..bench import Bench
 from ..finding import Finding, worst_of
 from ..models import lagrange
@@ -25,7 +25,7 @@ LAYER = "metrics"
 CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 B, H, ALPHA = CYLINDER.base_radius, CYLINDER.mass_centre_height, CYLINDER.alpha
 LENGTH = 5.0
-CASE = Case("made", CYLINDER, None, InitialState(0.5 * ALPHA), LENGTH)
+CASE = Case(CYLINDER, initial=InitialState(0.5 * ALPHA), duration=LENGTH, name="made")
 LATE = 0.6  # [rad] phase of the tilt at the start
 DRIFT = np.array([0.1, -0.05, 0.0])  # of b, in the whole run
 ROUNDING = 1e-9  # of the twelve digits that are printed, in m and rad
@@ -78,7 +78,7 @@ def _centre(time: Array) -> Array:
     return lagrange.mass_centre(lagrange.shape_of(CYLINDER), tilt, azimuth) + drift
 
 
-def _errors(found: ExternalTrajectory, form: str) -> dict[str, float]:
+def _errors(found: Trace, form: str) -> dict[str, float]:
     tilt, azimuth, twist, drift = _motion(found.time)
     outward = np.column_stack([np.cos(azimuth), np.sin(azimuth)])
     placed = "places" in form
@@ -109,7 +109,7 @@ def _errors(found: ExternalTrajectory, form: str) -> dict[str, float]:
     return errors
 
 
-def _turning(found: ExternalTrajectory) -> dict[str, float]:
+def _turning(found: Trace) -> dict[str, float]:
     """Where the tilt turns: 0.6 sin(2 t - LATE) = -0.02; the two maxima are a period of pi apart."""
     early = math.asin(0.02 / 0.6)
     lowest, highest = 0.5 * (LATE + math.pi + early), 0.5 * (LATE - early)
@@ -152,7 +152,7 @@ def _csv(head: str, rows: Array) -> str:
     return "\n".join([head, *(", ".join(f"{value:.12g}" for value in row) for row in rows.tolist())]) + "\n"
 
 
-def _read(path: Path, text: str, offset: float) -> ExternalTrajectory:
+def _read(path: Path, text: str, offset: float) -> Trace:
     path.write_text(text, encoding="utf-8")
     return read_trajectory(External(path=path, time_offset=offset), CASE)
 

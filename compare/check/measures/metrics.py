@@ -199,7 +199,7 @@ def _energies() -> dict[str, float]:
 
 def _row() -> dict[str, float]:
     """What the columns of a summary must be where two rolling cylinders differ in everything."""
-    case = Case("made", CYLINDER, None, None, 10.0)
+    case = Case(CYLINDER, duration=10.0, name="made")
     reference = _rolling(2.0, 0.3, peak_tilt=0.7 * ALPHA, wall_time=0.5, uplift_time=1.0)
     trial = _rolling(
         2.0,

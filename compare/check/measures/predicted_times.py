@@ -58,7 +58,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 
 def _predictions() -> dict[str, float]:
-    case = Case("made", CYLINDER, None, InitialState(0.5 * ALPHA, rolling_rate=0.1), LENGTH)
+    case = Case(CYLINDER, initial=InitialState(0.5 * ALPHA, rolling_rate=0.1), duration=LENGTH, name="made")
     table = passes([3.0, 7.0, 11.0], [2e-3, 3e-4, 1e-5])
     reference = _trace(0.0, passes=table)
     landed = 1.0 + np.where(TIME >= 5.0, math.pi, 0.0)
@@ -116,9 +116,12 @@ def _verdicts() -> dict[str, float]:
     }
     errors = {f"{given}": _unlike(verdict(*given), word) for given, word in words.items()}
     small = Cylinder(semidiagonal=0.06, tan_alpha=0.2)
-    shaken = Case("made", CYLINDER, None, None, 1.0), Case("made", small, None, None, 1.0)
+    shaken = Case(CYLINDER, duration=1.0, name="made"), Case(small, duration=1.0, name="made")
     leaning = InitialState(0.1)
-    released = [Case("made", Cylinder(semidiagonal=6.0, tan_alpha=a), None, leaning, 1.0) for a in (0.2, 0.6)]
+    released = [
+        Case(Cylinder(semidiagonal=6.0, tan_alpha=a), initial=leaning, duration=1.0, name="made")
+        for a in (0.2, 0.6)
+    ]
     error = estimated_error(shaken[0], "mujoco", 1e-4)
     return errors | {
         "twice the step": estimated_error(shaken[0], "mujoco", 2e-4) / error - 2.0,

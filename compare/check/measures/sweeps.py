@@ -53,7 +53,9 @@ def _grid() -> Iterator[Finding]:
         if stated != (motion.name, model, tan_alpha, size, scale):
             wrong.append(f"row {len(wrong)}: {stated}")
         cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
-        alone = reduced.simulate(cylinder, motion.scaled(scale), rtol=1e-8, rest_tilt=1e-4, model=model)
+        alone = reduced.simulate(
+            Case(cylinder, motion.scaled(scale)), rtol=1e-8, rest_tilt=0.0001, **reduced.MODELS[model]
+        )
         expected = "stood" if alone.peak_tilt == 0.0 else alone.outcome
         expected = "rocked" if expected in ("rest", "completed") else expected
         outcomes.add(expected)
@@ -90,20 +92,18 @@ def _grid() -> Iterator[Finding]:
 def _cases() -> Finding:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     cases = [
-        Case("shaken", pier, _motion("one", 1.0), duration=3.0, gravity=9.0),
-        Case("released", pier, None, InitialState(0.5 * pier.alpha, rolling_rate=0.3), 5.0),
+        Case(pier, _motion("one", 1.0), duration=3.0, gravity=9.0, name="shaken"),
+        Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.3), duration=5.0, name="released"),
     ]
     methods = ("recess", "flat")
     table = sweep(CaseSweep(cases, methods), workers=1).to_dict("records")
     wrong = []
     for row, (method, case) in zip(table, itertools.product(methods, cases), strict=False):
         alone = reduced.simulate(
-            case.cylinder,
-            case.motion,
-            initial=case.initial,
-            duration=case.duration,
-            gravity=case.gravity,
-            model=method,
+            Case(
+                case.cylinder, case.motion, initial=case.initial, duration=case.duration, gravity=case.gravity
+            ),
+            **reduced.MODELS[method],
         )
         expected: dict[str, Any] = {
             "case": case.name,

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, GroundMotion, InitialState, pulse
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, pulse
 
 from ..bench import Bench
 from ..finding import Finding, at_most
@@ -48,14 +48,16 @@ def _work_until_the_end(bench: Bench) -> Finding:
     ground, end = np.array([0.06, -0.04, 0.2]) * GRAVITY, 0.9
     shape = shape_of(CYLINDER, GRAVITY)
     found = bench.reduced.simulate(
-        CYLINDER,
-        steady(ground, end),
-        initial=InitialState(tilt=0.5 * CYLINDER.alpha, rolling_rate=0.4),
-        duration=2.0,
+        Case(
+            CYLINDER,
+            steady(ground, end),
+            initial=InitialState(tilt=0.5 * CYLINDER.alpha, rolling_rate=0.4),
+            duration=2.0,
+            gravity=GRAVITY,
+        ),
         sample_step=0.05,
         rtol=1e-11,
         rest_tilt=0.0,
-        gravity=GRAVITY,
     )
     place = lagrange.mass_centre(shape, found.tilt, found.rolling_angle)
     state = found.tilt, found.rolling_angle, found.tilt_rate, found.rolling_rate
@@ -79,14 +81,16 @@ def _energy_after(bench: Bench, model: str) -> Finding:
         [[0.0, 0.0, 0.0], [1.6, 0.9, 0.3], [-0.5, 1.2, -0.3], [0.9, -0.4, 0.5], [0.8, -0.6, 0.6]]
     )
     found = bench.reduced.simulate(
-        CYLINDER,
-        polyline([0.0, 0.5, 1.0, 1.5, end], values * THRESHOLD, 0.1),
-        duration=2.6,
+        Case(
+            CYLINDER,
+            polyline([0.0, 0.5, 1.0, 1.5, end], values * THRESHOLD, 0.1),
+            duration=2.6,
+            gravity=GRAVITY,
+        ),
         sample_step=0.05,
         rtol=1e-11,
         rest_tilt=0.0,
-        gravity=GRAVITY,
-        model=model,
+        **bench.reduced.MODELS[model],
     )
     after = found.energy[np.searchsorted(found.time, end - 1e-9) :]
     return at_most(
@@ -107,7 +111,7 @@ def _falls_after(bench: Bench) -> Iterator[Finding]:
     peaks = _peaks(bench, motion, SCALES)
     wrong = []
     for scale, peak in zip(SCALES, peaks, strict=True):
-        found = bench.reduced.simulate(CYLINDER, motion.scaled(scale), sample_step=0.1, **SOLUTION)
+        found = bench.reduced.simulate(Case(CYLINDER, motion.scaled(scale)), sample_step=0.1, **SOLUTION)
         at = int(np.argmin(np.abs(found.time - motion.duration)))
         tilt, rate = found.tilt[at : at + 1], found.tilt_rate[at]
         energy = 0.5 * quadrature.tilt_inertia(shape) * rate**2 + quadrature.height_energy(shape, tilt)[0]
@@ -161,7 +165,7 @@ def _brought_back(bench: Bench) -> Iterator[Finding]:
             up = (weight - 1.0) * GRAVITY * np.array([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0])
             record = polyline(times, np.column_stack([along, 0.0 * along, up]), 0.25)
             options = {**SOLUTION, "model": "planar", "restitution": 0.6}
-            whole = bench.reduced.simulate(CYLINDER, record, sample_step=1.0, **options)
+            whole = bench.reduced.simulate(Case(CYLINDER, record), sample_step=1.0, **options)
             # a scale of two on half of the record: the same numbers, and the scale is there
             (early,) = _peaks(bench, record.scaled(0.5), (2.0,), model="planar", restitution=0.6)
             apart.append(abs(whole.peak_tilt - early) / CYLINDER.alpha)

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rockwobble.models import Cylinder, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 
 from ...metrics.energy import energy_loss
 from ..bench import Bench
@@ -31,9 +31,11 @@ def check(bench: Bench) -> Iterator[Finding]:
     shape = lagrange.shape_of(CYLINDER)
     for spin in SPINS:
         found = bench.reduced.simulate(
-            CYLINDER,
-            initial=InitialState(tilt=0.5 * CYLINDER.alpha, rolling_rate=spin),
-            duration=DURATION,
+            Case(
+                CYLINDER,
+                initial=InitialState(tilt=0.5 * CYLINDER.alpha, rolling_rate=spin),
+                duration=DURATION,
+            ),
             rtol=RTOL,
             rest_tilt=0.0,
         )
@@ -71,12 +73,10 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 def _planar(bench: Bench) -> Finding:
     found = bench.reduced.simulate(
-        CYLINDER,
-        initial=InitialState(tilt=0.5 * CYLINDER.alpha),
-        duration=DURATION,
+        Case(CYLINDER, initial=InitialState(tilt=0.5 * CYLINDER.alpha), duration=DURATION),
         rtol=RTOL,
         rest_tilt=0.0,
-        model="planar",
+        plane=0.0,
     )
     return at_most(
         LAYER,
@@ -91,7 +91,9 @@ def _planar(bench: Bench) -> Finding:
 def _work(bench: Bench) -> Iterator[Finding]:
     motion = el_centro_1940().scaled(2.0)
     for model in ("recess", "flat"):
-        found = bench.reduced.simulate(CYLINDER, motion, duration=DURATION, rtol=RTOL, model=model)
+        found = bench.reduced.simulate(
+            Case(CYLINDER, motion, duration=DURATION), rtol=RTOL, **bench.reduced.MODELS[model]
+        )
         loss = abs(energy_loss(found, motion))
         yield at_most(
             LAYER,

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from ..bench import Bench
 from ..finding import Finding, at_most
@@ -43,13 +43,12 @@ def _free(bench: Bench, cylinder: Cylinder) -> Iterator[Finding]:
     shape, tilt, spin = shape_of(cylinder, GRAVITY), 0.5 * cylinder.alpha, 0.3
     time, turn = quadrature.period_and_turn(shape, tilt, spin)
     found = bench.reduced.simulate(
-        cylinder,
-        initial=InitialState(tilt=tilt, rolling_rate=spin),
-        duration=1.2 * time,
+        Case(
+            cylinder, initial=InitialState(tilt=tilt, rolling_rate=spin), duration=1.2 * time, gravity=GRAVITY
+        ),
         sample_step=0.25 * time,
         rtol=1e-12,
         rest_tilt=0.0,
-        gravity=GRAVITY,
     )
     maxima = found.extrema[found.extrema[:, 3] > 0.0]
     second = maxima[1] if len(maxima) > 1 else np.full(4, math.nan)
@@ -78,13 +77,15 @@ def _limit(bench: Bench, cylinder: Cylinder) -> Finding:
     shape = shape_of(cylinder, GRAVITY)
     limit = math.pi * math.sqrt(quadrature.tilt_inertia(shape) / quadrature.cone_inertia(shape))
     found = bench.reduced.simulate(
-        cylinder,
-        initial=InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=VANISHING_SPIN),
-        duration=4.0,
+        Case(
+            cylinder,
+            initial=InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=VANISHING_SPIN),
+            duration=4.0,
+            gravity=GRAVITY,
+        ),
         sample_step=1.0,
         rtol=1e-10,
         rest_tilt=0.0,
-        gravity=GRAVITY,
     )
     turns = np.asarray(found.passes["angle_of_turn"])
     return at_most(
@@ -101,12 +102,14 @@ def _limit(bench: Bench, cylinder: Cylinder) -> Finding:
 def _steady(bench: Bench, cylinder: Cylinder) -> Finding:
     shape, tilt = shape_of(cylinder, GRAVITY), 0.6 * cylinder.alpha
     found = bench.reduced.simulate(
-        cylinder,
-        initial=InitialState(tilt=tilt, rolling_rate=quadrature.steady_rate(shape, tilt)),
-        duration=10.0,
+        Case(
+            cylinder,
+            initial=InitialState(tilt=tilt, rolling_rate=quadrature.steady_rate(shape, tilt)),
+            duration=10.0,
+            gravity=GRAVITY,
+        ),
         sample_step=0.25,
         rtol=1e-12,
-        gravity=GRAVITY,
     )
     return at_most(
         LAYER,
@@ -126,7 +129,9 @@ def _stated(bench: Bench, cylinder: Cylinder) -> Finding:
     quarter = quadrature.planar_quarter(shape, tilt)
     release = InitialState(tilt=tilt, rolling_rate=spin)
     stated = bench.reduced.free_response(cylinder, release, gravity=GRAVITY)
-    model = bench.reduced.simulate(cylinder, initial=release, duration=0.1, gravity=GRAVITY, rest_tilt=0.0)
+    model = bench.reduced.simulate(
+        Case(cylinder, initial=release, duration=0.1, gravity=GRAVITY), rest_tilt=0.0
+    )
     errors = {
         "period": stated.period / time - 1.0,
         "half period": stated.half_period / (0.5 * time) - 1.0,
@@ -153,14 +158,11 @@ def _planar(bench: Bench, cylinder: Cylinder) -> Finding:
     shape, tilt = shape_of(cylinder, GRAVITY), 0.5 * cylinder.alpha
     quarter = quadrature.planar_quarter(shape, tilt)
     found = bench.reduced.simulate(
-        cylinder,
-        initial=InitialState(tilt=tilt),
-        duration=1.5 * quarter,
+        Case(cylinder, initial=InitialState(tilt=tilt), duration=1.5 * quarter, gravity=GRAVITY),
         sample_step=quarter,
         rtol=1e-12,
         rest_tilt=0.0,
-        gravity=GRAVITY,
-        model="planar",
+        plane=0.0,
     )
     minima = found.extrema[found.extrema[:, 3] < 0.0]
     return at_most(
@@ -181,12 +183,9 @@ def _uplift(bench: Bench) -> Iterator[Finding]:
     time, a, slope = _crossing(samples, step, GRAVITY * cylinder.tan_alpha)
     after = 2e-3 / math.sqrt(GRAVITY * 6.0 / quadrature.tilt_inertia(shape_of(cylinder, GRAVITY)))
     found = bench.reduced.simulate(
-        cylinder,
-        GroundMotion(samples, step),
-        duration=time + after,
+        Case(cylinder, GroundMotion(samples, step), duration=time + after, gravity=GRAVITY),
         sample_step=time + 0.25 * after,
         rtol=1e-12,
-        gravity=GRAVITY,
     )
     part = "uplift: criterion (25) and where it is located in a sample"
     yield at_most(
@@ -222,7 +221,7 @@ def _uplift(bench: Bench) -> Iterator[Finding]:
         part="start after the uplift",
     )
     still = bench.reduced.simulate(
-        cylinder, GroundMotion(samples * 0.999 * 0.2 / math.hypot(0.24, 0.20), step), gravity=GRAVITY
+        Case(cylinder, GroundMotion(samples * 0.999 * 0.2 / math.hypot(0.24, 0.2), step), gravity=GRAVITY)
     )
     yield at_most(
         LAYER,

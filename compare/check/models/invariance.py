@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
 from ..bench import Bench
 from ..finding import Finding, at_most
@@ -115,11 +115,8 @@ def _run(
     factor: float = 1.0,
 ) -> Any:
     return bench.reduced.simulate(
-        cylinder,
-        motion,
-        duration=duration * factor,
+        Case(cylinder, motion, duration=duration * factor, gravity=gravity),
         sample_step=sample_step * factor,
-        gravity=gravity,
         rtol=RTOL,
     )
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState
 
 from ..bench import Bench
 from ..finding import Finding, at_most
@@ -41,15 +41,17 @@ def check(bench: Bench) -> Iterator[Finding]:
         ("less weight, no loss", 1.0, (0.01 * GRAVITY, 0.0, -0.25 * GRAVITY)),
     ):
         found = bench.reduced.simulate(
-            CYLINDER,
-            steady(ground, 10.0),
-            initial=InitialState(tilt=0.25 * CYLINDER.alpha),
-            duration=5.0,
+            Case(
+                CYLINDER,
+                steady(ground, 10.0),
+                initial=InitialState(tilt=0.25 * CYLINDER.alpha),
+                duration=5.0,
+                gravity=GRAVITY,
+            ),
             sample_step=0.05,
             rtol=1e-11,
             rest_tilt=0.0,
-            gravity=GRAVITY,
-            model="planar",
+            plane=0.0,
             restitution=ratio,
         )
         force = np.tile(np.array(ground), (len(found.time), 1))
@@ -76,14 +78,11 @@ def _dying_swings(bench: Bench) -> Iterator[Finding]:
     shape = shape_of(CYLINDER, GRAVITY)
     ratio = (16.0 - 25.0 * math.sin(CYLINDER.alpha) ** 2) / (16.0 - math.sin(CYLINDER.alpha) ** 2)
     found = bench.reduced.simulate(
-        CYLINDER,
-        initial=InitialState(tilt=0.5 * CYLINDER.alpha),
-        duration=16.0,
+        Case(CYLINDER, initial=InitialState(tilt=0.5 * CYLINDER.alpha), duration=16.0, gravity=GRAVITY),
         sample_step=1.0,
         rtol=1e-12,
         rest_tilt=0.0,
-        gravity=GRAVITY,
-        model="planar",
+        plane=0.0,
         restitution="momentum",
     )
     tops = found.extrema[found.extrema[:, 3] > 0.0]
@@ -109,12 +108,14 @@ def _dying_swings(bench: Bench) -> Iterator[Finding]:
         part=PART,
     )
     upright = bench.reduced.simulate(
-        Cylinder(semidiagonal=2.0, tan_alpha=1.5),
-        initial=InitialState(tilt=0.1),
-        duration=3.0,
+        Case(
+            Cylinder(semidiagonal=2.0, tan_alpha=1.5),
+            initial=InitialState(tilt=0.1),
+            duration=3.0,
+            gravity=GRAVITY,
+        ),
         sample_step=1.0,
-        gravity=GRAVITY,
-        model="planar",
+        plane=0.0,
         restitution="momentum",
     )
     yield at_most(

@@ -32,10 +32,15 @@ def check(bench: Bench) -> Iterator[Finding]:
     }
     for name, problem in problems.items():
         for model in ("recess", "flat"):
-            exact = bench.reduced.simulate(CYLINDER, rtol=1e-13, model=model, **problem)
+            exact = bench.reduced.simulate(
+                Case(CYLINDER), rtol=1e-13, **bench.reduced.MODELS[model], **problem
+            )
             errors = [
                 np.abs(
-                    bench.reduced.simulate(CYLINDER, rtol=rtol, model=model, **problem).tilt - exact.tilt
+                    bench.reduced.simulate(
+                        Case(CYLINDER), rtol=rtol, **bench.reduced.MODELS[model], **problem
+                    ).tilt
+                    - exact.tilt
                 ).max()
                 for rtol in TOLERANCES
             ]
@@ -55,7 +60,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 def _engines(bench: Bench) -> Iterator[Finding]:
     squat = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
     release = InitialState(tilt=0.5 * squat.alpha, rolling_rate=0.5)
-    case = Case("release, tan alpha = 1", squat, initial=release, duration=2.0)
+    case = Case(squat, initial=release, duration=2.0, name="release, tan alpha = 1")
     exact = bench.response(case, "recess")
     # the rim of these creeps by a share of the step where friction only stops the slip: first order
     yield from not_here(LAYER, "first order in the time step")

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 from ..bench import Bench
 from ..finding import Finding, at_most
@@ -93,9 +93,9 @@ def _sampled_record(bench: Bench) -> Finding:
     kept = math.ceil(SECONDS / motion.time_step) + 2
     motion = GroundMotion(motion.acceleration[:kept], motion.time_step)
     options = {"duration": SECONDS, "sample_step": _STEP, "rtol": 1e-8, "gravity": GRAVITY}
-    plain = bench.reduced.simulate(cylinder, motion, **options)
-    copy = bench.reduced.simulate(cylinder, motion.scaled(1.0 + 1e-9), **options)
-    finer = [bench.reduced.simulate(cylinder, refined(motion, times), **options) for times in (2, 5)]
+    plain = bench.reduced.simulate(Case(cylinder, motion), **options)
+    copy = bench.reduced.simulate(Case(cylinder, motion.scaled(1.0 + 1e-9)), **options)
+    finer = [bench.reduced.simulate(Case(cylinder, refined(motion, times)), **options) for times in (2, 5)]
     moved = bool(plain.tilt.max() > 0.0)
     return at_most(
         LAYER,
@@ -116,14 +116,14 @@ def _backwards(bench: Bench) -> Finding:
         cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
         begin = InitialState(0.5 * cylinder.alpha, tilt_rate=0.1, rolling_angle=0.4, rolling_rate=0.3)
         options = {"duration": 4.0, "sample_step": 4.0, "rtol": RTOL, "rest_tilt": 0.0, "gravity": GRAVITY}
-        there = bench.reduced.simulate(cylinder, initial=begin, **options)
+        there = bench.reduced.simulate(Case(cylinder, initial=begin), **options)
         turned = InitialState(
             float(there.tilt[-1]),
             tilt_rate=-float(there.tilt_rate[-1]),
             rolling_angle=float(there.rolling_angle[-1]),
             rolling_rate=-float(there.rolling_rate[-1]),
         )
-        back = bench.reduced.simulate(cylinder, initial=turned, **options)
+        back = bench.reduced.simulate(Case(cylinder, initial=turned), **options)
         apart += [
             abs(back.tilt[-1] - begin.tilt),
             abs(back.tilt_rate[-1] + begin.tilt_rate),
@@ -182,14 +182,11 @@ def _run(
     gravity: float = GRAVITY,
 ) -> Any:
     return bench.reduced.simulate(
-        CYLINDER,
-        motion,
-        duration=duration,
+        Case(CYLINDER, motion, duration=duration, gravity=gravity),
         sample_step=_STEP,
         rtol=RTOL,
         rest_tilt=REST,
-        gravity=gravity,
-        model=model,
+        **bench.reduced.MODELS[model],
     )
 
 

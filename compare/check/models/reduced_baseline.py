@@ -80,16 +80,16 @@ def _runs() -> Iterator[tuple[str, Case, tuple[float, ...]]]:
     doubled = el_centro_1940().scaled(2.0)
     vertical = el_centro_1940(vertical=True).scaled(2.0)
     for model in ("recess", "flat", "planar"):
-        yield model, Case("El Centro doubled", pier, doubled, duration=8.0), (3.0, 5.0, 7.0)
+        yield model, Case(pier, doubled, duration=8.0, name="El Centro doubled"), (3.0, 5.0, 7.0)
     yield (
         "recess",
-        Case("El Centro doubled with its vertical component", pier, vertical, duration=8.0),
+        Case(pier, vertical, duration=8.0, name="El Centro doubled with its vertical component"),
         (3.0, 7.0),
     )
     for model in ("recess", "flat"):
         for name, body in (("slender", pier), ("squat", squat)):
             release = InitialState(tilt=0.5 * body.alpha, rolling_rate=0.2)
-            yield model, Case(f"released {name}", body, initial=release, duration=6.0), (2.0, 4.0, 6.0)
+            yield model, Case(body, initial=release, duration=6.0, name=f"released {name}"), (2.0, 4.0, 6.0)
 
 
 def _number(value: Any) -> float:

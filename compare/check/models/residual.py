@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rockwobble.models import Cylinder, el_centro_1940
+from rockwobble.models import Case, Cylinder, el_centro_1940
 
 from ..bench import Bench
 from ..finding import Finding, at_most
@@ -26,7 +26,7 @@ def check(bench: Bench) -> Iterator[Finding]:
         ("El Centro five times, tan alpha = 1", SQUAT, motion.scaled(5.0), 6.0),
     )
     for name, cylinder, record, duration in runs:
-        found = bench.reduced.simulate(cylinder, record, duration=duration)
+        found = bench.reduced.simulate(Case(cylinder, record, duration=duration))
         b, h = cylinder.base_radius, cylinder.mass_centre_height
         yield at_most(
             LAYER,

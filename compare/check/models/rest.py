@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from ..bench import Bench
 from ..finding import Finding, at_most
@@ -49,12 +49,9 @@ def _first_sample(bench: Bench) -> Iterator[Finding]:
 
     def until(end: float, sample_step: float) -> Any:
         return bench.reduced.simulate(
-            CYLINDER,
-            GroundMotion(samples, step),
-            duration=end,
+            Case(CYLINDER, GroundMotion(samples, step), duration=end, gravity=GRAVITY),
             sample_step=sample_step,
             rtol=1e-12,
-            gravity=GRAVITY,
         )
 
     # at the end of the first steps, and where a series still gives the state
@@ -109,7 +106,7 @@ def _uplift_by_vertical(bench: Bench) -> Finding:
     """|a| stays at 0.8 of its threshold while the weight falls to half: f = 0 where it is 0.8."""
     level = 0.8 * THRESHOLD * np.array([0.6, 0.8])
     record = GroundMotion([[*level, 0.0], [*level, -0.5 * GRAVITY]], 0.5)
-    found = bench.reduced.simulate(CYLINDER, record, gravity=GRAVITY)
+    found = bench.reduced.simulate(Case(CYLINDER, record, gravity=GRAVITY))
     return at_most(
         LAYER,
         "instant of uplift as the weight falls",
@@ -124,7 +121,7 @@ def _uplift_by_vertical(bench: Bench) -> Finding:
 
 def _stands(bench: Bench) -> Iterator[Finding]:
     ground = np.array([0.5, 0.2, -0.3 * GRAVITY])
-    found = bench.reduced.simulate(CYLINDER, steady(ground, 1.0), sample_step=0.25, gravity=GRAVITY)
+    found = bench.reduced.simulate(Case(CYLINDER, steady(ground, 1.0), gravity=GRAVITY), sample_step=0.25)
     weight = np.array([0.0, 0.0, GRAVITY])
     yield at_most(
         LAYER,
@@ -136,7 +133,7 @@ def _stands(bench: Bench) -> Iterator[Finding]:
         part="contact force at rest (reduced/forces.py)",
     )
     heavier = GroundMotion([[1.1 * THRESHOLD, 0.0, 0.2 * GRAVITY]] * 2, 1.0)
-    found = bench.reduced.simulate(CYLINDER, heavier, gravity=GRAVITY)
+    found = bench.reduced.simulate(Case(CYLINDER, heavier, gravity=GRAVITY))
     yield at_most(
         LAYER,
         "tilt below the threshold of a greater weight",
@@ -166,14 +163,16 @@ def _threshold(bench: Bench) -> Finding:
             for model, rate in (("recess", spin), ("planar", 0.0)):
                 tried += 1
                 found = bench.reduced.simulate(
-                    CYLINDER,
-                    steady(ground, 10.0),
-                    initial=InitialState(tilt=share * scale * REST * CYLINDER.alpha, rolling_rate=rate),
-                    duration=2.0,
+                    Case(
+                        CYLINDER,
+                        steady(ground, 10.0),
+                        initial=InitialState(tilt=share * scale * REST * CYLINDER.alpha, rolling_rate=rate),
+                        duration=2.0,
+                        gravity=GRAVITY,
+                    ),
                     sample_step=0.1,
                     rest_tilt=REST,
-                    gravity=GRAVITY,
-                    model=model,
+                    **bench.reduced.MODELS[model],
                 )
                 if not _ended(found, "rest" if share < 1.0 else "completed"):
                     wrong.append(f"{model}, {share:g} of it, ground {ground}: {found.outcome}")

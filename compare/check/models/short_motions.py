@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from . import differences
 from .lagrange import Shape, shape_of
@@ -89,11 +89,8 @@ def sample(reduced: Any, cylinder: Cylinder) -> Sampled:
     rows: dict[str, list[Array]] = {}
     for initial, motion in _starts(p, step):
         found = reduced.simulate(
-            cylinder,
-            motion,
-            initial=initial,
+            Case(cylinder, motion, initial=initial, gravity=GRAVITY),
             sample_step=step,
-            gravity=GRAVITY,
             rtol=1e-13,
             rest_tilt=0.0,
         )

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from ..bench import Bench
 from ..finding import Finding, at_most
@@ -48,15 +48,11 @@ def check(bench: Bench) -> Iterator[Finding]:
     }
     for name, (model, motion, initial) in runs.items():
         found = bench.reduced.simulate(
-            CYLINDER,
-            motion,
-            initial=initial,
-            duration=8.0,
+            Case(CYLINDER, motion, initial=initial, duration=8.0, gravity=GRAVITY),
             sample_step=_SAMPLE,
             rtol=1e-11,
             rest_tilt=0.0,
-            gravity=GRAVITY,
-            model=model,
+            **bench.reduced.MODELS[model],
         )
         yield from _one(name, found)
 

@@ -11,10 +11,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
-from rockwobble.models import Case
+from rockwobble.models import Case, Trace
 
 from ...traces.motion import Motion
-from ...traces.trajectory import ExternalTrajectory, trajectory_of
+from ...traces.trajectory import external_motion, measurement, trajectory_of
 from .clock import fitted_delays
 from .difference import Difference, difference
 from .frame import Frame, fitted_frames
@@ -49,12 +49,12 @@ class Explanation:
     left: Difference
 
 
-def explain(trajectory: ExternalTrajectory, reference: Motion, case: Case, *, start: float) -> Explanation:
+def explain(trajectory: Trace, reference: Motion, case: Case, *, start: float) -> Explanation:
     """Look for the mistakes that make a trajectory differ from a model.
 
     Parameters
     ----------
-    trajectory : ExternalTrajectory
+    trajectory : Trace
     reference : Motion
         Of the model.
     case : Case
@@ -74,7 +74,7 @@ def explain(trajectory: ExternalTrajectory, reference: Motion, case: Case, *, st
             return []
         return [fit for fit in fits(motion, found) if explains(part, hold(fit.apply(motion)).azimuth)]
 
-    motion = trajectory.motion
+    motion = external_motion(trajectory)
     found = hold(motion)
     mistakes: list[Mistake] = []
     if found.tilt.differs:
@@ -122,28 +122,31 @@ def _follows_longer(before: Difference, after: Difference, case: Case) -> bool:
     )
 
 
-def _in_other_units(trajectory: ExternalTrajectory, case: Case) -> Iterator[tuple[Mistake, Motion]]:
+def _in_other_units(trajectory: Trace, case: Case) -> Iterator[tuple[Mistake, Motion]]:
     """Yield the trajectory in degrees for radians and the other way, of both angles and of one."""
-    values = trajectory.columns.values
+    values = measurement(trajectory).columns.values
     if "tilt" not in values or "qw" in values:
         return
     for factor in (_DEGREES, 1.0 / _DEGREES):
         for names in (("tilt", "azimuth"), ("azimuth",), ("tilt",)):
             if not set(names) <= set(values):
                 continue
-            columns = trajectory.columns.scaled(dict.fromkeys(names, 1.0 / factor))
+            columns = measurement(trajectory).columns.scaled(dict.fromkeys(names, 1.0 / factor))
             try:
-                other = trajectory_of(columns, trajectory.given, case)
+                other = trajectory_of(columns, measurement(trajectory).given, case)
             except ValueError:  # no trajectory at all in that unit
                 continue
-            yield Mistake(code="angle_unit", concerns=" and ".join(names), value=factor), other.motion
+            yield (
+                Mistake(code="angle_unit", concerns=" and ".join(names), value=factor),
+                external_motion(other),
+            )
 
 
 def _at_other_times(
-    trajectory: ExternalTrajectory, reference: Motion, case: Case, start: float
+    trajectory: Trace, reference: Motion, case: Case, start: float
 ) -> Iterator[tuple[Mistake, Motion]]:
     """Yield the trajectory with its clock moved."""
-    motion = trajectory.motion
+    motion = external_motion(trajectory)
     scale = math.sqrt(case.cylinder.semidiagonal / case.gravity)
     for delay in fitted_delays(reference, motion, start=start, scale=scale):
         # a clock that is off by less than a sample cannot be told from what a model and noise make of samples

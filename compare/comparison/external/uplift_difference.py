@@ -10,20 +10,22 @@ import math
 
 import numpy as np
 
-from ...traces.pair import Trace
-from ...traces.trajectory import ExternalTrajectory
+from rockwobble.models import Trace
+
+from ...traces.trajectory import Trace, measurement
 from ...traces.uplift import CONFIDENCE
 from .part import Part
 
 
-def uplift_differences(trajectory: ExternalTrajectory, reference: Trace) -> tuple[Part | None, Part | None]:
+def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None, Part | None]:
     """Return time [s] and azimuth [rad] at which a trajectory leans first, minus those of a model.
 
     The size of each is the difference and its bound the uncertainty; both are None for a release, or where
     one of the two never leans.
     """
-    stands, blur = trajectory.stands, CONFIDENCE * trajectory.noise
-    seen = trajectory.first_lean
+    told = measurement(trajectory)
+    stands, blur = told.stands, CONFIDENCE * told.noise
+    seen = told.first_lean
     passed = [first_passage(reference, tilt) for tilt in (stands - blur, stands, stands + blur)]
     if not (seen > 0.0 and passed[1] > 0.0):
         return None, None

@@ -8,11 +8,10 @@ from dataclasses import dataclass, replace
 from types import MappingProxyType
 from typing import Any
 
-from rockwobble.models import Case
+from rockwobble.models import Case, Trace
 
 from ...traces.motion import motion_of
-from ...traces.pair import Trace
-from ...traces.trajectory import ExternalTrajectory
+from ...traces.trajectory import external_motion, measurement
 from .difference import Difference, difference
 from .explanation import Explanation, explain
 from .mistake import Mistake
@@ -124,19 +123,19 @@ def _columns_of(name: str, mistakes: tuple[Mistake, ...]) -> dict[str, str]:
     }
 
 
-def judge(trajectory: ExternalTrajectory, reference: Trace, case: Case) -> Verdict:
+def judge(trajectory: Trace, reference: Trace, case: Case) -> Verdict:
     """Hold an external trajectory against a model.
 
     Parameters
     ----------
-    trajectory : ExternalTrajectory
+    trajectory : Trace
     reference : Trace
         Response of the model.
     case : Case
     """
-    model = motion_of(reference)
+    model, motion = motion_of(reference), external_motion(trajectory)
     start = reference.uplift_time if math.isfinite(reference.uplift_time) else 0.0
-    found = difference(model, trajectory.motion, cylinder=case.cylinder, start=start)
+    found = difference(model, motion, cylinder=case.cylinder, start=start)
     time, direction = uplift_differences(trajectory, reference)
     verdict = Verdict(
         difference=found,
@@ -144,14 +143,14 @@ def judge(trajectory: ExternalTrajectory, reference: Trace, case: Case) -> Verdi
         not_compared=tuple(
             f"{name}: {'not given' if given is None else 'too little motion'}"
             for name, part, given in (
-                ("azimuth", found.azimuth, trajectory.motion.lean),
-                ("path", found.path, trajectory.motion.path),
+                ("azimuth", found.azimuth, motion.lean),
+                ("path", found.path, motion.path),
             )
             if part is None
         ),
         uplift_time=time,
         uplift_direction=direction,
-        noise=trajectory.noise / case.cylinder.alpha,
+        noise=measurement(trajectory).noise / case.cylinder.alpha,
     )
     if not found.differs_in:
         return verdict

@@ -181,14 +181,16 @@ def _demands(case: Case, response: Any, model: str) -> Demands:
         return demands_of(response)
     # a run that ended here would be followed to the ground, too: the samples of the whole have to tell
     fine = reduced.simulate(
-        case.cylinder,
-        case.motion,
-        initial=case.initial,
-        duration=case.duration,
+        Case(
+            case.cylinder,
+            case.motion,
+            initial=case.initial,
+            duration=case.duration,
+            gravity=case.gravity,
+            friction=case.friction,
+        ),
         sample_step=min(SAMPLE_STEP, fall / _SAMPLES),
-        gravity=case.gravity,
-        friction=case.friction,
-        model=model,
+        **reduced.MODELS[model],
     )
     return demands_of(fine, until=fall)
 

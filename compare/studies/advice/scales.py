@@ -114,12 +114,14 @@ def _peak(case: Case, factor: float, series: str, model: str, rtol: float) -> fl
     motion: GroundMotion | None = case.motion
     scaled = dataclasses.replace(case, motion=motion.scaled(factor) if motion is not None else None)
     return reduced.simulate(
-        scaled.cylinder,
-        scaled.motion,
-        initial=scaled.initial,
-        duration=scaled.duration,
+        Case(
+            scaled.cylinder,
+            scaled.motion,
+            initial=scaled.initial,
+            duration=scaled.duration,
+            gravity=scaled.gravity,
+        ),
         rtol=rtol,
         sample_step=scaled.length,
-        gravity=scaled.gravity,
         **series_options(series, model),
     ).peak_tilt

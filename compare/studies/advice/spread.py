@@ -10,11 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Case
+from rockwobble.models import Case, Trace
 
 from ...metrics.agreement import agreement_time
 from ...metrics.distributions import Contrast, contrast
-from ...traces.pair import Trace, make_pair
+from ...traces.pair import make_pair
 from ..ensemble.members import perturbed_starts
 
 Array = NDArray[np.float64]
@@ -139,13 +139,9 @@ def spread_of_starts(
 
 def _run(case: Case, model: str) -> reduced.Response:
     return reduced.simulate(
-        case.cylinder,
-        case.motion,
-        initial=case.initial,
-        duration=case.duration,
+        Case(case.cylinder, case.motion, initial=case.initial, duration=case.duration, gravity=case.gravity),
         sample_step=_SAMPLE_STEP,
-        gravity=case.gravity,
-        model=model,
+        **reduced.MODELS[model],
     )
 
 

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Run
+from rockwobble.models import Case, Run
 
 from ...runs.choice import own_model
 from ...runs.execution import run_engine
@@ -139,13 +139,15 @@ def _row(condition: Condition, method: tuple[str, str, str], found: _Verdict) ->
 def _solve(condition: Condition, model: str, rtol: float) -> reduced.Response:
     case = planar_twin(condition.case) if model == "planar" else condition.case
     return reduced.simulate(
-        case.cylinder,
-        case.motion,
-        initial=case.initial,
-        duration=case.duration,
-        gravity=case.gravity,
-        friction=case.friction,
-        model=model,
+        Case(
+            case.cylinder,
+            case.motion,
+            initial=case.initial,
+            duration=case.duration,
+            gravity=case.gravity,
+            friction=case.friction,
+        ),
+        **reduced.MODELS[model],
         rtol=rtol,
         sample_step=condition.sample_step,
     )

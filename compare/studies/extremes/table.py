@@ -116,7 +116,9 @@ def _release(
     unit = math.sqrt(size / _SIZE * _GRAVITY / gravity)
     cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
     release = InitialState(0.5 * cylinder.alpha, rolling_rate=rate / unit)
-    return Case("release", cylinder, None, release, length * unit, gravity=gravity, friction=friction)
+    return Case(
+        cylinder, initial=release, duration=length * unit, gravity=gravity, friction=friction, name="release"
+    )
 
 
 def _shaken(peak: float, *, spacing: float = 0.01) -> Case:
@@ -126,7 +128,7 @@ def _shaken(peak: float, *, spacing: float = 0.01) -> Case:
     motion = GroundMotion(wave, spacing)
     scaled = motion.scaled(_GRAVITY * peak / motion.peak)
     cylinder = Cylinder(semidiagonal=_SIZE, tan_alpha=_TAN_ALPHA)
-    return Case("shaken", cylinder, scaled, None, _LENGTH, friction=5.0)
+    return Case(cylinder, scaled, duration=_LENGTH, friction=5.0, name="shaken")
 
 
 def planar_twin(case: Case) -> Case:
@@ -135,7 +137,12 @@ def planar_twin(case: Case) -> Case:
         return case
     flat = InitialState(case.initial.tilt)
     return Case(
-        case.name, case.cylinder, None, flat, case.duration, gravity=case.gravity, friction=case.friction
+        case.cylinder,
+        initial=flat,
+        duration=case.duration,
+        gravity=case.gravity,
+        friction=case.friction,
+        name=case.name,
     )
 
 

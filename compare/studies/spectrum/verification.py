@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.models import Cylinder
+from rockwobble.models import Case, Cylinder
 
 from ...metrics.tilt import overturned
 from .series import SERIES, series_options
@@ -120,11 +120,13 @@ def _overturns_again(spectrum: OverturningSpectrum, series: str, i: int, scale: 
 
 def _single(spectrum: OverturningSpectrum, series: str, i: int, scale: float) -> float:
     run = reduced.simulate(
-        Cylinder(semidiagonal=float(spectrum.semidiagonals[i]), tan_alpha=spectrum.tan_alpha),
-        spectrum.motion.scaled(scale),
+        Case(
+            Cylinder(semidiagonal=float(spectrum.semidiagonals[i]), tan_alpha=spectrum.tan_alpha),
+            spectrum.motion.scaled(scale),
+            gravity=spectrum.gravity,
+        ),
         rtol=CHECK_RTOL,
         rest_tilt=spectrum.rest_tilt,
-        gravity=spectrum.gravity,
         sample_step=spectrum.motion.duration,
         **series_options(series, spectrum.model),
     )

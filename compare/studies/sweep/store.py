@@ -15,9 +15,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.models import GroundMotion
+from rockwobble.models import GroundMotion, plain_json
 
-from ...storage import plain_json
 from ...storage.files import replace_files, write_whole
 from ...storage.parquet_file import pack
 from ...storage.provenance import about_results

@@ -88,7 +88,7 @@ def _reduced(problem: Problem, quick: bool) -> list[Method]:
     if problem.name != "turn":  # still ground seats nobody
         lines[1:1] = [
             (f"reduced, rest threshold {FINE_REST_TILT:g}", "recess", FINE_REST_TILT),
-            ("reduced, rest threshold 1e-05", "recess", 1e-5),
+            ("reduced, rest threshold 1e-5", "recess", 1e-5),
             ("reduced, rest threshold 0.1", "recess", 1e-1),
         ]
 
@@ -96,13 +96,10 @@ def _reduced(problem: Problem, quick: bool) -> list[Method]:
         def solve(case: Case) -> Answer:
             given = {} if rest_tilt is None else {"rest_tilt": rest_tilt}
             response = reduced.simulate(
-                case.cylinder,
-                case.motion,
-                initial=case.initial,
-                duration=case.duration,
+                Case(case.cylinder, case.motion, initial=case.initial, duration=case.duration),
                 rtol=rtol,
                 sample_step=problem.sample_step,
-                model=model,
+                **reduced.MODELS[model],
                 **given,
             )
             return _answer(problem, response, case)

@@ -107,14 +107,11 @@ def reference_run(case: Case, model: str, sample_step: float, rtol: float = TIGH
         If the solution fails: there is nothing to hold a method against.
     """
     response = reduced.simulate(
-        case.cylinder,
-        case.motion,
-        initial=case.initial,
-        duration=case.duration,
+        Case(case.cylinder, case.motion, initial=case.initial, duration=case.duration),
         rtol=rtol,
         rest_tilt=FINE_REST_TILT,
         sample_step=sample_step,
-        model=model,
+        **reduced.MODELS[model],
     )
     if response.outcome == "failed":
         raise RuntimeError(f"the reference of {case.name} failed: {response.message}")
@@ -147,7 +144,7 @@ def _turn() -> Problem:
             name="turn",
             title="Angle of turn in free response",
             error_title="error of the angle of turn [deg]",
-            cases=[Case("release at alpha/2", PIER, None, release, _TURN_LENGTH)],
+            cases=[Case(PIER, initial=release, duration=_TURN_LENGTH, name="release at alpha/2")],
             sample_step=_TURN_LENGTH,
             quantity=_angle_of_turn,
             distance=_largest,
@@ -165,9 +162,9 @@ def _angle_of_turn(trace: Any, case: Case) -> Array:
 
 def _shaken() -> Problem:
     motion = el_centro_1940().scaled(_FACTOR)
-    uplift = reduced.simulate(PIER, motion, rtol=TIGHT).uplift_time
+    uplift = reduced.simulate(Case(PIER, motion), rtol=TIGHT).uplift_time
     end = _SAMPLE * round((uplift + _AFTER_UPLIFT) / _SAMPLE)
-    case = Case(f"{_FACTOR:g} × El Centro", PIER, motion, None, end)
+    case = Case(PIER, motion, duration=end, name=f"{_FACTOR:g} × El Centro")
     return _make(
         Problem(
             name="shaken",
@@ -191,7 +188,7 @@ def _whole_tilt(trace: Any, case: Case) -> Array:
 
 
 def _peaks(count: int) -> Problem:
-    standing = Case("synthetic", PIER, synthetic_motions(2, peak=1.0, seed=0)[0])
+    standing = Case(PIER, synthetic_motions(2, peak=1.0, seed=0)[0], name="synthetic")
     motions = synthetic_motions(count, peak=_MEMBER_PEAK, seed=1940, duration=_MEMBER_LENGTH)
     return _make(
         Problem(

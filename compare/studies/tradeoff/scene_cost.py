@@ -171,7 +171,7 @@ def step_cost(variant: Variant, steps: int) -> tuple[float, SceneCounts]:
     motion = None
     if variant.components:
         motion = GroundMotion(np.full((2, len(variant.components)), _PUSH), 1.0)
-    case = Case("cost", _PIER, motion, initial, 1.0)
+    case = Case(_PIER, motion, initial=initial, duration=1.0, name="cost")
     push = np.array([_PUSH if name in variant.components else 0.0 for name in "xyz"])
     with open_scene(case, variant.engine, variant.support, variant.settings) as stepper:
         stepper.advance(np.tile(push, (_WARM_UP, 1)))

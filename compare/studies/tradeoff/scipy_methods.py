@@ -52,7 +52,9 @@ def _start(case: Case) -> InitialValueProblem:
     samples = np.vstack([motion.acceleration[:, :2], np.zeros((2, 2))])
     padded = GroundMotion(samples, motion.time_step)
     begin = _departure(case) if case.initial is None else _INSTANT
-    reach = reduced.simulate(case.cylinder, case.motion, initial=case.initial, duration=begin, rtol=TIGHT)
+    reach = reduced.simulate(
+        Case(case.cylinder, case.motion, initial=case.initial, duration=begin), rtol=TIGHT
+    )
     state = np.array([reach.tilt[-1], reach.tilt_rate[-1], reach.rolling_angle[-1], reach.momentum[-1]])
     return InitialValueProblem(
         cylinder=case.cylinder, motion=padded, start=begin, end=case.length, state=state
@@ -61,7 +63,7 @@ def _start(case: Case) -> InitialValueProblem:
 
 def _departure(case: Case) -> float:
     """Return a time just after the last uplift before the peak [s]: what is before it is at rest."""
-    run = reduced.simulate(case.cylinder, case.motion, duration=case.duration, rtol=TIGHT)
+    run = reduced.simulate(Case(case.cylinder, case.motion, duration=case.duration), rtol=TIGHT)
     resting = np.flatnonzero(np.isnan(run.rolling_angle[: int(np.argmax(run.tilt)) + 1]))
     last = int(resting[-1]) if len(resting) else 0
     if math.isnan(run.uplift_time):

@@ -12,8 +12,9 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from rockwobble.models import plain_json
+
 from ...runs.process_pool import ProcessPool
-from ...storage import plain_json
 from ...storage.files import remove_leftovers, sole_writer, write_whole
 from ...storage.fingerprint import fingerprint
 from ...storage.parquet_file import pack

@@ -42,11 +42,11 @@ def measure(inputs: Inputs) -> list[Row]:
     }
     cylinder, initial = released(inputs["tan_alpha"], _RELEASE, _SPIN)
     duration = _PASSES * reduced.free_response(cylinder, initial).period
-    still = Case("free response", cylinder, None, initial, duration, friction=_FRICTION)
+    still = Case(cylinder, initial=initial, duration=duration, friction=_FRICTION, name="free response")
     free = _engine(still, settings)
     shaken = shaken_case(EL_CENTRO, inputs["tan_alpha"], _SIZE, _INTENSITY, duration=_LENGTH)
     run = _engine(shaken, settings)
-    recess = reduced.simulate(shaken.cylinder, shaken.motion, duration=shaken.duration)
+    recess = reduced.simulate(Case(shaken.cylinder, shaken.motion, duration=shaken.duration))
     lost = -float(free.energy_error[-1]) / float(free.energy[0])
     return [
         {

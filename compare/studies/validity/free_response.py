@@ -7,14 +7,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rockwobble import reduced
-from rockwobble.reduced.assumptions import Assumptions
+from rockwobble.models import Assumptions
 
 from .extent import Extent
 from .part import Inputs, Part, Row
 from .releases import released
 
 if TYPE_CHECKING:
-    from rockwobble.models import Cylinder, InitialState
+    from rockwobble.models import Case, Cylinder, InitialState
 
 _RTOL = 1e-10
 _CYCLES = 10.0  # over which the flat-ground model may gather tilt
@@ -47,7 +47,7 @@ def _row(inputs: Inputs, release: float, spin: float) -> Row:
     cylinder, initial = released(inputs["tan_alpha"], release, spin)
     exact = reduced.free_response(cylinder, initial)
     rolling = reduced.simulate(
-        cylinder, initial=initial, duration=_CYCLES * exact.period, model="flat", rtol=_RTOL
+        Case(cylinder, initial=initial, duration=_CYCLES * exact.period), support="flat", rtol=_RTOL
     )
     period, turn = next_maximum(rolling)
     needs = needs_of_one_period(cylinder, initial, exact.period)
@@ -73,7 +73,7 @@ def next_maximum(response: reduced.Response) -> tuple[float, float]:
 
 def needs_of_one_period(cylinder: Cylinder, initial: InitialState, period: float) -> Assumptions:
     """Return what the recess model needs of ground and recess from a release to the next maximum."""
-    return reduced.simulate(cylinder, initial=initial, duration=period, rtol=_RTOL).assumptions
+    return reduced.simulate(Case(cylinder, initial=initial, duration=period), rtol=_RTOL).assumptions
 
 
 PART = Part(

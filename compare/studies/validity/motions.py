@@ -77,4 +77,4 @@ def shaken_case(
     cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
     length = motion.duration if duration is None else min(duration, motion.duration)
     label = f"{name}, tan α {tan_alpha:g}, R {semidiagonal:g} m, {intensity:g} g tan α"
-    return Case(label, cylinder, motion, None, length, friction=friction)
+    return Case(cylinder, motion, duration=length, friction=friction, name=label)

@@ -90,12 +90,11 @@ def _cases(inputs: Inputs) -> list[Case]:
     shaken = shaken_case(EL_CENTRO, tan_alpha, _SIZE, INTENSITY, duration=inputs["length"])
     assert shaken.motion is not None
     turned = Case(
-        shaken.name,
         shaken.cylinder,
         shaken.motion.rotated(turn),
-        None,
-        shaken.duration,
+        duration=shaken.duration,
         friction=shaken.friction,
+        name=shaken.name,
     )
     return [free, turned]
 

@@ -92,8 +92,10 @@ def ring_cases(
         scaled = record.scaled(intensity * tan_alpha * 9.81 / record.peak).rotated(turn)
         name = f"tan alpha {tan_alpha:g}"
         cases += [
-            Case(f"free response, {name}", cylinder, None, release, length, friction=_FRICTION),
-            Case(f"El Centro, {name}", cylinder, scaled, None, _RECORD, friction=_FRICTION),
+            Case(
+                cylinder, initial=release, duration=length, friction=_FRICTION, name=f"free response, {name}"
+            ),
+            Case(cylinder, scaled, duration=_RECORD, friction=_FRICTION, name=f"El Centro, {name}"),
         ]
     return tuple(cases)
 

@@ -69,7 +69,9 @@ def _row(inputs: Inputs, intensity: float) -> Row:
 
 
 def _run(case: Case, model: str) -> reduced.Response:
-    return reduced.simulate(case.cylinder, case.motion, duration=case.duration, model=model, rtol=1e-7)
+    return reduced.simulate(
+        Case(case.cylinder, case.motion, duration=case.duration), **reduced.MODELS[model], rtol=1e-7
+    )
 
 
 PART = Part(

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from rockwobble import multibody, reduced
+from rockwobble.models import Case
 
 from ...metrics.tilt import tilt_rms
 from ...traces.pair import make_pair
@@ -38,16 +39,13 @@ def measure(inputs: Inputs) -> list[Row]:
     if not math.isfinite(needed):
         return []
     duration = _PERIODS * period
-    recess = reduced.simulate(cylinder, initial=initial, duration=duration, rtol=1e-10)
+    recess = reduced.simulate(Case(cylinder, initial=initial, duration=duration), rtol=1e-10)
     rows = []
     for share in inputs["shares"]:
         run = multibody.simulate(
-            cylinder,
-            initial=initial,
-            duration=duration,
+            Case(cylinder, initial=initial, duration=duration, friction=share * needed),
             engine=ENGINE,
             support="recess",
-            friction=share * needed,
         )
         rows.append(
             {

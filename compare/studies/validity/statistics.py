@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Run
+from rockwobble.models import Case, Run
 
 from ...runs.choice import SUPPORTS, own_model
 from ...runs.execution import run_engine
@@ -35,7 +35,9 @@ def measure(inputs: Inputs) -> list[Row]:
     """Return a row for each method: motion, level, method, peak over alpha, outcome."""
     case = shaken_case(inputs["motion"], inputs["tan_alpha"], inputs["semidiagonal"], inputs["level"])
     found: dict[str, reduced.Response | multibody.Trajectory] = {
-        model: reduced.simulate(case.cylinder, case.motion, duration=case.duration, model=model)
+        model: reduced.simulate(
+            Case(case.cylinder, case.motion, duration=case.duration), **reduced.MODELS[model]
+        )
         for model in map(own_model, SUPPORTS)
     }
     for support in SUPPORTS:

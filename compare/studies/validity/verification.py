@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from rockwobble import multibody, reduced
+from rockwobble.models import Case
 
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import SUPPORTS, own_model
@@ -39,9 +40,13 @@ def measure(inputs: Inputs) -> list[Row]:
     rows = []
     for support in SUPPORTS:
         model = own_model(support)
-        own = reduced.simulate(cylinder, initial=initial, duration=duration, model=model, rtol=1e-10)
+        own = reduced.simulate(
+            Case(cylinder, initial=initial, duration=duration), **reduced.MODELS[model], rtol=1e-10
+        )
         run = multibody.simulate(
-            cylinder, initial=initial, duration=duration, engine=ENGINE, support=support, friction=_FRICTION
+            Case(cylinder, initial=initial, duration=duration, friction=_FRICTION),
+            engine=ENGINE,
+            support=support,
         )
         passes, own_passes = run.passes, own.passes
         rows.append(

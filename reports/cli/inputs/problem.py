@@ -46,7 +46,7 @@ def case_from_options(
     if motion is None and duration is None:
         duration = FREE_DURATION
     name = "free response" if motion is None else motion.name + (f" × {scale:g}" if scale != 1.0 else "")
-    return Case(name, cylinder, motion, initial, duration)
+    return Case(cylinder, motion, initial=initial, duration=duration, name=name)
 
 
 def _motion(

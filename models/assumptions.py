@@ -1,0 +1,38 @@
+"""What a motion asks of ground and recess, and where they could not supply it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from .diagnostic import Diagnostic
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Assumptions:
+    """The demands of a solution on ground and recess, as extrema of the continuous motion.
+
+    Attributes
+    ----------
+    breaches : tuple of Diagnostic
+        "tension", with the least normal force as its size [weights], and "friction_needed".
+    least_normal_force, largest_normal_force : float
+        In weights, while the cylinder is in motion; 1 if it never is.
+    largest_friction_needed : float
+        In motion; inf where contact is lost, 0 if it never moves.
+    largest_restraining_moment : float
+        Of the recess, over the weight [m].
+    friction : float
+        The coefficient it was held against.
+    """
+
+    breaches: tuple[Diagnostic, ...]
+    least_normal_force: float
+    largest_normal_force: float
+    largest_friction_needed: float
+    largest_restraining_moment: float
+    friction: float
+
+    @property
+    def held(self) -> bool:
+        """Whether contact and friction held throughout."""
+        return not self.breaches

@@ -1,0 +1,81 @@
+"""Facts about one motion by their code: what ended it, what limits it, what it asks of ground and recess."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+# code: (unit of size and bound, meaning)
+CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        # why a run failed
+        "not_finite": ("", "the state is not finite"),
+        "energy_gain": ("", "the engine gained energy that nothing supplied"),
+        "penetration": ("", "the cylinder sank into the ground"),
+        "wall_penetration": ("", "the cylinder sank into a wall"),
+        "guide": ("", "the guide did not hold the twist"),
+        "warning": ("", "the engine warned"),
+        "died": ("", "the run ended its process"),
+        "step_budget": ("steps", "the steps allowed were used up: the motion chatters near upright"),
+        "tolerance": ("", "no step met the tolerance"),
+        # what limits a run
+        "slip": ("", "contact slipped"),
+        "lift_off": ("", "the cylinder left the ground"),
+        "tension": ("weights", "the ground would have to pull: contact is lost"),
+        "friction_needed": ("", "the rim would slip: more friction is needed than there is"),
+        "wall_contact": ("", "the cylinder touched a wall"),
+        "energy": ("", "contact made (above 0) or took (below 0) of the energy of the motion"),
+        "undecided": ("", "it ends in the middle of a fall that was not decided"),
+        "solver": ("steps", "the solver had not converged in some of the steps looked at"),
+        "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
+        "settled": ("alpha", "error that the time step leaves, by extrapolation"),
+        "unsettled": ("alpha", "change from twice the time step: it has not settled"),
+        "side": ("", "it passed through upright itself: the side to which it goes on is undetermined"),
+        # what an external trajectory leaves open
+        "note": ("", "how the file was read"),
+        "missed_pass": ("passes", "passes fell between two samples"),
+    }
+)
+FAILURES = frozenset(list(CODES)[:9])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Diagnostic:
+    """A fact about a motion; programs decide by code, time and size, never by words.
+
+    Attributes
+    ----------
+    code : str
+        One of `CODES`.
+    time : float
+        When it first holds [s]; NaN where it has no time.
+    duration : float
+        For how long altogether [s]; NaN where that is not known.
+    size, bound : float
+        How large it is, and the limit that it is held against; units in `CODES`. NaN where there is none.
+    detail : str
+        What an engine or a file says, word for word. Not for decisions.
+
+    Raises
+    ------
+    ValueError
+        If the code is unknown.
+    """
+
+    code: str
+    time: float = math.nan
+    duration: float = math.nan
+    size: float = math.nan
+    bound: float = math.nan
+    detail: str = ""
+
+    def __post_init__(self) -> None:
+        if self.code not in CODES:
+            raise ValueError(f"code must be one of {', '.join(CODES)}, got {self.code!r}")
+
+    @property
+    def meaning(self) -> str:
+        """The code in words."""
+        return CODES[self.code][1]

@@ -1,0 +1,341 @@
+"""The motion of one cylinder, whoever computed or measured it."""
+
+from __future__ import annotations
+
+import html
+import importlib
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Protocol, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .assumptions import Assumptions
+from .case import Case, Run
+from .diagnostic import Diagnostic
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+
+class Source(Protocol):
+    """Who made a trace: gives what costs something, when it is first asked for."""
+
+    def sampled(self) -> Mapping[str, Array]:
+        """Return the sampled quantities that it knows beyond those that are fields, (n,) or (n, 3)."""
+        ...
+
+    def assumptions(self, until: float) -> Assumptions | None:
+        """Return whether contact and friction held until a time [s]; None if it does not know."""
+        ...
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Known:
+    """A source that has everything at hand, such as an engine or a stored file."""
+
+    values: Mapping[str, Array]
+    held: Assumptions | None = None
+
+    def sampled(self) -> Mapping[str, Array]:
+        """Return the quantities, each (n,) or (n, 3)."""
+        return self.values
+
+    def assumptions(self, until: float) -> Assumptions | None:
+        """Return what is known of contact and friction, of the whole motion."""
+        return self.held
+
+
+def no_passes() -> pd.DataFrame:
+    """Return an empty table of passes."""
+    import pandas as pd
+
+    table = pd.DataFrame({name: np.empty(0) for name in ("time", "minimum_tilt", "angle_of_turn")})
+    return table.assign(resolved=np.empty(0, dtype=bool))
+
+
+class _Late:
+    """A sampled quantity that may cost something: the source computes it when it is first asked for."""
+
+    def __init__(self, width: int) -> None:
+        self._width = width
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self._name = name
+
+    @overload
+    def __get__(self, trace: None, owner: type) -> _Late: ...
+    @overload
+    def __get__(self, trace: Trace, owner: type) -> Array: ...
+    def __get__(self, trace: Trace | None, owner: type) -> Array | _Late:
+        if trace is None:
+            return self
+        found = trace.late.get(self._name)
+        count = len(trace.time)
+        return (
+            np.full(count if self._width == 1 else (count, self._width), math.nan) if found is None else found
+        )
+
+
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Trace:
+    """Motion of one cylinder at n samples; positions are relative to O, which moves with the ground.
+
+    What a source does not know is NaN.
+
+    Attributes
+    ----------
+    case : Case
+    run : Run
+        The method: an engine, or None for a reduced model; support and settings.
+    version : str
+        Of the engine, or of rockwobble for a reduced model.
+    time : ndarray, shape (n,)
+        Multiples of the sample step and the exact end [s]; the end of a fall may be later than the run.
+    tilt, tilt_rate : ndarray, shape (n,)
+        theta >= 0 [rad], theta' [rad/s].
+    rolling_angle, rolling_rate : ndarray, shape (n,)
+        phi, azimuth of the contact point, unwrapped [rad], NaN at rest; phi' [rad/s], 0 at rest.
+    twist : ndarray, shape (n,)
+        phi + psi, turn of the body about its axis, unwrapped [rad].
+    contact_point : ndarray, shape (n, 2)
+        On the ground [m]; NaN at rest.
+    centre_of_mass : ndarray, shape (n, 3)
+        [m]
+    energy : ndarray, shape (n,)
+        Relative to the ground, per unit mass, zero standing [m^2/s^2].
+    contact_force : ndarray, shape (n, 3)
+        Of the ground, and of walls, on the cylinder, in weights, world axes.
+    friction_needed : ndarray, shape (n,)
+        Horizontal over normal force [-]; inf where the normal force is not positive.
+    restraining_moment : ndarray, shape (n,)
+        Moment along z_world + z_body that the recess supplies, over the weight [m].
+    energy_error : ndarray, shape (n,)
+        Energy that neither the start nor the excitation supplied [m^2/s^2].
+    slip, wall_contact, wall_impulse : ndarray, shape (n,)
+        Distance slipped so far [m], time in contact with walls so far [s], impulse of the walls so far per
+        unit mass [m/s].
+    peak_tilt : float
+        Largest tilt of the continuous motion [rad]; pi/2 if overturned, NaN if failed.
+    outcome : {"rest", "completed", "overturned", "failed"}
+        "rest": standing at the end; "completed": still in motion at the end.
+    diagnostics : tuple of Diagnostic
+        What ended or limits the motion.
+    uplift_time, uplift_direction : float
+        First uplift [s] and rolling angle there [rad]; 0 and that of the start for a release, NaN without.
+    passes : DataFrame
+        Tilt minima between two maxima of one motion: time [s], minimum_tilt [rad], angle_of_turn [rad] from
+        maximum to maximum, resolved [bool].
+    rests : ndarray, shape (r, 2)
+        When it came to rest after it had moved, and when it uplifted again; NaN if it did not [s].
+    extrema : ndarray, shape (k, 4)
+        Turning points of the tilt: time [s], tilt [rad], rolling angle [rad], 1 for a maximum and -1 for
+        a minimum.
+    settings : mapping
+        Every setting of the method, given or default.
+    time_step : float
+        Of the engine, or between samples of a file [s].
+    wall_time : float
+        Computing time without compilation [s].
+    step_count : int
+        Steps tried.
+    contact_resolution : float
+        Smallest minimum tilt of a pass that contact resolves [rad].
+    residual_displacement : float
+        Horizontal distance of the base centre from O at the end [m].
+    error_estimate, settled_until : float
+        Error of the tilt that the time step leaves [rad], and until when traces of successive steps agree
+        [s]; NaN unless the step was sought.
+    """
+
+    case: Case
+    run: Run
+    version: str
+    time: Array
+    tilt: Array
+    tilt_rate: Array
+    rolling_angle: Array
+    twist: Array
+    contact_point: Array
+    centre_of_mass: Array
+    peak_tilt: float
+    outcome: str
+    uplift_time: float
+    uplift_direction: float
+    source: Source
+    passes: pd.DataFrame = field(default_factory=no_passes)
+    facts: tuple[Diagnostic, ...] = ()
+    rests: Array = field(default_factory=lambda: np.empty((0, 2)))
+    extrema: Array = field(default_factory=lambda: np.empty((0, 4)))
+    settings: Mapping[str, Any] = field(default_factory=dict)
+    time_step: float = math.nan
+    wall_time: float = math.nan
+    step_count: int = 0
+    contact_resolution: float = math.nan
+    residual_displacement: float = math.nan
+    error_estimate: float = math.nan
+    settled_until: float = math.nan
+
+    rolling_rate = _Late(1)
+    energy = _Late(1)
+    contact_force = _Late(3)
+    restraining_moment = _Late(1)
+    energy_error = _Late(1)
+    slip = _Late(1)
+    wall_contact = _Late(1)
+    wall_impulse = _Late(1)
+
+    @property
+    def friction_needed(self) -> Array:
+        """Horizontal over normal force (n,) [-]; inf where the normal force is not positive."""
+        return friction_of(self.contact_force)
+
+    @property
+    def contact_offset(self) -> Array:
+        """How far the contact point (n,) is outside the circle of radius b about O [m]; NaN at rest."""
+        x, y = self.contact_point.T
+        return np.asarray(np.hypot(x, y) - self.case.cylinder.base_radius)
+
+    @property
+    def residual_twist(self) -> float:
+        """Twist at the end, whole turns included [rad]."""
+        return float(self.twist[-1]) if len(self.twist) else math.nan
+
+    @property
+    def signed_tilt(self) -> Array:
+        """Tilt (n,) [rad], negative where it leans away from the reference direction.
+
+        That is the azimuth of the plane of planar motion, else the direction of first uplift or release. In
+        planar motion the signed tilt is continuous.
+        """
+        plane = self.run.settings.get("plane")
+        reference = self.uplift_direction if plane is None else plane
+        away = np.cos(np.nan_to_num(self.rolling_angle) - np.nan_to_num(reference)) < 0.0
+        return np.where(away, -self.tilt, self.tilt)
+
+    @cached_property
+    def assumptions(self) -> Assumptions | None:
+        """Whether contact and friction held, from extrema of the continuous motion; None if not known."""
+        return self.source.assumptions(math.inf)
+
+    def assumptions_until(self, end: float) -> Assumptions | None:
+        """Return whether contact and friction held until the time `end` [s], such as that of a fall."""
+        return self.source.assumptions(end)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What ended or limits the motion, breaches of the model's assumptions included."""
+        return self.facts + (self.assumptions.breaches if self.assumptions else ())
+
+    def first(self, *codes: str) -> float:
+        """Return the earliest time at which a diagnostic of these codes holds [s]; infinite if none does."""
+        return min((fact.time for fact in self.diagnostics if fact.code in codes), default=math.inf)
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return the samples as a table, one column for each component, SI units and radians."""
+        import pandas as pd
+
+        contact, centre, force = self.contact_point, self.centre_of_mass, self.contact_force
+        return pd.DataFrame(
+            {
+                **{name: getattr(self, name) for name in ("time", "tilt", "tilt_rate", "rolling_angle")},
+                **{name: getattr(self, name) for name in ("rolling_rate", "twist")},
+                **dict(zip(("contact_x", "contact_y"), contact.T, strict=True)),
+                **dict(zip(("centre_x", "centre_y", "centre_z"), centre.T, strict=True)),
+                **dict(zip(("force_x", "force_y", "force_z"), force.T, strict=True)),
+                **{name: getattr(self, name) for name in ("energy", "restraining_moment", "energy_error")},
+                **{name: getattr(self, name) for name in ("slip", "wall_contact", "wall_impulse")},
+            }
+        )
+
+    def plot(self) -> Any:
+        """Return a matplotlib figure of tilt and contact point, drawn by `rockwobble.reports`."""
+        # by name: a motion does not depend on who draws it
+        return importlib.import_module("rockwobble.reports.figures.trace").draw(self)
+
+    def save(self, path: str | Path) -> None:
+        """Write the motion to a Parquet file, from which `load` returns it with the same bits."""
+        from .trace_file import to_bytes
+
+        Path(path).write_bytes(to_bytes(self))
+
+    @staticmethod
+    def load(path: str | Path) -> Trace:
+        """Return the motion that `save` wrote.
+
+        Raises
+        ------
+        ValueError
+            If the file is not one of a trace.
+        """
+        from .trace_file import read
+
+        return read(path)
+
+    def summary(self) -> dict[str, str]:
+        """Return the main facts in words and numbers, by name."""
+        alpha = self.case.cylinder.alpha
+        found = {
+            "case": self.case.name or str(self.case),
+            "run": str(self.run),
+            "outcome": f"{self.outcome} at {self.time[-1]:.4g} s" if len(self.time) else self.outcome,
+            "peak tilt": f"{self.peak_tilt / alpha:.4g} alpha",
+            "uplift": "none" if math.isnan(self.uplift_time) else f"{self.uplift_time:.4g} s",
+            "passes": str(len(self.passes)),
+        }
+        if self.facts:
+            found["diagnostics"] = ", ".join(fact.code for fact in self.facts)
+        return found
+
+    def __repr__(self) -> str:
+        said = [f"{name} {value}" for name, value in self.summary().items() if name not in ("case", "run")]
+        return f"Trace({self.run}: {', '.join(said)})"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>"
+            for name, value in self.summary().items()
+        )
+        return f"<table>{rows}</table>"
+
+    @cached_property
+    def late(self) -> Mapping[str, Array]:
+        """The sampled quantities that its source gave beyond the fields."""
+        return self.source.sampled()
+
+
+def friction_of(force: Array) -> Array:
+    """Return horizontal over normal force (n,) of `force` (n, 3); inf where N is not positive."""
+    horizontal, normal = np.hypot(force[:, 0], force[:, 1]), force[:, 2]
+    pressed = normal > 0.0
+    needed = np.where(pressed, horizontal / np.where(pressed, normal, 1.0), math.inf)
+    return np.where(np.isnan(normal), math.nan, needed)
+
+
+def lost_trace(case: Case, run: Run, why: str) -> Trace:
+    """Return the trace of a run that left none, as where its process died: no samples, outcome "failed"."""
+    none = np.empty(0)
+    return Trace(
+        case=case,
+        run=run,
+        version="",
+        time=none,
+        tilt=none,
+        tilt_rate=none,
+        rolling_angle=none,
+        twist=none,
+        contact_point=np.empty((0, 2)),
+        centre_of_mass=np.empty((0, 3)),
+        peak_tilt=math.nan,
+        outcome="failed",
+        uplift_time=math.nan,
+        uplift_direction=math.nan,
+        source=Known({}),
+        facts=(Diagnostic(code="died", detail=why),),
+    )

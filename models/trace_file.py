@@ -1,0 +1,154 @@
+"""A trace as a Parquet file and back, with the same bits: samples as the table, the rest in its metadata."""
+
+from __future__ import annotations
+
+import dataclasses
+import io
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import plain_json
+from .assumptions import Assumptions
+from .case import Case, Run
+from .cylinder import Cylinder
+from .diagnostic import Diagnostic
+from .ground_motion import GroundMotion
+from .initial_state import InitialState
+from .trace import Known, Trace
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+METADATA = b"rockwobble"  # name of our part of the metadata of a file, beside that of pandas
+_VECTORS = {
+    "contact_point": ("contact_x", "contact_y"),
+    "centre_of_mass": ("centre_x", "centre_y", "centre_z"),
+    "contact_force": ("force_x", "force_y", "force_z"),
+}
+_FIELDS = ("time", "tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
+_LATE = (
+    *("rolling_rate", "energy", "contact_force", "restraining_moment"),
+    *("energy_error", "slip", "wall_contact", "wall_impulse"),
+)
+_NUMBERS = (
+    *("version", "outcome", "peak_tilt", "uplift_time", "uplift_direction", "time_step", "wall_time"),
+    *("step_count", "contact_resolution", "residual_displacement", "error_estimate", "settled_until"),
+)
+
+
+def facts_of(trace: Trace) -> dict[str, Any]:
+    """Return all of a trace but its case and samples, for JSON."""
+    return {
+        "run": run_to_plain(trace.run),
+        **{name: getattr(trace, name) for name in _NUMBERS},
+        "settings": dict(trace.settings),
+        "facts": trace.facts,
+        "assumptions": trace.assumptions,
+        "rests": trace.rests,
+        "extrema": trace.extrema,
+        "passes": {name: trace.passes[name].to_numpy() for name in trace.passes.columns},
+    }
+
+
+def trace_of(facts: Mapping[str, Any], samples: pd.DataFrame, case: Case) -> Trace:
+    """Return the trace of what `facts_of` gave, its samples and its case."""
+    import pandas as pd
+
+    def array(name: str) -> Any:
+        columns = _VECTORS.get(name)
+        return samples[name].to_numpy() if columns is None else samples[list(columns)].to_numpy()
+
+    held = facts["assumptions"]
+    return Trace(
+        case=case,
+        run=run_from_plain(facts["run"]),
+        **{name: array(name) for name in _FIELDS},
+        **{name: facts[name] for name in _NUMBERS},
+        settings=facts["settings"],
+        facts=_diagnostics(facts["facts"]),
+        rests=np.array(facts["rests"], dtype=float).reshape(-1, 2),
+        extrema=np.array(facts["extrema"], dtype=float).reshape(-1, 4),
+        passes=pd.DataFrame(
+            {
+                name: np.array(column, dtype=bool if name == "resolved" else float)
+                for name, column in facts["passes"].items()
+            }
+        ),
+        source=Known(
+            {name: array(name) for name in _LATE},
+            None if held is None else Assumptions(**held | {"breaches": _diagnostics(held["breaches"])}),
+        ),
+    )
+
+
+def _diagnostics(given: list[dict[str, Any]]) -> tuple[Diagnostic, ...]:
+    return tuple(Diagnostic(**each) for each in given)
+
+
+def run_to_plain(run: Run) -> dict[str, Any]:
+    """Return a run for JSON."""
+    return {
+        "engine": run.engine,
+        "support": run.support,
+        "time_step": run.time_step,
+        "settings": dict(run.settings),
+    }
+
+
+def run_from_plain(given: Mapping[str, Any]) -> Run:
+    """Return the run that `run_to_plain` was given."""
+    return Run(given["engine"], given["support"], given["time_step"], **given["settings"])
+
+
+def case_to_plain(case: Case) -> dict[str, Any]:
+    """Return a case for JSON, with the samples of its motion."""
+    fields = {field.name: getattr(case, field.name) for field in dataclasses.fields(case)}
+    return {**fields, "motion": case.motion and dataclasses.asdict(case.motion)}
+
+
+def case_from_plain(given: Mapping[str, Any]) -> Case:
+    """Return the case that `case_to_plain` was given."""
+    motion, initial = given["motion"], given["initial"]
+    fields = {
+        "cylinder": Cylinder(**given["cylinder"]),
+        "motion": motion and GroundMotion(**motion),
+        "initial": initial and InitialState(**initial),
+    }
+    return Case(**{**given, **fields})
+
+
+def to_bytes(trace: Trace, about: Mapping[str, Any] | None = None) -> bytes:
+    """Return a trace as the bytes of a Parquet file; `about` is kept beside it."""
+    import pyarrow as pa
+    import pyarrow.parquet as pq
+
+    whole = {**(about or {}), "case": case_to_plain(trace.case), "trace": facts_of(trace)}
+    table = pa.Table.from_pandas(trace.to_frame(), preserve_index=False)
+    metadata = {**(table.schema.metadata or {}), METADATA: plain_json.dumps(whole).encode()}
+    buffer = io.BytesIO()
+    pq.write_table(table.replace_schema_metadata(metadata), buffer)
+    return buffer.getvalue()
+
+
+def read(path: str | Path) -> Trace:
+    """Return the trace in a file that `to_bytes` made.
+
+    Raises
+    ------
+    ValueError
+        If it is not one.
+    """
+    import pandas as pd
+    import pyarrow.parquet as pq
+
+    try:
+        content = Path(path).read_bytes()
+        metadata = pq.read_schema(io.BytesIO(content)).metadata or {}
+        about = plain_json.loads(metadata[METADATA])
+        return trace_of(about["trace"], pd.read_parquet(io.BytesIO(content)), case_from_plain(about["case"]))
+    except (OSError, ValueError, KeyError) as error:
+        why = str(error).partition("\n")[0] or type(error).__name__
+        raise ValueError(f"{path} must be the file of a trace, cannot read it as one: {why}") from None

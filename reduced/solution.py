@@ -1,0 +1,145 @@
+"""A solution of a reduced model: what a trace of it is made of, and what it computes when it is asked."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Assumptions
+from rockwobble.models.trace import friction_of
+
+from . import forces
+from .assumptions import Demands, review
+from .columns import ground_at
+from .integration.march import MAXIMUM, MINIMUM
+from .problem import Problem
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Solution:
+    """States of a reduced model at n samples, and the problem that they solve.
+
+    Attributes
+    ----------
+    problem : Problem
+    friction : float
+        Coefficient that the friction needed is held against.
+    time : ndarray, shape (n,)
+        [s]
+    states : ndarray, shape (n, 6)
+        theta [rad], theta' [rad/s], phi [rad], L or Lambda [m^2/s], phi + psi [rad], S [m^2/s].
+    roll_out : ndarray, shape (n, 2)
+        Centre of the circle that the rim rolls on, relative to O [m].
+    uplift_time : float
+        [s]
+    extrema, rests : ndarray
+        As of `Trace`.
+    """
+
+    problem: Problem
+    friction: float
+    time: Array
+    states: Array
+    roll_out: Array
+    uplift_time: float
+    extrema: Array
+    rests: Array
+
+    def sampled(self) -> Mapping[str, Array]:
+        """Return rolling rate, energy, contact force and restraining moment at the samples."""
+        found = self._derive(self.time, self.states)
+        return {
+            "rolling_rate": found[:, forces.ROLLING_RATE],
+            "energy": found[:, forces.ENERGY],
+            "contact_force": found[:, forces.FORCE_X : forces.FORCE_Z + 1],
+            "restraining_moment": found[:, forces.COUPLE],
+        }
+
+    def contact_point(self, moving: NDArray[np.bool_]) -> Array:
+        """Return the contact point (n, 2) relative to O [m]; NaN at rest."""
+        phi = np.where(moving, self.states[:, 2], math.nan)
+        b = self.problem.cylinder.base_radius
+        return self.roll_out + b * np.column_stack([np.cos(phi), np.sin(phi)])
+
+    def centre_of_mass(self) -> Array:
+        """Return the mass centre (n, 3) relative to O [m]: equations (8) and (10)."""
+        b, h = self.problem.cylinder.base_radius, self.problem.cylinder.mass_centre_height
+        theta, phi = self.states[:, 0], self.states[:, 2]
+        s, c = np.sin(theta), np.cos(theta)
+        radius = s * (h + b * np.tan(0.5 * theta))
+        horizontal = self.roll_out + radius[:, None] * np.column_stack([np.cos(phi), np.sin(phi)])
+        return np.column_stack([horizontal, b * s + h * c])
+
+    def residual_displacement(self) -> float:
+        """Return the horizontal distance of the base centre from O at the last sample [m]."""
+        theta, phi = self.states[-1, 0], self.states[-1, 2]
+        inward = self.problem.cylinder.base_radius * 2.0 * math.sin(0.5 * theta) ** 2
+        x, y = self.roll_out[-1]
+        return math.hypot(x + inward * math.cos(phi), y + inward * math.sin(phi))
+
+    def passes(self) -> pd.DataFrame:
+        """Return the passes: a tilt minimum between two maxima of one motion, one row each.
+
+        Turning points closer than the tolerance of the solution, as in steady wobble, are not told apart and
+        make no pass, and neither does a rest.
+        """
+        import pandas as pd
+
+        rows, kinds = self.extrema, self.extrema[:, 3]
+        motion = np.searchsorted(self.rests[:, 0], rows[:, 0])  # number of rests before
+        found = [
+            (rows[i, 0], rows[i, 1], rows[i + 1, 2] - rows[i - 1, 2])
+            for i in range(1, len(rows) - 1)
+            if kinds[i] == MINIMUM
+            and kinds[i - 1] == kinds[i + 1] == MAXIMUM
+            and motion[i - 1] == motion[i + 1]
+            and min(rows[i - 1, 1], rows[i + 1, 1]) > rows[i, 1] * (1.0 + 100.0 * self.problem.rtol)
+        ]
+        table = pd.DataFrame(found, columns=["time", "minimum_tilt", "angle_of_turn"], dtype=float)
+        return table.assign(resolved=np.ones(len(table), dtype=bool))
+
+    def assumptions(self, until: float) -> Assumptions:
+        """Return whether contact and friction held until a time [s]; solved again, between its steps too."""
+        march, _ = self.problem.solve(np.empty(0), record_steps=True)
+        steps = np.concatenate([[0.0], march.steps[:, 0], self.rests[:, 0], [min(march.end, until)]])
+        landings = self.extrema[self.extrema[:, 1] == 0.0, 0]
+        jumps = np.concatenate([[self.uplift_time], self.rests[:, 1], landings])
+        jumps = jumps[np.isfinite(jumps) & (jumps > 0.0) & (jumps < until)]
+        return review(self._demands_at, np.unique(steps[steps <= until]), jumps, self.friction)
+
+    def _demands_at(self, times: Array) -> Demands:
+        march, azimuth = self.problem.solve(times)
+        reached = march.reached
+        derived = self._derive(times[:reached], six_columns(march.samples[:reached], azimuth))
+        force = derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
+        return Demands(force[:, 2], friction_of(force), derived[:, forces.COUPLE], march.moving[:reached])
+
+    def _derive(self, times: Array, states: Array) -> Array:
+        return forces.derived_quantities(
+            self.problem.body,
+            np.ascontiguousarray(states),
+            ground_at(self.problem.motion, self.problem.duration, times),
+            self.problem.model == "flat",
+        )
+
+
+def six_columns(states: Array, azimuth: float) -> Array:
+    """Return theta, theta', phi, Lambda, tau, S (n, 6) of the variables of any model.
+
+    Planar motion has neither spin nor twist, and only the flat-ground model has the latter.
+    """
+    full = np.zeros((len(states), 6))
+    width = min(states.shape[1], 6)
+    full[:, :width] = states[:, :width]
+    full[:, 2] += azimuth
+    return full
