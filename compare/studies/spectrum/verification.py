@@ -12,8 +12,8 @@ from rockwobble import reduced
 from rockwobble.models import Case, Cylinder
 
 from ...metrics.tilt import overturned
+from .result import OverturningSpectrum
 from .series import SERIES, series_options
-from .study import OverturningSpectrum
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -128,7 +128,7 @@ def _single(spectrum: OverturningSpectrum, series: str, i: int, scale: float) ->
         rtol=CHECK_RTOL,
         rest_tilt=spectrum.rest_tilt,
         sample_step=spectrum.motion.duration,
-        **series_options(series, spectrum.model),
+        **series_options(series, spectrum.support),
     )
     return run.peak_tilt
 
