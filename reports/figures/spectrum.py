@@ -25,7 +25,8 @@ _ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of size
 def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
     """Return a map of each series, and the lowest intensities with the safe islands above them."""
     size = Axis(label="R", unit="m")
-    intensity = Axis(label="peak resultant / (g tan α)", unit="-")
+    low, high = (float(spectrum.intensities[end]) for end in (0, -1))
+    intensity = Axis(label="peak resultant / (g tan α)", unit="-", low=low, high=high)
     maps = [
         Panel(
             x=size,
@@ -47,12 +48,7 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
     ]
     curves = Panel(
         x=size,
-        y=Axis(
-            label=intensity.label,
-            unit="-",
-            low=float(spectrum.intensities[0]),
-            high=float(spectrum.intensities[-1]),
-        ),
+        y=intensity,
         title="(d) lowest found to overturn; thin: safe islands above it",
         layers=_curves(spectrum),
         height=_HEIGHT,
@@ -61,7 +57,7 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
         name="spectrum",
         title=f"Peak tilt of sizes under intensities, {spectrum.motion.name or 'record'}, "
         f"tan α = {spectrum.tan_alpha:g}",
-        caption="Each map: one run a cell. What overturns has a colour of its own, what does not uplift none. "
+        caption="Each cell is a run. What overturns has a colour of its own, what does not uplift none. "
         f"The lowest intensity is the lowest found, in steps down to {spectrum.search_step:g}.",
         panels=[*maps, curves],
         columns=2,

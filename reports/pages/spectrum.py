@@ -9,8 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from rockwobble.compare.metrics.order_statistics import share_interval
+from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast, unconservative_from
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, safe_islands
+from rockwobble.compare.studies.spectrum.result import (
+    OverturningSpectrum,
+    record_frame,
+    safe_islands,
+    spectrum_of,
+)
 from rockwobble.compare.studies.spectrum.series import SPATIAL
 from rockwobble.compare.studies.spectrum.verification import AGREEMENT, CHECK_RTOL, NUDGE
 
@@ -22,24 +28,21 @@ if TYPE_CHECKING:
 
 
 def spectrum_page(
-    spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame], about: Mapping[str, object]
+    spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame], manifest: Manifest
 ) -> Page:
-    """Return the page of a spectrum.
-
-    Parameters
-    ----------
-    spectrum : OverturningSpectrum
-    tables : mapping
-        Of `spectrum_tables`.
-    about : mapping
-        Its manifest.
-    """
+    """Return the page of a spectrum and its tables, of `spectrum_tables`."""
     return Page(
         name="spectrum",
         template="spectrum",
-        values={**spectrum_values(spectrum, tables), "about": about},
+        values={**spectrum_values(spectrum, tables), "about": manifest},
         pictures=[spectrum_picture(spectrum)],
     )
+
+
+def page_of(results: Results) -> Page:
+    """Return the page of a stored spectrum."""
+    tables = {name: results.table(name) for name in ("lowest", "islands", "contrast", "checked")}
+    return spectrum_page(spectrum_of(results), tables, results.manifest)
 
 
 def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame]) -> dict[str, object]:
@@ -78,6 +81,7 @@ def spectrum_tables(
     """Return the tables of a spectrum by name; `checked` and `lowest` from its verification."""
     return {
         "spectrum": spectrum.to_frame(),
+        "record": record_frame(spectrum.motion),
         "lowest": lowest,
         "islands": safe_islands(spectrum),
         "contrast": planar_contrast(spectrum),
@@ -89,7 +93,7 @@ def _islands(islands: pd.DataFrame) -> dict[str, object] | None:
     closed = islands[islands["closed"] & (islands["series"] == SPATIAL)]
     if not len(closed):
         return None
-    widest = closed.loc[(closed["upper"] - closed["lower"]).idxmax()]
+    widest = closed.iloc[int((closed["upper"] - closed["lower"]).argmax())]
     return {"count": len(closed), "sizes": closed["semidiagonal"].nunique(), "widest": widest}
 
 

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rockwobble.models import GroundMotion
 
 from ...metrics.tilt import overturned
+from ...storage.manifest import Results
 from .search import PROBES, lowest_on_grid
 from .series import SERIES, SPATIAL, intensity_unit
 
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
+KIND = "overturning spectrum"
+_FACTS = ("tan_alpha", "gravity", "support", "rest_tilt", "searched_from", "search_step")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -98,6 +101,11 @@ class OverturningSpectrum:
         tilts = np.stack([self.peak_tilt[series] for series in SERIES])
         return np.asarray(np.isnan(tilts).any(axis=0), dtype=np.bool_)
 
+    def facts(self) -> dict[str, object]:
+        """Return what the tables do not hold, for a manifest."""
+        motion = {"name": self.motion.name, "time_step": self.motion.time_step}
+        return {name: getattr(self, name) for name in _FACTS} | {"motion": motion}
+
     def to_frame(self) -> pd.DataFrame:
         """Return one row for each cell and series.
 
@@ -156,6 +164,33 @@ class OverturningSpectrum:
                 )
             )
         return pd.concat(tables, ignore_index=True)
+
+
+def record_frame(motion: GroundMotion) -> pd.DataFrame:
+    """Return the samples of a ground motion, one column for each component [m/s^2]."""
+    import pandas as pd
+
+    return pd.DataFrame(dict(zip("xyz", motion.acceleration.T, strict=False)))
+
+
+def spectrum_of(results: Results) -> OverturningSpectrum:
+    """Return the spectrum that is stored in a folder, with the same bits."""
+    cells, lowest, about = results.table("spectrum"), results.table("lowest"), results.manifest.about
+    motion = GroundMotion(results.table("record").to_numpy(), **about["motion"])
+    sizes, levels = (np.unique(cells[name].to_numpy()) for name in ("semidiagonal", "intensity"))
+    by_series = dict(iter(lowest.groupby("series")))
+    return OverturningSpectrum(
+        **{name: about[name] for name in _FACTS},
+        motion=motion,
+        semidiagonals=sizes,
+        intensities=levels,
+        peak_tilt={
+            name: cells.loc[cells["series"] == name, "peak_tilt"].to_numpy().reshape(len(sizes), -1)
+            for name in SERIES
+        },
+        lowest={name: by_series[name]["intensity"].to_numpy() for name in SERIES},
+        below={name: by_series[name]["overturned_below"].to_numpy(float) for name in SERIES},
+    )
 
 
 def safe_islands(spectrum: OverturningSpectrum) -> pd.DataFrame:

@@ -22,14 +22,14 @@ from ...metrics.tilt import overturned
 
 Array = NDArray[np.float64]
 T = TypeVar("T")
-# Yields intensities (m,), is sent the peak tilts of one cylinder there (m,) [rad], returns what it found: many
-# searches go on side by side, and those that want the same intensity share the preparation of its motion.
+# Yields intensities (m,), is sent the peak tilts of one cylinder there (m,) [rad], returns what it found.
+# Many searches go on side by side; those that want the same intensity share the preparation of its motion.
 Search = Generator[Array, Array, T]
 
 # Finest step, over the intensity at which the peak of the horizontal resultant is g tan(alpha): no peak
 # acceleration is known to such a step.
 STEP = 0.015
-COARSEST = 0.12  # of the same
+_COARSEST = 8.0  # of these, where nothing asks for a finer one
 # A step is halved where a tilt that goes on as fast as there, or in one of the two steps beside it on either
 # side, reaches alpha within so many times its length: next to a window the tilt changes fast.
 _REACH, _BESIDE = 6.0, 2
@@ -43,7 +43,7 @@ def lowest_on_grid(intensities: Array, peak_tilts: Array) -> Array:
 
 
 def search_lowest(
-    intensities: Array, known: Array, *, start: float, step: float, coarsest: float, alpha: float
+    intensities: Array, known: Array, *, start: float, step: float, alpha: float
 ) -> Search[float]:
     """Search for the lowest intensity that overturns one cylinder; NaN where none is found.
 
@@ -56,9 +56,9 @@ def search_lowest(
         at the last.
     start : float
         Intensity of uplift, from which it begins.
-    step, coarsest : float
-        Steps are halved until they are no longer than `step`, where tilts change so fast that something
-        between may overturn; none is longer than `coarsest`.
+    step : float
+        Steps are halved until they are no longer than this, where tilts change so fast that something
+        between may overturn; none is longer than eight times this.
     alpha : float
         Slenderness [rad].
     """
@@ -68,7 +68,7 @@ def search_lowest(
         return float(intensities[last]) if fell.any() else math.nan
     inside = intensities[: last + 1] > start
     levels = np.concatenate([[start], intensities[: last + 1][inside]])
-    parts = np.ceil(np.diff(levels) / coarsest * (1.0 - 1e-12)).astype(int)
+    parts = np.ceil(np.diff(levels) / (_COARSEST * step) * (1.0 - 1e-12)).astype(int)
     between = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(levels, levels[1:], parts, strict=False)]
     wanted = np.concatenate([levels[:1], *between])
     levels, tilts = levels[1:], known[: last + 1][inside]
@@ -89,7 +89,7 @@ def search_lowest(
     return float(levels[-1]) if overturned(tilts).any() else math.nan
 
 
-def probe_below(start: float, lowest: float, stop: float, seed: Sequence[int]) -> Search[tuple[float, int]]:
+def probe_below(start: float, stop: float, lowest: float, seed: Sequence[int]) -> Search[tuple[float, int]]:
     """Run intensities drawn at random from `start` to the lowest found, or to `stop` where it is NaN.
 
     Returns the lowest that overturns, NaN where none does, and how many do: their share is what the search

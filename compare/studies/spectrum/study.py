@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 
 import numpy as np
@@ -13,7 +13,7 @@ from rockwobble import reduced
 from rockwobble.models import GroundMotion
 
 from .result import Array, OverturningSpectrum
-from .search import COARSEST, STEP, probe_below, run_searches, search_lowest
+from .search import STEP, Search, probe_below, run_searches, search_lowest
 from .series import SERIES, intensity_unit, series_options, uplift_of_series
 
 ProgressCallback = Callable[[str, float], None]
@@ -85,49 +85,27 @@ def overturning_spectrum(
     if not 0.0 < search_step < math.inf:
         raise ValueError(f"search_step must be positive and finite, got {search_step!r}")
     unit = intensity_unit(tan_alpha, motion, gravity)
-    coarsest = max(COARSEST, search_step)
-    times = 1 + math.ceil(math.log2(coarsest / search_step))  # at most, that a search asks for more
     peaks, lowest, below, start = {}, {}, {}, {}
     for index, name in enumerate(SERIES):
-        run = partial(
-            reduced.peak_tilts,
-            tan_alpha=tan_alpha,
-            motion=motion.scaled(unit),
-            rtol=rtol,
-            rest_tilt=rest_tilt,
-            gravity=gravity,
-            **series_options(name, support),
-        )
         start[name] = uplift_of_series(name, motion, tan_alpha, gravity) / unit
-
-        def tell(done: float, begun: float, part: float, name: str = name) -> None:
-            if progress is not None:
-                progress(name, min(begun + part * done, 1.0))
-
-        grid = partial(tell, begun=0.0, part=_GRID)
-        peaks[name] = run(sizes, scales=levels, workers=workers, progress=grid)
-        search = partial(
-            search_lowest,
+        peaks[name], lowest[name], below[name] = _series(
+            partial(
+                reduced.peak_tilts,
+                tan_alpha=tan_alpha,
+                motion=motion.scaled(unit),
+                rtol=rtol,
+                rest_tilt=rest_tilt,
+                gravity=gravity,
+                **series_options(name, support),
+            ),
+            sizes,
             levels,
-            start=start[name],
-            step=search_step,
-            coarsest=coarsest,
-            alpha=math.atan(tan_alpha),
+            partial(search_lowest, levels, start=start[name], step=search_step, alpha=math.atan(tan_alpha)),
+            partial(probe_below, start[name], float(levels[-1])),
+            index,
+            workers,
+            partial(progress, name) if progress is not None else _silent,
         )
-
-        def at(group: list[int], level: float, run: Callable[..., Array] = run) -> Array:
-            return run(sizes[group], scales=[level], workers=1)[:, 0]
-
-        found = run_searches(
-            [search(known) for known in peaks[name]],
-            at,
-            workers=workers,
-            progress=partial(tell, begun=_GRID, part=(1.0 - _GRID) / times),
-        )
-        probes = [probe_below(start[name], each, levels[-1], (index, i)) for i, each in enumerate(found)]
-        probed = np.array(run_searches(probes, at, workers=workers)).reshape(-1, 2)
-        lowest[name], below[name] = np.fmin(found, probed[:, 0]), probed[:, 1]
-        tell(1.0, 0.0, 1.0)
     return OverturningSpectrum(
         tan_alpha=tan_alpha,
         motion=motion,
@@ -142,6 +120,36 @@ def overturning_spectrum(
         searched_from=start,
         search_step=search_step,
     )
+
+
+def _series(
+    run: Callable[..., Array],
+    sizes: Array,
+    levels: Array,
+    search: Callable[[Array], Search[float]],
+    probe: Callable[[float, Sequence[int]], Search[tuple[float, int]]],
+    seed: int,
+    workers: int | None,
+    tell: Callable[[float], None],
+) -> tuple[Array, Array, Array]:
+    """Return the peak tilts on the grid, the lowest that overturns each size, and how many probes did."""
+
+    def at(group: list[int], level: float) -> Array:
+        return run(sizes[group], scales=[level], workers=1)[:, 0]
+
+    def searched(times: float) -> None:
+        tell(1.0 - (1.0 - _GRID) * 0.5**times)  # each time there is less to run
+
+    peaks = run(sizes, scales=levels, workers=workers, progress=lambda done: tell(_GRID * done))
+    found = run_searches([search(known) for known in peaks], at, workers=workers, progress=searched)
+    probes = [probe(lowest, (seed, i)) for i, lowest in enumerate(found)]
+    probed = np.array(run_searches(probes, at, workers=workers))
+    tell(1.0)
+    return peaks, np.fmin(found, probed[:, 0]), probed[:, 1]
+
+
+def _silent(fraction: float) -> None:
+    """Tell nobody."""
 
 
 def _axis(name: str, values: ArrayLike) -> Array:
