@@ -73,7 +73,9 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
         "hash of the inputs": made.inputs,
         "seeds": ", ".join(f"{name} {seed}" for name, seed in made.seeds.items()),
         "versions": ", ".join(f"{name} {version}" for name, version in made.versions.items()),
-        "files": ", ".join(name + (f" ({state})" if state != "whole" else "") for name, state in files.items()),
+        "files": ", ".join(
+            name + (f" ({state})" if state != "whole" else "") for name, state in files.items()
+        ),
         "pages": ", ".join(made.pages),
     }
     for name, text in lines.items():
