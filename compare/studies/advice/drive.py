@@ -14,7 +14,8 @@ from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940
 
 from ...metrics.distributions import Contrast, contrast
 from ...runs.choice import require_runnable
-from ...runs.execution import SAMPLE_STEP, Progress, ProgressCallback
+from ...runs.execution import SAMPLE_STEP
+from ...runs.progress import Progress, ProgressCallback
 from ..ensemble.members import perturbed_starts
 from .advice import OTHER, Advice
 from .members import COPIES, VELOCITY, member_rows, other_records, simulate
@@ -86,7 +87,7 @@ def advise(
     model, other = Run(None, "recess"), Run(None, "flat")
     if support == "flat":
         model, other = other, model
-    stage = _Stages(case.name, progress, total=4 if run is None else 5).one
+    stage = _Stages(progress, total=4 if run is None else 5).one
     with stage("both reduced models (compiled on their first run)"):
         trace = simulate(case, model)
         if trace.time[-1] > case.length:
@@ -199,8 +200,8 @@ def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | N
 class _Stages:
     """Tells a callback of one stage after the other."""
 
-    def __init__(self, name: str, progress: ProgressCallback | None, total: int) -> None:
-        self._name, self._progress, self._done, self._total = name, progress, 0, total
+    def __init__(self, progress: ProgressCallback | None, total: int) -> None:
+        self._progress, self._done, self._total = progress, 0, total
 
     @contextmanager
     def one(self, label: str) -> Iterator[None]:
@@ -211,8 +212,9 @@ class _Stages:
 
     def _tell(self, label: str, state: Literal["started", "finished"]) -> None:
         if self._progress is not None:
+            share = self._done / self._total
             self._progress(
-                Progress(case=self._name, label=label, state=state, done=self._done, total=self._total)
+                Progress(label=label, state=state, done=self._done, total=self._total, share=share)
             )
 
 
