@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from typing import Any, Literal
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,7 @@ from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940
 from ...metrics.distributions import Contrast, contrast
 from ...runs.choice import require_runnable
 from ...runs.execution import SAMPLE_STEP
-from ...runs.progress import Progress, ProgressCallback
+from ...runs.progress import ProgressCallback, Stages
 from ..ensemble.members import perturbed_starts
 from .advice import OTHER, Advice
 from .members import COPIES, VELOCITY, member_rows, other_records, simulate
@@ -87,7 +86,7 @@ def advise(
     model, other = Run(None, "recess"), Run(None, "flat")
     if support == "flat":
         model, other = other, model
-    stage = _Stages(progress, total=4 if run is None else 5).one
+    stage = Stages(progress, 4 if run is None else 5).stage
     with stage("both reduced models (compiled on their first run)"):
         trace = simulate(case, model)
         if trace.time[-1] > case.length:
@@ -195,27 +194,6 @@ def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | N
     if np.count_nonzero(np.isfinite(peaks) & np.isfinite(others)) < 2:
         return None
     return contrast(peaks, others, fell, fell_there)
-
-
-class _Stages:
-    """Tells a callback of one stage after the other."""
-
-    def __init__(self, progress: ProgressCallback | None, total: int) -> None:
-        self._progress, self._done, self._total = progress, 0, total
-
-    @contextmanager
-    def one(self, label: str) -> Iterator[None]:
-        self._tell(label, "started")
-        yield
-        self._done += 1
-        self._tell(label, "finished")
-
-    def _tell(self, label: str, state: Literal["started", "finished"]) -> None:
-        if self._progress is not None:
-            share = self._done / self._total
-            self._progress(
-                Progress(label=label, state=state, done=self._done, total=self._total, share=share)
-            )
 
 
 def _to_the_fall(case: Case, end: float) -> Case:
