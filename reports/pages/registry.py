@@ -30,6 +30,10 @@ KINDS: Mapping[str, tuple[str, str]] = {
         "rockwobble.compare.studies.extremes.store:read_extremes",
         "rockwobble.reports.pages.extremes.page:extremes_pages",
     ),
+    "paper": (
+        "rockwobble.reports.paper.page:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
+    ),
 }
 
 
