@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 Tell = Callable[["Progress"], None]
 
-_COMPILES = ("recess", "flat", "planar")
+_COMPILES = ("recess model", "flat-ground model", "planar model")
 
 
 @contextmanager
@@ -33,7 +33,7 @@ def shown_progress(*, many: bool = False) -> Iterator[Tell]:
 
 
 def _name(label: str) -> str:
-    return f"{label} model (compiled on its first run)" if label in _COMPILES else label
+    return f"{label} (compiled on its first run)" if label in _COMPILES else label
 
 
 @contextmanager

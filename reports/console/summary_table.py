@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -31,7 +31,23 @@ def summary_table(summary: pd.DataFrame, width: int) -> Table:
         # as a text, because brackets are markup
         table.add_column(Text(f"{column.title}\n[{column.unit}]"), justify="right", no_wrap=True)
     for _, row in summary.iterrows():
-        table.add_row(f"{row.engine} {row.support}", row.reference, *(column.cell(row) for column in chosen))
+        table.add_row(row.run, row.reference.removesuffix(" model"), *(column.cell(row) for column in chosen))
+    return table
+
+
+def external_table(titles: Sequence[tuple[str, str]], lines: Sequence[Sequence[str]]) -> Table:
+    """Return the table of external trajectories, of columns with a heading and a unit."""
+    from rich import box
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False)
+    for title, unit in titles:
+        # as a text, because brackets are markup
+        heading = Text(f"{title}\n[{unit}]" if unit else title)
+        table.add_column(heading, justify="right" if unit else "left", no_wrap=bool(unit))
+    for cells in lines:
+        table.add_row(*cells)
     return table
 
 
@@ -45,7 +61,7 @@ class _Column:
 
 def _tilt(value: float, outcome: str) -> str:
     if outcome in ("overturned", "failed"):
-        return {"overturned": "falls", "failed": "fails"}[outcome]
+        return {"overturned": "over", "failed": "failed"}[outcome]
     return _fixed(value, 3)
 
 
@@ -80,6 +96,11 @@ _COLUMNS = (
 LEGEND = (
     "peak, model: largest tilt of the run and of the reduced model. RMS: tilt difference over tilt. "
     "agrees: until the tilts differ by 1 % of alpha (+ they never do). predicted: when the "
-    "reduced models say that they have to part. moved, twist: how the cylinder stands at the end. "
+    "reduced models say that they have to diverge. moved, twist: how the cylinder stands at the end. "
     "time: computing time of the engine. ratio: the same over that of the reduced model."
+)
+EXTERNAL_LEGEND = (
+    "External trajectories against the model. azimuth, path: root mean square of the difference while the "
+    "tilts agree, and from when it is above its bound (- it is not, or nothing is known). uplift, towards: "
+    "difference of time and azimuth of the uplift, ± what the samples leave open. noise: scatter of samples."
 )

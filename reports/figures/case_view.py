@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.models import Case
+from rockwobble.compare import own_model
+from rockwobble.models import Case, Diagnostic, Run, Trace
 
 from .palette import Style, model_style, run_styles
 
@@ -23,36 +25,69 @@ class CaseView:
     Parameters
     ----------
     case : Case
-    responses : dict
-        Response of each reduced model.
-    trajectories : dict
-        Trajectory of each run, by label.
+    runs, references : dict
+        Trace of each run, and of what only serves as a reference, by label; those without samples left out.
+    facts : dict
+        Diagnostics of every label, also of a run without samples.
     rows : DataFrame
-        Rows of the summary, with the label of the run as an additional column "run".
+        Rows of the summary.
     styles : dict
-        Style of each run, by label.
+        Style of each label.
     budgets : dict
-        Error budget for each label of a run and reduced model, where there is one.
+        Error budget for each label of a run and its reference, where there is one.
     """
 
     case: Case
-    responses: Mapping[str, Any]
-    trajectories: Mapping[str, Any]
+    runs: Mapping[str, Trace]
+    references: Mapping[str, Trace]
+    facts: Mapping[str, tuple[Diagnostic, ...]]
     rows: pd.DataFrame
     styles: Mapping[str, Style]
     budgets: Mapping[tuple[str, str], ErrorBudget] = field(default_factory=dict)
 
-    def lines(self) -> Iterator[tuple[str, Any, Style]]:
-        """Yield label, trace and style of everything there is: the runs, then the models on top."""
-        for label, trace in self.trajectories.items():
-            yield label, trace, self.styles[label]
-        for model, trace in self.responses.items():
-            yield f"{model} model", trace, model_style(model)
+    @property
+    def traces(self) -> Mapping[str, Trace]:
+        """All traces in the order in which they are drawn: the runs, then the references on top."""
+        return {**self.runs, **self.references}
 
-    def start(self, model: str) -> float:
-        """Return uplift or release of a model [s], 0 where there is none."""
-        time = float(self.responses[model].uplift_time)
-        return time if time == time else 0.0
+    @property
+    def supports(self) -> tuple[str, ...]:
+        """The supports of the runs."""
+        return tuple(dict.fromkeys(trace.run.support for trace in self.runs.values()))
+
+    def partner(self, label: str) -> str:
+        """Return what a run is drawn with: the model of its support, or else its first reference."""
+        own = str(own_model(self.runs[label].run))
+        return own if own in self.references else next(iter(self.references), label)
+
+    def pairs(self) -> Iterator[tuple[Any, Trace, Trace]]:
+        """Yield the rows of the summary that can be drawn, each with reference and run."""
+        traces = self.traces
+        for row in rows_of(self.rows):
+            if row.run in traces and row.reference in traces:
+                yield row, traces[row.reference], traces[row.run]
+
+    def divergence(self, row: Any) -> float:
+        """Return when a run diverges from its reference, in the time of the run [s]; inf if never."""
+        return start(self.traces[row.reference]) + row.agreement_time if row.diverged else math.inf
+
+
+def start(trace: Trace) -> float:
+    """Return uplift or release [s], 0 where there is none."""
+    return trace.uplift_time if math.isfinite(trace.uplift_time) else 0.0
+
+
+def rows_of(table: pd.DataFrame) -> Iterator[Any]:
+    """Yield the rows of a table, with a field for each column."""
+    yield from table.itertuples()
+
+
+def own_rows(summary: pd.DataFrame) -> pd.DataFrame:
+    """Return the row of each run against the model of its support, or else its first row."""
+    own = summary["reference"] == summary["support"].map(lambda support: str(own_model(Run(None, support))))
+    keys = summary["case"] + "\n" + summary["run"]
+    alone = ~keys.isin(keys[own]) & ~keys.duplicated()
+    return summary[own | alone]
 
 
 def case_views(comparison: Comparison) -> list[CaseView]:
@@ -60,17 +95,25 @@ def case_views(comparison: Comparison) -> list[CaseView]:
     views = []
     for name, case in comparison.cases.items():
         rows = comparison.summary[comparison.summary["case"] == name]
-        trajectories = {run: trace for (of, run), trace in comparison.trajectories.items() if of == name}
+        whole = {label: trace for (of, label), trace in comparison.traces.items() if of == name}
+        traces = {label: trace for label, trace in whole.items() if len(trace.time)}
+        runs = {label: trace for label, trace in traces.items() if label in set(rows["run"])}
+        references = {label: trace for label, trace in traces.items() if label not in runs}
+        models = {
+            label: model_style("" if trace.run.engine else trace.run.support)
+            for label, trace in references.items()
+        }
         views.append(
             CaseView(
                 case=case,
-                responses={model: trace for (of, model), trace in comparison.responses.items() if of == name},
-                trajectories=trajectories,
+                runs=runs,
+                references=references,
+                facts={label: trace.facts for label, trace in whole.items()},
                 rows=rows,
-                styles=run_styles(list(trajectories)),
+                styles=run_styles(list(runs)) | models,
                 budgets={
-                    (run, model): budget
-                    for (of, run, model), budget in comparison.budgets.items()
+                    (run, reference): budget
+                    for (of, run, reference), budget in comparison.budgets.items()
                     if of == name
                 },
             )

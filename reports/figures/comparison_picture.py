@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.compare import AGREEMENT, make_pair, own_model
+from rockwobble.compare import AGREEMENT, make_pair
 
-from .case_view import CaseView, case_views
+from .case_view import CaseView, case_views, own_rows
 from .charts.tilt import SMALLEST, WINDOW
 from .palette import DASHES, Style
 from .thinning import envelope, kept_samples
@@ -29,7 +29,7 @@ def comparison_figure(comparison: Comparison) -> bytes:
     from matplotlib.figure import Figure
 
     view = case_views(comparison)[0]
-    supports = list(dict.fromkeys(trace.support for trace in view.trajectories.values()))
+    supports = view.supports
     with mpl.rc_context({"svg.hashsalt": "rockwobble", "font.size": 10, "path.simplify_threshold": 0.3}):
         figure = Figure(figsize=(8.6, 2.6 + 2.3 * len(supports)), layout="constrained")
         panels = figure.subplots(len(supports) + 1, 1, sharex=True, squeeze=False)[:, 0]
@@ -49,11 +49,11 @@ def _title(view: CaseView) -> str:
 
 def _tilts(axes: Axes, view: CaseView, support: str) -> None:
     """Draw the runs of one support over each other, with the model of that support."""
-    for label, trace, style in view.lines():
-        model = label.removesuffix(" model") if label not in view.trajectories else ""
-        if model == own_model(support) or (not model and trace.support == support):
-            width = 0.8 if model else 1.6
-            _line(axes, trace.time, trace.tilt / view.case.cylinder.alpha, label, style, width)
+    chosen = {label: 1.6 for label, trace in view.runs.items() if trace.run.support == support}
+    chosen |= dict.fromkeys(map(view.partner, tuple(chosen)), 0.8)
+    for label, width in chosen.items():
+        trace = view.traces[label]
+        _line(axes, trace.time, trace.tilt / view.case.cylinder.alpha, label, view.styles[label], width)
     axes.set_ylabel("tilt / α [-]")
     axes.set_ylim(bottom=0.0)
     _finish(axes)
@@ -63,15 +63,16 @@ def _differences(axes: Axes, view: CaseView) -> None:
     """Draw how each run parts from the model of its support."""
     axes.axhline(AGREEMENT, color="#222222", linewidth=0.8, linestyle=(0, (5, 2)))
     axes.annotate("1 % of α", (0.005, AGREEMENT), xycoords=("axes fraction", "data"), ha="left", va="bottom")
-    for _, row in view.rows.iterrows():
-        if row.run not in view.trajectories or row.reference != own_model(row.support):
+    own = own_rows(view.rows).index
+    for row, reference, trial in view.pairs():
+        if row.Index not in own:
             continue
-        pair = make_pair(view.case.cylinder, view.responses[row.reference], view.trajectories[row.run])
+        pair = make_pair(view.case.cylinder, reference, trial)
         style = view.styles[row.run]
         difference = np.maximum(envelope(pair.time, np.abs(pair.tilt_difference), WINDOW), SMALLEST)
         _line(axes, pair.time, difference, f"{row.run} − {row.reference}", style, 1.3)
         if row.diverged:
-            end = view.start(row.reference) + row.agreement_time
+            end = view.divergence(row)
             axes.plot(
                 end, AGREEMENT, "D", markersize=7, color=style.colour, markeredgecolor="black", zorder=5
             )

@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare import AGREEMENT, make_pair, own_model
+from rockwobble.compare import AGREEMENT, make_pair
 
 from ..case_view import CaseView
-from ..palette import model_style
+from ..palette import Style
 from ..thinning import envelope
 from .layout import TIME_TITLE, add_line, new_figure, reserve_legend
 
@@ -25,14 +25,14 @@ WINDOW = 1.0
 def tilt_chart(view: CaseView) -> go.Figure:
     """Return the tilt of all runs over each other."""
     figure = new_figure(TIME_TITLE, "tilt / α [-]")
-    for label, trace, style in view.lines():
+    for label, trace in view.traces.items():
         add_line(
             figure,
             trace.time,
             trace.tilt / view.case.cylinder.alpha,
             label,
-            style,
-            width=1.0 if label.endswith("model") else 1.8,
+            view.styles[label],
+            width=1.8 if label in view.runs else 1.0,
             hovertemplate="%{y:.4f} α at %{x:.2f} s",
         )
     figure.update_yaxes(rangemode="nonnegative")
@@ -42,16 +42,13 @@ def tilt_chart(view: CaseView) -> go.Figure:
 
 def _add_choice(figure: go.Figure, view: CaseView) -> None:
     """Add buttons that show the runs of one support alone, with the model of that support."""
-    supports = list(dict.fromkeys(trace.support for trace in view.trajectories.values()))
-    if len(supports) < 2:
+    if len(view.supports) < 2:
         return
-    of = [
-        trace.support if label in view.trajectories else label.removesuffix(" model")
-        for label, trace, _ in view.lines()
-    ]
     buttons = [{"label": "all", "method": "restyle", "args": [{"visible": True}]}]
-    for support in supports:
-        shown = [True if name in (support, own_model(support)) else "legendonly" for name in of]
+    for support in view.supports:
+        chosen = {label for label, trace in view.runs.items() if trace.run.support == support}
+        chosen |= {view.partner(label) for label in chosen}
+        shown = [True if label in chosen else "legendonly" for label in view.traces]
         buttons.append({"label": f"only {support}", "method": "restyle", "args": [{"visible": shown}]})
     figure.update_layout(
         margin_t=48,
@@ -89,19 +86,16 @@ def difference_chart(view: CaseView) -> go.Figure:
         font={"size": 12},
         bgcolor="rgba(255,255,255,0.8)",
     )
-    for _, row in view.rows.iterrows():
-        if row.run not in view.trajectories:
-            continue
-        pair = make_pair(view.case.cylinder, view.responses[row.reference], view.trajectories[row.run])
-        style = view.styles[row.run]
-        other = model_style(row.reference)
+    for row, reference, trial in view.pairs():
+        pair = make_pair(view.case.cylinder, reference, trial)
+        style, other = view.styles[row.run], view.styles[row.reference]
         name = f"{row.run} − {row.reference}"
         add_line(
             figure,
             pair.time,
             np.maximum(envelope(pair.time, np.abs(pair.tilt_difference), WINDOW), SMALLEST),
             name,
-            type(style)(colour=style.colour, dash=other.dash),
+            Style(colour=style.colour, dash=other.dash),
             width=1.6,
             legendgroup=name,
             hovertemplate="%{y:.2e} α at %{x:.2f} s",
@@ -110,7 +104,7 @@ def difference_chart(view: CaseView) -> go.Figure:
             filled = other.dash == "solid"
             figure.add_trace(
                 go.Scatter(
-                    x=[view.start(row.reference) + row.agreement_time],
+                    x=[view.divergence(row)],
                     y=[AGREEMENT],
                     mode="markers",
                     name=name,

@@ -10,7 +10,6 @@ import numpy as np
 from rockwobble.reduced import limiting_angle_of_turn
 
 from ..case_view import CaseView
-from ..palette import model_style
 from .layout import TIME_TITLE, new_figure, reserve_legend, small
 
 if TYPE_CHECKING:
@@ -37,12 +36,10 @@ def turn_chart(view: CaseView) -> go.Figure:
             hoverinfo="skip",
         )
     )
-    sets = [(label, trace, view.styles[label].colour) for label, trace in view.trajectories.items()]
-    sets += [(f"{model} model", trace, model_style(model).colour) for model, trace in view.responses.items()]
-    for index, (label, trace, colour) in enumerate(sets):
-        passes = trace.passes
-        model = label.endswith("model")
-        resolved = passes["resolved"].to_numpy(bool) if "resolved" in passes else np.ones(len(passes), bool)
+    for index, (label, trace) in enumerate(view.traces.items()):
+        passes, colour = trace.passes, view.styles[label].colour
+        model = label not in view.runs
+        resolved = passes["resolved"].to_numpy(bool)
         symbol = (
             ("cross-thin" if "recess" in label else "x-thin") if model else _SYMBOLS[index % len(_SYMBOLS)]
         )
@@ -63,4 +60,4 @@ def turn_chart(view: CaseView) -> go.Figure:
                 hovertemplate="%{y:.2f}° at %{x:.2f} s, minimum tilt %{customdata:.2g} α",
             )
         )
-    return reserve_legend(figure, len(sets) + 2)
+    return reserve_legend(figure, len(view.traces) + 2)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, findings
+from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
-from .external_words import EXTERNAL
-from .findings import small
+from ..template import small
 
 _LISTED = 10
 
@@ -43,7 +43,7 @@ def budget_lines(summary: Any) -> list[str]:
     return lines
 
 
-def parting_lines(summary: Any) -> list[str]:
+def divergence_lines(summary: Any) -> list[str]:
     """Return whether traces diverged when they had to, those that did so too early by name.
 
     Of trajectories from elsewhere nobody can predict that: the prediction rests on the errors of an engine.
@@ -52,8 +52,10 @@ def parting_lines(summary: Any) -> list[str]:
     counts = summary["divergence"].value_counts()
     words = ", ".join(f"{counts[word]} {word}" for word in counts.index if word)
     lines = [
-        f"{row.case}, {row.run} against {row.reference}: they part after {row.agreement_time:.2f} s, "
+        f"{row.case}, {row.run} against {row.reference}: they diverge after {row.agreement_time:.2f} s, "
         f"{row.predicted_agreement_time:.2f} s were predicted. Earlier than they had to: a finding."
         for _, row in summary[summary["divergence"] == "earlier"].iterrows()
     ]
-    return [*lines, f"Did traces part when they had to, within a factor of 2? {words}."] if words else lines
+    return (
+        [*lines, f"Did traces diverge when they had to, within a factor of 2? {words}."] if words else lines
+    )

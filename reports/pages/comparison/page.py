@@ -11,9 +11,8 @@ from ...figures.case_view import CaseView, case_views
 from ...figures.playback import playback
 from ..case_words import describe
 from ..template import PLOT_CONFIG, render
-from .budget_words import budget_lines, parting_lines
-from .findings import finding, headline
-from .run_remarks import remark_lines
+from .budget_words import budget_lines, divergence_lines
+from .findings import finding_sentences, headline
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -50,17 +49,16 @@ def comparison_page(comparison: Comparison, command: str = "") -> str:
 
 
 def _case(view: CaseView, index: int) -> dict[str, Any]:
-    length = view.case.length
     excitation = charts.excitation_chart(view)
     bars = charts.budget_bars(view)
     return {
         "name": view.case.name,
         "lines": describe(view.case),
-        "headline": headline(view.rows, length),
-        "findings": [*(finding(row, length) for _, row in view.rows.iterrows()), *remark_lines(view.rows)],
+        "headline": headline(view.rows, view.case.length),
+        "findings": finding_sentences(view),
         "rows": [{name: _cell(value) for name, value in row.items()} for _, row in view.rows.iterrows()],
         "playback": playback(view) if index < _PLAYED else None,
-        "divergence": parting_lines(view.rows),
+        "divergence": divergence_lines(view.rows),
         "budget_words": budget_lines(view.rows),
         "budget": None if bars is None else _plot(bars, f"budget-{index}"),
         "budget_parts": _plots(charts.budget_charts(view), f"budget-part-{index}"),

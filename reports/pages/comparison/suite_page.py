@@ -15,9 +15,8 @@ from ...figures.case_view import CaseView, case_views
 from ...figures.thinning import kept_samples
 from ..case_words import describe, group_of
 from ..template import PLOT_CONFIG, render
-from .budget_words import budget_lines, parting_lines
-from .findings import finding, headline
-from .run_remarks import counted_remarks, remark_lines
+from .budget_words import budget_lines, divergence_lines
+from .findings import counted_remarks, finding_sentences, headline
 from .suite_table import suite_headline, worst_first
 
 if TYPE_CHECKING:
@@ -55,7 +54,7 @@ def suite_page(comparison: Comparison, command: str = "") -> str:
         headline=suite_headline(comparison.summary),
         budget=[
             *budget_lines(comparison.summary),
-            *parting_lines(comparison.summary),
+            *divergence_lines(comparison.summary),
             *counted_remarks(comparison.summary),
         ],
         budget_picture=_budget_picture(comparison),
@@ -94,13 +93,12 @@ def _grouped(views: dict[str, CaseView]) -> dict[str, list[tuple[int, str]]]:
 def _case(
     view: CaseView, index: int, figures: list[tuple[str, str, go.Figure]], points: int
 ) -> dict[str, Any]:
-    length = view.case.length
     return {
         "name": view.case.name,
         "index": index,
         "lines": describe(view.case),
-        "headline": headline(view.rows, length),
-        "findings": [*(finding(row, length) for _, row in view.rows.iterrows()), *remark_lines(view.rows)],
+        "headline": headline(view.rows, view.case.length),
+        "findings": finding_sentences(view),
         "rows": [{name: _cell(value) for name, value in row.items()} for _, row in view.rows.iterrows()],
         "figures": [
             {

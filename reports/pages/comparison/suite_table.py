@@ -6,9 +6,9 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.compare import own_model
-
+from ...figures.case_view import own_rows
 from ..case_words import group_of
+from ..template import the
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -18,10 +18,10 @@ if TYPE_CHECKING:
 _NAMED = 10
 _TITLES = ("cases\n[-]", "agree\n[-]", "least\n[%]", "RMS\n[%]", "worst\n[%]", "peak\n[α]", "time\n[s]")
 LEGEND = (
-    "Each run against the model of its support (guided: recess; free and, until it touches a wall, ring: "
-    "rolling). agree: cases whose tilts differ by less than 1 % of alpha to the end. least: shortest "
-    "agreement over the length of the run. RMS, worst: median and largest tilt difference over tilt. peak: "
-    "largest difference of peak tilts. time: computing time of the engine."
+    "Each run against the model of its support, in a ring against the recess model. agree: cases whose tilts "
+    "differ by less than 1 % of alpha to the end. least: shortest agreement over the length of the run. RMS, "
+    "worst: median and largest tilt difference over tilt. peak: largest difference of peak tilts. time: "
+    "computing time of the engine."
 )
 
 
@@ -60,7 +60,7 @@ def worst_cases(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[str
     rows = _with_shares(summary, lengths)
     diverged = rows[rows["diverged"]].sort_values("share", kind="stable")
     lines = [
-        f"{row.case}: {row.run} agrees with the {row.reference} model for {row.agreement_time:.2f} s "
+        f"{row.case}: {row.run} agrees with {the(row.reference)} for {row.agreement_time:.2f} s "
         f"of {lengths[row.case]:.4g} s"
         for _, row in diverged.head(_NAMED).iterrows()
     ]
@@ -91,23 +91,15 @@ def worst_first(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[dic
 
 def suite_headline(summary: pd.DataFrame) -> str:
     """Return how many runs agree to their end, and with what."""
-    rows = _own_rows(summary)
+    rows = own_rows(summary)
     agree, failed = int((~rows["diverged"]).sum()), int((rows["outcome"] == "failed").sum())
     words = f"{agree} of {len(rows)} runs stay within 1 % of alpha of the model of their support to the end"
     return f"{words}; {failed} failed." if failed else f"{words}."
 
 
-def _own_rows(summary: pd.DataFrame) -> pd.DataFrame:
-    """Return the rows that hold a run against the model of its support, or else its first row."""
-    own = summary["reference"] == summary["support"].map(own_model)
-    keys = summary["case"] + "\n" + summary["run"]
-    alone = ~keys.isin(keys[own]) & ~keys.duplicated()
-    return summary[own | alone]
-
-
 def _with_shares(summary: pd.DataFrame, lengths: Mapping[str, float]) -> pd.DataFrame:
     """Add the group of each case, and the share of the run for which the tilts agree."""
-    rows = _own_rows(summary)
+    rows = own_rows(summary)
     share = (rows["agreement_time"] / rows["case"].map(lengths)).clip(upper=1.0)
     return rows.assign(group=rows["case"].map(group_of), share=share.where(rows["diverged"], 1.0))
 
