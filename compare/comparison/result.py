@@ -36,7 +36,7 @@ class Comparison:
         Case of each name.
     traces : dict
         Trace for each (case name, label), of runs and references, such as ("El Centro 1940",
-        "mujoco recess") and ("El Centro 1940", "recess model"). A run whose process died is left out.
+        "mujoco recess") and ("El Centro 1940", "recess model"). One whose process died has no samples.
     versions : dict
         Version of each package and engine that took part.
     until : float or None
@@ -108,6 +108,8 @@ class Comparison:
 
         tables = []
         for (case, label), trace in self.traces.items():
+            if not len(trace.time):  # its process died
+                continue
             table = trace.to_frame()
             table.insert(0, "case", case)
             table.insert(1, "run", label)
@@ -135,7 +137,11 @@ class Comparison:
     def _passes(self) -> pd.DataFrame:
         import pandas as pd
 
-        tables = [trace.passes.assign(case=case, run=label) for (case, label), trace in self.traces.items()]
+        tables = [
+            trace.passes.assign(case=case, run=label)
+            for (case, label), trace in self.traces.items()
+            if len(trace.time)
+        ]
         passes: pd.DataFrame = pd.concat(tables, ignore_index=True)
         return passes.set_index(["case", "run"]).reset_index()
 

@@ -13,8 +13,8 @@ from ..console.terminal import FAILED, complain, interruptible, user_input
 from ..pages.provenance import command_line
 from .inputs import options
 from .inputs.method_values import settings
-from .inputs.problem import PROBLEM, Problem, refuse, states_problem
-from .inputs.suite_choice import chosen_runs, describe_suite, without_missing
+from .inputs.problem import Problem, states_problem
+from .inputs.suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 
 if TYPE_CHECKING:
     from rockwobble.compare import Comparison, External
@@ -60,11 +60,7 @@ def compare(
             from .inputs.estimate import require_memory
 
             if suite is not None:
-                refuse(
-                    context,
-                    set(PROBLEM),
-                    f"does not go with a suite, got {suite}: the file states the problems",
-                )
+                refuse_problem_options(context, suite)
                 cases, runs = _suite(suite, engine, support, time_step)
             else:
                 cases = [problem.case()]

@@ -159,12 +159,14 @@ def _facts(trace: Trace) -> dict[str, str]:
     if (held := trace.assumptions) is not None:
         needed = held.largest_friction_needed
         facts["friction needed"] = f"{needed:.3f}" if math.isfinite(needed) else "contact lost"
-        facts["restraining moment"] = f"{held.largest_restraining_moment:.3g} m times the weight"
-    else:
+        if held.largest_restraining_moment > 0.0:
+            facts["restraining moment"] = f"{held.largest_restraining_moment:.3g} m times the weight"
+    if trace.run.engine is not None or trace.run.support != "recess":
         facts["residual displacement"] = f"{trace.residual_displacement / cylinder.base_radius:.3g} b"
         facts["residual twist"] = f"{math.degrees(trace.residual_twist):.3g} deg"
-        if math.isfinite(first := trace.first("wall_contact")):
-            facts["wall contact"] = f"{trace.wall_contact[-1]:.3g} s in all, first at {first:.4g} s"
+    if math.isfinite(first := trace.first("wall_contact")):
+        facts["wall contact"] = f"{trace.wall_contact[-1]:.3g} s in all, first at {first:.4g} s"
+    if trace.run.engine is not None:
         facts["time step"] = f"{trace.time_step:g} s"
     facts["computing time"] = f"{trace.wall_time:.3g} s"
     return facts

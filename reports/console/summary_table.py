@@ -26,12 +26,13 @@ def summary_table(summary: pd.DataFrame, width: int) -> Table:
     chosen = [column for column in _COLUMNS if wide or column.always]
     table = Table(box=box.SIMPLE_HEAD, padding=0, show_edge=False)
     table.add_column("run", no_wrap=True)
-    table.add_column("against", no_wrap=True)
+    table.add_column("against", overflow="fold")
     for column in chosen:
         # as a text, because brackets are markup
         table.add_column(Text(f"{column.title}\n[{column.unit}]"), justify="right", no_wrap=True)
     for _, row in summary.iterrows():
-        table.add_row(row.run, row.reference.removesuffix(" model"), *(column.cell(row) for column in chosen))
+        against = row.reference.removesuffix(" model").removesuffix("-ground")
+        table.add_row(row.run, against, *(column.cell(row) for column in chosen))
     return table
 
 

@@ -1,4 +1,4 @@
-"""Diagnostics in words: a short sentence for each code of `rockwobble.models.diagnostic`, with its numbers."""
+"""Diagnostics in words: each code of `rockwobble.models.diagnostic`, with its numbers."""
 
 from __future__ import annotations
 

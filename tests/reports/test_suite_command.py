@@ -88,7 +88,7 @@ BAD = {
 
 @pytest.mark.parametrize("kind", BAD)
 def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch, capsys, kind):
-    monkeypatch.setattr(execution, "simulate", lambda _: pytest.fail("it ran"))
+    monkeypatch.setattr(execution, "simulate_run", lambda *_: pytest.fail("it ran"))
     monkeypatch.setattr(execution, "ProcessPool", lambda _: pytest.fail("it ran"))
     before = sorted(path.name for path in folder.iterdir())
     arguments, words = BAD[kind]
@@ -163,7 +163,7 @@ def test_a_trajectory_is_one_more_run(folder, no_engines, capsys):
     no_engines()
     arguments = [*RELEASE, "--trajectory", "table.csv", "--trajectory-angles", "rad"]
     assert call("compare", *arguments, "--engine", "none", "--out", "alone") == 0
-    assert re.search(r"table external +recess", capsys.readouterr().out)
+    assert re.search(r"table +recess", capsys.readouterr().out)
     alone = pd.read_csv(folder / "alone" / "summary.csv")
     assert alone["run"].tolist() == ["table"]
     assert alone["tilt_rms"].max() < 1e-12  # written with all digits
@@ -201,7 +201,6 @@ def _repeated(comparison: Comparison, count: int) -> Comparison:
         "cases": {name: dataclasses.replace(case, name=name) for name in names},
         "summary": pd.concat([comparison.summary.assign(case=name) for name in names], ignore_index=True),
     }
-    for kind in ("responses", "trajectories"):
-        traces = getattr(comparison, kind)
-        fields[kind] = {(name, label): trace for name in names for (_, label), trace in traces.items()}
+    traces = comparison.traces.items()
+    fields["traces"] = {(name, label): trace for name in names for (_, label), trace in traces}
     return dataclasses.replace(comparison, **fields)

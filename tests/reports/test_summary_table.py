@@ -28,5 +28,5 @@ def test_a_failed_run_is_no_number(no_engines):
     console = Console(width=100, record=True, file=io.StringIO())
     console.print(summary_table(compare(case, runs=[Run("mujoco", "recess")]).summary, 100))
     text = console.export_text()
-    assert "fails" in text
+    assert "failed" in text
     assert "nan" not in text

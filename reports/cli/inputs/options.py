@@ -19,14 +19,10 @@ Semidiagonal = Annotated[
     float | None,
     typer.Option("--semidiagonal", help="R = sqrt(b^2 + h^2), in m. Default: 6.", rich_help_panel=_BODY),
 ]
-TanAlpha = Annotated[
-    float | None,
-    typer.Option(
-        "--tan-alpha",
-        help="Slenderness b/h, radius over half the height. Default: 0.2.",
-        rich_help_panel=_BODY,
-    ),
-]
+TAN_ALPHA = typer.Option(
+    "--tan-alpha", help="Slenderness b/h, radius over half the height.", rich_help_panel=_BODY
+)
+TanAlpha = Annotated[float, TAN_ALPHA]
 Diameter = Annotated[
     float | None,
     typer.Option(

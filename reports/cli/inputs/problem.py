@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import wraps
-from typing import TYPE_CHECKING, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 import typer
 
@@ -26,7 +26,7 @@ class Problem:
     """The options that state a problem."""
 
     semidiagonal: options.Semidiagonal = None
-    tan_alpha: options.TanAlpha = None
+    tan_alpha: Annotated[float | None, options.TAN_ALPHA] = None
     diameter: options.Diameter = None
     height: options.Height = None
     mass_centre_height: options.MassCentreHeight = None

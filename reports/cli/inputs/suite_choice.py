@@ -5,11 +5,25 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+import typer
+
 from ...pages.case_words import group_of
 from .estimate import time_needed
+from .problem import PROBLEM, refuse
 
 if TYPE_CHECKING:
     from rockwobble.models import Case, Run, Suite
+
+
+def refuse_problem_options(context: typer.Context, suite: str) -> None:
+    """Refuse options that contradict the file of a suite.
+
+    Raises
+    ------
+    ValueError
+        If the user gave an option that states a problem.
+    """
+    refuse(context, set(PROBLEM), f"does not go with a suite, got {suite}: the file states the problems")
 
 
 def chosen_runs(
