@@ -92,7 +92,7 @@ class Comparison:
     def plot(self, case: str | None = None) -> Any:
         """Return a matplotlib figure of one case, the first by default, drawn by `rockwobble.reports`."""
         # by name: a result does not depend on who draws it
-        picture = importlib.import_module("rockwobble.reports.figures.comparison_picture")
+        picture = importlib.import_module("rockwobble.reports.figures.comparison.tilt")
         return picture.draw(self, next(iter(self.cases)) if case is None else case)
 
     def __repr__(self) -> str:

@@ -90,13 +90,12 @@ def compare(
                 resume=None if suite is None else out,
                 budget=budget,
             )
-        from ..console.comparison_output import print_comparison
-        from ..pages.comparison.files import comparison_pages
+        from ..pages.comparison.report import comparison_files, comparison_page
 
-        contents = {**comparison.files(), **comparison_pages(comparison, command_line())}
+        contents = {**comparison.files(), **comparison_files(comparison, command_line())}
         with user_input():
             replace_files(out, contents)
-        print_comparison(comparison)
+        comparison_page(comparison, drawn=False).show()
     print(f"\nWritten to {out}: {', '.join(contents)}")
     if (comparison.summary["outcome"] == "failed").any():
         raise typer.Exit(FAILED)

@@ -32,11 +32,11 @@ class Study:
 def _comparison(folder: Path) -> Draw:
     from rockwobble.compare import Comparison
 
-    from ..pages.comparison.files import comparison_pages
+    from ..pages.comparison.report import comparison_files
     from ..pages.provenance import command_line
 
     found = Comparison.load(folder)
-    return lambda: comparison_pages(found, command_line())
+    return lambda: comparison_files(found, command_line())
 
 
 def _validity(folder: Path) -> Draw:

@@ -87,38 +87,17 @@ def view(
             with user_input(), shown_progress() as tell:
                 comparison = run_comparison([case], runs=[run], progress=tell)
         with user_input():
-            page = view_page(comparison, name)
+            from ..pages.comparison.report import view_page
+
+            page = view_page(comparison, name, command_line())
             if page is None:
                 raise ValueError(f"there is nothing to play in {name!r}: the cylinder never uplifts")
-            replace_files(out, {"view.html": page.encode()})
+            replace_files(out, {"view.html": page.html().encode()})
     print(f"\nWritten to {out}: view.html")
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser
 
         webbrowser.open((out / "view.html").resolve().as_uri())
-
-
-def view_page(comparison: Comparison, name: str) -> str | None:
-    """Return the page of one case of a comparison, None where nothing moves."""
-    from ..figures.case_view import case_views
-    from ..figures.playback import playback
-    from ..pages.case_words import describe
-    from ..pages.comparison.findings import finding_sentences
-    from ..pages.template import render
-
-    chosen = next(each for each in case_views(comparison) if each.case.name == name)
-    spec = playback(chosen)
-    if spec is None:
-        return None
-    return render(
-        "view.html.j2",
-        name=name,
-        spec=spec,
-        lines=describe(chosen.case),
-        findings=finding_sentences(chosen),
-        command=command_line(),
-        versions=comparison.versions,
-    )
 
 
 def _chosen_case(comparison: Comparison, name: str | None) -> str:

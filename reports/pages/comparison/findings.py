@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
-from ...figures.case_view import CaseView, own_rows, rows_of
+from ...figures.comparison.view import CaseView, own_rows, rows_of
 from ..diagnostic_words import counted, failure, sentences
-from ..template import sentence
-from .external_words import external_sentences, mistakes, scope, within
+from ..words import sentence
+from .external import external_sentences, mistakes, scope, within
 
 if TYPE_CHECKING:
     import pandas as pd

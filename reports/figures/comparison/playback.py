@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Trace
 
-from .case_view import CaseView
+from .view import CaseView
 
 # a screen shows 60 pictures a second; a slower clock repeats some
 _PICTURES = 100.0

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from rockwobble.compare import own_model
 from rockwobble.models import Case, Diagnostic, Run, Trace
 
-from .palette import Style, model_style, run_styles
+from ..palette import Style, label_styles
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -99,10 +99,6 @@ def case_views(comparison: Comparison) -> list[CaseView]:
         traces = {label: trace for label, trace in whole.items() if len(trace.time)}
         runs = {label: trace for label, trace in traces.items() if label in set(rows["run"])}
         references = {label: trace for label, trace in traces.items() if label not in runs}
-        models = {
-            label: model_style("" if trace.run.engine else trace.run.support)
-            for label, trace in references.items()
-        }
         views.append(
             CaseView(
                 case=case,
@@ -110,7 +106,7 @@ def case_views(comparison: Comparison) -> list[CaseView]:
                 references=references,
                 facts={label: trace.facts for label, trace in whole.items()},
                 rows=rows,
-                styles=run_styles(list(runs)) | models,
+                styles=label_styles(list(traces)),
                 budgets={
                     (run, reference): budget
                     for (of, run, reference), budget in comparison.budgets.items()

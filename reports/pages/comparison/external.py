@@ -1,4 +1,4 @@
-"""What a comparison found of an external trajectory: a table of numbers, and sentences made from codes."""
+"""What a comparison found of an external trajectory: numbers for a table, and sentences made from codes."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
-from ...figures.case_view import rows_of
-from ..template import sentence
+from ...figures.comparison.view import rows_of
+from ..table import Row
+from ..words import sentence
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -91,41 +92,26 @@ def external_sentences(row: Any) -> str:
     return sentence(WORDS, "sentences", told(row))
 
 
-def external_cells(summary: pd.DataFrame) -> list[list[str]]:
-    """Return the cells of one line of numbers and codes for each external trajectory, see `TITLES`."""
-    lines = []
-    for row in rows_of(summary[summary["support"] == EXTERNAL]):
-        uplifts = math.isfinite(row.uplift_time_uncertainty)
-        leads = math.isfinite(row.uplift_direction_uncertainty)
-        numbers = [
-            (row.azimuth_rms, 1),
-            (row.azimuth_differs_from, 2),
-            (row.path_rms, 3),
-            (row.path_differs_from, 2),
-            (row.uplift_time_difference if uplifts else math.nan, 3),
-            (row.uplift_time_uncertainty, 3),
-            (math.degrees(row.uplift_direction_difference) if leads else math.nan, 1),
-            # beyond half a turn there is nothing left to tell
-            (min(math.degrees(row.uplift_direction_uncertainty), 180.0) if leads else math.nan, 1),
-            (row.noise, 4),
-        ]
-        cells = [f"{value:.{digits}f}" if math.isfinite(value) else "-" for value, digits in numbers]
-        lines.append([row.run, *cells, row.differs_in or "-", row.likely_mistake or "-"])
-    return lines
+def external_rows(summary: pd.DataFrame) -> list[Row]:
+    """Return one line of numbers and codes for each external trajectory."""
+    return [
+        {
+            **row._asdict(),
+            "uplift": row.uplift_time_difference if math.isfinite(row.uplift_time_uncertainty) else None,
+            "towards": _degrees(row.uplift_direction_difference, row.uplift_direction_uncertainty),
+            "towards_uncertainty": _degrees(
+                # beyond half a turn there is nothing left to tell
+                min(row.uplift_direction_uncertainty, math.pi), row.uplift_direction_uncertainty
+            ),
+            "differs_in": row.differs_in or None,
+            "likely_mistake": row.likely_mistake or None,
+        }
+        for row in rows_of(summary[summary["support"] == EXTERNAL])
+    ]
 
 
-# heading and unit of each column of `external_cells`
-TITLES = (
-    *(("run", ""), ("azimuth", "deg"), ("from", "s"), ("path", "b"), ("from", "s"), ("uplift", "s")),
-    *(
-        ("±", "s"),
-        ("towards", "deg"),
-        ("±", "deg"),
-        ("noise", "α"),
-        ("differs in", ""),
-        ("likely mistake", ""),
-    ),
-)
+def _degrees(angle: float, uncertainty: float) -> float | None:
+    return math.degrees(angle) if math.isfinite(uncertainty) else None
 
 
 def _split(codes: str) -> list[str]:
