@@ -5,13 +5,10 @@ from types import SimpleNamespace
 
 import pandas as pd
 import pytest
-from rich.console import Console
 
 from rockwobble.compare.comparison.external.verdict import no_verdict
-from rockwobble.reports.console.summary_table import external_table
-from rockwobble.reports.pages.comparison.external_words import (
-    TITLES,
-    external_cells,
+from rockwobble.reports.pages.comparison.external import (
+    external_rows,
     external_sentences,
     mistakes,
     scope,
@@ -167,22 +164,17 @@ def test_noise_widens_what_agreement_means_and_says_so():
     assert "within 3.4 % of alpha (1 % and the noise)" in headline(table(row(tilt_bound=0.034)), 8.0)
 
 
-def printed(rows):
-    console = Console(width=160)
-    with console.capture() as caught:
-        console.print(external_table(TITLES, external_cells(rows)))
-    return caught.get()
-
-
 def test_the_table_has_the_numbers_and_codes_of_each_external_trajectory():
     engine = row(support="recess", run="mujoco recess")
-    text = printed(table(engine, row(**WRONG, uplift_time_uncertainty=0.012)))
-    assert "mujoco" not in text
-    line = next(line for line in text.splitlines() if line.startswith("table"))
-    cells = line.split()
-    assert cells[:8] == ["table", "10.0", "2.80", "0.001", "5.96", "0.004", "0.012", "-"]
-    assert line.rstrip().endswith("azimuth; path axes: turned")
-    assert external_cells(table(engine)) == []
+    (line,) = external_rows(table(engine, row(**WRONG, uplift_time_uncertainty=0.012)))
+    names = ("run", "azimuth_rms", "azimuth_differs_from", "path_rms", "path_differs_from", "uplift")
+    assert [line[name] for name in names] == ["table", 10.0, 2.8, 0.001, 5.96, 0.004]
+    assert (line["differs_in"], line["likely_mistake"]) == ("azimuth; path", "axes: turned")
+    # of the direction nothing is known
+    assert (line["towards"], line["towards_uncertainty"]) == (None, None)
+    (other,) = external_rows(table(row(uplift_direction_uncertainty=4.0)))
+    assert (other["towards"], other["towards_uncertainty"]) == (math.degrees(-0.5), 180.0)
+    assert external_rows(table(engine)) == []
 
 
 def test_a_divergence_of_an_external_trajectory_has_its_own_reasons():

@@ -8,10 +8,10 @@ import pytest
 
 from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import CODES
-from rockwobble.reports.pages.comparison.budget_words import divergence_lines
+from rockwobble.reports.pages.comparison.budgets import divergence_sentences
 from rockwobble.reports.pages.comparison.findings import Finding, counted_remarks, finding, headline, reason
 from rockwobble.reports.pages.diagnostic_words import counted, failure, sentence, sentences
-from rockwobble.reports.pages.template import small
+from rockwobble.reports.pages.words import small
 
 LENGTH = 50.0
 
@@ -105,8 +105,8 @@ def test_of_two_reduced_models_nothing_is_said_about_contact():
 
 def test_an_external_trajectory_cannot_diverge_too_early():
     early = {"run": "table", "divergence": "earlier"}
-    assert divergence_lines(table(row(**early, support="external"))) == []
-    assert "a finding" in divergence_lines(table(row(**early)))[0]
+    assert divergence_sentences(table(row(**early, support="external"))) == []
+    assert "a finding" in divergence_sentences(table(row(**early)))[0]
 
 
 def test_peaks_are_told_apart_only_where_they_differ():

@@ -67,12 +67,13 @@ def _drift(view: CaseView, support: str) -> Panel:
     return Panel(x=TIME, y=_DRIFT, layers=layers, title=f"drift, support {support}", height=2.0)
 
 
-def turn_picture(view: CaseView, name: str) -> Picture:
-    """Return |angle of turn| of each pass, against its limit for vanishing spin."""
+def turn_picture(view: CaseView, name: str, *, notes: bool = True) -> Picture:
+    """Return |angle of turn| of each pass, against its limit for vanishing spin; `notes` give its tilt."""
     limit = math.degrees(limiting_angle_of_turn(view.case.cylinder))
     layers: list[Layer] = [Rule(at=limit, axis="y", text=f"π √(A/J) = {limit:.2f}°, vanishing spin")]
     for (label, trace), symbol in zip(view.traces.items(), _symbols(view), strict=False):
         passes = trace.passes
+        resolved = passes["resolved"].to_numpy(bool)
         tilts = passes["minimum_tilt"].to_numpy(float) / view.case.cylinder.alpha
         layers.append(
             Line(
@@ -80,8 +81,8 @@ def turn_picture(view: CaseView, name: str) -> Picture:
                 y=np.abs(np.degrees(passes["angle_of_turn"].to_numpy(float))),
                 name=label,
                 style=Style(colour=view.styles[label].colour, dash="none", symbol=symbol),
-                filled=passes["resolved"].to_numpy(bool),
-                notes=[f"minimum tilt {tilt:.2g} α" for tilt in tilts],
+                filled=bool(resolved.all()) or resolved,
+                notes=[f"minimum tilt {tilt:.2g} α" for tilt in tilts] if notes else (),
             )
         )
     x = Axis(label=TIME.label, unit=TIME.unit, low=0.0, high=view.case.length)

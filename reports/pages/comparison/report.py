@@ -25,7 +25,7 @@ from ..words import fragment
 from .budgets import budget_sentences, divergence_sentences
 from .external import external_rows
 from .findings import counted_remarks, finding_sentences, headline
-from .tables import all_columns, diverging_runs, group_rows, main_rows, worst_first
+from .tables import all_columns, diverging_runs, group_rows, main_rows, meanings, worst_first
 
 if TYPE_CHECKING:
     from rockwobble.compare import Comparison
@@ -33,7 +33,7 @@ if TYPE_CHECKING:
 # up to so many cases each has a part of the report of its own
 SINGLY = 3
 # points of all lines of a page together: ten bytes each, and the page stays below 8 MB
-_ALL_POINTS = 150_000
+_ALL_POINTS = 125_000
 # more are not to be seen, fewer are no curve
 _MOST_POINTS, _FEWEST_POINTS = 1500, 120
 _BESIDE = ("figure", "budget")  # pictures that stand beside the page as files
@@ -82,6 +82,7 @@ def comparison_page(comparison: Comparison, command: str = "", *, drawn: bool = 
             ]
             if many
             else [],
+            "meanings": meanings(),
             "failed": int((own_rows(summary)["outcome"] == "failed").sum()),
             "cases": [
                 {
@@ -120,7 +121,7 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
         yield contact_picture(view, f"contact-{place}")
     else:
         yield azimuth_picture(view, f"contact-{place}")
-    yield turn_picture(view, f"turns-{place}")
+    yield turn_picture(view, f"turns-{place}", notes=not many)
     if view.budgets:
         yield budget_picture(view, f"budget-{place}")
         # where there is nothing to explain they are a megabyte for nothing

@@ -41,14 +41,21 @@ def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
         {
             "all": "All numbers",
             "name": name.replace("_", " ") + (f" [{unit}]" if unit else ""),
-            "meaning": meaning,
             **{str(index): getattr(row, name) for index, row in enumerate(found)},
         }
-        for name, (unit, meaning) in SUMMARY_COLUMNS.items()
+        for name, (unit, _) in SUMMARY_COLUMNS.items()
         if name not in ("case", "run", "reference")
     ]
     columns = [[str(index), f"{row.run} against {row.reference}", ".4g"] for index, row in enumerate(found)]
-    return lines, [["name", "column", "words"], *columns, ["meaning", "meaning", "words"]]
+    return lines, [["name", "column", "words"], *columns]
+
+
+def meanings() -> list[Row]:
+    """Return what each column of summary.csv means, and its unit."""
+    return [
+        {"all": "Columns of summary.csv", "name": name, "unit": unit or "-", "meaning": meaning}
+        for name, (unit, meaning) in SUMMARY_COLUMNS.items()
+    ]
 
 
 def group_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]:
