@@ -9,7 +9,7 @@ from typing import Any
 from rockwobble.models import Case, Run, Suite
 
 from ..runs.choice import installed_engines, run_labels
-from ..runs.execution import Crash, Job, ProgressCallback, simulate_all
+from ..runs.execution import Job, ProgressCallback, simulate_all
 from ..storage.fingerprint import fingerprint
 from .finding import Finding, not_run
 
@@ -52,7 +52,7 @@ class Bench:
     kept: dict[str, Any] = field(default_factory=dict)
 
     def rows(self) -> Iterator[tuple[Case, Run, str, Any]]:
-        """Yield case, run, label and trajectory (or Crash) of every run of the suite."""
+        """Yield case, run, label and trace of every run of the suite."""
         labels = run_labels(self.suite.runs)
         wanted = [
             (case, run, label)
@@ -64,10 +64,10 @@ class Bench:
             yield case, run, label, trajectory
 
     def engine_runs(self, wanted: Sequence[tuple[Case, Run, str]]) -> list[Any]:
-        """Return the trajectory, or the Crash, of each case and run, labelled for the progress."""
+        """Return the trace of each case and run, labelled for the progress."""
         keys = [fingerprint([case, run]) for case, run, _ in wanted]
         missing = {key: each for key, each in zip(keys, wanted, strict=True) if key not in self.kept}
-        jobs = [Job(case=case, method=run, label=label) for case, run, label in missing.values()]
+        jobs = [Job(case=case, run=run, label=label) for case, run, label in missing.values()]
         found = simulate_all(jobs, workers=self.workers, progress=self.progress)
         self.kept.update(zip(missing, found, strict=True))
         return [self.kept[key] for key in keys]
@@ -97,4 +97,9 @@ def not_here(layer: str, what: str) -> Iterator[Finding]:
 
 def crashed(trajectory: Any) -> bool:
     """Return whether an engine left no trajectory, or one that it had to give up."""
-    return isinstance(trajectory, Crash) or trajectory.outcome == "failed"
+    return bool(trajectory.outcome == "failed")
+
+
+def why(trace: Any) -> str:
+    """Return the codes and what is said beside them of what ended a run."""
+    return "; ".join(" ".join([fact.meaning, fact.detail]).strip() for fact in trace.facts)

@@ -12,7 +12,7 @@ from typing import Any
 KINDS: Mapping[str, tuple[str, str]] = {
     "comparison": (
         "rockwobble.compare.comparison.result:Comparison.load",
-        "rockwobble.reports.pages.comparison.files:comparison_pages",
+        "rockwobble.reports.pages.comparison.report:comparison_files",
     ),
     "ensemble": (
         "rockwobble.compare.studies.ensemble.study:read_ensemble",

@@ -140,7 +140,8 @@ class Table:
         for place, (column, cell) in enumerate(zip(self.columns, cells, strict=True)):
             mark = f' class="tag {_slug(cell)}"' if column.form == "tag" else _class(column)
             kind = "th" if place == 0 else "td"
-            scope = ' scope="row"' if place == 0 else f' data-label="{html.escape(column.heading)}"'
+            label = "" if self.folded else f' data-label="{html.escape(column.heading)}"'
+            scope = ' scope="row"' if place == 0 else label
             found.append(f"<{kind}{scope}{mark}>{html.escape(cell)}</{kind}>")
         return f"<tr>{''.join(found)}</tr>"
 
@@ -158,7 +159,7 @@ class Table:
         from rich.table import Table as RichTable
         from rich.text import Text
 
-        table = RichTable(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0), pad_edge=False, show_edge=False)
+        table = RichTable(box=box.SIMPLE_HEAD, padding=0, pad_edge=False, show_edge=False)
         for column in columns:
             # as a text, because brackets are markup; the unit in a line of its own
             heading = Text(column.heading.replace(" [", "\n["))

@@ -42,7 +42,7 @@ def show(table: pd.DataFrame, title: str, formats: Mapping[str, str], note: str 
 
     shown = Table(title=title, caption=note or None, title_justify="left", caption_justify="left")
     for name, form in formats.items():
-        fold = name == "message"
+        fold = name == "diagnostics"
         heading, side = name.replace("_", " "), "right" if form else "left"
         shown.add_column(heading, justify=side, overflow="fold", no_wrap=not fold)  # type: ignore[arg-type]
     for row in table.to_dict("records"):

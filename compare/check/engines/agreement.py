@@ -13,12 +13,12 @@ from typing import Any
 
 from rockwobble.models import Case, Run
 
-from ...comparison.prediction import Prediction, estimated_error, predict_horizon, time_scale, verdict
+from ...comparison.prediction import Prediction, estimated_error, predict, time_scale, verdict
 from ...metrics.agreement import agreement_time
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import own_model
 from ...traces.pair import make_pair
-from ..bench import Bench, crashed
+from ..bench import Bench, crashed, why
 from ..finding import Finding, at_most, not_run
 from . import engine_settings, stated_bounds
 
@@ -49,7 +49,7 @@ def model_of(bench: Bench, run: Run) -> str:
     """Return the reduced model that a run is held against."""
     if bench.suite.bounds is not None:
         return stated_bounds.reference_of(bench.suite.bounds, run)
-    return own_model(run.support)
+    return own_model(run).support
 
 
 def check_run(
@@ -67,17 +67,16 @@ def check_run(
             unit="alpha",
             reason="the run must reach its end",
             part=f"contact of {run.engine} ({run.support}): the run failed",
-            note=trajectory.message,
+            note=why(trajectory),
         )
         return
-    prediction = predict_horizon(
+    prediction = predict(
         case,
         reference=response,
         own=response,
-        own_model=model,
         contact_resolution=trajectory.contact_resolution,
         error=estimated_error(case, run.engine, trajectory.time_step),
-        simulate=bench.response,
+        simulate=lambda other, run: bench.response(other, run.support),
     )
     if bench.suite.bounds is not None:
         yield from stated_bounds.check(bench.suite.bounds, case, run, label, trajectory, response, prediction)
@@ -85,8 +84,8 @@ def check_run(
     until = None
     if run.support == "ring":
         yield from _ring(case, label, trajectory)
-        if math.isfinite(trajectory.first_wall_contact):
-            until = trajectory.first_wall_contact
+        if math.isfinite(trajectory.first("wall_contact")):
+            until = trajectory.first("wall_contact")
     yield _by_rule(case, run, name, response, trajectory, prediction, until)
 
 
@@ -107,8 +106,8 @@ def _by_rule(
     part = f"{run.engine} ({run.support}), its contact and step, or the reduced model"
     lifted = [math.isfinite(trace.uplift_time) for trace in (response, trajectory)]
     if not any(lifted) or end <= pair.start:
-        why = "neither uplifts" if not any(lifted) else "traces have to part at once"
-        return not_run(LAYER, name, part=part, note=f"{why}: there is nothing to compare")
+        reason = "neither uplifts" if not any(lifted) else "traces have to part at once"
+        return not_run(LAYER, name, part=part, note=f"{reason}: there is nothing to compare")
     words = verdict(horizon.length, horizon.diverged, prediction.length, prediction.reason)
     return at_most(
         LAYER,
@@ -133,7 +132,7 @@ def tilt_bound(case: Case, time_step: float | None) -> float:
 def _ring(case: Case, label: str, trajectory: Any) -> Iterator[Finding]:
     from ...metrics.energy import energy_loss
 
-    touched = trajectory.first_wall_contact
+    touched = trajectory.first("wall_contact")
     note = f"first touch at {touched:.3g} s" if math.isfinite(touched) else "no wall was touched"
     yield at_most(
         LAYER,

@@ -52,12 +52,12 @@ def measure(bench: Bench) -> dict[str, dict[str, float]]:
 
 def version_of(trajectory: Any) -> str:
     """Return the name of the group of a trajectory: engine and version."""
-    return f"{trajectory.engine} {trajectory.engine_version}"
+    return f"{trajectory.run.engine} {trajectory.version}"
 
 
 def _finding(kept: Baseline, case: Case, run: Run, label: str, trajectory: Any) -> Finding:
     group = version_of(trajectory)
-    known = _known(kept, trajectory.engine, group)
+    known = _known(kept, trajectory.run.engine, group)
     name = f"{case.name}, {label}"
     bound = RING if run.support == "ring" else SHARE * tilt_bound(case, trajectory.time_step)
     if known != group:

@@ -15,7 +15,7 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder, InitialState, Run
 
-from ..bench import Bench, crashed, engines_here, not_here
+from ..bench import Bench, crashed, engines_here, not_here, why
 from ..finding import Finding, at_most
 
 LAYER = "agreement"
@@ -71,7 +71,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 
 def _why(broken: list[Any]) -> str:
-    return next((str(t.message) for t in broken), "")
+    return next(map(why, broken), "")
 
 
 def _rms(values: Any) -> float:

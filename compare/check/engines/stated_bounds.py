@@ -18,7 +18,7 @@ LAYER = "agreement"
 
 def reference_of(bounds: Bounds, run: Run) -> str:
     """Return the reduced model that a run is held against."""
-    return own_model(run.support) if bounds.reference == "own" else bounds.reference
+    return own_model(run).support if bounds.reference == "own" else bounds.reference
 
 
 def check(
@@ -26,7 +26,7 @@ def check(
 ) -> Iterator[Finding]:
     """Yield one finding for each bound; `response` is that of `reference_of`."""
     model = reference_of(bounds, run)
-    row = summary_row(case, model, response, label, trajectory, prediction=prediction)
+    row = summary_row(case, f"{model} model", response, label, trajectory, prediction=prediction)
     for column, bound in bounds.given().items():
         unit, meaning = SUMMARY_COLUMNS[column]
         value = abs(float(row[column]))
@@ -52,5 +52,5 @@ def check(
             unit=unit,
             reason=f"stated by the suite: {meaning}",
             part=f"{run.engine} ({run.support}) or the {model} model",
-            note="; ".join(part for part in str(row["message"]).split("; ") if "not defined" not in part),
+            note="; ".join(part for part in str(row["diagnostics"]).split("; ") if "not defined" not in part),
         )

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 
 from ...runs.choice import own_model
-from ...runs.execution import run_engine
-from ..bench import Bench, crashed, engines_here, not_here
+from ...runs.execution import simulate_run
+from ..bench import Bench, crashed, engines_here, not_here, why
 from ..finding import Finding, at_most
 from ..polyline import steady
 
@@ -77,11 +77,11 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 def _shaken(bench: Bench, engine: str, support: str) -> Iterator[Finding]:
     label = f"{engine} {support}"
-    trace = run_engine(SHAKEN, bench.adjust(Run(engine, support)), sample_step=SAMPLE)
+    trace = simulate_run(SHAKEN, bench.adjust(Run(engine, support)), sample_step=SAMPLE)
     if crashed(trace):
         yield _failed(label, engine, trace)
         return
-    model = bench.response(SHAKEN, own_model(support), rtol=1e-11, sample_step=SAMPLE)
+    model = bench.response(SHAKEN, own_model(Run(engine, support)).support, rtol=1e-11, sample_step=SAMPLE)
     whole = len(trace.time) == len(model.time)
     for name, (unit, bound) in FIELDS.items():
         apart = np.abs(getattr(trace, name) - getattr(model, name)).max() if whole else math.nan
@@ -146,7 +146,7 @@ def _uplift(bench: Bench, engine: str) -> Iterator[Finding]:
         # its base rocks on four contacts before: what is checked is where the uplift is found
         run = Run(engine, run.support, run.time_step, **{**run.settings, "held_standing": True})
     case = Case(PIER, RAMP, duration=0.6, friction=2.0, name="ramp")
-    trace = run_engine(case, run, sample_step=0.05)
+    trace = simulate_run(case, run, sample_step=0.05)
     if crashed(trace):
         yield _failed(f"{engine}, ramp", engine, trace)
         return
@@ -215,7 +215,7 @@ def _slides(bench: Bench, engine: str) -> Finding:
     # not of the size at which the engines run every scene, so that lengths and times differ from it
     small = replace(PIER, semidiagonal=1.5)
     case = Case(small, steady([0.12 * GRAVITY, -0.09 * GRAVITY], time), friction=friction, name="slide")
-    trace = run_engine(case, bench.adjust(Run(engine, "flat")))
+    trace = simulate_run(case, bench.adjust(Run(engine, "flat")))
     if crashed(trace):
         return _failed(f"{engine}, slide", engine, trace)
     distance = 0.5 * (0.15 - friction) * GRAVITY * time**2
@@ -248,4 +248,4 @@ def _finding(name: str, value: float, bound: float, unit: str, part: str, note: 
 
 def _failed(name: str, engine: str, trace: Any) -> Finding:
     finding = _finding(f"{name} reaches its end", math.nan, 0.0, "", f"contact of {engine}: the run failed")
-    return replace(finding, note=str(trace.message))
+    return replace(finding, note=why(trace))

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState, Trace
 
-from ...traces.trajectory import External, Trace, read_trajectory
+from ...traces.trajectory import External, read_trajectory
 from ..bench import Bench
 from ..finding import Finding, worst_of
 from ..models import lagrange

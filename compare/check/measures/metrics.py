@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, Trace
 
 from ...comparison.prediction import Prediction
 from ...comparison.summary import summary_row
@@ -23,7 +24,7 @@ from ...metrics.turning import direction_difference, first_unresolved_pass, turn
 from ...traces.pair import make_pair
 from ..bench import Bench
 from ..finding import Finding, worst_of
-from .made_traces import Array, MadeTrace, made, passes
+from .made_traces import Array, made, passes
 
 LAYER = "metrics"
 CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -207,11 +208,11 @@ def _row() -> dict[str, float]:
         peak_tilt=0.6 * ALPHA,
         uplift_time=1.02,
         residual_displacement=0.3 * B,
-        residual_twist=-7.0,
+        twist=np.full(len(TIME), -7.0),
         contact_resolution=1e-4,
     )
     found = summary_row(
-        case, "recess", reference, "made", trial, prediction=Prediction(length=8.0, reason="pass")
+        case, "recess model", reference, "made", trial, prediction=Prediction(length=8.0, reason="pass")
     )
     expected: Mapping[str, float] = {
         "peak_tilt": 0.6,
@@ -233,7 +234,7 @@ def _row() -> dict[str, float]:
     return {name: float(found[name]) - value for name, value in expected.items()}
 
 
-def _rolling(rate: float, start: float, **fields: float) -> MadeTrace:
+def _rolling(rate: float, start: float, **fields: Any) -> Trace:
     """A cylinder that leans by 0.3 alpha and rolls on at `rate` [rad/s] from the azimuth `start` [rad]."""
     angle = start + rate * TIME
     return made(

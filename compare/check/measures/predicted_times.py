@@ -8,13 +8,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 
-from ...comparison.prediction import Prediction, close_pass, estimated_error, predict_horizon, verdict
+from ...comparison.prediction import Prediction, close_pass, estimated_error, predict, verdict
 from ...metrics.distributions import contrast
 from ..bench import Bench
 from ..finding import Finding, worst_of
-from .made_traces import Array, MadeTrace, made, passes
+from .made_traces import RECESS, Array, made, passes
 
 LAYER = "metrics"
 CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -65,16 +65,15 @@ def _predictions() -> dict[str, float]:
     lands = _trace(0.0, rolling_angle=landed)
     late = _trace(0.0, passes=table, uplift_time=2.0)
 
-    def perturbed(disturbed: Case, model: str) -> MadeTrace:
+    def perturbed(disturbed: Case, run: Run) -> Trace:
         # a copy of the recess model moves with the change of its gravity, any other one not at all
-        return _trace((disturbed.gravity / case.gravity - 1.0) * (model == "recess"))
+        return _trace((disturbed.gravity / case.gravity - 1.0) * (run == RECESS))
 
-    def predicted(own: MadeTrace, resolution: float, error: float = ERROR) -> Prediction:
-        return predict_horizon(
+    def predicted(own: Trace, resolution: float, error: float = ERROR) -> Prediction:
+        return predict(
             case,
             reference=reference,
             own=own,
-            own_model="recess",
             contact_resolution=resolution,
             error=error,
             simulate=perturbed,
@@ -99,7 +98,7 @@ def _predictions() -> dict[str, float]:
     }
 
 
-def _trace(strength: float, **fields: object) -> MadeTrace:
+def _trace(strength: float, **fields: object) -> Trace:
     """A standing lean of alpha/2 and 7 times `strength` alpha that grows."""
     tilt = 0.5 * ALPHA + 7.0 * strength * ALPHA * np.exp(GROWTH * TIME)
     return made(TIME, tilt, **fields)  # type: ignore[arg-type]

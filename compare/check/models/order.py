@@ -33,12 +33,12 @@ def check(bench: Bench) -> Iterator[Finding]:
     for name, problem in problems.items():
         for model in ("recess", "flat"):
             exact = bench.reduced.simulate(
-                Case(CYLINDER), rtol=1e-13, **bench.reduced.MODELS[model], **problem
+                Case(CYLINDER, **problem), rtol=1e-13, **bench.reduced.MODELS[model]
             )
             errors = [
                 np.abs(
                     bench.reduced.simulate(
-                        Case(CYLINDER), rtol=rtol, **bench.reduced.MODELS[model], **problem
+                        Case(CYLINDER, **problem), rtol=rtol, **bench.reduced.MODELS[model]
                     ).tilt
                     - exact.tilt
                 ).max()

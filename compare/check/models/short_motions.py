@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
+from ..bench import why
 from . import differences
 from .lagrange import Shape, shape_of
 
@@ -95,7 +96,7 @@ def sample(reduced: Any, cylinder: Cylinder) -> Sampled:
             rest_tilt=0.0,
         )
         if found.outcome == "failed":
-            raise FailedMotionError(found.message)
+            raise FailedMotionError(why(found))
         # one that fell down ends between two samples, and may go on falling when the motion is over
         even = len(found.time) - (found.outcome == "overturned")
         for piece in range(min((even - 1) // _PIECE, _PIECES)):

@@ -8,7 +8,7 @@ from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.studies.advice.planar import NEIGHBOURS, PlanarView
 from rockwobble.compare.studies.spectrum.verification import CHECK_RTOL, NUDGE
 
-from ..comparison.findings import seconds, small
+from ..words import seconds, small
 
 # a factor that planar analysis is off by is told only where the planar tilt is worth the name [alpha]
 _WORTH_A_RATIO = 1e-3

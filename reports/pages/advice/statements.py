@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from rockwobble.compare.studies.advice.grades import GRADES
 from rockwobble.compare.studies.spectrum.series import SPATIAL
 
-from ..comparison.findings import seconds
+from ..words import seconds
 from . import scale_words, words
 from .words import Statement
 

@@ -10,7 +10,7 @@ from rockwobble.compare.metrics.agreement import AGREEMENT
 from rockwobble.compare.studies.advice.demands import Demands
 from rockwobble.compare.studies.advice.grades import Trust
 
-from ..comparison.findings import seconds
+from ..words import seconds
 
 if TYPE_CHECKING:
     from rockwobble.compare.studies.advice import Verification

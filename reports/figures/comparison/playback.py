@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.compare import own_model
+from rockwobble.models import Trace
 
-from .case_view import CaseView
+from .view import CaseView
 
 # a screen shows 60 pictures a second; a slower clock repeats some
 _PICTURES = 100.0
@@ -34,36 +34,29 @@ def playback(view: CaseView) -> dict[str, Any] | None:
         Numbers, texts and, as base64 of little-endian float32, arrays: ready for JSON.
     """
     cylinder = view.case.cylinder
-    runs = [_body(label, trace, view, style.colour, _SOLID) for label, trace, style in view.lines()
-            if label in view.trajectories]  # fmt: skip
-    models = [
-        _body(f"{model} model", trace, view, "#8a8a8a", _TRANSLUCENT)
-        for model, trace in view.responses.items()
-    ]
+    runs = [_body(label, trace, view.styles[label].colour, _SOLID) for label, trace in view.runs.items()]
+    models = [_body(label, trace, "#8a8a8a", _TRANSLUCENT) for label, trace in view.references.items()]
     if not any(body["moves"] for body in [*runs, *models]):
         return None
     return {
         "base_radius": cylinder.base_radius,
         "height": 2.0 * cylinder.half_height,
         # what falls after the end of the case is played until its side is down
-        "length": max(
-            view.case.length,
-            *(float(trace.time[-1]) for _, trace, _ in view.lines()),
-        ),
+        "length": max(view.case.length, *(float(trace.time[-1]) for trace in view.traces.values())),
         "runs": runs,
         "models": models,
         # the model that each run is shown with at first
-        "partners": [
-            _index(list(view.responses), own_model(trace.support)) for trace in view.trajectories.values()
-        ],
+        "partners": [list(view.references).index(view.partner(label)) for label in view.runs]
+        if view.references
+        else [],
         "magnify": _magnifications(view),
     }
 
 
-def _body(label: str, trace: Any, view: CaseView, colour: str, opacity: float) -> dict[str, Any]:
+def _body(label: str, trace: Trace, colour: str, opacity: float) -> dict[str, Any]:
     step = _picture_step(trace.time)
     keep = slice(None, None, step)
-    pose = _pose(trace, view.case.cylinder.base_radius, view.case.cylinder.half_height)
+    pose = _pose(trace)
     return {
         "label": label,
         "colour": colour,
@@ -73,13 +66,15 @@ def _body(label: str, trace: Any, view: CaseView, colour: str, opacity: float) -
     }
 
 
-def _pose(trace: Any, base_radius: float, half_height: float) -> Mapping[str, NDArray[np.float64]]:
+def _pose(trace: Trace) -> Mapping[str, NDArray[np.float64]]:
     """Return tilt, rolling angle, twist and contact point, with numbers where the cylinder stands."""
     standing = ~np.isfinite(trace.rolling_angle) | ~np.isfinite(trace.contact_point[:, 0])
     tilt = np.where(standing, 0.0, trace.tilt)
     rolling_angle = np.where(standing, 0.0, trace.rolling_angle)
     # a standing cylinder touches everywhere: any point of its rim will do
-    touch_x = np.where(standing, trace.centre_of_mass[:, 0] + base_radius, trace.contact_point[:, 0])
+    touch_x = np.where(
+        standing, trace.centre_of_mass[:, 0] + trace.case.cylinder.base_radius, trace.contact_point[:, 0]
+    )
     touch_y = np.where(standing, trace.centre_of_mass[:, 1], trace.contact_point[:, 1])
     return {
         "tilt": tilt,
@@ -98,14 +93,10 @@ def _picture_step(time: NDArray[np.float64]) -> int:
 
 def _magnifications(view: CaseView) -> list[int]:
     """Return factors on the tilt that leave the largest upright tilt below 60 degrees."""
-    tilts = [trace.tilt for trace in (*view.trajectories.values(), *view.responses.values())]
+    tilts = [trace.tilt for trace in view.traces.values()]
     upright = [tilt[np.isfinite(tilt) & (tilt < 1.2 * view.case.cylinder.alpha)] for tilt in tilts]
     largest = max((float(tilt.max(initial=0.0)) for tilt in upright), default=0.0)
     return [factor for factor in (1, 3, 10, 30) if factor * largest < np.radians(60.0) or factor == 1]
-
-
-def _index(names: list[str], name: str) -> int:
-    return names.index(name) if name in names else 0
 
 
 def _encoded(values: NDArray[np.float64]) -> str:
