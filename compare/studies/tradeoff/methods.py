@@ -14,7 +14,7 @@ from rockwobble.multibody.engines.registry import find_engine
 
 from ...runs.execution import simulate_run
 from .problem import FINE_REST_TILT, Array, Problem
-from .scipy_solver import SOLVERS, Rates, solve, start_of
+from .scipy_solver import SOLVERS, Rates, SolverName, solve, start_of
 
 # of the recess model as it comes: every computing time is told as a multiple of its own
 BASE_TOLERANCE = 1e-8
@@ -126,7 +126,7 @@ def _scipy(problem: Problem, quick: bool) -> Iterator[Method]:
 
 
 def _by_scipy(
-    problem: Problem, name: str, rates: Mapping[str, Rates], rtol: float
+    problem: Problem, name: SolverName, rates: Mapping[str, Rates], rtol: float
 ) -> Callable[[Case], Answer]:
     def answer(case: Case) -> Answer:
         quantity = solve(problem, case, name, rates[case.name], rtol)

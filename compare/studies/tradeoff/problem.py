@@ -146,9 +146,7 @@ def shaken(*, quick: bool = False) -> Problem:
 def peaks(*, quick: bool = False) -> Problem:
     """Return the problem of the peak tilts of many motions."""
     standing = Case(PIER, synthetic_motions(2, peak=1.0, seed=0)[0], name="synthetic")
-    motions = synthetic_motions(
-        4 if quick else 12, peak=_MEMBER_PEAK, seed=1940, duration=_MEMBER_LENGTH
-    )
+    motions = synthetic_motions(4 if quick else 12, peak=_MEMBER_PEAK, seed=1940, duration=_MEMBER_LENGTH)
     steps = _STEPS[:2] if quick else _STEPS[:4]
     return _answered(
         Problem(

@@ -11,7 +11,7 @@ import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -21,7 +21,8 @@ from rockwobble.reduced.solution import Solution
 
 from .problem import TIGHT, Array, Problem
 
-SOLVERS = ("RK45", "DOP853", "LSODA")
+SolverName = Literal["RK45", "DOP853", "LSODA"]
+SOLVERS: tuple[SolverName, ...] = ("RK45", "DOP853", "LSODA")
 # of tilt, its rate, rolling angle and momentum: times the relative tolerance they are the absolute ones
 TOLERANCE_SCALE = np.array([1e-3, 1e-3, 1.0, 1e-3])
 _AFTER_UPLIFT = 2e-3  # [s]
@@ -108,7 +109,7 @@ def _departure(case: Case) -> float:
     return max(float(run.time[last + 1]), run.uplift_time + _AFTER_UPLIFT)
 
 
-def solve(problem: Problem, case: Case, name: str, rates: Rates, rtol: float) -> Array:
+def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: float) -> Array:
     """Return what a problem asks, by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
     from scipy.integrate import solve_ivp
 
@@ -139,10 +140,9 @@ def solve(problem: Problem, case: Case, name: str, rates: Rates, rtol: float) ->
         return np.empty(0)
     if sampled:  # before the start it stood, or moved as the recess model does
         return np.concatenate([reference[: len(reference) - run.y.shape[1]], run.y[0] / case.cylinder.alpha])
-    has_maxima = bool(len(run.t_events[0]))
-    maxima = np.asarray(run.y_events[0]) if has_maxima else np.empty((0, 4))
+    instants = (run.t_events or [np.empty(0)])[0]
+    maxima = np.asarray((run.y_events or [np.empty(0)])[0]).reshape(-1, 4)
     if problem.name == "turn":  # the release is a maximum itself
-        later = maxima[np.asarray(run.t_events[0]) > 0.1] if has_maxima else maxima
-        return np.degrees(np.abs(later[:1, 2] - rates.state[2]))
+        return np.asarray(np.degrees(np.abs(maxima[instants > 0.1][:1, 2] - rates.state[2])))
     peak = max(float(run.y[0].max()), float(maxima[:, 0].max(initial=0.0)))
     return np.array([min(peak / case.cylinder.alpha, 1.0)])
