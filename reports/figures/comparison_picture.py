@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,7 +11,7 @@ import numpy as np
 from rockwobble.compare import AGREEMENT, make_pair, own_model
 
 from .palette import Style, label_styles
-from .picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
+from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
 from .svg import figure
 from .thinning import envelope
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
 SMALLEST = 1e-7
 # the difference is drawn as its largest value within this time, about one swing [s]
 WINDOW = 1.0
+_FALLS = 1.5  # [alpha] where tilts are cut if one goes farther
 
 
 def draw(comparison: Comparison, case: str) -> Figure:
@@ -67,7 +69,10 @@ def _tilts(case: Case, traces: Mapping[str, Trace], styles: Mapping[str, Style])
             for label in shown
         ]
         title = f"support {support}" if runs else ""
-        panels.append(Panel(x=TIME, y=Axis(label="tilt / α", unit="-", low=0.0), layers=lines, title=title))
+        # a fall would leave nothing to be seen of the rest
+        falls = max((float(np.nanmax(line.y, initial=0.0)) for line in lines), default=0.0) > _FALLS
+        y = replace(TILT, high=_FALLS if falls else None)
+        panels.append(Panel(x=TIME, y=y, layers=lines, title=title))
         if not runs:
             break
     return panels

@@ -56,6 +56,7 @@ class Axis:
 
 
 TIME = Axis(label="time", unit="s")
+TILT = Axis(label="tilt / α", unit="-", low=0.0)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from .palette import GREY, ORDER, Style
-from .picture import TIME, Axis, Line, Panel, Picture, Rule
+from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
 from .svg import figure
 
 if TYPE_CHECKING:
@@ -29,9 +29,13 @@ def trace_picture(trace: Trace) -> Picture:
     cylinder = trace.case.cylinder
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
     x, y = trace.contact_point.T / cylinder.base_radius
-    tilt = [
+    tilt: list[Layer] = [
         Line(x=trace.time, y=trace.tilt / cylinder.alpha, style=_PATH),
-        *([Rule(at=trace.uplift_time, axis="x", text="uplift")] if trace.uplift_time > 0.0 else []),
+        *(
+            [Rule(at=trace.uplift_time, axis="x", text="uplift", side="right")]
+            if trace.uplift_time > 0.0
+            else []
+        ),
     ]
     path = [
         Line(x=np.cos(turn), y=np.sin(turn), style=_CIRCLE, name="original circle", width=1.0),
@@ -42,7 +46,7 @@ def trace_picture(trace: Trace) -> Picture:
         title=f"{trace.case.name}, {trace.run}",
         caption="Tilt of the axis in units of alpha, and where the rim touches the ground, seen from above.",
         panels=[
-            Panel(x=TIME, y=Axis(label="tilt / α", unit="-", low=0.0), layers=tilt, title="tilt", height=3.4),
+            Panel(x=TIME, y=TILT, layers=tilt, title="tilt", height=3.4),
             Panel(
                 x=Axis(label="x / b", unit="-"),
                 y=Axis(label="y / b", unit="-"),
