@@ -74,8 +74,8 @@ def test_a_refused_run_says_so_and_has_no_error(turn: Problem, methods: list[Met
     assert math.isnan(turn.error("recess", [answer.quantity]))
 
 
-def test_no_panel_has_more_lines_than_can_be_read(methods: list[Method]) -> None:
-    lines = {(m.support, m.panel, m.line) for m in methods}
+def test_no_panel_has_more_lines_than_can_be_read(turn: Problem) -> None:
+    lines = {(m.support, m.panel, m.line) for m in methods_for(turn)}
     counts = pd.DataFrame(list(lines), columns=["support", "panel", "line"]).groupby(["support", "panel"])
     assert counts.size().max() <= MOST_LINES
 

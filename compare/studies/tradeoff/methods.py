@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -45,7 +46,7 @@ class Method:
         "reduced", "scipy" or the name of an engine.
     support : {"recess", "flat", "ring"}
         Whose answer is the reference.
-    panel : {"methods", "rest threshold", "scipy", "MuJoCo"}
+    panel : {"methods", "rest threshold", "scipy", "integrator", "contact"}
         What the line is compared with: all kinds of methods, or the variants of one.
     knob : {"tolerance", "time step"}
     value : float
@@ -147,11 +148,16 @@ def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
     if "mujoco" not in multibody.available_engines() or problem.name == "peaks":
         return
     integrators = ("RK4",) if quick else ("implicitfast", "implicit", "RK4", "discrete")
-    variants: dict[str, dict[str, Any]] = {name: {"integrator": name} for name in integrators}
-    variants |= {f"contact in {_HELD:g} s": {"contact_time_constant": _HELD}}
-    variants |= {f"contact in {n} steps": {"steps": n} for n in ((20,) if quick else (4, 20))}
-    for name, settings in variants.items():
-        yield from _line(problem, name, "MuJoCo", "mujoco", "recess", problem.few_steps, settings)
+    for name in integrators:
+        yield from _line(
+            problem, name, "integrator", "mujoco", "recess", problem.few_steps, {"integrator": name}
+        )
+    held = {"contact_time_constant": _HELD}
+    yield from _line(problem, f"in {_HELD:g} s", "contact", "mujoco", "recess", problem.few_steps, held)
+    for count in (20.0,) if quick else (4.0, 20.0):
+        yield from _line(
+            problem, f"in {count:g} steps", "contact", "mujoco", "recess", problem.few_steps, {}, count
+        )
 
 
 def _line(
@@ -161,12 +167,11 @@ def _line(
     engine: str,
     support: str,
     steps: Sequence[float],
-    settings: dict[str, Any],
+    settings: Mapping[str, Any],
+    contact_steps: float = math.nan,
 ) -> Iterator[Method]:
     for step in steps:
-        given = dict(settings)
-        if "steps" in given:
-            given = {"contact_time_constant": given["steps"] * step}
+        contact = {"contact_time_constant": contact_steps * step} if math.isfinite(contact_steps) else {}
         yield Method(
             line=line,
             family=engine,
@@ -174,7 +179,7 @@ def _line(
             panel=panel,
             knob="time step",
             value=step,
-            solve=_by_engine(problem, Run(engine, support, step, **given)),
+            solve=_by_engine(problem, Run(engine, support, step, **settings, **contact)),
         )
 
 
