@@ -107,7 +107,7 @@ def scene_costs(
     *,
     rounds: int = ROUNDS,
     steps: int = STEPS,
-    tell: Callable[[int], None] | None = None,
+    tell: Callable[[], None] | None = None,
 ) -> pd.DataFrame:
     """Measure the cost of a step in every scene.
 
@@ -118,7 +118,7 @@ def scene_costs(
     rounds, steps : int
         Times that each scene is measured, and steps each time.
     tell : callable, optional
-        Told how many rounds are done.
+        Called after each round.
 
     Returns
     -------
@@ -145,7 +145,7 @@ def scene_costs(
             if not number:
                 counts.append(count)
         if tell is not None:
-            tell(number + 1)
+            tell()
     ratio = np.empty(len(scenes))
     for name in names:
         ours = np.array([variant.engine == name for variant in scenes])

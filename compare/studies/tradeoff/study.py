@@ -7,12 +7,16 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockwobble.models import Case
 
+from ...runs.progress import Clock, ProgressCallback
+from ...storage.manifest import Manifest, made_now, read_results
+from .conclusions import engine_factors
 from .methods import Answer, Method, methods_for
 from .problem import Problem, problems, sampling_distance
 from .scene_cost import scene_costs
@@ -20,13 +24,13 @@ from .scene_cost import scene_costs
 if TYPE_CHECKING:
     import pandas as pd
 
-STAGES = ("turn", "shaken", "peaks", "scenes")
+KIND = "tradeoff"
 # a run shorter than this is repeated, so that a tick of the clock does not show [s]
 _SHORT = 2e-3
 _REPEATS = 5
 ROUNDS = 3  # of a single case; an ensemble has as many as members
-
-Tell = Callable[[str, float], None]
+# rough computing time of a round, in any unit
+_COSTS = {"turn": 1.0, "shaken": 4.0, "peaks": 3.0, "scenes": 0.5}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -48,42 +52,82 @@ class Tradeoff:
     load : tuple of float
         Of the machine before and after: how many processes wanted to run, ours included, over a minute;
         NaN where the system does not tell.
+    made : Manifest
     """
 
     points: pd.DataFrame
     scenes: pd.DataFrame
     problems: pd.DataFrame
     load: tuple[float, float]
+    made: Manifest
 
 
-def measure_tradeoff(*, quick: bool = False, tell: Tell | None = None) -> Tradeoff:
+def measure_tradeoff(
+    *, quick: bool = False, progress: ProgressCallback | None = None, command: str = ""
+) -> Tradeoff:
     """Measure all methods on all problems.
 
     Parameters
     ----------
     quick : bool, optional
         Fewer points and fewer members.
-    tell : callable, optional
-        Called with a stage of `STAGES` and the fraction of it done.
+    progress : callable, optional
+        Called with a `Progress` at the start and the end of each round.
+    command : str, optional
+        That asked for it.
     """
     import pandas as pd
 
-    say = tell or (lambda stage, fraction: None)
     before = _load()
-    points, described = [], []
-    for problem in problems(quick=quick):
-        say(problem.name, 0.0)
-        points.append(_points(problem, methods_for(problem, quick=quick), say))
-        described.append(_described(problem))
-    rounds = 3 if quick else 9
-    scenes = scene_costs(
-        rounds=rounds, steps=500 if quick else 2000, tell=lambda done: say("scenes", done / rounds)
-    )
+    scene_rounds = 3 if quick else 9
+    asked = list(problems(quick=quick))
+    rounds = [(each.name, max(len(each.cases), ROUNDS)) for each in asked] + [("scenes", scene_rounds)]
+    labels = [(name, f"{name}, round {n + 1} of {count}") for name, count in rounds for n in range(count)]
+    clock = Clock(progress, [_COSTS[name] for name, _ in labels])
+    done = iter(range(len(labels)))
+
+    def told() -> None:
+        place = next(done)
+        clock("finished", labels[place][1], place)
+        if place + 1 < len(labels):
+            clock("started", labels[place + 1][1])
+
+    clock("started", labels[0][1])
+    points = [_points(each, methods_for(each, quick=quick), told) for each in asked]
+    scenes = scene_costs(rounds=scene_rounds, steps=500 if quick else 2000, tell=told)
+    table = pd.concat(points, ignore_index=True)
+    low, high = engine_factors(table)
+    load = (before, _load())
     return Tradeoff(
-        points=pd.concat(points, ignore_index=True),
+        points=table,
         scenes=scenes,
-        problems=pd.concat(described, ignore_index=True),
-        load=(before, _load()),
+        problems=pd.concat([_described(each) for each in asked], ignore_index=True),
+        load=load,
+        made=made_now(
+            KIND,
+            command=command,
+            headline={"engine over recess model, least": low, "engine over recess model, largest": high},
+            about={"load": list(load)},
+        ),
+    )
+
+
+def read_tradeoff(folder: str | Path) -> Tradeoff:
+    """Return a measurement that was stored.
+
+    Raises
+    ------
+    ValueError
+        If it is not there, or a file is missing or damaged.
+    """
+    results = read_results(folder, KIND)
+    before, after = results.manifest.about["load"]
+    return Tradeoff(
+        points=results.table("points"),
+        scenes=results.table("scenes"),
+        problems=results.table("problems"),
+        load=(before, after),
+        made=results.manifest,
     )
 
 
@@ -104,7 +148,7 @@ def _described(problem: Problem) -> pd.DataFrame:
     )
 
 
-def _points(problem: Problem, methods: list[Method], say: Tell) -> pd.DataFrame:
+def _points(problem: Problem, methods: list[Method], tell: Callable[[], None]) -> pd.DataFrame:
     import pandas as pd
 
     visits = list(problem.cases) if len(problem.cases) > 1 else list(problem.cases) * ROUNDS
@@ -119,7 +163,7 @@ def _points(problem: Problem, methods: list[Method], say: Tell) -> pd.DataFrame:
             seconds[number, place], answer = _timed(method, case)
             if len(answers[place]) < len(problem.cases):
                 answers[place].append(answer)
-            say(problem.name, _share_done(seconds, number, place))
+        tell()
     base = next(place for place, method in enumerate(methods) if method.base)
     ratios = seconds / seconds[:, [base]]
     low, middle, high = np.quantile(ratios, (0.25, 0.5, 0.75), axis=0)
@@ -141,14 +185,6 @@ def _points(problem: Problem, methods: list[Method], say: Tell) -> pd.DataFrame:
         }
         for place, method in enumerate(methods)
     )
-
-
-def _share_done(seconds: np.ndarray[tuple[int, int], np.dtype[np.float64]], number: int, place: int) -> float:
-    """How much of the work is done: the first round says what each method costs."""
-    rounds, methods = seconds.shape
-    if number == 0:
-        return (place + 1) / methods / rounds
-    return (number + float(seconds[0, : place + 1].sum() / seconds[0].sum())) / rounds
 
 
 def _timed(method: Method, case: Case) -> tuple[float, Answer]:

@@ -3,7 +3,7 @@
 from .extent import FULL, QUICK, Extent, Ring
 from .limits import limits_of
 from .parts import PARTS
-from .study import KIND, Validity, manifest_of, measure_validity, read_validity
+from .study import KIND, Validity, measure_all, read_validity, validity_of
 
 __all__ = [
     "FULL",
@@ -14,7 +14,7 @@ __all__ = [
     "Ring",
     "Validity",
     "limits_of",
-    "manifest_of",
-    "measure_validity",
+    "measure_all",
     "read_validity",
+    "validity_of",
 ]

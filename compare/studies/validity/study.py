@@ -14,7 +14,7 @@ from ...runs.progress import ProgressCallback
 from ...runs.scheduler import run_tasks
 from ...runs.task import Lost
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Manifest, Results, made_now
+from ...storage.manifest import Manifest, made_now, read_results
 from ...storage.provenance import engine_makers, reduced_makers
 from . import motions
 from .extent import Extent
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 KIND = "validity"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
+_ENDS = {"low": "median, low end", "high": "median, high end", "05": "5 %", "95": "95 %"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -37,26 +38,25 @@ class Validity:
     ----------
     tables : mapping
         Of all parts, by name.
-    extent : str
-        Name of the extent.
     records : str
         What the motions of the ensemble are.
+    made : Manifest
     """
 
     tables: Mapping[str, pd.DataFrame]
-    extent: str
     records: str
+    made: Manifest
 
 
-def measure_validity(
+def measure_all(
     extent: Extent,
     folder: str | Path,
     *,
     parts: Sequence[Part] = PARTS,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
-) -> Validity:
-    """Measure every part.
+) -> dict[str, pd.DataFrame]:
+    """Measure every part, and return its table by its name.
 
     Parameters
     ----------
@@ -90,16 +90,20 @@ def measure_validity(
             progress=progress,
             cache=cache,
         )
-        lost = [f"{name}: {result.why}" for (name, _), result in zip(tasks, found, strict=True) if isinstance(result, Lost)]
+        lost = [
+            f"{name}: {result.why}"
+            for (name, _), result in zip(tasks, found, strict=True)
+            if isinstance(result, Lost)
+        ]
         if lost:
             raise RuntimeError(f"processes ended in {len(lost)} tasks, the first in {lost[0]}")
-    kept = [(name, table) for (name, _), table in zip(tasks, found, strict=True) if not isinstance(table, Lost)]
-    tables = {
+    kept = [
+        (name, table) for (name, _), table in zip(tasks, found, strict=True) if not isinstance(table, Lost)
+    ]
+    return {
         part.name: pd.concat([table for name, table in kept if name == part.name], ignore_index=True)
         for part in parts
     }
-    records = motions.source_of(motions.record_names(extent.members))
-    return Validity(tables=tables, extent=extent.name, records=records)
 
 
 def measure_task(task: Task) -> pd.DataFrame:
@@ -110,23 +114,35 @@ def measure_task(task: Task) -> pd.DataFrame:
     return pd.DataFrame(part_named(name).measure(**inputs))
 
 
-def manifest_of(found: Validity, command: str) -> Manifest:
-    """Return the manifest of what has just been measured here."""
-    numbers = limits_of(found.tables)["records"]
+def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent, command: str = "") -> Validity:
+    """Return what has just been measured here, with what made it."""
+    numbers = limits_of(tables)["records"]
     headline = {
-        f"peak in {where}, ratio to the model: {what}": numbers[f"{name}_{end}"]
-        for name, where in (("recess", "an ideal recess"), ("ring", "a ring"), ("flat", "flat ground"))
-        for end, what in (("low", "median, low"), ("high", "median, high"), ("05", "5 %"), ("95", "95 %"))
+        f"peak {where} over that of the model, {what}": numbers[f"{name}_{end}"]
+        for name, where in (
+            ("recess", "in an ideal recess"),
+            ("ring", "in a ring"),
+            ("flat", "on flat ground"),
+        )
+        for end, what in _ENDS.items()
     }
-    about = {"extent": found.extent, "records": found.records}
-    return made_now(KIND, command=command, headline=headline, about=about)
+    records = motions.source_of(motions.record_names(extent.members))
+    about = {"extent": extent.name, "records": records}
+    made = made_now(KIND, command=command, headline=headline, about=about)
+    return Validity(tables=tables, records=records, made=made)
 
 
-def read_validity(results: Results) -> Validity:
-    """Return a measurement that was stored."""
-    about = results.manifest.about
+def read_validity(folder: str | Path) -> Validity:
+    """Return a measurement that was stored; what is installed here has no part in it.
+
+    Raises
+    ------
+    ValueError
+        If it is not there, or a file is missing or damaged.
+    """
+    results = read_results(folder, KIND)
     tables = {part.name: results.table(part.name) for part in PARTS}
-    return Validity(tables=tables, extent=str(about["extent"]), records=str(about["records"]))
+    return Validity(tables=tables, records=results.manifest.about["records"], made=results.manifest)
 
 
 def task_name(task: Task) -> str:

@@ -23,7 +23,7 @@ _CONTRADICTS = 1e-3
 
 
 def free_response(tables: Tables) -> Numbers:
-    """Return how far recess and flat ground differ in one pass, and at how many releases an engine decides."""
+    """Return how far recess and flat ground differ in a pass, and at how many releases an engine decides."""
     table = tables["free_response"]
     tan_alpha, turn, flat = (column(table, name) for name in ("tan_alpha", "turn", "flat_turn"))
     turns = np.abs(flat / turn - 1.0)
@@ -139,7 +139,7 @@ def soft_contact(tables: Tables) -> Numbers:
 
 
 def damping(tables: Tables) -> pd.DataFrame:
-    """Return what soft contact does by its damping ratio: damping, points, failed, peak, loss (the largest)."""
+    """Return the least and largest ratio of the peak, and the largest loss, by the damping of contact."""
     import pandas as pd
 
     rows = []

@@ -19,8 +19,8 @@ SLIGHT = 0.1
 def friction(tables: Tables) -> Numbers:
     """Return the friction needed over tan(alpha), and where the engine slips with less than needed.
 
-    up_to, nine_in_ten, beyond_from: the slenderness up to which nine in ten runs that rock without overturning
-    need a `MODERATE` friction, how much, and the next slenderness.
+    up_to, nine_in_ten, beyond_from: the slenderness up to which nine in ten runs that rock without
+    overturning need a `MODERATE` friction, how much, and the next slenderness.
     """
     free, slip = tables["free_response"], tables["slip"]
     moving = tables["peaks"][tables["peaks"]["friction"].notna()]
