@@ -23,7 +23,9 @@ from .runs.choice import (
     reserved_engines,
     with_settings,
 )
-from .runs.execution import Job, Progress, simulate, simulate_all
+from .runs.execution import Job, simulate, simulate_all
+from .runs.progress import Progress
+from .runs.scheduler import run_tasks
 from .storage.files import replace_files, require_writable
 from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
 from .studies.ensemble.study import Ensemble, ensemble, read_ensemble
@@ -72,6 +74,7 @@ __all__ = [
     "require_runnable",
     "require_writable",
     "reserved_engines",
+    "run_tasks",
     "simulate",
     "simulate_all",
     "sweep",

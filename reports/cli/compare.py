@@ -104,7 +104,7 @@ def compare(
             _say_what_is_left_out(support or [])
         from ..console.progress import shown_progress
 
-        with user_input(), shown_progress(many=len(cases) > 1) as tell:
+        with user_input(), shown_progress() as tell:
             comparison = run_comparison(
                 cases,
                 runs=runs,

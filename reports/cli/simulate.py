@@ -167,7 +167,7 @@ def _largest_friction(trace: Any) -> str:
 
 def _contents(job: Job, trace: Any) -> dict[str, bytes]:
     from rockwobble.compare import describe_case, describe_run
-    from rockwobble.compare.runs.run_store import job_fingerprint
+    from rockwobble.compare.runs.execution import job_fingerprint
     from rockwobble.compare.storage.parquet_file import pack
     from rockwobble.compare.storage.provenance import about_results
 
