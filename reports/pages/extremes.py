@@ -13,7 +13,7 @@ from .page import Page
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockwobble.compare.storage.origin import Origin
+    from rockwobble.compare.studies.extremes import Extremes
 
 # verdict: the word in a table
 WORDS = {
@@ -33,9 +33,9 @@ _REFERENCES = {
 }
 
 
-def extremes_page(table: pd.DataFrame, origin: Origin) -> Page:
-    """Return the report on a scan, see `measure_extremes`."""
-    runs = table[table["verdict"] != "n/a"]
+def extremes_page(found: Extremes) -> Page:
+    """Return the report."""
+    runs = found.table[found.table["verdict"] != "n/a"]
     counts = {name: int((runs["verdict"] == name).sum()) for name in WORDS}
     values: dict[str, object] = {
         "fine": FINE,
@@ -56,9 +56,14 @@ def extremes_page(table: pd.DataFrame, origin: Origin) -> Page:
             }
             for row in runs.to_dict("records")
         ],
-        "origin": origin,
+        "about": found.made,
     }
     return Page(name="extremes", template="extremes", values=values)
+
+
+def extremes_pages(found: Extremes) -> dict[str, bytes]:
+    """Return name and content of each file of the report."""
+    return extremes_page(found).files()
 
 
 def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:

@@ -19,16 +19,16 @@ KINDS: Mapping[str, tuple[str, str]] = {
         "rockwobble.reports.console.ensemble_output:ensemble_pages",
     ),
     "validity": (
-        "rockwobble.compare.studies.validity.store:read_validity",
-        "rockwobble.reports.pages.validity.output:validity_pages",
+        "rockwobble.compare.studies.validity.study:read_validity",
+        "rockwobble.reports.pages.validity:validity_pages",
     ),
     "tradeoff": (
-        "rockwobble.compare.studies.tradeoff.store:read_tradeoff",
-        "rockwobble.reports.pages.tradeoff.page:tradeoff_pages",
+        "rockwobble.compare.studies.tradeoff.study:read_tradeoff",
+        "rockwobble.reports.pages.tradeoff:tradeoff_pages",
     ),
     "extremes": (
-        "rockwobble.compare.studies.extremes.store:read_extremes",
-        "rockwobble.reports.pages.extremes.page:extremes_pages",
+        "rockwobble.compare.studies.extremes.study:read_extremes",
+        "rockwobble.reports.pages.extremes:extremes_pages",
     ),
 }
 

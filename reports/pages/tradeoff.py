@@ -20,13 +20,12 @@ from .table import NONE, number
 if TYPE_CHECKING:
     import pandas as pd
 
-    from rockwobble.compare.storage.origin import Origin
     from rockwobble.compare.studies.tradeoff import Tradeoff
 
 _NOT_ENGINES = ("reduced", "scipy")
 
 
-def tradeoff_page(found: Tradeoff, origin: Origin) -> Page:
+def tradeoff_page(found: Tradeoff) -> Page:
     """Return the report."""
     points, cheapest = found.points, costs(found.points)
     scipy = cheapest.loc[cheapest["family"] == "scipy", "ratio"]
@@ -45,11 +44,16 @@ def tradeoff_page(found: Tradeoff, origin: Origin) -> Page:
         "failed": _rows(points[points["error"].isna()]),
         "rounds": ROUNDS,
         "load": found.load,
-        "origin": origin,
+        "about": found.made,
     }
     pictures = tradeoff_pictures(found)
     values["drawn"] = [picture.name for picture in pictures]
     return Page(name="tradeoff", template="tradeoff", values=values, pictures=pictures)
+
+
+def tradeoff_pages(found: Tradeoff) -> dict[str, bytes]:
+    """Return name and content of each file of the report."""
+    return tradeoff_page(found).files()
 
 
 def _rows(table: pd.DataFrame) -> list[dict[str, object]]:
