@@ -5,17 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from rockwobble.compare.studies.spectrum.result import Array, OverturningSpectrum, safe_islands
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
+from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
 
 from .heat import Gap, Heat, Shades
 from .palette import Style, model_style, run_styles
 from .picture import Axis, Line, Panel, Picture
 
-TITLES = {
-    SPATIAL: "3D, both components",
-    PLANAR_X: "planar, east-west alone",
-    PLANAR_Y: "planar, north-south alone",
-}
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-south"}
 _OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
 _HEIGHT = 3.4

@@ -15,8 +15,16 @@ KINDS: Mapping[str, tuple[str, str]] = {
         "rockwobble.reports.pages.comparison.files:comparison_pages",
     ),
     "ensemble": (
-        "rockwobble.compare.studies.ensemble.study:read_ensemble",
-        "rockwobble.reports.console.ensemble_output:ensemble_pages",
+        "rockwobble.reports.pages.ensemble:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
+    ),
+    "overturning spectrum": (
+        "rockwobble.reports.pages.spectrum:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
+    ),
+    "advice": (
+        "rockwobble.reports.pages.advice:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
     ),
     "validity": (
         "rockwobble.compare.studies.validity.study:read_validity",
