@@ -1,96 +1,100 @@
-"""The main result as a picture for a document: tilt, and how the tilts part."""
+"""The main result of a comparison as a picture: tilt, and how the tilts diverge."""
 
 from __future__ import annotations
 
-import io
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockwobble.compare import AGREEMENT, make_pair, own_model
 
-from .case_view import CaseView, case_views
-from .charts.tilt import SMALLEST, WINDOW
-from .palette import DASHES, Style
-from .thinning import envelope, kept_samples
+from .palette import Style, label_styles
+from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
+from .svg import figure
+from .thinning import envelope
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-
-    from rockwobble.compare import Comparison
-
-# a picture of some 800 pixels shows no more
-_POINTS = 1200
-
-
-def comparison_figure(comparison: Comparison) -> bytes:
-    """Return the picture of the first case of a comparison as SVG, the same bytes for the same numbers."""
-    import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    view = case_views(comparison)[0]
-    supports = list(dict.fromkeys(trace.support for trace in view.trajectories.values()))
-    with mpl.rc_context({"svg.hashsalt": "rockwobble", "font.size": 10, "path.simplify_threshold": 0.3}):
-        figure = Figure(figsize=(8.6, 2.6 + 2.3 * len(supports)), layout="constrained")
-        panels = figure.subplots(len(supports) + 1, 1, sharex=True, squeeze=False)[:, 0]
-        for axes, support in zip(panels, supports, strict=False):
-            _tilts(axes, view, support)
-        _differences(panels[-1], view)
-        figure.suptitle(_title(view), fontsize=11, x=0.01, ha="left")
-        buffer = io.BytesIO()
-        figure.savefig(buffer, format="svg", metadata={"Date": None, "Creator": "rockwobble"})
-    return buffer.getvalue()
+    from rockwobble.compare import Comparison
+    from rockwobble.models import Case, Trace
+
+# smaller differences are drawn here: a logarithm has no zero [alpha]
+SMALLEST = 1e-7
+# the difference is drawn as its largest value within this time, about one swing [s]
+WINDOW = 1.0
+_FALLS = 1.5  # [alpha] where tilts are cut if one goes farther
 
 
-def _title(view: CaseView) -> str:
-    cylinder = view.case.cylinder
-    return f"{view.case.name}, R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}"
+def draw(comparison: Comparison, case: str) -> Figure:
+    """Return a matplotlib figure of one case."""
+    return figure(comparison_picture(comparison, case))
 
 
-def _tilts(axes: Axes, view: CaseView, support: str) -> None:
-    """Draw the runs of one support over each other, with the model of that support."""
-    for label, trace, style in view.lines():
-        model = label.removesuffix(" model") if label not in view.trajectories else ""
-        if model == own_model(support) or (not model and trace.support == support):
-            width = 0.8 if model else 1.6
-            _line(axes, trace.time, trace.tilt / view.case.cylinder.alpha, label, style, width)
-    axes.set_ylabel("tilt / α [-]")
-    axes.set_ylim(bottom=0.0)
-    _finish(axes)
-
-
-def _differences(axes: Axes, view: CaseView) -> None:
-    """Draw how each run parts from the model of its support."""
-    axes.axhline(AGREEMENT, color="#222222", linewidth=0.8, linestyle=(0, (5, 2)))
-    axes.annotate("1 % of α", (0.005, AGREEMENT), xycoords=("axes fraction", "data"), ha="left", va="bottom")
-    for _, row in view.rows.iterrows():
-        if row.run not in view.trajectories or row.reference != own_model(row.support):
-            continue
-        pair = make_pair(view.case.cylinder, view.responses[row.reference], view.trajectories[row.run])
-        style = view.styles[row.run]
-        difference = np.maximum(envelope(pair.time, np.abs(pair.tilt_difference), WINDOW), SMALLEST)
-        _line(axes, pair.time, difference, f"{row.run} − {row.reference}", style, 1.3)
-        if row.diverged:
-            end = view.start(row.reference) + row.agreement_time
-            axes.plot(
-                end, AGREEMENT, "D", markersize=7, color=style.colour, markeredgecolor="black", zorder=5
-            )
-    axes.set_yscale("log")
-    axes.set_ylim(SMALLEST, 3.0)
-    axes.set_ylabel("|tilt difference| / α [-]")
-    axes.set_xlabel("time [s]")
-    _finish(axes)
-
-
-def _finish(axes: Axes) -> None:
-    # above the axes, where it hides nothing
-    axes.legend(loc="lower left", bbox_to_anchor=(0.0, 0.98), ncols=4, fontsize=8, frameon=False)
-    axes.grid(color="#dddddd", linewidth=0.6)
-    axes.margins(x=0.0)
-
-
-def _line(axes: Axes, x: Any, y: Any, label: str, style: Style, width: float) -> None:
-    keep = kept_samples(y, points=_POINTS)
-    axes.plot(
-        x[keep], y[keep], label=label, color=style.colour, linestyle=DASHES[style.dash], linewidth=width
+def comparison_picture(comparison: Comparison, name: str) -> Picture:
+    """Return the tilts of one case by support, each with the model of the support, and their differences."""
+    case = comparison.cases[name]
+    traces = {label: trace for (of, label), trace in comparison.traces.items() if of == name}
+    styles = label_styles(list(traces))
+    cylinder = case.cylinder
+    return Picture(
+        name="figure",
+        title=f"{name}, R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}",
+        caption="Tilt of the runs of each support and its reduced model; below, the largest difference "
+        "within the last second from what each run is held against. Diamonds: 1 % of α is first exceeded.",
+        panels=[*_tilts(case, traces, styles), _differences(comparison, case, traces, styles)],
+        link_x=True,
     )
+
+
+def _tilts(case: Case, traces: Mapping[str, Trace], styles: Mapping[str, Style]) -> list[Panel]:
+    runs = {label: trace for label, trace in traces.items() if trace.run.engine is not None}
+    # of a comparison of models alone all stand in one panel
+    supports = dict.fromkeys(trace.run.support for trace in (runs or traces).values())
+    panels = []
+    for support in supports:
+        shown = [label for label, trace in runs.items() if trace.run.support == support] if runs else []
+        own = {str(own_model(runs[label].run)) for label in shown}
+        shown += [label for label in traces if label not in runs and (not runs or label in own)]
+        lines = [
+            Line(
+                x=traces[label].time,
+                y=traces[label].tilt / case.cylinder.alpha,
+                name=label,
+                style=styles[label],
+                width=1.6 if label in runs else 0.9,
+            )
+            for label in shown
+        ]
+        title = f"support {support}" if runs else ""
+        # a fall would leave nothing to be seen of the rest
+        falls = max((float(np.nanmax(line.y, initial=0.0)) for line in lines), default=0.0) > _FALLS
+        y = replace(TILT, high=_FALLS if falls else None)
+        panels.append(Panel(x=TIME, y=y, layers=lines, title=title))
+        if not runs:
+            break
+    return panels
+
+
+def _differences(
+    comparison: Comparison, case: Case, traces: Mapping[str, Trace], styles: Mapping[str, Style]
+) -> Panel:
+    layers: list[Layer] = [Rule(at=AGREEMENT, axis="y", text="1 % of α")]
+    rows = comparison.summary[comparison.summary["case"] == case.name]
+    for row in rows.to_dict("records"):
+        run, reference = traces.get(row["run"]), traces.get(row["reference"])
+        own = reference is not None and run is not None and row["reference"] == str(own_model(run.run))
+        if run is None or reference is None or not (own or len(rows[rows["run"] == row["run"]]) == 1):
+            continue
+        pair = make_pair(case.cylinder, reference, run, until=case.length)
+        style = styles[row["run"]]
+        difference = np.maximum(envelope(pair.time, np.abs(pair.tilt_difference), WINDOW), SMALLEST)
+        layers.append(Line(x=pair.time, y=difference, name=row["run"], style=style))
+        if row["diverged"]:
+            end = np.array([pair.start + row["agreement_time"]])
+            mark = Style(colour=style.colour, dash="none", symbol="diamond")
+            layers.append(Line(x=end, y=np.array([AGREEMENT]), style=mark, size=7.0))
+    y = Axis(label="|tilt difference| / α", unit="-", log=True, low=SMALLEST, high=3.0)
+    return Panel(x=TIME, y=y, layers=layers, title="difference")

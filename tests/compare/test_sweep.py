@@ -9,7 +9,6 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import CaseSweep, Grid, SweepIncompleteError, open_sweep_store, sweep
-from rockwobble.compare import sweep as sweep_function
 from rockwobble.compare.runs.executor import InThisProcess, Workers, run_chunk
 from rockwobble.compare.runs.process_pool import WorkerDiedError
 from rockwobble.compare.storage.parquet_file import read_about
@@ -36,7 +35,7 @@ def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
     cells = table.set_index(["model", "tan_alpha"])["peak_tilt"]
     for model in ("recess", "planar"):
         for tan_alpha in (0.1, 0.2):
-            peaks = reduced.peak_tilts(SIZES, tan_alpha, SHORT, SCALES, model=model)
+            peaks = reduced.peak_tilts(SIZES, tan_alpha, SHORT, SCALES, **reduced.MODELS[model])
             assert np.array_equal(cells.loc[(model, tan_alpha)].to_numpy(), peaks.ravel())
     one = table[(table.model == "recess") & (table.semidiagonal == 2.0) & (table.tan_alpha == 0.2)]
     assert one["scale"].tolist() == SCALES
@@ -157,10 +156,10 @@ def test_cases_with_engines_and_models(tmp_path):
         for tilt in (0.3, 0.5)
     ]
     guided = Run("mujoco", "recess", 1e-3)
-    table = sweep(CaseSweep(cases, ["recess", guided]), out=tmp_path, workers=1)
+    table = sweep(CaseSweep(cases, [Run(None, "recess"), guided]), out=tmp_path, workers=1)
     assert table[["case", "run"]].to_numpy().tolist() == [
-        ["0.3", "recess"],
-        ["0.5", "recess"],
+        ["0.3", "recess model"],
+        ["0.5", "recess model"],
         ["0.3", "mujoco recess"],
         ["0.5", "mujoco recess"],
     ]
@@ -196,13 +195,12 @@ def test_a_chunk_that_cannot_be_read_is_named(tmp_path):
         (lambda: grid(scales=[1.0, 1.0]), "scales must differ, got 1.0 twice"),
         (lambda: grid(tan_alphas=[math.nan]), "tan_alphas must be a sequence of finite numbers"),
         (lambda: grid(motions=[SHORT, SHORT]), "motions must differ, got 'short' twice"),
-        (lambda: grid(models=["flat"]), "models must be of recess, flat, planar, got 'flat'"),
+        (lambda: grid(models=["glued"]), "models must be of recess, flat, planar, got 'glued'"),
         (lambda: grid(rtol=1.0), "rtol must be from"),
         (lambda: grid(speed=1.0), "the options of a grid are"),
-        (lambda: CaseSweep([], ["recess"]), "at least one case"),
-        (lambda: CaseSweep([Case(PIER, duration=1.0, name="a")], ["flat"]), "got 'flat'"),
-        (lambda: CaseSweep([Case(PIER, duration=1.0, name="a")] * 2, ["recess"]), "got 'a' twice"),
-        (lambda: sweep_function(grid(), chunk_size=0), "chunk_size must be at least 1"),
+        (lambda: CaseSweep([], [Run(None, "recess")]), "at least one case"),
+        (lambda: CaseSweep([Case(PIER, duration=1.0, name="a")] * 2, [Run(None, "recess")]), "got 'a' twice"),
+        (lambda: sweep(grid(), chunk_size=0), "chunk_size must be at least 1"),
         (lambda: open_sweep_store("/"), "must be the folder of a sweep"),
     ],
 )

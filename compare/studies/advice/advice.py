@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case
+from rockwobble.models import Case, Run, Trace
 
 from ...comparison.prediction import Prediction
 from .demands import Demands
@@ -39,9 +39,9 @@ class Advice:
         ground.
     support : str
         What holds the cylinder in place.
-    model, other : str
+    model, other : Run
         Reduced model of that support, and the other one: recess and flat.
-    response, other_response : Response
+    response, other_response : Trace
         Their runs.
     uplift_factor : float
         On the ground motion, at which a cylinder at rest uplifts; inf without a ground motion.
@@ -66,10 +66,10 @@ class Advice:
 
     case: Case
     support: str
-    model: str
-    other: str
-    response: Any
-    other_response: Any
+    model: Run
+    other: Run
+    response: Trace
+    other_response: Trace
     uplift_factor: float
     peak_time: float
     demands: Demands
@@ -89,7 +89,7 @@ class Advice:
     @property
     def in_one_plane(self) -> bool:
         """Whether the motion goes straight through upright, as none out of its plane does."""
-        return self.moves and bool(self.response.problem.is_planar())
+        return self.moves and not np.any(self.response.rolling_rate)
 
     @property
     def overturned(self) -> bool:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-if TYPE_CHECKING:
-    from rockwobble.reduced import Response
+from rockwobble.models import Trace
 
 Array = NDArray[np.float64]
 
@@ -64,12 +63,12 @@ class Demands:
     lost_time: float
 
 
-def demands_of(response: Response, *, until: float = math.inf) -> Demands:
+def demands_of(response: Trace, *, until: float = math.inf) -> Demands:
     """Return the demands of a response: extremes of the continuous solution, the usual ones of its samples.
 
     Parameters
     ----------
-    response : Response
+    response : Trace
     until : float, optional
         End of the time that counts [s]; the extremes are then those of the samples, too.
     """
@@ -81,17 +80,17 @@ def demands_of(response: Response, *, until: float = math.inf) -> Demands:
         found = _of_solution(response)
     else:
         found = _of_samples(
-            time, response.contact_force[kept, 2], friction, couple, moving, response.friction
+            time, response.contact_force[kept, 2], friction, couple, moving, response.case.friction
         )
     from_rest = response.uplift_time > 0.0
     return Demands(
         moving_time=float(lengths[moving].sum()),
-        friction=response.friction,
+        friction=response.case.friction,
         friction_usual=_usual(friction[moving]),
-        slides=from_rest and response.friction < response.cylinder.tan_alpha,
-        couple=found.largest_couple * response.gravity,
-        couple_usual=_usual(couple[moving]) * response.gravity,
-        couple_in_radii=found.largest_couple / response.cylinder.base_radius,
+        slides=from_rest and response.case.friction < response.case.cylinder.tan_alpha,
+        couple=found.largest_couple * response.case.gravity,
+        couple_usual=_usual(couple[moving]) * response.case.gravity,
+        couple_in_radii=found.largest_couple / response.case.cylinder.base_radius,
         friction_needed=found.friction_needed,
         slip_from=found.slip_from,
         slip_time=found.slip_time,
@@ -115,17 +114,18 @@ class _Extremes(NamedTuple):
     lost_time: float
 
 
-def _of_solution(response: Response) -> _Extremes:
+def _of_solution(response: Trace) -> _Extremes:
     review = response.assumptions
-    breaches = {breach.assumption: breach for breach in review.breaches}
-    lost, slips = breaches.get("contact"), breaches.get("friction")
+    assert review is not None  # a reduced model knows
+    breaches = {breach.code: breach for breach in review.breaches}
+    lost, slips = breaches.get("tension"), breaches.get("friction_needed")
     return _Extremes(
         review.largest_friction_needed,
-        review.largest_couple,
+        review.largest_restraining_moment,
         review.least_normal_force,
         review.largest_normal_force,
-        *((slips.first_time, slips.duration) if slips else (math.nan, 0.0)),
-        *((lost.first_time, lost.duration) if lost else (math.nan, 0.0)),
+        *((slips.time, slips.duration) if slips else (math.nan, 0.0)),
+        *((lost.time, lost.duration) if lost else (math.nan, 0.0)),
     )
 
 

@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.models import Case, GroundMotion, Run
+from rockwobble.models import Case, GroundMotion, Run, Trace
 
 from ...comparison.prediction import Prediction
-from ...runs.choice import own_model, require_runnable
-from ...runs.execution import SAMPLE_STEP, Job, Progress, ProgressCallback, simulate
+from ...runs.choice import require_runnable
+from ...runs.execution import SAMPLE_STEP, Progress, ProgressCallback, simulate_run
 from ...storage.provenance import package_versions
 from ..spectrum.lowest_overturning import uplift_factor
 from .advice import Advice
@@ -29,7 +29,7 @@ from .verification import Verification, predicted, verified
 SUPPORTS = ("recess", "flat", "ring")
 FEWEST, MOST = 20, 10_000  # members: one run stands for 5 % of them, and ten thousand take a minute
 _SAMPLES = 200_000  # of a run until its fall: closer than a near pass lasts, and computed in a second
-_OTHER = {"recess": "flat", "flat": "recess"}
+_OTHER = {"recess": Run(None, "flat"), "flat": Run(None, "recess")}
 
 
 def advise(
@@ -69,7 +69,7 @@ def advise(
     Examples
     --------
     >>> from rockwobble.models import Cylinder, el_centro_1940
-    >>> pier = Case("pier", Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
+    >>> pier = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
     >>> found = advise(pier, count=20)
     >>> found.trust.kind, found.planar.kind
     ('statistics', 'unconservative')
@@ -81,14 +81,15 @@ def advise(
         raise ValueError(f"support must be one of {', '.join(SUPPORTS)}, got {support!r}")
     if not FEWEST <= count <= MOST:
         raise ValueError(f"count must be from {FEWEST} to {MOST}, got {count!r}")
-    model = own_model(support)
+    model = Run(None, "flat" if support == "flat" else "recess")
+    other = _OTHER[model.support]
     stages = _Stages(case.name, progress, total=3 if run is None else 4)
     with stages.one("recess and flat models (compiled on their first run)"):
-        response = simulate(Job(case=case, method=model, label=model))
+        response = simulate_run(case, model)
         if response.time[-1] > case.length:
             case = _to_the_fall(case, float(response.time[-1]))
-            response = simulate(Job(case=case, method=model, label=model))
-        other_response = simulate(Job(case=case, method=_OTHER[model], label=_OTHER[model]))
+            response = simulate_run(case, model)
+        other_response = simulate_run(case, other)
         demands = _demands(case, response, model)
     moves = math.isfinite(response.uplift_time) and response.outcome != "failed"
     spread = None
@@ -98,14 +99,14 @@ def advise(
                 case,
                 response,
                 other_response,
-                models=(model, _OTHER[model]),
+                models=(model, other),
                 count=count,
                 perturbation=perturbation,
                 seed=seed,
             )
     with stages.one("other scales of the ground motion, and planar analysis"):
-        scan = scan_scales(case, model) if response.outcome != "failed" else None
-    prediction = predicted(case, response, model, run)
+        scan = scan_scales(case, model.support) if response.outcome != "failed" else None
+    prediction = predicted(case, response, run)
     verification = None
     if run is not None:
         with stages.one(f"{run.engine} {run.support}"):
@@ -116,7 +117,7 @@ def advise(
         case=case,
         support=support,
         model=model,
-        other=_OTHER[model],
+        other=other,
         response=response,
         other_response=other_response,
         uplift_factor=_uplift_factor(case),
@@ -171,7 +172,7 @@ def _uplift_factor(case: Case) -> float:
     return uplift_factor(case.motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
 
 
-def _demands(case: Case, response: Any, model: str) -> Demands:
+def _demands(case: Case, response: Trace, model: Run) -> Demands:
     """Demands until the run last passes alpha, if it overturns: what a falling cylinder asks is none."""
     if response.outcome != "overturned":
         return demands_of(response)
@@ -190,19 +191,19 @@ def _demands(case: Case, response: Any, model: str) -> Demands:
             friction=case.friction,
         ),
         sample_step=min(SAMPLE_STEP, fall / _SAMPLES),
-        **reduced.MODELS[model],
+        support=model.support,
     )
     return demands_of(fine, until=fall)
 
 
-def _peak_time(response: Any) -> float:
+def _peak_time(response: Trace) -> float:
     """Time of the largest tilt [s]; to a sample."""
     return float(response.time[int(response.tilt.argmax())])
 
 
 def _trust(
     case: Case,
-    response: Any,
+    response: Trace,
     prediction: Prediction,
     verification: Verification | None,
     spread: Spread | None,

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Case, Trace
+from rockwobble.models import Case, Run, Trace
 
 from ...metrics.agreement import agreement_time
 from ...metrics.distributions import Contrast, contrast
@@ -35,8 +35,8 @@ class Spread:
 
     Attributes
     ----------
-    model, other : str
-        Names of the two reduced models.
+    model, other : Run
+        The two reduced models.
     count, perturbation, seed
         As in `perturbed_starts`.
     peaks, other_peaks : ndarray, shape (count,)
@@ -52,8 +52,8 @@ class Spread:
         Time at which both models, unperturbed, differ by 1 % of alpha [s]; the end where they never do.
     """
 
-    model: str
-    other: str
+    model: Run
+    other: Run
     count: int
     perturbation: float
     seed: int
@@ -90,7 +90,7 @@ def spread_of_starts(
     response: Trace,
     other_response: Trace,
     *,
-    models: tuple[str, str],
+    models: tuple[Run, Run],
     count: int = COUNT,
     perturbation: float = PERTURBATION,
     seed: int = SEED,
@@ -102,8 +102,7 @@ def spread_of_starts(
     case : Case
     response, other_response : Trace
         Unperturbed runs of the two models.
-    models : tuple of str
-        Their names.
+    models : tuple of Run
     count, perturbation, seed
         As in `perturbed_starts`.
     """
@@ -137,15 +136,15 @@ def spread_of_starts(
     )
 
 
-def _run(case: Case, model: str) -> reduced.Response:
+def _run(case: Case, model: Run) -> Trace:
     return reduced.simulate(
         Case(case.cylinder, case.motion, initial=case.initial, duration=case.duration, gravity=case.gravity),
+        support=model.support,
         sample_step=_SAMPLE_STEP,
-        **reduced.MODELS[model],
     )
 
 
-def _peaks(runs: Sequence[reduced.Response], alpha: float) -> Array:
+def _peaks(runs: Sequence[Trace], alpha: float) -> Array:
     return np.array([run.peak_tilt / alpha for run in runs])
 
 

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case, Run
+from rockwobble.models import Case, Diagnostic, Run, Trace
 
 from ...comparison.driver import compare
-from ...comparison.prediction import Prediction, estimated_error, predict_horizon, time_scale
+from ...comparison.prediction import Prediction, estimated_error, predict, time_scale
 from ...metrics.agreement import agreement_time
-from ...runs.execution import Job, simulate
+from ...runs.execution import simulate_run
 from ...traces.pair import make_pair
 
 # [s] the default step of the engines at 6 m and 9.81 m/s^2, for a prediction without an engine
@@ -31,9 +30,11 @@ class Verification:
     version : str
     time_step : float
         [s]
-    trajectory : Trajectory or None
+    trajectory : Trace or None
         None where the engine's process died.
-    outcome, message : str
+    outcome : str
+    why : tuple of Diagnostic
+        What ended or limits it.
     peak_tilt : float
         [alpha]; NaN where failed.
     agreement : float
@@ -49,9 +50,9 @@ class Verification:
     label: str
     version: str
     time_step: float
-    trajectory: Any
+    trajectory: Trace | None
     outcome: str
-    message: str
+    why: tuple[Diagnostic, ...]
     peak_tilt: float
     agreement: float
     agreed_until: float
@@ -59,33 +60,32 @@ class Verification:
     divergence: str
 
 
-def predicted(case: Case, response: Any, model: str, run: Run | None) -> Prediction:
+def predicted(case: Case, response: Trace, run: Run | None) -> Prediction:
     """When an engine at its default step would have to part, from the reduced models alone."""
     if response.outcome == "failed" or not math.isfinite(response.uplift_time):
         return Prediction(length=case.length, reason="")
     step = _STEP * time_scale(case)
     if run is not None and isinstance(run.time_step, float):
         step = run.time_step
-    return predict_horizon(
+    return predict(
         case,
         reference=response,
         own=response,
-        own_model=model,
         # the tilt that the fastest fall crosses in one step; the penetration counts for less than it
         contact_resolution=float(np.abs(response.tilt_rate).max()) * step,
         error=estimated_error(case, "mujoco" if run is None else run.engine, step),
-        simulate=lambda each, name: simulate(Job(case=each, method=name, label=name)),
+        simulate=simulate_run,
     )
 
 
-def verified(case: Case, run: Run, model: str) -> tuple[Verification, Prediction]:
+def verified(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction]:
     """Run the engine; what it resolved makes the prediction sharper."""
     found = compare(case, runs=[run], reference=model)
-    row = found.summary[found.summary["reference"] == model].iloc[0]
-    trajectory = next(iter(found.trajectories.values()), None)
+    row = found.summary[found.summary["reference"] == str(model)].iloc[0]
+    trajectory = found.traces.get((case.name, str(run)))
     agreed_until = 0.0
     if trajectory is not None:
-        pair = make_pair(case.cylinder, found.responses[case.name, model], trajectory)
+        pair = make_pair(case.cylinder, found.traces[case.name, str(model)], trajectory)
         agreed_until = agreement_time(pair, broken=row.outcome == "failed").end
     verification = Verification(
         label=f"{run.engine} {run.support}",
@@ -93,7 +93,7 @@ def verified(case: Case, run: Run, model: str) -> tuple[Verification, Prediction
         time_step=float(row.time_step),
         trajectory=trajectory,
         outcome=row.outcome,
-        message=row.message,
+        why=trajectory.facts if trajectory is not None else (Diagnostic(code="died"),),
         peak_tilt=float(row.peak_tilt),
         agreement=float(row.agreement_time),
         agreed_until=agreed_until,

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.models import Case, Run, Suite
+from rockwobble.models import Case, Run, Suite, Trace
 
 from ...runs.choice import default_runs, own_model, require_runnable, run_labels
-from ...runs.execution import Crash, Job, ProgressCallback, simulate_all
+from ...runs.execution import Job, ProgressCallback, simulate_all
 from ...runs.run_store import job_fingerprint, open_run_store
 from ...storage.fingerprint import fingerprint
 from ...storage.origin import read_table
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
 KIND = "rockwobble ensemble"
 TABLE = "members.parquet"
-MODELS = ("recess", "flat")
+MODELS = (Run(None, "recess"), Run(None, "flat"))
 # without which the members cannot be held against each other or described
 _NEEDED = ("methods", "members", "semidiagonal", "tan_alpha", "seeds", "versions")
 _COLUMNS = ("member", "method", "peak_tilt", "outcome")
@@ -40,7 +39,7 @@ class Ensemble:
     ----------
     members : DataFrame
         One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
-        overturned), outcome, message, wall_time [s], all as the run has them.
+        overturned), outcome, diagnostics (their codes), wall_time [s], all as the run has them.
     methods : DataFrame
         One row for each method: own_model (of the support of an engine), runs, rocked, overturned, failed,
         failed_members (their names), and of the peak tilts of what did not fail [alpha] the median with its
@@ -65,7 +64,7 @@ def ensemble(
     case_or_members: Case | Suite | Sequence[Case],
     *,
     runs: Iterable[Run] | None = None,
-    models: Sequence[str] = MODELS,
+    models: Sequence[Run] = MODELS,
     size: int = 20,
     perturbation: float = 0.01,
     seed: int = 0,
@@ -83,7 +82,7 @@ def ensemble(
         such as one body under many records.
     runs : iterable of Run, optional
         Default: those of the suite, else every installed engine with supports "recess" and "flat".
-    models : sequence of str, optional
+    models : sequence of Run, optional
         Reduced models. The first is named first in every contrast.
     size : int, optional
         Number of perturbed starts.
@@ -110,10 +109,10 @@ def ensemble(
     Examples
     --------
     >>> from rockwobble.models import Cylinder, el_centro_1940
-    >>> case = Case("pier", Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
+    >>> case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
     >>> found = ensemble(case, runs=[], size=5, workers=1)
     >>> found.methods[["method", "runs", "failed"]].values.tolist()
-    [['recess', 5, 0], ['flat', 5, 0]]
+    [['recess model', 5, 0], ['flat-ground model', 5, 0]]
     """
     about: dict[str, Any] = {}
     if isinstance(case_or_members, Case):
@@ -129,19 +128,14 @@ def ensemble(
     for case in members:
         for run in chosen:
             require_runnable(case, run)
-    methods: dict[str, str | Run] = {model: model for model in models}
-    methods |= dict(zip(run_labels(chosen), chosen, strict=True))
-    jobs = [
-        Job(case=case, method=method, label=label) for case in members for label, method in methods.items()
-    ]
+    methods = dict(zip(run_labels((*models, *chosen)), (*models, *chosen), strict=True))
+    jobs = [Job(case=case, run=run, label=label) for case in members for label, run in methods.items()]
     with nullcontext() if resume is None else open_run_store(resume, samples=False) as store:
         results = simulate_all(jobs, workers=workers, progress=progress, store=store)
     table = _members(jobs, results)
     inputs = fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
-    about |= {
-        "methods": {label: "" if isinstance(m, str) else own_model(m.support) for label, m in methods.items()}
-    }
+    about |= {"methods": {label: str(own_model(run)) if run.engine else "" for label, run in methods.items()}}
     return ensemble_of(table, about_results(KIND, inputs, seeds={"ensemble": seed}) | about)
 
 
@@ -187,21 +181,19 @@ def _runs(case_or_members: Case | Suite | Sequence[Case], runs: Iterable[Run] | 
     return default_runs()
 
 
-def _members(jobs: Sequence[Job], results: Sequence[Any]) -> pd.DataFrame:
+def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
     import pandas as pd
 
     rows = []
     for job, result in zip(jobs, results, strict=True):
-        crashed = isinstance(result, Crash)
-        failed = crashed or result.outcome == "failed"
         rows.append(
             {
                 "member": job.case.name,
                 "method": job.label,
-                "peak_tilt": math.nan if failed else result.peak_tilt / job.case.cylinder.alpha,
-                "outcome": "failed" if failed else result.outcome,
-                "message": result.message,
-                "wall_time": math.nan if crashed else result.wall_time,
+                "peak_tilt": result.peak_tilt / job.case.cylinder.alpha,
+                "outcome": result.outcome,
+                "diagnostics": " ".join(fact.code for fact in result.facts),
+                "wall_time": result.wall_time,
             }
         )
     return pd.DataFrame(rows)

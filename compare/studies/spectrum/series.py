@@ -22,8 +22,8 @@ _AZIMUTH = {PLANAR_X: 0.0, PLANAR_Y: 0.5 * math.pi}  # of the plane [rad]
 def series_options(series: str, model: str) -> dict[str, Any]:
     """Return the options of a reduced run that make it one of a series; `model` is that in 3D."""
     if series == SPATIAL:
-        return {"model": model}
-    return {"model": "planar", "plane": _AZIMUTH[series]}
+        return {"support": model}
+    return {"plane": _AZIMUTH[series]}
 
 
 def uplift_of_series(

@@ -67,9 +67,8 @@ class GridChunk:
             self.tan_alpha,
             self.motion,
             self.scales,
-            model=self.model,
             workers=1,  # the processes share the cores already
-            **self.options,
+            **{**reduced.MODELS[self.model], **self.options},
         ).ravel()
         sizes, scales = np.meshgrid(self.semidiagonals, self.scales, indexing="ij")
         return {
@@ -205,7 +204,9 @@ class Grid:
 
         for model in self.models:
             try:
-                reduced.peak_tilts([1.0], 0.2, self.motions[0], [], model=model, **self.options)
+                reduced.peak_tilts(
+                    [1.0], 0.2, self.motions[0], [], **{**reduced.MODELS[model], **self.options}
+                )
             except TypeError:
                 allowed = "rtol, rest_tilt, gravity, plane and restitution"
                 raise ValueError(

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.models import Case, GroundMotion, Suite
+from rockwobble.models import Case, GroundMotion, Run, Suite
 
 from ...runs.executor import Chunk, Workers, open_workers, run_chunk
 from ...storage.files import remove_leftovers, sole_writer
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 # a chunk whose process died is tried this often: the process may have been ended from outside
 _TRIES = 3
+_RECESS = Run(None, "recess")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -140,8 +141,8 @@ def _plan(plan: Grid | CaseSweep | Suite | Iterable[Case]) -> Grid | CaseSweep:
     if isinstance(plan, Grid | CaseSweep):
         return plan
     if isinstance(plan, Suite):
-        return CaseSweep(plan.cases, plan.runs or ("recess",))
-    return CaseSweep(plan, ("recess",))
+        return CaseSweep(plan.cases, plan.runs or (_RECESS,))
+    return CaseSweep(plan, (_RECESS,))
 
 
 def _motions(plan: Grid | CaseSweep) -> dict[str, GroundMotion]:

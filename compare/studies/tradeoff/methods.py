@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case, Run
+from rockwobble.models import Case, Run, Trace
 
 from ...runs.choice import own_model
-from ...runs.execution import run_engine
+from ...runs.execution import simulate_run
 from .problem import FINE_REST_TILT, Answer, Problem
 from .scipy_equations import SOLVERS
 from .scipy_methods import Rates, compiled, plain, scipy_answer
@@ -94,15 +94,14 @@ def _reduced(problem: Problem, quick: bool) -> list[Method]:
 
     def solver(model: str, rtol: float, rest_tilt: float | None) -> Callable[[Case], Answer]:
         def solve(case: Case) -> Answer:
-            given = {} if rest_tilt is None else {"rest_tilt": rest_tilt}
-            response = reduced.simulate(
-                Case(case.cylinder, case.motion, initial=case.initial, duration=case.duration),
+            trace = reduced.simulate(
+                case,
+                support=model,
                 rtol=rtol,
+                rest_tilt=reduced.REST_TILT if rest_tilt is None else rest_tilt,
                 sample_step=problem.sample_step,
-                **reduced.MODELS[model],
-                **given,
             )
-            return _answer(problem, response, case)
+            return _answer(problem, trace)
 
         return solve
 
@@ -197,15 +196,15 @@ def _engine(
     def solve(case: Case) -> Answer:
         try:
             run = Run(engine, support, step, **settings)
-            trajectory = run_engine(case, run, sample_step=problem.sample_step)
+            trace = simulate_run(case, run, sample_step=problem.sample_step)
         except ValueError as refusal:
             return Answer(quantity=np.empty(0), message=f"refused: {refusal}")
-        return _answer(problem, trajectory, case)
+        return _answer(problem, trace)
 
     return Method(
         line=name,
         family=engine,
-        model=own_model(support),
+        model=own_model(Run(engine, support)).support,
         knob="time step",
         value=step,
         solve=solve,
@@ -214,7 +213,8 @@ def _engine(
     )
 
 
-def _answer(problem: Problem, trace: Any, case: Case) -> Answer:
+def _answer(problem: Problem, trace: Trace) -> Answer:
+    said = ", ".join(fact.code for fact in trace.facts)
     if trace.outcome == "failed":
-        return Answer(quantity=np.empty(0), message=f"failed: {trace.message}")
-    return Answer(quantity=problem.quantity(trace, case), message=trace.message)
+        return Answer(quantity=np.empty(0), message=f"failed: {said}")
+    return Answer(quantity=problem.quantity(trace), message=said)

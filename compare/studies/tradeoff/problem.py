@@ -15,13 +15,12 @@ import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
 
 from ..ensemble.members import synthetic_motions, with_motions
 
@@ -56,7 +55,7 @@ class Problem:
     sample_step : float
         At which a run is sampled [s].
     quantity : callable
-        (trace, case) -> what is asked of a run, shape (k,).
+        (trace) -> what is asked of a run, shape (k,).
     distance : callable
         (quantities of all cases, those of the reference) -> error.
     references : dict
@@ -72,7 +71,7 @@ class Problem:
     error_title: str
     cases: Sequence[Case]
     sample_step: float
-    quantity: Callable[[Any, Case], Array]
+    quantity: Callable[[Trace], Array]
     distance: Callable[[Sequence[Array], Sequence[Array]], float]
     references: dict[str, list[Array]]
     doubt: dict[str, float]
@@ -98,7 +97,7 @@ def problems(*, quick: bool = False) -> list[Problem]:
     return [_turn(), _shaken(), _peaks(4 if quick else 12)]
 
 
-def reference_run(case: Case, model: str, sample_step: float, rtol: float = TIGHT) -> reduced.Response:
+def reference_run(case: Case, model: str, sample_step: float, rtol: float = TIGHT) -> Trace:
     """Return the tight solution of a case: the model with next to no rest rule.
 
     Raises
@@ -106,16 +105,12 @@ def reference_run(case: Case, model: str, sample_step: float, rtol: float = TIGH
     RuntimeError
         If the solution fails: there is nothing to hold a method against.
     """
-    response = reduced.simulate(
-        Case(case.cylinder, case.motion, initial=case.initial, duration=case.duration),
-        rtol=rtol,
-        rest_tilt=FINE_REST_TILT,
-        sample_step=sample_step,
-        **reduced.MODELS[model],
+    trace = reduced.simulate(
+        case, support=model, rtol=rtol, rest_tilt=FINE_REST_TILT, sample_step=sample_step
     )
-    if response.outcome == "failed":
-        raise RuntimeError(f"the reference of {case.name} failed: {response.message}")
-    return response
+    if trace.outcome == "failed":
+        raise RuntimeError(f"the reference of {case.name} failed: {trace.facts}")
+    return trace
 
 
 def _make(problem: Problem) -> Problem:
@@ -126,7 +121,7 @@ def _make(problem: Problem) -> Problem:
             continue
         tight, less = (
             [
-                problem.quantity(reference_run(case, model, problem.sample_step, rtol), case)
+                problem.quantity(reference_run(case, model, problem.sample_step, rtol))
                 for case in problem.cases
             ]
             for rtol in (TIGHT, 10.0 * TIGHT)
@@ -155,7 +150,7 @@ def _turn() -> Problem:
     )
 
 
-def _angle_of_turn(trace: Any, case: Case) -> Array:
+def _angle_of_turn(trace: Trace) -> Array:
     turns = trace.passes["angle_of_turn"]
     return np.asarray(np.degrees(turns.to_numpy(float)[:1]), dtype=np.float64)
 
@@ -181,10 +176,10 @@ def _shaken() -> Problem:
     )
 
 
-def _whole_tilt(trace: Any, case: Case) -> Array:
+def _whole_tilt(trace: Trace) -> Array:
     """Tilt of all samples [alpha]; empty where the run ended before the case."""
-    tilt = np.asarray(trace.tilt, dtype=np.float64) / case.cylinder.alpha
-    return tilt if abs(trace.time[-1] - case.length) < 1e-6 else np.empty(0)
+    tilt = trace.tilt / trace.case.cylinder.alpha
+    return tilt if abs(trace.time[-1] - trace.case.length) < 1e-6 else np.empty(0)
 
 
 def _peaks(count: int) -> Problem:
@@ -206,9 +201,9 @@ def _peaks(count: int) -> Problem:
     )
 
 
-def _peak(trace: Any, case: Case) -> Array:
+def _peak(trace: Trace) -> Array:
     """Peak tilt [alpha]; what leans beyond its balance counts as that, it falls sooner or later."""
-    return np.array([min(float(trace.peak_tilt) / case.cylinder.alpha, 1.0)])
+    return np.array([min(trace.peak_tilt / trace.case.cylinder.alpha, 1.0)])
 
 
 def _largest(found: Sequence[Array], reference: Sequence[Array]) -> float:

@@ -6,6 +6,7 @@ singular for them. They neither seat the cylinder nor uplift it again.
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -16,6 +17,7 @@ from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion
+from rockwobble.reduced.solution import Solution
 
 from .problem import TIGHT, Answer, Problem
 from .scipy_equations import TOLERANCE_SCALE, InitialValueProblem, SolverName, compiled_rates, python_rates
@@ -52,10 +54,9 @@ def _start(case: Case) -> InitialValueProblem:
     samples = np.vstack([motion.acceleration[:, :2], np.zeros((2, 2))])
     padded = GroundMotion(samples, motion.time_step)
     begin = _departure(case) if case.initial is None else _INSTANT
-    reach = reduced.simulate(
-        Case(case.cylinder, case.motion, initial=case.initial, duration=begin), rtol=TIGHT
-    )
-    state = np.array([reach.tilt[-1], reach.tilt_rate[-1], reach.rolling_angle[-1], reach.momentum[-1]])
+    reach = reduced.simulate(dataclasses.replace(case, duration=begin), rtol=TIGHT)
+    assert isinstance(reach.source, Solution)
+    state = reach.source.states[-1, :4]
     return InitialValueProblem(
         cylinder=case.cylinder, motion=padded, start=begin, end=case.length, state=state
     )
@@ -63,7 +64,7 @@ def _start(case: Case) -> InitialValueProblem:
 
 def _departure(case: Case) -> float:
     """Return a time just after the last uplift before the peak [s]: what is before it is at rest."""
-    run = reduced.simulate(Case(case.cylinder, case.motion, duration=case.duration), rtol=TIGHT)
+    run = reduced.simulate(case, rtol=TIGHT)
     resting = np.flatnonzero(np.isnan(run.rolling_angle[: int(np.argmax(run.tilt)) + 1]))
     last = int(resting[-1]) if len(resting) else 0
     if math.isnan(run.uplift_time):

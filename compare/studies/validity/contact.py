@@ -6,10 +6,10 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from rockwobble import multibody, reduced
-from rockwobble.models import Case, Run
+from rockwobble import reduced
+from rockwobble.models import Case, Run, Trace
 
-from ...runs.execution import run_engine
+from ...runs.execution import simulate_run
 from .extent import Extent
 from .motions import EL_CENTRO, shaken_case
 from .part import Inputs, Part, Row
@@ -46,7 +46,7 @@ def measure(inputs: Inputs) -> list[Row]:
     free = _engine(still, settings)
     shaken = shaken_case(EL_CENTRO, inputs["tan_alpha"], _SIZE, _INTENSITY, duration=_LENGTH)
     run = _engine(shaken, settings)
-    recess = reduced.simulate(Case(shaken.cylinder, shaken.motion, duration=shaken.duration))
+    recess = reduced.simulate(shaken)
     lost = -float(free.energy_error[-1]) / float(free.energy[0])
     return [
         {
@@ -62,8 +62,8 @@ def measure(inputs: Inputs) -> list[Row]:
     ]
 
 
-def _engine(case: Case, settings: dict[str, Any]) -> multibody.Trajectory:
-    return run_engine(case, Run(ENGINE, "recess", **settings))
+def _engine(case: Case, settings: dict[str, Any]) -> Trace:
+    return simulate_run(case, Run(ENGINE, "recess", **settings))
 
 
 def _frequency(tan_alpha: float) -> float:

@@ -15,7 +15,7 @@ from .verification import ENGINE
 
 _COLUMNS = (
     "support",
-    "reference",
+    "reference_support",
     "outcome",
     "reference_outcome",
     "peak_tilt",
@@ -29,6 +29,9 @@ _COLUMNS = (
     "residual_displacement",
     "residual_twist",
 )
+
+
+_RENAMED = {"reference_support": "reference"}
 
 
 def _tasks(extent: Extent) -> Sequence[Inputs]:
@@ -60,7 +63,7 @@ def measure(inputs: Inputs) -> list[Row]:
     summary = compare(case, runs=[Run(ENGINE, inputs["support"])], workers=1).summary
     point = {name: inputs[name] for name in ("tan_alpha", "semidiagonal", "intensity", "duration")}
     return [
-        point | {str(name): value for name, value in row.items()}
+        point | {_RENAMED.get(str(name), str(name)): value for name, value in row.items()}
         for row in summary[list(_COLUMNS)].to_dict("records")
     ]
 

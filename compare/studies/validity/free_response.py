@@ -7,18 +7,18 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from rockwobble import reduced
-from rockwobble.models import Assumptions
+from rockwobble.models import Assumptions, Case, Trace
 
 from .extent import Extent
 from .part import Inputs, Part, Row
 from .releases import released
 
 if TYPE_CHECKING:
-    from rockwobble.models import Case, Cylinder, InitialState
+    from rockwobble.models import Cylinder, InitialState
 
 _RTOL = 1e-10
 _CYCLES = 10.0  # over which the flat-ground model may gather tilt
-_MAXIMUM = 1.0  # in the fourth column of `Response.extrema`
+_MAXIMUM = 1.0  # in the fourth column of `Trace.extrema`
 
 
 def _tasks(extent: Extent) -> Sequence[Inputs]:
@@ -59,11 +59,11 @@ def _row(inputs: Inputs, release: float, spin: float) -> Row:
         "flat_peak": rolling.peak_tilt / initial.tilt,
         "friction": needs.largest_friction_needed,
         "least_normal": needs.least_normal_force,
-        "couple": needs.largest_couple / cylinder.base_radius,
+        "couple": needs.largest_restraining_moment / cylinder.base_radius,
     }
 
 
-def next_maximum(response: reduced.Response) -> tuple[float, float]:
+def next_maximum(response: Trace) -> tuple[float, float]:
     """Return time and rolling angle from the release, a tilt maximum, to the next; NaN if there is none."""
     maxima = response.extrema[response.extrema[:, 3] == _MAXIMUM]
     if len(maxima) < 2:
@@ -73,7 +73,9 @@ def next_maximum(response: reduced.Response) -> tuple[float, float]:
 
 def needs_of_one_period(cylinder: Cylinder, initial: InitialState, period: float) -> Assumptions:
     """Return what the recess model needs of ground and recess from a release to the next maximum."""
-    return reduced.simulate(Case(cylinder, initial=initial, duration=period), rtol=_RTOL).assumptions
+    needs = reduced.simulate(Case(cylinder, initial=initial, duration=period), rtol=_RTOL).assumptions
+    assert needs is not None
+    return needs
 
 
 PART = Part(

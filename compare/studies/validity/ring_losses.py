@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, InitialState, Run, el_centro_1940
+from rockwobble.models import Case, Cylinder, InitialState, Run, Trace, el_centro_1940
 from rockwobble.multibody.scene.ring_geometry import clearance_needed
 from rockwobble.multibody.scene.ring_settings import take_ring
 
 from ...metrics.tilt import tilt_rms_relative
-from ...runs.execution import Crash, Job, simulate_all
+from ...runs.execution import Job, simulate_all
 from ...traces.pair import FloatArray, make_pair
 
 # tan(alpha): peak of the record over the acceleration that uplifts. Large motion, and the ground keeps hold
@@ -39,7 +39,7 @@ class RingRow:
         Of the ring; empty for the defaults.
     outcome : str
     first_contact, contact_time : float
-        First contact with a wall and time in contact [s].
+        First contact with a wall (inf where there is none) and time in contact [s].
     passes : int
     loss : float
         Energy lost over the largest reached.
@@ -105,13 +105,13 @@ def measure(cases: Sequence[Case], runs: Sequence[Run], *, workers: int | None =
     rows = []
     for case in cases:
         possible = [run for run in runs if _possible(case, run)]
-        methods: list[Run | str] = ["recess", "flat", *possible]
-        jobs = [Job(case=case, method=method, label=str(n)) for n, method in enumerate(methods)]
+        methods = [Run(None, "recess"), Run(None, "flat"), *possible]
+        jobs = [Job(case=case, run=run, label=str(n)) for n, run in enumerate(methods)]
         recess, flat, *trials = simulate_all(jobs, workers=workers)
         rows += [
             _row(case, run, trial, recess, flat)
             for run, trial in zip(possible, trials, strict=True)
-            if not isinstance(trial, Crash)
+            if len(trial.time)
         ]
     return rows
 
@@ -125,7 +125,7 @@ def _possible(case: Case, run: Run) -> bool:
     return needed <= ring.ring_clearance
 
 
-def _row(case: Case, run: Run, trial: Any, recess: Any, rolling: Any) -> RingRow:
+def _row(case: Case, run: Run, trial: Trace, recess: Trace, flat: Trace) -> RingRow:
     out = _rolled_out(trial, case.cylinder.base_radius)
     largest = float(trial.energy.max())
     return RingRow(
@@ -133,7 +133,7 @@ def _row(case: Case, run: Run, trial: Any, recess: Any, rolling: Any) -> RingRow
         support=run.support,
         settings=dict(run.settings),
         outcome=trial.outcome,
-        first_contact=trial.first_wall_contact,
+        first_contact=trial.first("wall_contact"),
         contact_time=float(trial.wall_contact[-1]),
         passes=len(trial.passes),
         loss=-float(trial.energy_error[-1]) / largest if largest > 0.0 else math.nan,
@@ -144,11 +144,11 @@ def _row(case: Case, run: Run, trial: Any, recess: Any, rolling: Any) -> RingRow
         peak=trial.peak_tilt / case.cylinder.alpha,
         recess_peak=recess.peak_tilt / case.cylinder.alpha,
         against_recess=tilt_rms_relative(make_pair(case.cylinder, recess, trial)),
-        against_flat=tilt_rms_relative(make_pair(case.cylinder, rolling, trial)),
+        against_flat=tilt_rms_relative(make_pair(case.cylinder, flat, trial)),
     )
 
 
-def _rolled_out(trial: Any, radius: float) -> FloatArray:
+def _rolled_out(trial: Trace, radius: float) -> FloatArray:
     """Distance from O of the place to which a cylinder would come down, while it is tilted [b].
 
     The contact point less a radius in the direction of the lean: in the recess model that is O.

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from rockwobble import reduced
-from rockwobble.models import Case
+from rockwobble.models import Case, Trace
 
 from .extent import Extent
 from .motions import motion_named, shaken_case
@@ -62,16 +62,15 @@ def _row(inputs: Inputs, intensity: float) -> Row:
         row["vertical"] = _run(raised, "recess").peak_tilt / alpha
     if recess.peak_tilt > 0.0 and recess.outcome in ("rest", "completed"):
         needs = recess.assumptions
+        assert needs is not None
         row["friction"] = needs.largest_friction_needed
         row["least_normal"] = needs.least_normal_force
-        row["couple"] = needs.largest_couple / case.cylinder.base_radius
+        row["couple"] = needs.largest_restraining_moment / case.cylinder.base_radius
     return row
 
 
-def _run(case: Case, model: str) -> reduced.Response:
-    return reduced.simulate(
-        Case(case.cylinder, case.motion, duration=case.duration), **reduced.MODELS[model], rtol=1e-7
-    )
+def _run(case: Case, support: str) -> Trace:
+    return reduced.simulate(case, support=support, rtol=1e-7)
 
 
 PART = Part(

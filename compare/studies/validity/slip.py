@@ -43,9 +43,7 @@ def measure(inputs: Inputs) -> list[Row]:
     rows = []
     for share in inputs["shares"]:
         run = multibody.simulate(
-            Case(cylinder, initial=initial, duration=duration, friction=share * needed),
-            engine=ENGINE,
-            support="recess",
+            Case(cylinder, initial=initial, duration=duration, friction=share * needed), engine=ENGINE
         )
         rows.append(
             {

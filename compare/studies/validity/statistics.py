@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rockwobble import multibody, reduced
-from rockwobble.models import Case, Run
+from rockwobble.models import Run
 
 from ...runs.choice import SUPPORTS, own_model
-from ...runs.execution import run_engine
+from ...runs.execution import simulate_run
 from .extent import Extent
 from .motions import ensemble_names, shaken_case
 from .part import Inputs, Part, Row
@@ -34,14 +33,9 @@ def _tasks(extent: Extent) -> Sequence[Inputs]:
 def measure(inputs: Inputs) -> list[Row]:
     """Return a row for each method: motion, level, method, peak over alpha, outcome."""
     case = shaken_case(inputs["motion"], inputs["tan_alpha"], inputs["semidiagonal"], inputs["level"])
-    found: dict[str, reduced.Response | multibody.Trajectory] = {
-        model: reduced.simulate(
-            Case(case.cylinder, case.motion, duration=case.duration), **reduced.MODELS[model]
-        )
-        for model in map(own_model, SUPPORTS)
-    }
-    for support in SUPPORTS:
-        found[f"engine, {support}"] = run_engine(case, Run(ENGINE, support, inputs["time_step"]))
+    trials = {f"engine, {support}": Run(ENGINE, support, inputs["time_step"]) for support in SUPPORTS}
+    own = {model.support: model for model in map(own_model, trials.values())}
+    found = {method: simulate_run(case, run) for method, run in (own | trials).items()}
     point = {name: inputs[name] for name in ("motion", "level", "tan_alpha", "semidiagonal")}
     rows: list[Row] = []
     for method, run in found.items():

@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from rockwobble import multibody, reduced
-from rockwobble.models import Case
+from rockwobble import reduced
+from rockwobble.models import Case, Run
 
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import SUPPORTS, own_model
+from ...runs.execution import simulate_run
 from ...traces.pair import make_pair
 from .extent import Extent
 from .free_response import next_maximum
@@ -37,17 +38,12 @@ def measure(inputs: Inputs) -> list[Row]:
     """
     cylinder, initial = released(inputs["tan_alpha"], inputs["release"], inputs["spin"])
     duration = _PERIODS * reduced.free_response(cylinder, initial).period
+    case = Case(cylinder, initial=initial, duration=duration, friction=_FRICTION)
     rows = []
     for support in SUPPORTS:
-        model = own_model(support)
-        own = reduced.simulate(
-            Case(cylinder, initial=initial, duration=duration), **reduced.MODELS[model], rtol=1e-10
-        )
-        run = multibody.simulate(
-            Case(cylinder, initial=initial, duration=duration, friction=_FRICTION),
-            engine=ENGINE,
-            support=support,
-        )
+        trial = Run(ENGINE, support)
+        model = own_model(trial).support
+        own, run = simulate_run(case, Run(None, model, rtol=1e-10)), simulate_run(case, trial)
         passes, own_passes = run.passes, own.passes
         rows.append(
             {

@@ -20,7 +20,7 @@ def headline(limits: Sequence[Limit]) -> str:
     doubts = []
     if not peaks["engine"] <= _SAME_PEAK:
         doubts.append(f"the engine's peak tilt is off by {percent(peaks['engine'])} (median)")
-    if members["guided_beyond"]:
+    if members["recess_beyond"]:
         doubts.append(
             f"over {members['members']:.0f} records its peaks do not agree within {percent(MARGIN)} "
             "in the median"

@@ -6,7 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from .picture import Array, LinePicture, Series
+from ...figures.heat import Array
+from ...figures.picture import Axis, Picture
+from .picture import Series, line_picture
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -17,7 +19,7 @@ _SMALLEST = 1e-9  # what a logarithmic axis shows of nothing
 _WIDEST = 1.2  # [alpha] beyond, single cylinders come back from a tilt that should have been their fall
 
 
-def verification_picture(table: pd.DataFrame) -> LinePicture:
+def verification_picture(table: pd.DataFrame) -> Picture:
     """Return how well the engine tells the models apart."""
     models = table.pivot_table("turn", ["tan_alpha", "release", "spin"], "model", dropna=False)
     apart = (models["recess"] - models["flat"]).abs()
@@ -28,22 +30,20 @@ def verification_picture(table: pd.DataFrame) -> LinePicture:
         y = np.degrees(np.abs((rows["engine_turn"] - rows["turn"]).to_numpy(dtype=np.float64)))
         model = rows["model"].iloc[0]
         series.append(Series(name=f"{support} against {model}", x=x, y=np.maximum(y, _SMALLEST), marks=True))
-    return LinePicture(
+    return line_picture(
         name="verification",
         title="The engine tells the models apart",
         caption="Each mark is a release: how far the engine's angle of turn is off that of its own model, "
         "over how "
         "far the two models are apart. Below the line the engine decides between them.",
-        x_label="|recess − rolling| [deg]",
-        y_label="|engine − its model| [deg]",
+        x=Axis(label="|recess − rolling|", unit="deg", log=True),
+        y=Axis(label="|engine − its model|", unit="deg", log=True),
         series=series,
-        log_x=True,
-        log_y=True,
         diagonal="no telling apart",
     )
 
 
-def slip_picture(table: pd.DataFrame) -> LinePicture:
+def slip_picture(table: pd.DataFrame) -> Picture:
     """Return slip over friction."""
     series = [
         Series(
@@ -53,46 +53,43 @@ def slip_picture(table: pd.DataFrame) -> LinePicture:
         )
         for tan_alpha, rows in table.sort_values("share").groupby("tan_alpha")
     ]
-    return LinePicture(
+    return line_picture(
         name="slip",
         title="Slip of the engine where friction is short",
         caption="Distance over which the contact slips in one period of free response, over the friction "
         "as a share "
         "of what the recess model says is needed.",
-        x_label="friction / friction needed [-]",
-        y_label="slip / b [-]",
+        x=Axis(label="friction / friction needed", unit="-"),
+        y=Axis(label="slip / b", unit="-", log=True),
         series=series,
-        log_y=True,
     )
 
 
-def ring_pictures(table: pd.DataFrame) -> list[LinePicture]:
+def ring_pictures(table: pd.DataFrame) -> list[Picture]:
     """Return peak tilt and displacement over slenderness, a line for each recess."""
     # walls of other inclinations are in the table, and would be too many lines here
     shaken = table[(table["motion"] != "free response") & (table["inclination"] == 0.0)]
     peak = (shaken["peak"] / shaken["recess_peak"] - 1.0).abs()
     shaken = shaken.assign(off=100.0 * peak, displaced=shaken["rolled_out"])
     return [
-        LinePicture(
+        line_picture(
             name="ring-peak",
             title="Peak tilt in a real recess",
             caption="How far the peak tilt in a ring of walls that lean by α is off that of the ideal "
             "recess, under El "
             "Centro at 1.5 "
             "g tan α, largest of the runs.",
-            x_label="tan α [-]",
-            y_label="difference [%]",
+            x=Axis(label="tan α", unit="-"),
+            y=Axis(label="difference", unit="%", log=True),
             series=_rings(shaken, "off"),
-            log_y=True,
         ),
-        LinePicture(
+        line_picture(
             name="ring-place",
             title="Leaving its place",
             caption="How far from its place the cylinder would come down, at most, in the same runs.",
-            x_label="tan α [-]",
-            y_label="rolled out / b [-]",
+            x=Axis(label="tan α", unit="-"),
+            y=Axis(label="rolled out / b", unit="-", log=True),
             series=_rings(shaken, "displaced"),
-            log_y=True,
         ),
     ]
 
@@ -113,7 +110,7 @@ def _rings(table: pd.DataFrame, name: str) -> list[Series]:
     return series
 
 
-def contact_pictures(table: pd.DataFrame) -> list[LinePicture]:
+def contact_pictures(table: pd.DataFrame) -> list[Picture]:
     """Return peak tilt and energy lost over the time constant of contact."""
     off = 100.0 * (table["peak"] / table["recess_peak"] - 1.0).abs()
     table = table.assign(off=off, lost=100.0 * table["loss"].abs(), ms=1e3 * table["time_constant"])
@@ -124,18 +121,16 @@ def contact_pictures(table: pd.DataFrame) -> list[LinePicture]:
     ]
     groups += [(f"damping {damping:g}, all", rows, True) for damping, rows in bouncing.groupby("damping")]
     return [
-        LinePicture(
+        line_picture(
             name=f"contact-{name}",
             title=title,
             caption=f"{caption} R = 6 m.",
-            x_label="time to take up a blow [ms]",
-            y_label=label,
+            x=Axis(label="time to take up a blow", unit="ms", log=True),
+            y=Axis(label=label, unit="%", log=True),
             series=[
                 Series(name=words, x=_of(rows, "ms"), y=np.maximum(_of(rows, column), 1e-6), marks=marks)
                 for words, rows, marks in groups
             ],
-            log_x=True,
-            log_y=True,
         )
         for name, title, caption, label, column in (
             (
@@ -143,7 +138,7 @@ def contact_pictures(table: pd.DataFrame) -> list[LinePicture]:
                 "Peak tilt with contact that gives",
                 "How far the peak tilt under El Centro at 2 g tan α is off that of the recess model. Lines: "
                 "critical damping.",
-                "difference [%]",
+                "difference",
                 "off",
             ),
             (
@@ -151,14 +146,14 @@ def contact_pictures(table: pd.DataFrame) -> list[LinePicture]:
                 "Energy that contact takes",
                 "Energy lost in a pass of free response, over the energy of the release. Lines: critical "
                 "damping.",
-                "lost per pass [%]",
+                "lost per pass",
                 "lost",
             ),
         )
     ]
 
 
-def horizon_picture(table: pd.DataFrame) -> LinePicture:
+def horizon_picture(table: pd.DataFrame) -> Picture:
     """Return agreement measured over agreement predicted."""
     series = [
         Series(
@@ -169,20 +164,20 @@ def horizon_picture(table: pd.DataFrame) -> LinePicture:
         )
         for (support, reference), rows in table.groupby(["support", "reference"])
     ]
-    return LinePicture(
+    return line_picture(
         name="horizon",
         title="How long traces agree",
         caption="Time from uplift until the tilts differ by more than 1 % of α, over the time that the "
         "reduced models "
         "predict. Runs that agree to their end are at the end.",
-        x_label="predicted [s]",
-        y_label="measured [s]",
+        x=Axis(label="predicted", unit="s"),
+        y=Axis(label="measured", unit="s"),
         series=series,
         diagonal="as predicted",
     )
 
 
-def distribution_pictures(table: pd.DataFrame) -> list[LinePicture]:
+def distribution_pictures(table: pd.DataFrame) -> list[Picture]:
     """Return the distributions of peak tilt, one picture for each level."""
     pictures = []
     for level, members in table.groupby("level"):
@@ -198,17 +193,18 @@ def distribution_pictures(table: pd.DataFrame) -> list[LinePicture]:
                     steps=True,
                 )
             )
+        farthest = max(float(line.x.max()) for line in series)
+        end = _WIDEST if farthest > _WIDEST else None
         pictures.append(
-            LinePicture(
+            line_picture(
                 name=f"distribution-{level:g}",
                 title=f"Peak tilt of {members['motion'].nunique()} records at {level:g} g tan α",
                 caption="Share of the records whose peak tilt is at most that of the axis; what a curve "
                 "lacks to 1 "
                 "overturns.",
-                x_label="peak tilt / α [-]",
-                y_label="share of the records [-]",
+                x=Axis(label="peak tilt / α", unit="-", low=0.0, high=end),
+                y=Axis(label="share of the records", unit="-"),
                 series=series,
-                x_end=_WIDEST,
             )
         )
     return pictures

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rockwobble.compare.studies.validity import Validity
 
-from .drawing import svg
+from ...figures.svg import svg
 from .headline import headline
 from .page import HEADINGS, validity_document, validity_page
 from .sections import Section, sections_of

@@ -7,11 +7,12 @@ from itertools import pairwise
 
 from rockwobble.compare.studies.validity import Validity
 
+from ...figures.interactive import plots
+from ...figures.picture import Picture
 from ..origin_words import made_by
 from ..template import render
 from .about import about
 from .headline import headline
-from .interactive import plots
 from .sections import Section
 
 HEADINGS = ("Limit", "Use the reduced model", "Error to expect", "Do not use it")
@@ -37,7 +38,7 @@ def validity_page(sections: Sequence[Section], found: Validity) -> str:
             {
                 "limit": section.limit,
                 "pictures": [
-                    {"title": picture.title, "caption": picture.caption, "panels": plots(picture)}
+                    {"title": picture.title, "caption": picture.caption, "panels": _panels(picture)}
                     for picture in section.pictures
                 ],
             }
@@ -45,6 +46,10 @@ def validity_page(sections: Sequence[Section], found: Validity) -> str:
         ],
         origin=found.origin,
     )
+
+
+def _panels(picture: Picture) -> list[dict[str, str]]:
+    return [{"title": title, "plot": plot} for title, plot in plots(picture)]
 
 
 def validity_document(sections: Sequence[Section], found: Validity) -> str:

@@ -1,107 +1,23 @@
-"""What a picture of the report shows, before it is drawn for a page or for a document."""
+"""The two shapes of the pictures of this report: lines over one pair of axes, and maps side by side."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ...figures.palette import Style, model_style, run_styles
-
-Array = NDArray[np.float64]
+from ...figures.heat import Array, Heat, Shades, names
+from ...figures.palette import Style, mark_styles, model_style
+from ...figures.picture import Axis, Layer, Line, Panel, Picture
 
 _MODELS = ("recess", "flat")
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapPanel:
-    """One map of a row of maps.
-
-    Attributes
-    ----------
-    title : str
-    x, y : sequence of float
-        Of the cells, whatever their spacing.
-    values : ndarray, shape (len(y), len(x))
-        NaN where there is nothing to show.
-    """
-
-    title: str
-    x: Sequence[float]
-    y: Sequence[float]
-    values: Array
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class MapPicture:
-    """Maps of one quantity side by side, with one scale of colours.
-
-    Attributes
-    ----------
-    name : str
-        Of its file.
-    title, caption, x_label, y_label, value_label : str
-    panels : sequence of MapPanel
-    log : bool
-        Whether colours go by the logarithm.
-    smallest : float
-        Of a logarithmic scale: what is below is drawn as this.
-    largest : float
-        What is above is drawn as this.
-    """
-
-    name: str
-    title: str
-    caption: str
-    x_label: str
-    y_label: str
-    value_label: str
-    panels: Sequence[MapPanel]
-    log: bool = False
-    smallest: float = 1e-3
-    largest: float = np.inf
-
-    def shades(self, values: Array) -> Array:
-        """Return what colours go by."""
-        capped = np.minimum(values, self.largest)
-        return np.log10(np.maximum(capped, self.smallest)) if self.log else capped
-
-    def bounds(self) -> tuple[float, float]:
-        """Return the ends of the scale of colours."""
-        known = np.concatenate([self.shades(panel.values).ravel() for panel in self.panels])
-        known = known[np.isfinite(known)]
-        if not len(known):
-            return 0.0, 1.0
-        low, high = float(known.min()), float(known.max())
-        return (low, high) if high > low else (low, low + 1.0)
-
-    def ticks(self) -> tuple[list[float], list[str]]:
-        """Return places on the scale of colours and what they stand for."""
-        low, high = self.bounds()
-        if not self.log:
-            places = [float(value) for value in np.linspace(low, high, 5)]
-            return places, [f"{value:.2g}" for value in places]
-        decades = np.arange(np.ceil(low), np.floor(high) + 1.0)
-        if len(decades) < 2:
-            return [low, high], [f"{10.0**low:.2g}", f"{10.0**high:.2g}"]
-        return [float(value) for value in decades], [f"{10.0**value:g}" for value in decades]
+_LINE_HEIGHT, _MAP_HEIGHT = 3.4, 3.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Series:
-    """One line, or marks without one.
-
-    Attributes
-    ----------
-    name : str
-    x, y : ndarray, shape (n,)
-    marks : bool
-        Marks in place of a line.
-    steps : bool
-        A line of steps.
-    """
+    """One line, or marks without one."""
 
     name: str
     x: Array
@@ -110,45 +26,85 @@ class Series:
     steps: bool = False
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class LinePicture:
-    """Lines or marks over one pair of axes.
-
-    Attributes
-    ----------
-    name : str
-        Of its file.
-    title, caption, x_label, y_label : str
-    series : sequence of Series
-    log_x, log_y : bool
-    diagonal : str
-        What the line y = x stands for; empty where there is none.
-    x_end : float
-        Where the axis ends at the latest.
-    """
-
-    name: str
-    title: str
-    caption: str
-    x_label: str
-    y_label: str
-    series: Sequence[Series]
-    log_x: bool = False
-    log_y: bool = False
-    diagonal: str = ""
-    x_end: float = np.inf
-
-    def diagonal_ends(self) -> tuple[float, float]:
-        """Return the ends of the diagonal: those of all values."""
-        values = np.concatenate([np.concatenate([line.x, line.y]) for line in self.series])
-        values = values[np.isfinite(values) & ((values > 0.0) | (not (self.log_x or self.log_y)))]
-        return (float(values.min()), float(values.max())) if len(values) else (1.0, 2.0)
+def line_picture(
+    *,
+    name: str,
+    title: str,
+    caption: str,
+    x: Axis,
+    y: Axis,
+    series: Sequence[Series],
+    diagonal: str = "",
+) -> Picture:
+    """Return lines over one pair of axes; `diagonal` is what y = x stands for, if it is drawn."""
+    styles = _styles(series)
+    layers: list[Layer] = [
+        Line(x=each.x, y=each.y, name=each.name, style=styles[each.name], steps=each.steps) for each in series
+    ]
+    if diagonal:
+        known = np.concatenate([values for each in series for values in (each.x, each.y)])
+        known = known[np.isfinite(known) & ((known > 0.0) | (not (x.log or y.log)))]
+        ends = np.array([known.min(), known.max()]) if len(known) else np.array([1.0, 2.0])
+        layers.append(Line(x=ends, y=ends, name=diagonal, width=0.8))
+    panel = Panel(x=x, y=y, layers=layers, height=_LINE_HEIGHT)
+    return Picture(name=name, title=title, caption=caption, panels=[panel])
 
 
-Picture = MapPicture | LinePicture
-
-
-def series_styles(series: Sequence[Series]) -> dict[str, Style]:
+def _styles(series: Sequence[Series]) -> dict[str, Style]:
     """Return the style of each line: that of the model where it is one."""
-    others = run_styles([line.name for line in series if line.name not in _MODELS])
-    return others | {line.name: model_style(line.name) for line in series if line.name in _MODELS}
+    found = mark_styles([each.name for each in series if each.name not in _MODELS])
+    found |= {each.name: model_style(each.name) for each in series if each.name in _MODELS}
+    for each in series:
+        style = found[each.name]
+        found[each.name] = replace(
+            style, dash="none" if each.marks else style.dash, symbol="" if each.steps else style.symbol
+        )
+    return found
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Map:
+    """One map: values (len(y), len(x)) over numbers that stand at even distances."""
+
+    title: str
+    x: Sequence[float]
+    y: Sequence[float]
+    values: Array
+
+
+def map_picture(
+    *,
+    name: str,
+    title: str,
+    caption: str,
+    x: str,
+    x_unit: str,
+    y: str,
+    y_unit: str,
+    value: str,
+    unit: str,
+    maps: Sequence[Map],
+    log: bool = False,
+    smallest: float = 1e-3,
+    largest: float = np.inf,
+) -> Picture:
+    """Return maps of one quantity; what is below `smallest` or above `largest` is drawn as it."""
+    known = np.concatenate([each.values.ravel() for each in maps])
+    known = np.clip(known[np.isfinite(known)], smallest if log else -np.inf, largest)
+    low, high = (float(known.min()), float(known.max())) if len(known) else (1.0, 2.0)
+    high = high if high > low else (10.0 * low if log else low + 1.0)
+    panels = []
+    for each in maps:
+        x_places, x_ticks = names(each.x)
+        y_places, y_ticks = names(each.y)
+        panels.append(
+            Panel(
+                x=Axis(label=x, unit=x_unit, ticks=x_ticks),
+                y=Axis(label=y, unit=y_unit, ticks=y_ticks),
+                layers=[Heat(x=x_places, y=y_places, values=each.values, written=".2g")],
+                title=each.title,
+                height=_MAP_HEIGHT,
+            )
+        )
+    shades = Shades(label=value, unit=unit, low=low, high=high, log=log)
+    return Picture(name=name, title=title, caption=caption, panels=panels, columns=2, shades=shades)

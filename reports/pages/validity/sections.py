@@ -20,9 +20,9 @@ from rockwobble.compare.studies.validity.limits import (
     vertical,
 )
 
+from ...figures.picture import Picture
 from . import lines
 from .maps import free_maps, shaken_maps
-from .picture import Picture
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -131,19 +132,11 @@ def _shaken(peak: float, *, spacing: float = 0.01) -> Case:
     return Case(cylinder, scaled, duration=_LENGTH, friction=5.0, name="shaken")
 
 
-def planar_twin(case: Case) -> Case:
-    """Return the case as far as one vertical plane holds it: without spin."""
+def without_spin(case: Case) -> Case:
+    """Return the case as one vertical plane can hold it."""
     if case.initial is None:
         return case
-    flat = InitialState(case.initial.tilt)
-    return Case(
-        case.cylinder,
-        initial=flat,
-        duration=case.duration,
-        gravity=case.gravity,
-        friction=case.friction,
-        name=case.name,
-    )
+    return dataclasses.replace(case, initial=dataclasses.replace(case.initial, rolling_rate=0.0))
 
 
 def unit_time(case: Case) -> float:
