@@ -67,7 +67,10 @@ def _shipped(mark: str) -> Array:
 
 
 def _far_field() -> Finding:
-    name, part = "peaks and factors of the 22 far-field pairs", "records of FEMA P-695: pairs, unit, time step"
+    name, part = (
+        "peaks and factors of the 22 far-field pairs",
+        "records of FEMA P-695: pairs, unit, time step",
+    )
     try:
         p695_far_field(1)
     except ValueError as error:

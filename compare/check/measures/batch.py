@@ -54,6 +54,4 @@ def check(bench: Bench) -> Iterator[Finding]:
         exact, rounded = apart[:, : len(SCALES)], apart[:, len(SCALES) :]
         name, value = f"peak_tilts against simulate, {model}", exact.max() if varied else math.nan
         yield at_most(f"{name}, scales that do not round", value, EXACT, PART, f"{exact.size} cells")
-        yield at_most(
-            f"{name}, scales that round", rounded.max(), ROUNDING, PART, f"{rounded.size} cells"
-        )
+        yield at_most(f"{name}, scales that round", rounded.max(), ROUNDING, PART, f"{rounded.size} cells")

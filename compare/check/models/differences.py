@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from math import factorial
+
 import numpy as np
 
 from ..bench import Array

@@ -44,9 +44,7 @@ def check(bench: Bench) -> Iterator[Finding]:
     for name, (ratio, share) in GROUNDS.items():
         ground = tuple(GRAVITY * each for each in share)
         case = dataclasses.replace(released(0.25, 0.0, 5.0), motion=steady(ground, 10.0))
-        found = bench.solve(
-            case, "planar", sample_step=0.05, rtol=1e-11, rest_tilt=0.0, restitution=ratio
-        )
+        found = bench.solve(case, "planar", sample_step=0.05, rtol=1e-11, rest_tilt=0.0, restitution=ratio)
         force = np.tile(np.array(ground), (len(found.time), 1))
         energy = 0.5 * inertia * found.tilt_rate**2
         energy += lagrange.potential(shape, found.tilt, found.rolling_angle, force)

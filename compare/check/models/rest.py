@@ -41,7 +41,7 @@ def check(bench: Bench) -> Iterator[Finding]:
     yield at_most("instant of uplift as the weight falls", off, ROOT, UPLIFT)
     ground = np.array([0.5, 0.2, -0.3 * GRAVITY])
     force = bench.solve(Case(PIER, steady(ground, 1.0)), sample_step=0.25).contact_force[:4]
-    apart = largest(force - (ground + [0.0, 0.0, GRAVITY]) / GRAVITY)
+    apart = largest(force - (ground + np.array([0.0, 0.0, GRAVITY])) / GRAVITY)
     yield at_most("contact force at rest", apart, STANDING, "contact force at rest (reduced/forces.py)")
     heavier = bench.solve(Case(PIER, steady([1.1 * THRESHOLD, 0.0, 0.2 * GRAVITY], 1.0)))
     name = "tilt below the threshold of a greater weight"

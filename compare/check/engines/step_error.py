@@ -1,0 +1,6 @@
+def coarser(trace):
+    raise NotImplementedError
+
+
+def held(*a):
+    raise NotImplementedError
