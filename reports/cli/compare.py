@@ -68,7 +68,7 @@ def compare(
 
     with interruptible(_kept(out) if suite else "nothing was written"):
         with user_input():
-            from rockwobble.compare import replace_files, require_runnable, require_writable, with_settings
+            from rockwobble.compare import require_runnable, require_writable, with_settings
 
             if suite is not None:
                 refuse_problem_options(context, suite)
@@ -114,10 +114,10 @@ def compare(
                 budget=budget,
             )
         print_comparison(comparison)
-        contents = {**comparison.files(), **comparison_pages(comparison, command_line())}
+        pages = comparison_pages(comparison, command_line())
         with user_input():
-            replace_files(out, contents)
-    print(f"\nWritten to {out}: {', '.join(contents)}")
+            comparison.save(out, command=command_line(), pages=pages)
+    print(f"\nWritten to {out}: manifest.json, {', '.join(pages)} and the tables")
 
 
 def run_comparison(
