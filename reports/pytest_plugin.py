@@ -141,7 +141,7 @@ class DisagreementError(Exception):
     """
 
     def __init__(self, failed: list[Finding], budget: list[str]) -> None:
-        from .console.check_output import in_words
+        from .pages.check import in_words
 
         super().__init__("\n".join([*(in_words(finding) for finding in failed), *budget]))
         self.failed = failed
