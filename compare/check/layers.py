@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from .bench import Bench
 from .engines import agreement, engine_baseline, engine_equations, engine_settings, traces
@@ -29,7 +29,7 @@ from .models import (
 Check = Callable[[Bench], Iterator[Finding]]
 
 # what comes later rests on what comes earlier
-PARTS: Mapping[str, tuple[Check, ...]] = {
+PARTS: dict[str, tuple[Check, ...]] = {
     "records": (record_files.check, ground_motions.check),
     "equations": (equations.check, engine_equations.check),
     "conserved": (conserved.check,),

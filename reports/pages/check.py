@@ -61,14 +61,19 @@ def print_layer(console: Console, layer: str, findings: Sequence[Finding]) -> No
 
 def page(findings: Sequence[Finding], versions: Mapping[str, str], seconds: float) -> Page:
     """Return the report: what failed first, then every check, layer by layer."""
+
+    def rows(chosen: Sequence[Finding]) -> list[Row]:
+        # as Markdown, where an angle bracket begins a tag
+        return [{key: str(cell).replace("<", "&lt;") for key, cell in _row(f).items()} for f in chosen]
+
     layers = []
     for layer, found in _by_layer(findings).items():
         bad = sum(finding.failed for finding in found)
         state = f"{bad} of {len(found)} failed" if bad else f"{len(found)} checks"
-        layers.append((f"{layer}: {state}", [_row(finding) for finding in found]))
+        layers.append((f"{layer}: {state}", rows(found)))
     values = {
         "headline": headline(findings, seconds),
-        "failed": [_row(finding) for finding in findings if finding.failed],
+        "failed": rows([finding for finding in findings if finding.failed]),
         "layers": layers,
         "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
     }

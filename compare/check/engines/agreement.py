@@ -4,8 +4,8 @@ An engine in a recess is held against the recess model, one on flat ground again
 ring of walls has no model of its own: until the first touch of a wall it is flat ground, and after it only
 what every motion in a recess must show is asked for.
 
-What a run may be off comes from its suite where that states bounds; from what was measured once, for the suite
-that ships; and for any other suite from the run itself, see `step_error`.
+What a run may be off comes from its suite where that states bounds; from what was measured once for the
+suite "quick"; and for any other suite from the run itself, see `own_bounds`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from rockwobble.models import Run, Trace
+from rockwobble.models import Bounds, Run, Trace
 
 from ...comparison.prediction import Prediction, estimated_error, predict, verdict
 from ...comparison.summary import SUMMARY_COLUMNS, summary_row
@@ -25,7 +25,7 @@ from ...runs.execution import Job
 from ...traces.pair import make_pair
 from ..bench import Bench, why
 from ..finding import Bound, Finding, at_most, not_run
-from . import step_error
+from . import own_bounds
 from .known_bounds import tilt_bound
 
 ENDS = Bound(0.0, "the run must reach its end", "alpha")
@@ -38,15 +38,10 @@ def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part."""
     jobs = bench.jobs()
     traces = bench.traces(jobs)
-    if by_steps(bench):
-        bench.traces([step_error.coarser(trace) for trace in traces if trace.outcome != "failed"])
+    if not bench.shipped and bench.suite.bounds is None:
+        own_bounds.prepare(bench, jobs, traces)
     for job, trace in zip(jobs, traces, strict=True):
         yield from check_run(bench, job, trace)
-
-
-def by_steps(bench: Bench) -> bool:
-    """Return whether a run is held against what its own step leaves."""
-    return not bench.shipped and bench.suite.bounds is None
 
 
 def reference_of(bench: Bench, run: Run) -> Run:
@@ -64,6 +59,11 @@ def check_run(bench: Bench, job: Job, trace: Trace) -> Iterator[Finding]:
         yield at_most(name, math.nan, ENDS, part, why(trace))
         return
     model = bench.solve(job.case, reference.support)
+    if job.run.support == "ring":
+        yield from _ring(job, trace)
+    if bench.suite.bounds is None and not bench.shipped:
+        yield from own_bounds.held(bench, job, name, model, trace)
+        return
     prediction = predict(
         job.case,
         reference=model,
@@ -72,18 +72,13 @@ def check_run(bench: Bench, job: Job, trace: Trace) -> Iterator[Finding]:
         error=estimated_error(job.case, job.run.engine, trace.time_step),
         simulate=lambda case, run: bench.solve(case, run.support),
     )
-    if bench.suite.bounds is not None:
-        yield from _stated(bench, job, name, model, trace, prediction)
-        return
-    if job.run.support == "ring":
-        yield from _ring(job, trace)
-    yield _followed(bench, job, name, model, trace, prediction)
+    if bench.suite.bounds is None:
+        yield _as_measured_once(job, name, model, trace, prediction)
+    else:
+        yield from _stated(bench.suite.bounds, job, name, model, trace, prediction)
 
 
-def _followed(
-    bench: Bench, job: Job, name: str, model: Trace, trace: Trace, prediction: Prediction
-) -> Finding:
-    """The finding where the suite states no bounds."""
+def _as_measured_once(job: Job, name: str, model: Trace, trace: Trace, prediction: Prediction) -> Finding:
     case, run = job.case, job.run
     until = min(case.length, trace.first("wall_contact"))
     pair = make_pair(case.cylinder, model, trace, until=until)
@@ -98,10 +93,10 @@ def _followed(
     horizon = agreement_time(pair)
     words = verdict(horizon.length, horizon.diverged, prediction.length, prediction.reason)
     note = f"to {end:.3g} s" + (f"; they part {words}" if horizon.diverged else "")
-    if by_steps(bench):
-        return step_error.held(bench, job, name, model, trace, end, note)
-    reason = "error of contact at this step, first order in it"
-    return at_most(name, apart, Bound(tilt_bound(case, trace.time_step), reason, "alpha"), part, note)
+    bound = Bound(
+        tilt_bound(case, trace.time_step), "error of contact at this step, first order in it", "alpha"
+    )
+    return at_most(name, apart, bound, part, note)
 
 
 def _ring(job: Job, trace: Trace) -> Iterator[Finding]:
@@ -117,11 +112,9 @@ def _ring(job: Job, trace: Trace) -> Iterator[Finding]:
 
 
 def _stated(
-    bench: Bench, job: Job, name: str, model: Trace, trace: Trace, prediction: Prediction
+    bounds: Bounds, job: Job, name: str, model: Trace, trace: Trace, prediction: Prediction
 ) -> Iterator[Finding]:
     """One finding for each bound that the suite states."""
-    bounds = bench.suite.bounds
-    assert bounds is not None
     row = summary_row(job.case, str(model.run), model, job.label, trace, prediction=prediction)
     part = f"{job.run.engine} ({job.run.support}) or the {model.run}"
     for column, most in bounds.given().items():

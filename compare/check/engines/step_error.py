@@ -1,6 +1,0 @@
-def coarser(trace):
-    raise NotImplementedError
-
-
-def held(*a):
-    raise NotImplementedError
