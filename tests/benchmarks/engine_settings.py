@@ -190,9 +190,7 @@ def measure(
     ratio = [value / base[variant.engine] for variant, value in zip(chosen, cost, strict=True)]
     steps = [STEP * (1.0 if abs(each - 1.0) < 0.1 else each) for each in ratio]
     problems = cases(turns)
-    jobs = [
-        Job(case=case, run=Run(None, support)) for case in problems for support in SUPPORTS
-    ]
+    jobs = [Job(case=case, run=Run(None, support)) for case in problems for support in SUPPORTS]
     for variant, step in zip(chosen, steps, strict=True):
         for case in problems:
             unit_time = math.sqrt(case.cylinder.semidiagonal / 6.0)

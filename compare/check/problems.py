@@ -1,11 +1,22 @@
-"""Ground motions that are known at every time: straight lines between knots, sampled as often as wanted."""
+"""What many checks are made on: one pier, releases, and ground motions that are known at every time."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rockwobble.models import GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+
+GRAVITY = 9.81  # [m/s^2], the default of a case
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+THRESHOLD = GRAVITY * PIER.tan_alpha  # of its uplift [m/s^2]
+MODELS = ("recess", "flat", "planar")
+
+
+def released(share: float, spin: float, duration: float, cylinder: Cylinder = PIER, name: str = "") -> Case:
+    """Return a release from rest at a share of alpha, with a rolling rate [rad/s]."""
+    initial = InitialState(tilt=share * cylinder.alpha, rolling_rate=spin)
+    return Case(cylinder, initial=initial, duration=duration, name=name)
 
 
 def polyline(times: ArrayLike, values: ArrayLike, step: float) -> GroundMotion:
