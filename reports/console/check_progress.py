@@ -24,7 +24,7 @@ def shown_progress(layer: str) -> Iterator[tuple[Callable[[Progress], None], Cal
         checks = 0
 
         def tell(event: Progress) -> None:
-            run = f"engine runs {event.done} of {event.total}: {event.case}, {event.label}"
+            run = f"engine runs {event.done} of {event.total}: {event.label}"
             status.update(f"{layer} ... {checks} checks done, {run}")
 
         def count(done: int) -> None:
