@@ -120,18 +120,24 @@ ENGINE = {
         ({"engine": ENGINE | {"diverged": False}}, "agreed to the end;"),
         ({"engine": ENGINE | {"divergence": "earlier"}}, "rely on neither before you know why"),
         ({"engine": ENGINE | {"outcome": "overturned"}}, "as predicted; it overturns."),
-        ({"engine": ENGINE | {"outcome": "failed", "diagnostics": "energy_gain"}}, "could not verify that: energy"),
+        (
+            {"engine": ENGINE | {"outcome": "failed", "diagnostics": "energy_gain"}},
+            "could not verify that: energy",
+        ),
         ({"trust": {"kind": "trace", "until": 8.0, "because": ""}}, "To its end: neither the method nor"),
-        ({"trust": {"kind": "peak", "until": 7.0, "because": "data"}}, "the copies are spread over half"),
+        ({"trust": {"kind": "peak", "until": 7.0, "because": "data"}}, "s) included: the copies are spread"),
         ({"prediction": {"length": 7.0, "reason": "pass"}}, "for 7 s from uplift or release: a pass then"),
-        ({"prediction": {"length": 8.0, "reason": ""}}, "within 1 % of α to the end."),
+        ({"prediction": {"length": 7.0, "reason": "growth"}}, "have multiplied the error"),
         ({"beside": (0.2, math.inf)}, "0.2 to ∞ α (∞: it overturns)"),
         ({"lowest": {"3d": {"factor": 0.8, "confirmed": True, "start": 0.5}}}, "it stands in a gap"),
         ({"lowest": {"3d": {"factor": 1.4, "confirmed": False, "start": 0.5}}}, "a matter of chance"),
         ({"lowest": {"3d": {"factor": math.nan, "confirmed": False, "start": 0.5}}}, "No scale up to 16"),
         ({"records": "synthetic"}, "22 made-up ground motions"),
         ({"recess": None}, "no recess holds that"),
-        ({"outcome": "failed", "moves": False, "failure": ["step_budget"]}, "the recess model failed (the steps"),
+        (
+            {"outcome": "failed", "moves": False, "failure": ["step_budget"]},
+            "the recess model failed (the steps",
+        ),
     ],
 )
 def test_words_turn_with_the_numbers(stored, changes, words):
