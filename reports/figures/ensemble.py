@@ -45,8 +45,8 @@ def ensemble_picture(found: Ensemble) -> Picture:
         title="Distributions of peak tilt by method, and ratios of the peaks of each member",
         caption="Above: share of the members whose peak tilt is at most that of the axis; what a curve lacks "
         "to 1 at the triangle overturns. Below: ratio of the two peaks of each member (dots; triangles at "
-        "the edges count those that overturn by one method alone), the median with its 95 % interval (diamond, "
-        f"thick bar), 5 to 95 % of the members (thin bar), and the margin of {100.0 * MARGIN:g} % (shaded).",
+        "the edges count those that overturn by one method alone), the median with its 95 % interval "
+        f"(diamond, thick bar), 5 to 95 % of the members (thin bar), and the margin of {100.0 * MARGIN:g} % (shaded).",
         panels=panels,
         legend="panels",
     )
