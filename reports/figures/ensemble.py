@@ -46,7 +46,8 @@ def ensemble_picture(found: Ensemble) -> Picture:
         caption="Above: share of the members whose peak tilt is at most that of the axis; what a curve lacks "
         "to 1 at the triangle overturns. Below: ratio of the two peaks of each member (dots; triangles at "
         "the edges count those that overturn by one method alone), the median with its 95 % interval "
-        f"(diamond, thick bar), 5 to 95 % of the members (thin bar), and the margin of {100.0 * MARGIN:g} % (shaded).",
+        "(diamond, thick bar), 5 to 95 % of the members (thin bar), and the margin of "
+        f"{100.0 * MARGIN:g} % (shaded).",
         panels=panels,
         legend="panels",
     )
