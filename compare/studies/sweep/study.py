@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
+from functools import partial
 from itertools import chain
+from operator import attrgetter, methodcaller
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, TypeAlias
 
 from rockwobble.models import Case, Run, Suite
 
@@ -17,8 +19,9 @@ from ...runs.task import Lost
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import made_now, write_results
 from ...storage.parquet_file import pack, read
-from .cases import CaseSweep
-from .grid import Grid
+from ...storage.provenance import engine_makers, reduced_makers
+from .cases import CaseChunk, CaseSweep
+from .grid import Grid, GridChunk
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -28,32 +31,7 @@ KIND = "sweep"
 _TRIES = 3
 _RECESS = Run(None, "recess")
 
-
-class Chunk(Protocol):
-    """Some of the runs of a sweep."""
-
-    @property
-    def rows(self) -> int:
-        """Number of runs."""
-        ...
-
-    @property
-    def name(self) -> str:
-        """What it is, for whoever waits."""
-        ...
-
-    @property
-    def makers(self) -> dict[str, str]:
-        """Versions and code on which the results depend."""
-        ...
-
-    def key(self) -> str:
-        """Return the hash of all that the results depend on."""
-        ...
-
-    def run(self) -> pd.DataFrame:
-        """Return one row for each run."""
-        ...
+Chunk: TypeAlias = GridChunk | CaseChunk
 
 
 class SweepIncompleteError(RuntimeError):
@@ -123,21 +101,21 @@ def sweep(
     if chunk_size is not None and chunk_size < 1:
         raise ValueError(f"chunk_size must be at least 1, got {chunk_size!r}")
     chunks: list[Chunk] = list(whole.chunks(chunk_size))
-    keeping = (
-        nullcontext() if out is None else open_cache(out, KIND, name=_key, pack=_packed, unpack=_unpacked)
-    )
-    with keeping as cache:
+    runs = (_RECESS,) if isinstance(whole, Grid) else whole.runs
+    engines = tuple(dict.fromkeys(run.engine for run in runs))
+    kept = partial(open_cache, kind=KIND, name=methodcaller("key"), pack=_packed, unpack=_unpacked)
+    with nullcontext() if out is None else kept(out) as cache:
         results = run_tasks(
-            run_chunk,
+            _run,
             chunks,
             workers=workers,
             scheduler=scheduler,
-            cost=_rows,
-            label=_name,
+            cost=attrgetter("rows"),
+            label=attrgetter("name"),
             progress=progress,
             cache=cache,
             tries=_TRIES,
-            makers=_Makers(chunks),
+            makers=partial(_makers, engines),
         )
         table = _table(results)
     if out is not None:
@@ -157,20 +135,10 @@ def sweep(
     return table
 
 
-def run_chunk(chunk: Chunk) -> pd.DataFrame:
-    """Run a chunk where this is called."""
-    return chunk.run()
-
-
-class _Makers:
-    """Versions and code that any of the chunks depends on, as they are where it is called."""
-
-    def __init__(self, chunks: Sequence[Chunk]) -> None:
-        # one of each: those of a method are alike
-        self._chunks = list({tuple(chunk.makers): chunk for chunk in chunks}.values())
-
-    def __call__(self) -> dict[str, str]:
-        return dict(chain.from_iterable(chunk.makers.items() for chunk in self._chunks))
+def _makers(engines: tuple[str | None, ...]) -> dict[str, str]:
+    """Versions and code that the runs depend on, as they are where this is called."""
+    found = (reduced_makers() if engine is None else engine_makers(engine) for engine in engines)
+    return dict(chain.from_iterable(each.items() for each in found))
 
 
 def _plan(plan: Grid | CaseSweep | Suite | Iterable[Case]) -> Grid | CaseSweep:
@@ -181,16 +149,9 @@ def _plan(plan: Grid | CaseSweep | Suite | Iterable[Case]) -> Grid | CaseSweep:
     return CaseSweep(plan, (_RECESS,))
 
 
-def _key(chunk: Chunk) -> str:
-    return chunk.key()
-
-
-def _name(chunk: Chunk) -> str:
-    return chunk.name
-
-
-def _rows(chunk: Chunk) -> float:
-    return float(chunk.rows)
+def _run(chunk: Chunk) -> pd.DataFrame:
+    table: pd.DataFrame = chunk.run()
+    return table
 
 
 def _packed(chunk: Chunk, table: pd.DataFrame) -> bytes:
