@@ -12,7 +12,7 @@ from rockwobble.models.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
 from ...runs.choice import require_runnable, run_labels
-from ...runs.execution import Job, job_fingerprint, makers_of, run_job
+from ...runs.execution import Job, job_fingerprint, run_job
 from ...storage.fingerprint import fingerprint
 
 # An engine's run takes seconds, a reduced one milliseconds.
@@ -40,9 +40,10 @@ class CaseChunk:
         return len(self.jobs)
 
     @property
-    def makers(self) -> dict[str, str]:
-        """Versions and code on which the results depend."""
-        return makers_of(self.jobs[0])
+    def name(self) -> str:
+        """What it is, for whoever waits."""
+        others = f" and {len(self.jobs) - 1} more" if len(self.jobs) > 1 else ""
+        return f"{self.jobs[0].name}{others}"
 
     def key(self) -> str:
         """Return the hash of all that the results depend on."""
@@ -56,7 +57,7 @@ class CaseChunk:
 
 @dataclass(frozen=True, slots=True, eq=False, init=False)
 class CaseSweep:
-    """Every case with every method: runs of engines, and reduced models by name.
+    """Every case with every run, of an engine or a reduced model.
 
     Parameters
     ----------
