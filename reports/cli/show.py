@@ -53,6 +53,14 @@ def show(store: Store, as_json: Json = False) -> None:
         raise typer.Exit(1)
 
 
+def print_results(store: Path, kind: str) -> None:
+    """Print what there is of one kind of results."""
+    from rockwobble.compare.storage.manifest import read_results
+
+    made = read_results(store, kind).manifest
+    _print(store, made, dict.fromkeys(made.files, "whole"))
+
+
 def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
     from rich import box
     from rich.console import Console
@@ -89,7 +97,9 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
 def _text(value: object) -> str:
     from ..pages.table import number
 
+    if isinstance(value, Mapping):
+        return str(value.get("name", value.get("label", "")))
     if isinstance(value, list):
-        shown = ", ".join(number(item) for item in value[:6])
+        shown = ", ".join(_text(item) for item in value[:6])
         return shown + (f" and {len(value) - 6} more" if len(value) > 6 else "")
     return number(value)
