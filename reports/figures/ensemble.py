@@ -113,14 +113,14 @@ def _ratios(found: Ensemble, rows: list[dict[str, Any]]) -> Panel:
         ticks.append((float(place), f"{row['method']}\n/ {row['against']}, n = {has.sum()}"))
     return Panel(
         x=Axis(
-            label="ratio of peak tilts of the same member",
+            label="ratio of peak tilts",
             unit="-",
             log=True,
             low=low,
             high=high,
             ticks=[(tick, f"{tick:g}") for tick in ratio_ticks(low, high)],
         ),
-        y=Axis(label="method / against", unit="", low=-0.6, high=len(rows) - 0.4, ticks=ticks, reverse=True),
+        y=Axis(label="pair", unit="-", low=-0.6, high=len(rows) - 0.4, ticks=ticks, reverse=True),
         layers=layers,
         title="Ratio of the peaks of each member",
         height=_LINE * len(rows) + 1.4,

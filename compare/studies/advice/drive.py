@@ -13,11 +13,11 @@ from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940
 
 from ...metrics.distributions import Contrast, contrast
 from ...runs.choice import require_runnable
-from ...runs.execution import SAMPLE_STEP
+from ...runs.execution import SAMPLE_STEP, simulate_run
 from ...runs.progress import ProgressCallback, Stages
 from ..ensemble.members import perturbed_starts
 from .advice import OTHER, Advice
-from .members import COPIES, VELOCITY, member_rows, other_records, simulate
+from .members import COPIES, VELOCITY, member_rows, other_records
 from .scales import planar_runs, scan_scales
 from .trust import BAND_STEP, Trust, band_of, predicted, spread_from, trust_of, verified
 
@@ -88,24 +88,24 @@ def advise(
         model, other = other, model
     stage = Stages(progress, 4 if run is None else 5).stage
     with stage("both reduced models (compiled on their first run)"):
-        trace = simulate(case, model)
+        trace = simulate_run(case, model)
         if trace.time[-1] > case.length:
             case = _to_the_fall(case, float(trace.time[-1]))
-            trace = simulate(case, model)
-        other_trace = simulate(case, other)
+            trace = simulate_run(case, model)
+        other_trace = simulate_run(case, other)
     moves = math.isfinite(trace.uplift_time) and trace.outcome != "failed"
     copies: list[Trace] = []
     others: list[Trace] = []
     with stage(f"{count} perturbed copies"):
         if moves:
             cases = perturbed_starts(case, count, perturbation=perturbation, seed=seed)
-            copies = [simulate(each, model) for each in cases]
-            others = [simulate(each, other, sample_step=BAND_STEP) for each in cases]
+            copies = [simulate_run(each, model) for each in cases]
+            others = [simulate_run(each, other, sample_step=BAND_STEP) for each in cases]
         rows = [*member_rows(COPIES, copies), *member_rows(OTHER, others)]
     with stage("other records as strong, and planar analysis"):
         records, source = other_records(case) if trace.outcome != "failed" else ({}, "")
         for name, cases in records.items():
-            rows += member_rows(name, (simulate(each, model) for each in cases))
+            rows += member_rows(name, (simulate_run(each, model) for each in cases))
         planar = planar_runs(records[VELOCITY], model.support) if records else pd.DataFrame()
     with stage("other scales of the ground motion"):
         scales, lowest = scan_scales(case, model.support)
@@ -166,7 +166,9 @@ def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -
     shaken = dataclasses.replace(case, motion=record, duration=case.duration if motion.has_vertical else None)
     cases = perturbed_starts(shaken, _VERTICAL_COUNT, perturbation=perturbation, seed=seed)
     flat = [dataclasses.replace(each, motion=_horizontal(each.motion)) for each in cases]
-    found = _contrast(*([simulate(each, model, sample_step=1.0) for each in part] for part in (cases, flat)))
+    found = _contrast(
+        *([simulate_run(each, model, sample_step=1.0) for each in part] for part in (cases, flat))
+    )
     if found is None or not found.compared:
         return None
     return {

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble import reduced
-from rockwobble.models import Case, GroundMotion, Run, Trace
+from rockwobble.models import Case, GroundMotion, Trace
 
 from ...metrics.order_statistics import quantile_interval, share_interval
 from ..ensemble.members import FAR_FIELD_PAIRS, far_field_motions, synthetic_motions
@@ -28,11 +27,6 @@ SPIKES = 0.01
 _QUANTILES = {"05": 0.05, "50": 0.5, "95": 0.95}
 # what each run asks, and of which it has a percentile over the members
 DEMANDS = ("friction", "moment", "force", "slip", "lost")
-
-
-def simulate(case: Case, run: Run, *, sample_step: float = 0.01) -> Trace:
-    """Run a reduced model on a case."""
-    return reduced.simulate(case, support=run.support, sample_step=sample_step, **run.settings)
 
 
 def fall_of(trace: Trace) -> float:
