@@ -42,8 +42,8 @@ def map_pictures(tables: Tables) -> list[Picture]:
         _shaken(
             "bias",
             "Where rolling out changes the peak: bias",
-            "Median over the records of the peak on flat ground over that in an ideal recess, both of the reduced "
-            "models: red, higher on flat ground; blue, lower.",
+            "Median over the records of the peak on flat ground over that in an ideal recess, both of the "
+            "reduced models: red, higher on flat ground; blue, lower.",
             Shades(label="flat over recess, median", unit="%", low=-50.0, high=50.0, centre=0.0),
             table,
             lambda own: 100.0 * (own["flat_ratio"] - 1.0),

@@ -74,7 +74,7 @@ def _contrasts(table: pd.DataFrame) -> list[dict[str, object]]:
 
 
 def _summary(table: pd.DataFrame) -> list[dict[str, object]]:
-    """The maps in one table: a row for each slenderness and intensity, the least and the largest over sizes."""
+    """The maps in one table: by slenderness and intensity the least and the largest over the sizes."""
     rows: list[dict[str, object]] = []
     for (tan_alpha, intensity), own in table.groupby(["tan_alpha", "intensity"]):
         rows.append(
