@@ -7,7 +7,7 @@ import sys
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.compare.runs.execution import Progress
+from rockwobble.compare.runs.progress import Progress
 
 if TYPE_CHECKING:
     import pandas as pd
