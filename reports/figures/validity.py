@@ -260,7 +260,7 @@ def _contact(table: pd.DataFrame) -> Picture:
         x=lost,
         y=np.full(len(lost), float(known["ratio"].min()) if len(known) else 1.0),
         name="failed" if len(lost) else "",
-        style=Style(colour="#D55E00", dash="none", symbol="x"),
+        style=Style(colour=DARK, dash="none", symbol="x"),
     )
     return Picture(
         name="contact",

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import pandas as pd
-
 from rockwobble.compare.metrics.distributions import MARGIN
 from rockwobble.compare.studies.validity import limits_of
 from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
@@ -18,6 +16,8 @@ from ..figures.validity import METHODS, validity_pictures
 from .page import Page
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from rockwobble.compare.studies.validity import Validity
 
 
@@ -54,6 +54,8 @@ def validity_pages(found: Validity) -> dict[str, bytes]:
 
 def limits_table(found: Validity) -> pd.DataFrame:
     """Return every number of every limit: limit, number, value."""
+    import pandas as pd
+
     rows = [
         {"limit": limit, "number": number, "value": value}
         for limit, numbers in limits_of(found.tables).items()

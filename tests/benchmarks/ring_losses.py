@@ -73,8 +73,8 @@ def medians(rows: pd.DataFrame) -> pd.DataFrame:
         sizes = own[["contact_time", "rolled_out", "at_end", "recess", "flat"]].median()
         first = own["first_contact"].replace(np.inf, np.nan).median()
         found.append(
-            {"case": case, "run": run, "first": first, "passes": own["passes"].median(), "lost": lost.median(),
-             "from": lost.min(), "to": lost.max(), "a pass": (lost / passes).median(),
+            {"case": case, "run": run, "first": first, "passes": own["passes"].median(),
+             "lost": lost.median(), "from": lost.min(), "to": lost.max(), "a pass": (lost / passes).median(),
              "twist": own["twist"].abs().median(),
              "broken": int(own["outcome"].isin(("failed", "overturned")).sum())} | sizes.to_dict()
         )  # fmt: skip
@@ -123,10 +123,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     table = medians(pd.DataFrame([row for row in found if not isinstance(row, Lost)]))
     print(
-        "MuJoCo, R = 6 m, ample friction of the ground. A ring has its default settings but for the one named.\n"
+        "MuJoCo, R = 6 m, ample friction. A ring has its default settings but for the one named.\n"
         f"Medians of runs turned by {', '.join(f'{turn:g}' for turn in TURNS[: given.turns])} deg.\n"
-        "first contact with a wall [s]; lost [%] of the largest energy reached; rolled_out, at_end: how far from\n"
-        "its place it would come down [b]; recess, flat: RMS of the tilt difference over that of the model."
+        "first contact with a wall [s]; lost [%] of the largest energy reached; rolled_out, at_end: how\n"
+        "far from its place it would come down [b]; recess, flat: relative RMS against the models."
     )
     for case, own in table.groupby("case", sort=False):
         print(f"\n{case}\n{own.drop(columns='case').to_string(index=False, float_format='{:.4g}'.format)}")

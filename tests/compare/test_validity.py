@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from tiny_validity import TINY, tiny_tables
 
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.validity import FULL, PARTS, QUICK, limits_of, measure_all
@@ -23,7 +24,6 @@ from rockwobble.models import Cylinder
 from rockwobble.reduced import body, problem
 from rockwobble.reduced.body import Body
 from rockwobble.reduced.exact import _checks
-from tiny_validity import TINY, tiny_tables
 
 Tables = Mapping[str, pd.DataFrame]
 # of the transverse inertia: far above every error of an engine, and no other body
@@ -134,7 +134,7 @@ def test_a_cell_is_of_records_signed_and_knows_who_overturns(tables: Tables) -> 
         "flat": [0.05, 0.1, fallen, fallen],
         "copy": [0.1, 0.2, 0.4, 0.9],
     }
-    nothing = {name: math.nan for name in ("friction", "least_normal", "moment")}
+    nothing = dict.fromkeys(("friction", "least_normal", "moment"), math.nan)
     table = pd.DataFrame(rows).assign(
         motion=[f"record {n}" for n in range(4)], tan_alpha=0.2, semidiagonal=6.0, intensity=2.0, **nothing
     )

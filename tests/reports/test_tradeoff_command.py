@@ -58,7 +58,7 @@ def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
         *(f"{name}.parquet" for name in TABLES), "tradeoff.html", "tradeoff.md", "tradeoff-shaken.svg",
         "manifest.json",
     }  # fmt: skip
-    # an error of 1e-2 and 1e-3 by the coarsest step, of 1e-4 by the next: times of one method, not of each other
+    # multiples of the recess model at its default tolerance, not of another family at that error
     printed = " ".join(done.stdout.split())
     assert (
         "an engine takes 1,400 to 2,100 times the computing time of the recess model at its default"

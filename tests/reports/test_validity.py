@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from tiny_validity import tiny_validity
 from typer.testing import CliRunner
 
 from rockwobble.compare.storage.manifest import write_results
@@ -16,7 +17,6 @@ from rockwobble.compare.studies.validity import Validity, limits_of, read_validi
 from rockwobble.compare.studies.validity.records import RECESS
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.validity import limits_table, validity_page
-from tiny_validity import tiny_validity
 
 LARGEST = 8_000_000  # bytes of a page
 
