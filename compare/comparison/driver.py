@@ -124,7 +124,7 @@ def compare(
     comparison = Comparison(
         summary=_table(rows),
         cases={case.name: case for case in cases},
-        traces={key: trace for key, trace in found.items() if len(trace.time)} | brought,
+        traces=found | brought,
         versions=package_versions(),
         until=until,
         budgets=budgets,

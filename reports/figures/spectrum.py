@@ -26,7 +26,7 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
         Panel(
             x=size,
             y=intensity,
-            title=f"({letter}) {TITLES[series]}",
+            title=TITLES[series],
             layers=[
                 _map(spectrum, series),
                 Line(
@@ -39,12 +39,12 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
             height=_HEIGHT,
             second=_own_peak(spectrum.component_share(series)),
         )
-        for letter, series in zip("abc", SERIES, strict=True)
+        for series in SERIES
     ]
     curves = Panel(
         x=size,
         y=intensity,
-        title="(d) lowest found to overturn; thin: safe islands above it",
+        title="lowest found to overturn, safe islands (thin)",
         layers=_curves(spectrum),
         height=_HEIGHT,
     )

@@ -12,7 +12,7 @@ from typing import Any
 KINDS: Mapping[str, tuple[str, str]] = {
     "comparison": (
         "rockwobble.compare.comparison.result:Comparison.load",
-        "rockwobble.reports.pages.comparison.files:comparison_pages",
+        "rockwobble.reports.pages.comparison.report:comparison_files",
     ),
     "ensemble": (
         "rockwobble.reports.pages.ensemble:stored_page",
@@ -37,6 +37,10 @@ KINDS: Mapping[str, tuple[str, str]] = {
     "extremes": (
         "rockwobble.compare.studies.extremes.study:read_extremes",
         "rockwobble.reports.pages.extremes:extremes_pages",
+    ),
+    "paper": (
+        "rockwobble.reports.paper.page:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
     ),
 }
 
