@@ -53,14 +53,6 @@ def show(store: Store, as_json: Json = False) -> None:
         raise typer.Exit(1)
 
 
-def print_results(store: Path, kind: str) -> None:
-    """Print what there is of one kind of results."""
-    from rockwobble.compare.storage.manifest import read_results
-
-    made = read_results(store, kind).manifest
-    _print(store, made, dict.fromkeys(made.files, "whole"))
-
-
 def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
     from rich import box
     from rich.console import Console

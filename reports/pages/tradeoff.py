@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockwobble.compare.studies.tradeoff import (
     ROUNDS,
-    TARGETS,
     costs,
     engine_factors,
     plateaus,
+    read_tradeoff,
     rest_tilt_price,
 )
 
@@ -51,9 +52,15 @@ def tradeoff_page(found: Tradeoff) -> Page:
     return Page(name="tradeoff", template="tradeoff", values=values, pictures=pictures)
 
 
-def tradeoff_pages(found: Tradeoff) -> dict[str, bytes]:
-    """Return name and content of each file of the report."""
-    return tradeoff_page(found).files()
+def stored_page(folder: Path) -> Page:
+    """Return the report of what is stored in `folder`.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    return tradeoff_page(read_tradeoff(folder))
 
 
 def _rows(table: pd.DataFrame) -> list[dict[str, object]]:
@@ -72,7 +79,7 @@ def _ways(cheapest: pd.DataFrame) -> pd.DataFrame:
         for row in cheapest.to_dict("records")
     ]
     keys = ["problem", "support", "target"]
-    wide = cheapest.assign(said=said).pivot(index=keys, columns="family", values="said")
+    wide = cheapest.assign(said=said).pivot_table("said", keys, "family", aggfunc="first")
     order = cheapest[keys].drop_duplicates()
     return order.merge(wide.fillna(NONE).reset_index(), on=keys)
 

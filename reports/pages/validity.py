@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-import pandas as pd
-
 from rockwobble.compare.metrics.distributions import MARGIN
-from rockwobble.compare.studies.validity import limits_of
+from rockwobble.compare.studies.validity import limits_of, read_validity
 from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.limits.engine import damping
@@ -18,6 +17,8 @@ from ..figures.validity import METHODS, validity_pictures
 from .page import Page
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from rockwobble.compare.studies.validity import Validity
 
 
@@ -47,13 +48,21 @@ def validity_page(found: Validity) -> Page:
     return Page(name="validity", template="validity", values=values, pictures=validity_pictures(tables))
 
 
-def validity_pages(found: Validity) -> dict[str, bytes]:
-    """Return name and content of each file of the report."""
-    return validity_page(found).files()
+def stored_page(folder: Path) -> Page:
+    """Return the report of what is stored in `folder`.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    return validity_page(read_validity(folder))
 
 
 def limits_table(found: Validity) -> pd.DataFrame:
     """Return every number of every limit: limit, number, value."""
+    import pandas as pd
+
     rows = [
         {"limit": limit, "number": number, "value": value}
         for limit, numbers in limits_of(found.tables).items()
@@ -74,7 +83,7 @@ def _contrasts(table: pd.DataFrame) -> list[dict[str, object]]:
 
 
 def _summary(table: pd.DataFrame) -> list[dict[str, object]]:
-    """The maps in one table: a row for each slenderness and intensity, the least and the largest over sizes."""
+    """The maps in one table: by slenderness and intensity the least and the largest over the sizes."""
     rows: list[dict[str, object]] = []
     for (tan_alpha, intensity), own in table.groupby(["tan_alpha", "intensity"]):
         rows.append(

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import pytest
 
-from rockwobble.compare import read_sweep
-from rockwobble.compare.runs.cache import CACHE
 from rockwobble.reports.cli.main import main
 
 GRID = ["--semidiagonal", "1:20:4", "--tan-alpha", "0.1,0.2", "--scale", "0.3,2", "--workers", "1"]
@@ -16,30 +14,6 @@ def call(*arguments: str) -> int:
         main(list(arguments))
     assert isinstance(ended.value.code, int)
     return ended.value.code
-
-
-def test_a_sweep_prints_what_it_keeps_and_show_prints_it_again(tmp_path, capsys):
-    assert call("sweep", *GRID, "--out", str(tmp_path)) == 0
-    printed = capsys.readouterr().out
-    assert "alpha = 5.711 to 11.31 deg" in printed
-    assert "Runs: 16 (4 sizes, 2 slendernesses, 2 scales, 1 records, models recess)" in printed
-    table = read_sweep(tmp_path)
-    assert call("show", str(tmp_path)) == 0
-    shown = capsys.readouterr().out
-    assert shown.strip() in printed
-    for outcome, count in table["outcome"].value_counts().items():
-        assert f"{outcome} {count}" in " ".join(shown.split())
-
-
-def test_a_sweep_that_is_started_again_says_what_it_found(tmp_path, capsys):
-    assert call("sweep", *GRID, "--chunk", "1", "--out", str(tmp_path)) == 0
-    kept = sorted((tmp_path / CACHE / "sweep").glob("*.parquet"))
-    assert len(kept) == 16
-    for path in kept[:13]:
-        path.unlink()
-    capsys.readouterr()
-    assert call("sweep", *GRID, "--chunk", "1", "--out", str(tmp_path)) == 0
-    assert "16 of 16 chunks (3 of them found finished)" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
