@@ -124,16 +124,18 @@ def advise(
                 progress=tell,
             )
         held = f"Support: {support}, friction {'not given' if friction is None else f'{friction:g}'}"
-        about = {"problem": [*describe(found.case), f"{held}; reduced model: {found.model}"], **found.facts()}
+        problem = [*describe(found.case), f"{held}; reduced model: {found.model}"]
+        facts = {"problem": problem, **found.facts()}
         jobs = [job_fingerprint(Job(case=case, run=each)) for each in (found.model, run) if each is not None]
         manifest = made_now(
             KIND,
             inputs=fingerprint([*jobs, support, friction, copies, seed]),
             command=command_line(),
             seeds={"copies": seed},
-            headline={f"overturning, {row['group']}": row["chance"] for row in about["answers"]}
-            | {"largest tilt as given [alpha]": about["peak"]},
-            about=about,
+            headline={"case": found.case.name, "outcome as given": facts["outcome"], "grade": facts["grade"]}
+            | {f"overturning, {row['group']}": row["chance"] for row in facts["answers"]}
+            | {"largest tilt as given [alpha]": facts["peak"]},
+            about={"advice": facts},
         )
         show_and_write(out, advice_page(found.tables(), manifest), manifest, found.tables())
     if found.trace.outcome == "failed":

@@ -144,7 +144,16 @@ def spectrum(
             )
         tables = spectrum_tables(found, check_cells(found), confirm_lowest(found))
         inputs = fingerprint([found.facts(), radii, levels, motion.acceleration, reduced_makers()])
-        manifest = made_now(KIND, inputs=inputs, command=command_line(), about=found.facts())
+        every = tables["contrast"].iloc[-1]
+        headline = {
+            "cells": int(every["cells"]),
+            "share that overturns in 3D": float(every["falls"]),
+            "share that overturns in 3D and in neither plane": float(every["missed"]),
+            "share that overturns in a plane and not in 3D": float(every["overcalled"]),
+        }
+        manifest = made_now(
+            KIND, inputs=inputs, command=command_line(), headline=headline, about=found.facts()
+        )
         show_and_write(out, spectrum_page(found, tables, manifest), manifest, tables)
 
 

@@ -28,7 +28,7 @@ GRADE_WORDS = {"good": "sound", "care": "care", "bad": "fails"}
 
 def advice_page(tables: Mapping[str, pd.DataFrame], manifest: Manifest) -> Page:
     """Return the page of an advice, from its tables and its manifest alone."""
-    facts = manifest.about
+    facts = manifest.about["advice"]
     picture = advice_picture(facts, tables)
     return Page(
         name="advice",

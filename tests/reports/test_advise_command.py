@@ -82,14 +82,14 @@ def stored(tmp_path_factory: pytest.TempPathFactory, records: Path) -> Path:
 def said(folder: Path, **changes: object) -> str:
     """Return the document of stored advice with other numbers."""
     results = read_results(folder, KIND)
-    facts = copy.deepcopy(dict(results.manifest.about)) | changes
+    facts = copy.deepcopy(dict(results.manifest.about["advice"])) | changes
     tables = {name.removesuffix(".parquet"): results.table(name.removesuffix(".parquet")) for name in DATA}
-    manifest = type(results.manifest)(kind=KIND, command="rockwobble advise", about=facts)
+    manifest = type(results.manifest)(kind=KIND, command="rockwobble advise", about={"advice": facts})
     return advice_page(tables, manifest).markdown()
 
 
 def test_displacements_are_those_of_the_tilted_cylinder(stored):
-    facts = read_results(stored, KIND).manifest.about
+    facts = read_results(stored, KIND).manifest.about["advice"]
     values = advice_values({**facts, "peak": 1.0})
     theta, b, h = facts["alpha"], facts["b"], facts["h"]
     assert values["given"]["rim"] == pytest.approx(2.0 * b * math.sin(theta), rel=1e-12)
