@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 # a ring against the recess model in the largest tilt: median of the size of the relative difference, and its
 # range, of published/validity/points.parquet
 RING = {"median": 0.38, "low": -0.76, "high": 0.68}
+# [weights] more than any soft ground would give: 99 % of the time in motion asks for less than two
+ARTEFACT = 10.0
 GRADE_WORDS = {"good": "sound", "care": "care", "bad": "fails"}
 
 
@@ -85,6 +87,7 @@ def advice_values(facts: Mapping[str, Any]) -> dict[str, Any]:
             if topic in CRITERIA
         ],
         "ring": RING,
+        "artefact": ARTEFACT,
         "tolerance": CHECK_RTOL,
         "nudge": NUDGE,
     }

@@ -132,6 +132,7 @@ ENGINE = {
         ({"lowest": {"3d": {"factor": 0.8, "confirmed": True, "start": 0.5}}}, "it stands in a gap"),
         ({"lowest": {"3d": {"factor": 1.4, "confirmed": False, "start": 0.5}}}, "a matter of chance"),
         ({"lowest": {"3d": {"factor": math.nan, "confirmed": False, "start": 0.5}}}, "No scale up to 16"),
+        ({"model_grade": "bad"}, "; do not rely on the recess model ("),
         ({"records": "synthetic"}, "22 made-up ground motions"),
         ({"recess": None}, "no recess holds that"),
         (

@@ -214,6 +214,8 @@ class Advice:
             "tan_alpha": cylinder.tan_alpha,
             "grades": self.grades,
             "grade": overall(self.grades.values()),
+            # whether the model may be used, whatever becomes of the cylinder
+            "model_grade": overall(grade for topic, grade in self.grades.items() if topic != "overturning"),
             "answers": self.answers.to_dict("records"),
             "largest": dataclasses.asdict(held) if held else None,
             "recess": self.recess(),
