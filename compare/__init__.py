@@ -9,7 +9,7 @@ from typing import Any
 
 from .comparison.driver import compare
 from .comparison.error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
-from .comparison.result import Comparison, describe_case, describe_run
+from .comparison.result import Comparison, describe_case
 from .comparison.summary import SUMMARY_COLUMNS
 from .metrics.agreement import AGREEMENT
 from .metrics.contact import TILTED
@@ -23,7 +23,9 @@ from .runs.choice import (
     reserved_engines,
     with_settings,
 )
-from .runs.execution import Job, Progress, simulate, simulate_all
+from .runs.execution import Job, simulate, simulate_all
+from .runs.progress import Progress
+from .runs.scheduler import run_tasks
 from .storage.files import replace_files, require_writable
 from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
 from .studies.ensemble.study import Ensemble, ensemble, read_ensemble
@@ -55,7 +57,6 @@ __all__ = [
     "compare",
     "default_runs",
     "describe_case",
-    "describe_run",
     "ensemble",
     "far_field_motions",
     "findings",
@@ -72,6 +73,7 @@ __all__ = [
     "require_runnable",
     "require_writable",
     "reserved_engines",
+    "run_tasks",
     "simulate",
     "simulate_all",
     "sweep",

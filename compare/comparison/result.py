@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -13,15 +13,15 @@ import numpy as np
 
 from rockwobble.models import Case, Trace, plain_json
 
-from ..storage.files import replace_files
 from ..storage.fingerprint import fingerprint
-from ..storage.parquet_file import pack
-from ..storage.provenance import about_results
+from ..storage.manifest import Manifest, made_now, read_results, write_results
 from .error_budget import ErrorBudget
 from .file import ABOUT, load_fields, plain_fields
 
 if TYPE_CHECKING:
     import pandas as pd
+
+KIND = "comparison"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -52,18 +52,54 @@ class Comparison:
     until: float | None = None
     budgets: Mapping[tuple[str, str, str], ErrorBudget] = field(default_factory=dict)
 
-    def save(self, folder: str | Path) -> None:
+    def save(
+        self, folder: str | Path, *, command: str = "", pages: Mapping[str, bytes] | None = None
+    ) -> None:
         """Write the results to `folder`: whole files or none, other files there are left alone.
 
-        summary.csv is the summary; traces.parquet holds the samples of runs and references, passes.parquet
-        the passes, excitation.parquet the ground motions, and comparison.json the rest.
+        summary.csv and summary.parquet are the summary; traces.parquet holds the samples of runs and
+        references, passes.parquet the passes, excitation.parquet the ground motions, budget.parquet the error
+        budgets, comparison.json the rest, and manifest.json says what made them.
+
+        Parameters
+        ----------
+        folder : str or Path
+        command : str, optional
+            That asked for the comparison.
+        pages : mapping, optional
+            Name and content of what was drawn of it.
 
         Raises
         ------
         ValueError
             If the folder cannot be written.
         """
-        replace_files(folder, self.files())
+        whole = plain_fields(self.cases, self.traces, self.versions, self.until, self.budgets)
+        files = {
+            "summary.csv": self.summary.to_csv(index=False).encode(),
+            ABOUT: (plain_json.dumps(whole, indent=1) + "\n").encode(),
+        }
+        made = self.manifest(command)
+        write_results(folder, made, self._tables(), files=files, pages=pages)
+
+    def manifest(self, command: str = "") -> Manifest:
+        """Return what made the comparison, and its main numbers."""
+        relative = self.summary["tilt_rms_relative"]
+        return made_now(
+            KIND,
+            inputs=fingerprint([_inputs(case) for case in self.cases.values()]),
+            command=command,
+            versions=self.versions,
+            headline={
+                "cases": len(self.cases),
+                "rows": len(self.summary),
+                "diverged": int(self.summary["diverged"].sum()),
+                "failed": int((self.summary["outcome"] == "failed").sum()),
+                "median of the relative RMS": _number(relative.median()),
+                "largest relative RMS": _number(relative.max()),
+                "median agreement time [s]": _number(self.summary["agreement_time"].median()),
+            },
+        )
 
     @classmethod
     def load(cls, folder: str | Path) -> Comparison:
@@ -72,22 +108,18 @@ class Comparison:
         Raises
         ------
         ValueError
-            If the folder holds no comparison.
+            If the folder holds no comparison, or a file is missing or damaged.
         """
-        return cls(**load_fields(folder))
+        return cls(**load_fields(read_results(folder, KIND)))
 
-    def files(self) -> dict[str, bytes]:
-        """Return name and content of each file that `save` writes."""
-        whole = plain_fields(self.cases, self.traces, self.versions, self.until, self.budgets)
-        found = {
-            "summary.csv": self.summary.to_csv(index=False).encode(),
-            "summary.parquet": self._pack(self.summary),
-            "traces.parquet": self._pack(self._stacked()),
-            "passes.parquet": self._pack(self._passes()),
-            "excitation.parquet": self._pack(self._excitation()),
-            ABOUT: (plain_json.dumps(whole, indent=1) + "\n").encode(),
+    def _tables(self) -> dict[str, pd.DataFrame]:
+        tables = {
+            "summary": self.summary,
+            "traces": self._stacked(),
+            "passes": self._passes(),
+            "excitation": self._excitation(),
         }
-        return found | ({"budget.parquet": self._pack(self._budget())} if self.budgets else {})
+        return tables | ({"budget": self._budget()} if self.budgets else {})
 
     def plot(self, case: str | None = None) -> Any:
         """Return a matplotlib figure of one case, the first by default, drawn by `rockwobble.reports`."""
@@ -128,11 +160,6 @@ class Comparison:
             tables.append(table)
         whole: pd.DataFrame = pd.concat(tables, ignore_index=True)
         return whole
-
-    def _pack(self, table: pd.DataFrame) -> bytes:
-        """Return a table as Parquet that says what made it and from what."""
-        inputs = fingerprint([_inputs(case) for case in self.cases.values()])
-        return pack(table, about_results("rockwobble comparison", inputs, versions=self.versions))
 
     def _passes(self) -> pd.DataFrame:
         import pandas as pd
@@ -188,28 +215,6 @@ def describe_case(case: Case) -> dict[str, Any]:
             "rolling_angle": initial.rolling_angle,
             "rolling_rate": initial.rolling_rate,
         },
-    }
-
-
-def describe_run(trace: Trace) -> dict[str, Any]:
-    """Return what there is to know of a run besides its samples, for a file; SI units and radians."""
-    names = (
-        *("version", "time_step", "outcome", "peak_tilt", "uplift_time", "uplift_direction", "wall_time"),
-        *("contact_resolution", "residual_displacement", "residual_twist", "error_estimate", "settled_until"),
-    )
-    found = {name: getattr(trace, name) for name in names}
-    return {
-        "engine": trace.run.engine,
-        "support": trace.run.support,
-        **{name: _number(value) if isinstance(value, float) else value for name, value in found.items()},
-        "settings": dict(trace.settings),
-        "diagnostics": [
-            {
-                name: _number(value) if isinstance(value, float) else value
-                for name, value in asdict(fact).items()
-            }
-            for fact in trace.facts
-        ],
     }
 
 

@@ -110,7 +110,7 @@ def ensemble(
         from ..console.progress import shown_progress
         from ..pages.provenance import command_line
 
-        with user_input(), shown_progress(many=True) as tell:
+        with user_input(), shown_progress() as tell:
             found = compare.ensemble(
                 problem,
                 runs=runs,

@@ -12,8 +12,8 @@ from rockwobble.compare.studies.spectrum.planar_contrast import (
     planar_contrast,
     unconservative_from,
 )
+from rockwobble.compare.studies.spectrum.result import OverturningSpectrum
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.models import el_centro_1940
 
 from .claim import Claim, verdict_of

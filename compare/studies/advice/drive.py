@@ -6,7 +6,6 @@ import dataclasses
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,8 @@ from rockwobble.models import Case, GroundMotion, Run, Trace
 
 from ...comparison.prediction import Prediction
 from ...runs.choice import require_runnable
-from ...runs.execution import SAMPLE_STEP, Progress, ProgressCallback, simulate_run
+from ...runs.execution import SAMPLE_STEP, simulate_run
+from ...runs.progress import Clock, ProgressCallback
 from ...storage.provenance import package_versions
 from ..spectrum.lowest_overturning import uplift_factor
 from .advice import Advice
@@ -137,20 +137,13 @@ class _Stages:
     """Tells a callback of one stage after the other."""
 
     def __init__(self, name: str, progress: ProgressCallback | None, total: int) -> None:
-        self._name, self._progress, self._done, self._total = name, progress, 0, total
+        self._name, self._clock = name, Clock(progress, [1.0] * total)
 
     @contextmanager
     def one(self, label: str) -> Iterator[None]:
-        self._tell(label, "started")
+        self._clock("started", f"{self._name}, {label}")
         yield
-        self._done += 1
-        self._tell(label, "finished")
-
-    def _tell(self, label: str, state: Any) -> None:
-        if self._progress is not None:
-            self._progress(
-                Progress(case=self._name, label=label, state=state, done=self._done, total=self._total)
-            )
+        self._clock("finished", f"{self._name}, {label}", 0)
 
 
 def _to_the_fall(case: Case, end: float) -> Case:

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 from rockwobble.models import Case, Run, Suite, Trace
 
 from ...runs.choice import default_runs, own_model, require_runnable, run_labels
-from ...runs.execution import Job, ProgressCallback, simulate_all
-from ...runs.run_store import job_fingerprint, open_run_store
+from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
+from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint
 from ...storage.origin import read_table
 from ...storage.parquet_file import read_about
@@ -130,8 +130,8 @@ def ensemble(
             require_runnable(case, run)
     methods = dict(zip(run_labels((*models, *chosen)), (*models, *chosen), strict=True))
     jobs = [Job(case=case, run=run, label=label) for case in members for label, run in methods.items()]
-    with nullcontext() if resume is None else open_run_store(resume, samples=False) as store:
-        results = simulate_all(jobs, workers=workers, progress=progress, store=store)
+    with nullcontext() if resume is None else open_trace_cache(resume, "ensemble", samples=False) as cache:
+        results = simulate_all(jobs, workers=workers, progress=progress, cache=cache)
     table = _members(jobs, results)
     inputs = fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
