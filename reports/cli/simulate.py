@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -75,6 +76,8 @@ def simulate(
             from rockwobble.models import Run
 
             case = problem.case()
+            if plane is not None and case.initial is not None:  # it leans in the plane that holds it
+                case = replace(case, initial=replace(case.initial, rolling_angle=plane))
             require_writable(out)
             model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
             run = _with_settings(case, Run(engine, support, time_step), setting, model)

