@@ -117,9 +117,7 @@ def read_columns(path: Path, angle_unit: str | None = None) -> Columns:
         lines.append(number)
         table.append([_number(path, number, header[at], cells[at]) for at, _ in known.values()])
     columns = np.array(table, dtype=np.float64).reshape(len(table), len(known)).T
-    values = {
-        name: column * scale for (name, (_, scale)), column in zip(known.items(), columns, strict=True)
-    }
+    values = {name: column * scale for (name, (_, scale)), column in zip(known.items(), columns, strict=True)}
     lost = ~np.isnan(values["time"])
     for name in known.keys() - {"time"}:
         lost &= np.isnan(values[name])
