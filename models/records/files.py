@@ -62,9 +62,9 @@ def read_record(
     first = components[0]
     for other in components[1:]:
         _require_same_clock(first, other, length)
-    _require_still_beyond(components, length)
     with np.errstate(over="ignore"):  # GroundMotion refuses what is not finite
         columns = [part.values[:length] * factor(part.path, part.unit, units) for part in components]
+    _require_still_beyond(components, length)
     return GroundMotion(np.column_stack(columns), first.time_step, first.path.stem if name is None else name)
 
 
