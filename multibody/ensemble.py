@@ -10,7 +10,6 @@ Whatever the sizes, cases of one tan(alpha) are one scene to the engine, by Frou
 
 from __future__ import annotations
 
-import os
 import queue
 import threading
 from collections.abc import Callable, Sequence
@@ -19,6 +18,7 @@ from contextlib import AbstractContextManager
 from typing import Any, Literal
 
 from rockwobble.models import Case, Trace
+from rockwobble.models.cpus import usable_cpus
 
 from .engines.registry import find_engine
 from .simulation import simulate
@@ -95,7 +95,7 @@ def simulate_many(
         except ValueError as error:
             raise ValueError(f"{case.name}: {error}") from error
 
-    count = min(_cores() if workers is None else workers, len(cases))
+    count = min(usable_cpus() if workers is None else workers, len(cases))
     tally = _Tally(cases, progress)
     if together is None or count < 2:
         return [run(case, lambda done, at=at: tally(at, done)) for at, case in enumerate(cases)]  # type: ignore[misc]
@@ -153,9 +153,3 @@ def _side_by_side(cases: Sequence[Case], run: _Run, tally: _Tally, count: int) -
             stop.set()
             pool.shutdown(wait=False, cancel_futures=True)
     return [futures[index].result() for index in range(len(cases))]
-
-
-def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

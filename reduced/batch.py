@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 
@@ -12,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion
+from rockwobble.models.cpus import usable_cpus
 
 from .integration.march import OVERTURNED, March
 from .problem import REST_TILT, make_problem
@@ -98,7 +98,7 @@ def peak_tilts(
         shaking = bodies[0].shaking(float(factors[column]))
         peaks[rows, column] = [_peak(body.march_under(shaking)) for body in bodies[rows]]
 
-    threads = workers or os.cpu_count() or 1
+    threads = workers or usable_cpus()
     parts = min(len(sizes), math.ceil(_TASKS * threads / len(factors)))
     edges = [len(sizes) * part // parts for part in range(parts + 1)]
     tasks = [(column, slice(*rows)) for column in range(len(factors)) for rows in itertools.pairwise(edges)]

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypedDict
 
 import numpy as np
@@ -11,6 +10,7 @@ import numpy as np
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.trace_file import case_from_plain, case_to_plain, facts_of, trace_of
 
+from ..storage.manifest import Results
 from .error_budget import ErrorBudget, Limit
 
 if TYPE_CHECKING:
@@ -66,28 +66,27 @@ def _header(case: Case) -> dict[str, Any] | None:
     return {"name": motion.name, "time_step": motion.time_step, "components": components}
 
 
-def load_fields(folder: str | Path) -> ComparisonFields:
-    """Return what the comparison saved in `folder` is made of; see `Comparison.load`."""
+def load_fields(stored: Results) -> ComparisonFields:
+    """Return what the stored comparison is made of; see `Comparison.load`."""
     import pandas as pd
 
-    path = Path(folder)
     try:
-        rest = plain_json.loads((path / ABOUT).read_bytes())
-        excitation = dict(iter(pd.read_parquet(path / "excitation.parquet").groupby("case", sort=False)))
+        rest = plain_json.loads(stored.content(ABOUT))
+        excitation = dict(iter(stored.table("excitation").groupby("case", sort=False)))
         cases = {name: _case(given, excitation.get(name)) for name, given in rest["cases"].items()}
-        traces = _traces(rest["traces"], pd.read_parquet(path / "traces.parquet"), cases)
-        samples = pd.read_parquet(path / "budget.parquet") if rest["budgets"] else pd.DataFrame()
+        traces = _traces(rest["traces"], stored.table("traces"), cases)
+        samples = stored.table("budget") if rest["budgets"] else pd.DataFrame()
         return ComparisonFields(
-            summary=pd.read_parquet(path / "summary.parquet"),
+            summary=stored.table("summary"),
             cases=cases,
             traces=traces,
             versions=rest["versions"],
             until=rest["until"],
             budgets=_budgets(rest["budgets"], samples, traces),
         )
-    except (OSError, ValueError, KeyError) as error:
+    except (ValueError, KeyError) as error:
         why = str(error).partition("\n")[0]
-        raise ValueError(f"{path} must be the folder of a comparison, cannot read it as one: {why}") from None
+        raise ValueError(f"{stored.folder} holds a comparison that cannot be read: {why}") from None
 
 
 def _case(given: Mapping[str, Any], excitation: pd.DataFrame | None) -> Case:
@@ -105,10 +104,11 @@ def _case(given: Mapping[str, Any], excitation: pd.DataFrame | None) -> Case:
 
 def _traces(given: Mapping[str, Any], samples: pd.DataFrame, cases: Mapping[str, Case]) -> dict[Key, Trace]:
     tables = dict(iter(samples.groupby(["case", "run"], sort=False)))
+    none = samples.iloc[:0]  # of a run whose process died
     traces = {}
     for joined, facts in given.items():
         case, _, label = joined.partition(_SEPARATOR)
-        traces[case, label] = trace_of(facts, tables[case, label], cases[case])
+        traces[case, label] = trace_of(facts, tables.get((case, label), none), cases[case])
     return traces
 
 

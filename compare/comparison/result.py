@@ -13,15 +13,15 @@ import numpy as np
 
 from rockwobble.models import Case, Trace, plain_json
 
-from ..storage.files import replace_files
 from ..storage.fingerprint import fingerprint
-from ..storage.parquet_file import pack
-from ..storage.provenance import about_results
+from ..storage.manifest import Manifest, made_now, read_results, write_results
 from .error_budget import ErrorBudget
 from .file import ABOUT, load_fields, plain_fields
 
 if TYPE_CHECKING:
     import pandas as pd
+
+KIND = "comparison"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -36,13 +36,15 @@ class Comparison:
         Case of each name.
     traces : dict
         Trace for each (case name, label), of runs and references, such as ("El Centro 1940",
-        "mujoco recess") and ("El Centro 1940", "recess model"). A run whose process died is left out.
+        "mujoco recess") and ("El Centro 1940", "recess model"). One whose process died has no samples.
     versions : dict
         Version of each package and engine that took part.
     until : float or None
         End of the window of the RMS columns, in the time of the run [s]; None is the whole run.
     budgets : dict
         Error budget for each (case, label of the run, label of the reference), where it was asked for.
+    command : str
+        That asked for what was loaded.
     """
 
     summary: pd.DataFrame
@@ -51,19 +53,56 @@ class Comparison:
     versions: Mapping[str, str]
     until: float | None = None
     budgets: Mapping[tuple[str, str, str], ErrorBudget] = field(default_factory=dict)
+    command: str = ""
 
-    def save(self, folder: str | Path) -> None:
+    def save(
+        self, folder: str | Path, *, command: str = "", pages: Mapping[str, bytes] | None = None
+    ) -> None:
         """Write the results to `folder`: whole files or none, other files there are left alone.
 
-        summary.csv is the summary; traces.parquet holds the samples of runs and references, passes.parquet
-        the passes, excitation.parquet the ground motions, and comparison.json the rest.
+        summary.csv and summary.parquet are the summary; traces.parquet holds the samples of runs and
+        references, passes.parquet the passes, excitation.parquet the ground motions, budget.parquet the error
+        budgets, comparison.json the rest, and manifest.json says what made them.
+
+        Parameters
+        ----------
+        folder : str or Path
+        command : str, optional
+            That asked for the comparison.
+        pages : mapping, optional
+            Name and content of what was drawn of it.
 
         Raises
         ------
         ValueError
             If the folder cannot be written.
         """
-        replace_files(folder, self.files())
+        whole = plain_fields(self.cases, self.traces, self.versions, self.until, self.budgets)
+        files = {
+            "summary.csv": self.summary.to_csv(index=False).encode(),
+            ABOUT: (plain_json.dumps(whole, indent=1) + "\n").encode(),
+        }
+        made = self.manifest(command or self.command)
+        write_results(folder, made, self._tables(), files=files, pages=pages)
+
+    def manifest(self, command: str = "") -> Manifest:
+        """Return what made the comparison, and its main numbers."""
+        relative = self.summary["tilt_rms_relative"]
+        return made_now(
+            KIND,
+            inputs=fingerprint([_inputs(case) for case in self.cases.values()]),
+            command=command,
+            versions=self.versions,
+            headline={
+                "cases": len(self.cases),
+                "rows": len(self.summary),
+                "diverged": int(self.summary["diverged"].sum()),
+                "failed": int((self.summary["outcome"] == "failed").sum()),
+                "median of the relative RMS": _number(relative.median()),
+                "largest relative RMS": _number(relative.max()),
+                "median agreement time [s]": _number(self.summary["agreement_time"].median()),
+            },
+        )
 
     @classmethod
     def load(cls, folder: str | Path) -> Comparison:
@@ -72,27 +111,24 @@ class Comparison:
         Raises
         ------
         ValueError
-            If the folder holds no comparison.
+            If the folder holds no comparison, or a file is missing or damaged.
         """
-        return cls(**load_fields(folder))
+        stored = read_results(folder, KIND)
+        return cls(**load_fields(stored), command=stored.manifest.command)
 
-    def files(self) -> dict[str, bytes]:
-        """Return name and content of each file that `save` writes."""
-        whole = plain_fields(self.cases, self.traces, self.versions, self.until, self.budgets)
-        found = {
-            "summary.csv": self.summary.to_csv(index=False).encode(),
-            "summary.parquet": self._pack(self.summary),
-            "traces.parquet": self._pack(self._stacked()),
-            "passes.parquet": self._pack(self._passes()),
-            "excitation.parquet": self._pack(self._excitation()),
-            ABOUT: (plain_json.dumps(whole, indent=1) + "\n").encode(),
+    def _tables(self) -> dict[str, pd.DataFrame]:
+        tables = {
+            "summary": self.summary,
+            "traces": self._stacked(),
+            "passes": self._passes(),
+            "excitation": self._excitation(),
         }
-        return found | ({"budget.parquet": self._pack(self._budget())} if self.budgets else {})
+        return tables | ({"budget": self._budget()} if self.budgets else {})
 
     def plot(self, case: str | None = None) -> Any:
         """Return a matplotlib figure of one case, the first by default, drawn by `rockwobble.reports`."""
         # by name: a result does not depend on who draws it
-        picture = importlib.import_module("rockwobble.reports.figures.comparison_picture")
+        picture = importlib.import_module("rockwobble.reports.figures.comparison.tilt")
         return picture.draw(self, next(iter(self.cases)) if case is None else case)
 
     def __repr__(self) -> str:
@@ -108,6 +144,8 @@ class Comparison:
 
         tables = []
         for (case, label), trace in self.traces.items():
+            if not len(trace.time):  # its process died
+                continue
             table = trace.to_frame()
             table.insert(0, "case", case)
             table.insert(1, "run", label)
@@ -127,15 +165,14 @@ class Comparison:
         whole: pd.DataFrame = pd.concat(tables, ignore_index=True)
         return whole
 
-    def _pack(self, table: pd.DataFrame) -> bytes:
-        """Return a table as Parquet that says what made it and from what."""
-        inputs = fingerprint([_inputs(case) for case in self.cases.values()])
-        return pack(table, about_results("rockwobble comparison", inputs, versions=self.versions))
-
     def _passes(self) -> pd.DataFrame:
         import pandas as pd
 
-        tables = [trace.passes.assign(case=case, run=label) for (case, label), trace in self.traces.items()]
+        tables = [
+            trace.passes.assign(case=case, run=label)
+            for (case, label), trace in self.traces.items()
+            if len(trace.time)
+        ]
         passes: pd.DataFrame = pd.concat(tables, ignore_index=True)
         return passes.set_index(["case", "run"]).reset_index()
 

@@ -6,10 +6,13 @@ import hashlib
 import importlib.metadata
 import importlib.util
 import platform
+import subprocess
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
+
+from rockwobble.models.cpus import usable_cpus
 
 PACKAGES = ("rockwobble", "numpy", "scipy", "numba", "pandas", "pyarrow", "mujoco", "pybullet", "exudyn")
 _REDUCED = ("rockwobble", "numpy", "numba")
@@ -51,6 +54,39 @@ def about_results(
         "versions": dict(package_versions() if versions is None else versions),
         "seeds": dict(seeds or {}),
     }
+
+
+def processor() -> str:
+    """Return the name of the processor and the number of its cores that are ours."""
+    name = platform.processor() or platform.machine()
+    information = Path("/proc/cpuinfo")
+    if information.exists():
+        lines = information.read_text().splitlines()
+        name = next((line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")), name)
+    return f"{name}, {usable_cpus()} cores"
+
+
+@cache
+def commit() -> str:
+    """Return the commit of the checkout that this file is in, with "+" after changes; empty without one."""
+    here = Path(__file__).resolve()
+
+    def git(*arguments: str) -> str:
+        done = subprocess.run(
+            ["git", "-C", str(here.parent), *arguments], capture_output=True, text=True, check=True
+        )
+        return done.stdout.strip()
+
+    try:
+        git("ls-files", "--error-unmatch", here.name)  # else the repository is one that we are installed in
+        return git("rev-parse", "HEAD") + ("+" if git("status", "--porcelain", "-uno") else "")
+    except (OSError, subprocess.CalledProcessError):
+        return ""
+
+
+def code_digests() -> dict[str, str]:
+    """Return a hash of the sources of each folder that numbers come from."""
+    return {name: _source_digest(name) for name in ("models", "reduced", "multibody", "compare")}
 
 
 def reduced_makers() -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""`rockwobble report`: the pages of a study again, from its stored results."""
+"""`rockwobble report`: the pages of results again, from what is stored."""
 
 from __future__ import annotations
 
@@ -9,13 +9,7 @@ import typer
 
 from ..console.terminal import interruptible, user_input
 
-Folder = Annotated[
-    Path,
-    typer.Argument(
-        help="Folder that `compare`, `ensemble`, `validity`, `tradeoff` or `extremes` has written.",
-        show_default=False,
-    ),
-]
+Folder = Annotated[Path, typer.Argument(help="Folder that a command has written.", show_default=False)]
 Out = Annotated[
     Path | None,
     typer.Option(
@@ -25,21 +19,25 @@ Out = Annotated[
 
 
 def report(folder: Folder, out: Out = None) -> None:
-    """Draw the pages and pictures of a study again from its stored results. Nothing runs again.
+    """Draw the pages and pictures again of results that are stored. Nothing runs again.
 
     They say what they said: which engines and records are installed here has no part in it. The results
     stay as they are.
+
+    Example: rockwobble report rockwobble-out --out pages
     """
     place = folder if out is None else out
-    with interruptible():
-        with user_input():
-            from rockwobble.compare import replace_files, require_writable
+    with interruptible(), user_input():
+        from rockwobble.compare.storage.files import require_writable
+        from rockwobble.compare.storage.manifest import read_manifests, write_pages
 
-            from .studies import read_studies
+        from ..pages.registry import KINDS, redrawn
 
-            studies = read_studies(folder)
-            require_writable(place)
-        pages = {name: content for draw in studies for name, content in draw().items()}
-        with user_input():
-            replace_files(place, pages)
-    print(f"Written to {place}: {', '.join(pages)}")
+        require_writable(place)
+        kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
+        if not kinds:
+            raise ValueError(f"pages are drawn of {', '.join(KINDS)}; {folder} holds none of them")
+        drawn = {kind: redrawn(kind, folder) for kind in kinds}
+        for kind, pages in drawn.items():
+            write_pages(place, kind, pages)
+    print(f"Written to {place}: {', '.join(name for pages in drawn.values() for name in pages)}")

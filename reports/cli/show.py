@@ -2,107 +2,94 @@
 
 from __future__ import annotations
 
-import json
+import dataclasses
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..console.terminal import user_input
 
+if TYPE_CHECKING:
+    from rockwobble.compare.storage.manifest import Manifest
+
 Store = Annotated[
-    Path,
-    typer.Argument(
-        help="Folder of results: a sweep, a comparison, a spectrum, a run, or a study such as validity.",
-        show_default=False,
-    ),
+    Path, typer.Argument(help="Folder of results that a command has written.", show_default=False)
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print all there is to know as JSON.")]
 
 
 def show(store: Store, as_json: Json = False) -> None:
-    """Summarise a folder of results: inputs, versions, how complete, outcomes and main figures.
+    """Summarise a folder of results: what they are, their main numbers, and what made them.
 
-    Nothing runs, and nothing is written.
+    Nothing runs, and nothing is written. Files that are not what was written are named, with exit code 1.
+
+    Example: rockwobble show rockwobble-out
     """
+    from rockwobble.models import plain_json
+
     with user_input():
-        from rockwobble.compare.describe.folder import describe_store
+        from rockwobble.compare.runs.cache import unfinished
+        from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
 
-        found = describe_store(store)
+        going = unfinished(store)
+        found = read_manifests(store) if not going or (store / MANIFEST).exists() else []
+    states = [{name: file_state(store, made, name) for name in made.files} for made in found]
     if as_json:
-        print(json.dumps({"folder": str(store), "results": found}, indent=2, allow_nan=False))
-        return
-    for result in found:
-        print_description(store, result)
+        results = [
+            dataclasses.asdict(made) | {"complete": True, "states": files}
+            for made, files in zip(found, states, strict=True)
+        ]
+        results += [{**dataclasses.asdict(each), "complete": False} for each in going]
+        print(plain_json.dumps({"folder": str(store), "results": results}, indent=2))
+    else:
+        for made, files in zip(found, states, strict=True):
+            _print(store, made, files)
+        for each in going:
+            far = f"{each.done} of {each.total} tasks"
+            print(f"{store}: {each.kind}, not finished: {far}; the same command goes on")
+    if any(state != "whole" for files in states for state in files.values()):
+        raise typer.Exit(1)
 
 
-def print_description(store: Path, result: dict[str, Any]) -> None:
-    """Print what `describe_store` says of one kind of result."""
+def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
     from rich import box
     from rich.console import Console
     from rich.table import Table
+    from rich.text import Text
 
-    console = Console()
+    from ..pages.table import number
+
     table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
-    for name, text in _lines(result).items():
-        table.add_row(name, text)
-    console.print(f"[bold]{store}[/]: {result['kind']}, {_completeness(result)}", highlight=False)
+    lines = {name: number(value) for name, value in made.headline.items()}
+    lines |= {name: _text(value) for name, value in made.about.items() if not isinstance(value, Mapping)}
+    lines |= {
+        "made by": made.command or "a program",
+        "made on": f"{made.date}, {made.processor}",
+        "commit": made.commit or "of an installed package",
+        "hash of the inputs": made.inputs,
+        "seeds": ", ".join(f"{name} {seed}" for name, seed in made.seeds.items()),
+        "versions": ", ".join(f"{name} {version}" for name, version in made.versions.items()),
+        "files": ", ".join(
+            name + (f" ({state})" if state != "whole" else "") for name, state in files.items()
+        ),
+        "pages": ", ".join(made.pages),
+    }
+    for name, text in lines.items():
+        if text:
+            table.add_row(Text(name), Text(text))
+    console = Console()
+    console.print(f"[bold]{store}[/]: {made.kind}", highlight=False)
     console.print(table)
-    if result["figures"]:
-        figures = Table(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0), pad_edge=False)
-        for name in result["figures"][0]:
-            figures.add_column(name, justify="left" if name == "run" else "right")
-        for row in result["figures"]:
-            figures.add_row(*(_cell(value) for value in row.values()))
-        console.print(figures)
 
 
-def _completeness(result: dict[str, Any]) -> str:
-    if result["complete"]:
-        return f"complete, {result['runs']:,} run{'s' if result['runs'] != 1 else ''}"
-    if "runs" not in result:
-        return f"{result['runs_finished']:,} runs are finished; the same command goes on"
-    share = 100.0 * result["runs_finished"] / result["runs"]
-    return (
-        f"{result['runs_finished']:,} of {result['runs']:,} runs are finished ({share:.0f} %); "
-        "the same command goes on"
-    )
+def _text(value: object) -> str:
+    from ..pages.table import number
 
-
-def _lines(result: dict[str, Any]) -> dict[str, str]:
-    lines = {}
-    for name, value in result["inputs"].items():
-        if value not in ("", {}, []):
-            lines["hash of the inputs" if name == "fingerprint" else name] = _text(value)
-    if result.get("chunks"):
-        other = result["chunks_of_another_sweep"]
-        lines["chunks"] = f"{result['chunks_finished']} of {result['chunks']}" + (
-            f", and {other} of another sweep, which go when this one is complete" if other else ""
-        )
-    if result.get("seeds"):
-        lines["seeds"] = _text(result["seeds"])
-    lines["versions"] = ", ".join(f"{name} {version}" for name, version in result["versions"].items())
-    if "outcomes" in result:
-        lines["outcomes"] = ", ".join(f"{count:,} {name}" for name, count in result["outcomes"].items())
-    return {name: text or "not known" for name, text in lines.items()}
-
-
-def _text(value: Any) -> str:
-    if isinstance(value, dict) and set(value) == {"from", "to", "count"}:
-        if value["count"] == 1:
-            return f"{value['from']:g}"
-        return f"{value['count']} from {value['from']:g} to {value['to']:g}"
-    if isinstance(value, dict):
-        return ", ".join(f"{name} {_text(item)}" for name, item in value.items())
     if isinstance(value, list):
-        shown = ", ".join(str(item) for item in value[:6])
+        shown = ", ".join(number(item) for item in value[:6])
         return shown + (f" and {len(value) - 6} more" if len(value) > 6 else "")
-    return f"{value:g}" if isinstance(value, float) else str(value)
-
-
-def _cell(value: Any) -> str:
-    if value is None:
-        return "-"
-    return f"{value:.3g}" if isinstance(value, float) else str(value)
+    return number(value)

@@ -1,16 +1,18 @@
-"""Colours and line styles of runs: told apart by colour-blind readers and in black and white."""
+"""Colours, dashes and symbols: told apart by colour-blind readers and in black and white."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any
 
 # M. Okabe and K. Ito, Color Universal Design, 2008; without black (the reference) and the pale yellow
-_ORDER = ("#0072B2", "#D55E00", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
+ORDER = ("#0072B2", "#D55E00", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
+DARK, GREY, PALE = "#222222", "#9a9a9a", "#e8eef4"
+SHADED = "#f3e3c3"  # a strip behind lines
+
 # the dashes of plotly, and what they are in matplotlib
-DASHES: Mapping[str, Any] = MappingProxyType(
+DASHES: Mapping[str, str | tuple[float, tuple[float, ...]]] = MappingProxyType(
     {
         "solid": "-",
         "dash": (0, (5, 2)),
@@ -18,30 +20,65 @@ DASHES: Mapping[str, Any] = MappingProxyType(
         "dot": (0, (1, 1.5)),
         "longdash": (0, (9, 3)),
         "longdashdot": (0, (9, 3, 1, 3)),
+        "none": "none",
     }
 )
-_REFERENCE = {"recess": ("#000000", "solid"), "flat": ("#666666", "dash")}
+# the symbols of plotly, and what they are in matplotlib
+SYMBOLS: Mapping[str, str] = MappingProxyType(
+    {
+        **{"circle": "o", "square": "s", "triangle-up": "^", "diamond": "D", "triangle-down": "v"},
+        **{"star": "*", "cross": "P", "x": "X", "pentagon": "p", "hexagon": "h"},
+        **{"triangle-left": "<", "triangle-right": ">", "cross-thin": "+", "x-thin": "x"},
+    }
+)
+_REFERENCE = {"recess": ("#000000", "solid"), "flat": ("#666666", "dash"), "flat-ground": ("#666666", "dash")}
 _REST = ("#000000", "dot")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Style:
-    """Colour and dash (in plotly's words) of a line."""
+    """Colour, dash and symbol (in plotly's words) of a line; no symbol: no marks, dash "none": only marks."""
 
     colour: str
-    dash: str
+    dash: str = "solid"
+    symbol: str = ""
 
 
 def model_style(model: str) -> Style:
-    """Return the style of a reduced model."""
-    colour, dash = _REFERENCE.get(model, _REST)
+    """Return the style of a reduced model, by its support or its label."""
+    colour, dash = _REFERENCE.get(model.removesuffix(" model"), _REST)
     return Style(colour=colour, dash=dash)
 
 
 def run_styles(labels: Sequence[str]) -> dict[str, Style]:
     """Return the style of each run, the same for the same order of runs."""
-    dashes = tuple(DASHES)
+    dashes = [dash for dash in DASHES if dash != "none"]
     return {
-        label: Style(colour=_ORDER[index % len(_ORDER)], dash=dashes[index % len(dashes)])
+        label: Style(colour=ORDER[index % len(ORDER)], dash=dashes[index % len(dashes)])
         for index, label in enumerate(labels)
     }
+
+
+def label_styles(labels: Sequence[str]) -> dict[str, Style]:
+    """Return the style of each label: that of the model where it names one, else that of a run."""
+    runs = run_styles([label for label in labels if not label.endswith(" model")])
+    return {label: runs[label] if label in runs else model_style(label) for label in labels}
+
+
+def mark_styles(labels: Sequence[str], *, lines: bool = True) -> dict[str, Style]:
+    """Return styles with a symbol each, with lines or without."""
+    symbols = list(SYMBOLS)
+    return {
+        label: Style(
+            colour=style.colour,
+            dash=style.dash if lines else "none",
+            symbol=symbols[index % len(symbols)],
+        )
+        for index, (label, style) in enumerate(run_styles(labels).items())
+    }
+
+
+def pale(colour: str) -> str:
+    """Return a colour mixed with white, which is drawn alike everywhere, as transparency is not."""
+    parts = (int(colour[i : i + 2], 16) for i in (1, 3, 5))
+    return "#" + "".join(f"{round(0.45 * part + 0.55 * 255):02x}" for part in parts)

@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+Array = NDArray[np.float64]
 POINTS = 2000
 
 
@@ -39,6 +40,12 @@ def kept_samples(*columns: NDArray[np.float64], points: int = POINTS) -> NDArray
             values = np.where(gap, filled, column)
             chosen.append(np.array([a + pick(values[a:b]) for a, b in pairwise(edges)], dtype=np.intp))
     return np.unique(np.concatenate(chosen))
+
+
+def kept_points(x: Array, y: Array, *, points: int = POINTS) -> NDArray[np.intp]:
+    """Return which points of a line (n,), (n,) to draw: as `kept_samples`, for a path in both directions."""
+    rising = bool(np.all(np.diff(x) >= 0.0))
+    return kept_samples(y, points=points) if rising else kept_samples(x, y, points=2 * points)
 
 
 def envelope(time: NDArray[np.float64], values: NDArray[np.float64], window: float) -> NDArray[np.float64]:

@@ -1,12 +1,12 @@
 """Until when MuJoCo follows its reduced model under El Centro from rest, and what ends it.
 
 `python tests/benchmarks agreement_times` prints the table: the record at 1, 1.5 and 2 times, on
-cylinders of three sizes and slendernesses, guided against the recess model and free against the rolling
-model, and free against the recess model for contrast.
+cylinders of three sizes and slendernesses, in the recess against the recess model, on flat ground against
+the flat-ground model, and for contrast against the recess model.
 
 What must end an agreement is read off the reduced model: its first pass closer to upright than the
 engine's contact resolves, or the growth of the engine's small error through the passes before that (a
-twin of the model, disturbed by as much as the engine errs, leaves it).
+perturbed copy of the model, off by as much as the engine errs, leaves it).
 """
 
 from __future__ import annotations
@@ -17,12 +17,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.compare.comparison.prediction import estimated_error, predict_horizon, verdict
+from rockwobble.compare.comparison.prediction import estimated_error, predict, verdict
 from rockwobble.compare.metrics.agreement import agreement_time
-from rockwobble.compare.runs.choice import SUPPORTS, own_model
-from rockwobble.compare.runs.execution import Job, ProgressCallback, simulate, simulate_all
+from rockwobble.compare.runs.choice import SUPPORTS
+from rockwobble.compare.runs.execution import Job, simulate_all, simulate_run
+from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.compare.traces.pair import Pair, make_pair
-from rockwobble.models import Case, Cylinder, Run, el_centro_1940
+from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
 
 from .console import options_of, show, tell
 
@@ -84,39 +85,38 @@ def agreement_times(
     import pandas as pd
 
     chosen = cases() if chosen is None else chosen
-    methods: list[tuple[str, Run | str]] = [
-        *((model, model) for model in ("recess", "flat")),
-        *((support, Run(engine, support)) for support in SUPPORTS),
-    ]
-    jobs = [Job(case=case, method=method, label=label) for case in chosen for label, method in methods]
-    results = simulate_all(jobs, workers=workers, progress=progress)
+    runs = [Run(each, support) for each in (None, engine) for support in SUPPORTS]
+    results = simulate_all(
+        [Job(case=case, run=run) for case in chosen for run in runs], workers=workers, progress=progress
+    )
     rows = []
     for index, case in enumerate(chosen):
-        block = results[len(methods) * index : len(methods) * (index + 1)]
-        traces = dict(zip((label for label, _ in methods), block, strict=True))
-        rows += [_row(case, traces, support, model) for support, model in PAIRS]
+        block = results[len(runs) * index : len(runs) * (index + 1)]
+        traces = {(trace.run.engine, trace.run.support): trace for trace in block}
+        rows += [
+            _row(case, model, traces[engine, support], traces[None, support], traces[None, model])
+            for support, model in PAIRS
+        ]
     return pd.DataFrame(rows)
 
 
-def _row(case: Case, traces: dict[str, Any], support: str, model: str) -> dict[str, Any]:
-    trial, own, reference = traces[support], traces[own_model(support)], traces[model]
-    row = {"case": case.name, "support": support, "reference": model, "reason": ""}
-    if not hasattr(trial, "tilt"):
-        return row | {"outcome": "failed", "agreed": f"the process died: {trial.message}"}
+def _row(case: Case, model: str, trial: Trace, own: Trace, reference: Trace) -> dict[str, Any]:
+    row = {"case": case.name, "support": trial.run.support, "reference": model, "reason": ""}
+    if not len(trial.time):
+        return row | {"outcome": "failed", "agreed": "the process died"}
     start = reference.uplift_time
     if not math.isfinite(start):
         same = trial.outcome == reference.outcome
         return row | {"outcome": trial.outcome, "agreed": "both rest" if same else "only one uplifts"}
     pair = make_pair(case.cylinder, reference, trial)
     horizon = agreement_time(pair, broken=trial.outcome == "failed")
-    prediction = predict_horizon(
+    prediction = predict(
         case,
         reference=reference,
         own=own,
-        own_model=own_model(support),
         contact_resolution=trial.contact_resolution,
-        error=estimated_error(case, trial.engine, trial.time_step),
-        simulate=lambda twin, name: simulate(Job(case=twin, method=name, label=name)),
+        error=estimated_error(case, trial.run.engine, trial.time_step),
+        simulate=simulate_run,
     )
     times = own.passes["time"].to_numpy(float)
     minima = own.passes["minimum_tilt"].to_numpy(float)
@@ -147,7 +147,7 @@ def _same_until(pair: Pair) -> float:
     return float(pair.time[beyond[0]]) if len(beyond) else math.inf
 
 
-def force_error(case: Case, model: Any, trial: Any, end: float) -> float:
+def force_error(case: Case, model: Trace, trial: Trace, end: float) -> float:
     """Return the largest difference of the contact force until `end` [s], over the force of the model.
 
     Of the normal force over the normal force, and of the horizontal one over the whole. Counted are samples

@@ -7,7 +7,7 @@ import sys
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.compare.runs.execution import Progress
+from rockwobble.compare.runs.progress import Progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,7 +21,7 @@ def options_of(name: str, description: str) -> argparse.ArgumentParser:
 def tell(event: Progress) -> None:
     """Say on standard error which run has finished."""
     if event.state == "finished":
-        print(f"{event.done}/{event.total} {event.case}, {event.label}", file=sys.stderr, flush=True)
+        print(f"{event.done}/{event.total} {event.label}", file=sys.stderr, flush=True)
 
 
 def show(table: pd.DataFrame, title: str, formats: Mapping[str, str], note: str = "") -> None:
@@ -42,7 +42,7 @@ def show(table: pd.DataFrame, title: str, formats: Mapping[str, str], note: str 
 
     shown = Table(title=title, caption=note or None, title_justify="left", caption_justify="left")
     for name, form in formats.items():
-        fold = name == "message"
+        fold = name == "diagnostics"
         heading, side = name.replace("_", " "), "right" if form else "left"
         shown.add_column(heading, justify=side, overflow="fold", no_wrap=not fold)  # type: ignore[arg-type]
     for row in table.to_dict("records"):

@@ -5,10 +5,10 @@
 its support, solved to 1e-10. The verdict is
 
 * agrees: the tilt is within `AGREES` of alpha as far as the model holds;
-* failed: the guard ended the run, with a message;
-* said: it does not agree, and its message says what limits it;
+* failed: the guard ended the run;
+* said: it does not agree, and a diagnostic that begins no later than the error says what limits it;
 * refused: a ValueError with one line, before anything ran;
-* wrong: it does not agree and says nothing. There must be none.
+* wrong: it does not agree and none says why. There must be none.
 
 The model holds as long as the friction given and the contact suffice by its own account; beyond that a
 trial only has to say that it slips or flies.
@@ -25,7 +25,7 @@ import numpy as np
 from rockwobble import multibody, reduced
 from rockwobble.compare.runs.choice import own_model
 from rockwobble.compare.traces.pair import make_pair
-from rockwobble.models import Case, Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 
 from .console import options_of, show
 from .engine_trials import Trial, trials
@@ -43,7 +43,7 @@ def run(trial: Trial) -> dict[str, Any]:
     -------
     dict
         extreme, value, tan_alpha, engine, support, verdict, error (the largest tilt difference in alpha as
-        far as the model holds; NaN if it failed) and message.
+        far as the model holds; NaN if it failed) and diagnostics (codes, or why it was refused).
     """
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=trial.tan_alpha)
     release = InitialState(trial.tilt * cylinder.alpha, rolling_rate=trial.rate) if trial.tilt else None
@@ -55,45 +55,40 @@ def run(trial: Trial) -> dict[str, Any]:
         "support": trial.support,
         "error": math.nan,
     }
-    try:
-        result = multibody.simulate(
-            Case(cylinder, trial.motion, initial=release, duration=trial.length),
-            engine=trial.engine,
-            support=trial.support,
-            **trial.arguments,
-        )
-    except ValueError as refusal:
-        return row | {"verdict": "refused", "message": str(refusal)}
-    if result.outcome == "failed":
-        return row | {"verdict": "failed", "message": result.message}
-    model = reduced.simulate(
-        Case(
-            cylinder,
-            trial.motion,
-            initial=release,
-            duration=trial.length,
-            friction=trial.arguments.get("friction", 1.0),
-        ),
-        **reduced.MODELS[own_model(trial.support)],
-        rtol=1e-10,
+    settings = {"friction": 1.0, **trial.arguments}
+    case = Case(
+        cylinder,
+        trial.motion,
+        initial=release,
+        duration=trial.length,
+        friction=settings.pop("friction"),
     )
-    error, whole = _difference(cylinder, model, result, trial.length)
-    agrees = error <= AGREES and (whole or bool(result.message))
-    verdict = "agrees" if agrees else "said" if result.message else "wrong"
-    return row | {"verdict": verdict, "error": error, "message": result.message}
+    try:
+        result = multibody.simulate(case, engine=trial.engine, support=trial.support, **settings)
+    except ValueError as refusal:
+        return row | {"verdict": "refused", "diagnostics": str(refusal)}
+    row["diagnostics"] = ", ".join(dict.fromkeys(fact.code for fact in result.facts))
+    if result.outcome == "failed":
+        return row | {"verdict": "failed"}
+    own = own_model(Run(trial.engine, trial.support))
+    error, begins, whole = _difference(case, reduced.simulate(case, support=own.support, rtol=1e-10), result)
+    said = any(not fact.time > begins for fact in result.facts)  # one of the whole run has no time
+    agrees = error <= AGREES and (whole or bool(result.facts))
+    return row | {"verdict": "agrees" if agrees else "said" if said else "wrong", "error": error}
 
 
-def _difference(cylinder: Cylinder, model: Any, result: Any, length: float) -> tuple[float, bool]:
-    """Largest tilt difference as long as the model holds [alpha], and whether that is the whole run.
+def _difference(case: Case, model: Trace, result: Trace) -> tuple[float, float, bool]:
+    """Largest tilt difference as long as the model holds [alpha], when it is too large, and if that is all.
 
-    A fall after the run, which lasts `length` [s], multiplies every difference and is left out.
+    A fall after the run multiplies every difference and is left out.
     """
-    pair = make_pair(cylinder, model, result, until=length)
-    breaches = [breach.first_time for breach in model.assumptions_until(length).breaches]
-    until = min(breaches, default=math.inf)
+    pair = make_pair(case.cylinder, model, result, until=case.length)
+    held = model.assumptions_until(case.length)
+    until = min((breach.time for breach in held.breaches), default=math.inf) if held else math.inf
     within = np.abs(pair.tilt_difference)[pair.time <= until]
+    beyond = pair.time[: len(within)][within > AGREES]
     whole = math.isinf(until) and model.outcome != "failed"
-    return float(within.max(initial=0.0)), whole
+    return float(within.max(initial=0.0)), float(beyond[0]) if len(beyond) else pair.end, whole
 
 
 def measure(
@@ -140,5 +135,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     table = measure(say=lambda line: print(line, file=sys.stderr, flush=True))
     formats = {"extreme": "", "value": "", "tan_alpha": "g", "engine": "", "support": ""}
     counts = ", ".join(f"{count} {verdict}" for verdict, count in table["verdict"].value_counts().items())
-    show(table, "Engines at their extremes", formats | {"verdict": "", "error": ".1e", "message": ""}, counts)
+    show(
+        table,
+        "Engines at their extremes",
+        formats | {"verdict": "", "error": ".1e", "diagnostics": ""},
+        counts,
+    )
     return 1 if (table["verdict"] == "wrong").any() else 0

@@ -3,7 +3,7 @@
 `python tests/benchmarks engine_settings` prints the table. Each variant differs from the default in
 one setting. First the time of a step is measured, in turns, so that a change of the machine's speed meets
 all alike; then each runs with the step that its time allows, so that all cost the same. The errors are
-those of the tilt, guided against the recess model and free against the flat-ground model:
+those of the tilt, in the recess against the recess model and on flat ground against the flat-ground model:
 
 * shaken: two cases with teeth under El Centro to 15 s, (10 m, 0.1) as recorded and (6 m, 0.2) doubled,
   relative RMS, geometric mean of the two. By chance alone these differ by a factor of two from one azimuth
@@ -23,8 +23,9 @@ import numpy as np
 
 from rockwobble import multibody
 from rockwobble.compare.metrics.tilt import tilt_rms_relative
-from rockwobble.compare.runs.choice import SUPPORTS, own_model
-from rockwobble.compare.runs.execution import Job, ProgressCallback, simulate_all
+from rockwobble.compare.runs.choice import SUPPORTS
+from rockwobble.compare.runs.execution import Job, simulate_all
+from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.compare.traces.pair import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run, el_centro_1940
 
@@ -145,7 +146,7 @@ def seconds_per_step(chosen: Sequence[Variant]) -> np.ndarray[Any, np.dtype[np.f
             started = time.process_time()
             multibody.simulate(
                 Case(case.cylinder, initial=case.initial, duration=_PILOT),
-                engine=run.engine,
+                engine=variant.engine,
                 support=run.support,
                 time_step=STEP,
                 **run.settings,
@@ -178,8 +179,8 @@ def measure(
     -------
     DataFrame
         engine, setting, microseconds (a step), time_step [s] (at which it costs what the default of its
-        engine costs at 1e-4 s), and the errors shaken_guided, shaken_free, released_guided and
-        released_free. NaN where a run failed.
+        engine costs at 1e-4 s), and the errors shaken_recess, shaken_flat, released_recess and
+        released_flat. NaN where a run failed.
     """
     import pandas as pd
 
@@ -190,16 +191,14 @@ def measure(
     ratio = [value / base[variant.engine] for variant, value in zip(chosen, cost, strict=True)]
     steps = [STEP * (1.0 if abs(each - 1.0) < 0.1 else each) for each in ratio]
     problems = cases(turns)
-    jobs = [
-        Job(case=case, method=model, label=model) for case in problems for model in map(own_model, SUPPORTS)
-    ]
+    jobs = [Job(case=case, run=Run(None, support)) for case in problems for support in SUPPORTS]
     for variant, step in zip(chosen, steps, strict=True):
         for case in problems:
             unit_time = math.sqrt(case.cylinder.semidiagonal / 6.0)
             jobs += [
                 Job(
                     case=case,
-                    method=variant.run(support, step, unit_time),
+                    run=variant.run(support, step, unit_time),
                     label=f"{variant.engine} {variant.what}",
                 )
                 for support in SUPPORTS
@@ -220,10 +219,10 @@ def measure(
                 "setting": variant.what,
                 "microseconds": 1e6 * cost[index],
                 "time_step": step,
-                "shaken_guided": math.exp(float(np.mean(np.log(errors[0:shaken:2])))),
-                "shaken_free": math.exp(float(np.mean(np.log(errors[1:shaken:2])))),
-                "released_guided": float(np.max(errors[shaken::2])),
-                "released_free": float(np.max(errors[shaken + 1 :: 2])),
+                "shaken_recess": math.exp(float(np.mean(np.log(errors[0:shaken:2])))),
+                "shaken_flat": math.exp(float(np.mean(np.log(errors[1:shaken:2])))),
+                "released_recess": float(np.max(errors[shaken::2])),
+                "released_flat": float(np.max(errors[shaken + 1 :: 2])),
             }
         )
     return pd.DataFrame(rows)
@@ -254,7 +253,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         help="azimuths of the record over which errors are averaged (%(default)s)",
     )
     given = parser.parse_args(arguments)
-    errors = ("shaken_guided", "shaken_free", "released_guided", "released_free")
+    errors = ("shaken_recess", "shaken_flat", "released_recess", "released_flat")
     formats = {"engine": "", "setting": "", "microseconds": ".1f", "time_step": ".2e"}
     show(
         measure(variants(given.engine), turns=given.turns, progress=tell),

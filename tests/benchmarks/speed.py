@@ -28,6 +28,7 @@ from rockwobble.compare.studies.tradeoff.scipy_equations import (
     python_rates,
 )
 from rockwobble.models import Case, Cylinder, el_centro_1940
+from rockwobble.reduced.solution import Solution
 
 from .console import options_of
 
@@ -71,9 +72,10 @@ def el_centro_problem() -> Problem:
     cylinder, motion = Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940()
     uplift = reduced.simulate(Case(cylinder, motion), rtol=1e-13).uplift_time
     end = uplift + _AFTER_UPLIFT
-    start = reduced.simulate(Case(cylinder, motion, duration=uplift + _START), rtol=1e-13)
+    start = reduced.simulate(Case(cylinder, motion, duration=uplift + _START), rtol=1e-13).source
+    assert isinstance(start, Solution)
     exact = reduced.simulate(Case(cylinder, motion, duration=end), rtol=1e-13)
-    state = np.array([start.tilt[-1], start.tilt_rate[-1], start.rolling_angle[-1], start.momentum[-1]])
+    state = start.states[-1, :4]
     moving = InitialValueProblem(
         cylinder=cylinder, motion=motion, start=uplift + _START, end=end, state=state
     )

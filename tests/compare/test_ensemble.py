@@ -7,16 +7,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare import ensemble, far_field_motions, perturbed_starts, read_ensemble, synthetic_motions
-from rockwobble.compare.describe.ensemble import describe_ensemble
+from rockwobble import reduced
+from rockwobble.compare import ensemble, far_field_motions, perturbed_starts, synthetic_motions
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
-from rockwobble.compare.storage.parquet_file import pack
+from rockwobble.compare.storage.manifest import made_now, read_results, write_results
 from rockwobble.compare.studies.ensemble import members as ensemble_members
-from rockwobble.compare.studies.ensemble.study import ensemble_of
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of, stored_ensemble
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace
 
 ROUNDING = 1e-12
+RECESS = Run(None, "recess")
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case(PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0, name="release")
 
@@ -40,51 +41,49 @@ def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():
     assert first[0].duration == pytest.approx(5.0)
 
 
-def test_failed_runs_are_counted_and_named(monkeypatch, make_trace):
-    time = np.arange(11) * 0.1
+def made_up(job: Job, peak: float, outcome: str = "completed") -> Trace:
+    """Return a run that has another peak and outcome than it came to."""
+    return dataclasses.replace(reduced.simulate(job.case, sample_step=1.0), peak_tilt=peak, outcome=outcome)
 
-    def simulate(job: Job):
-        if job.label == "flat" and job.case.name.endswith("#2"):
-            return make_trace(time, time, outcome="failed", message="no step", peak_tilt=math.nan)
-        return make_trace(time, job.case.initial.tilt * time)
 
-    monkeypatch.setattr(execution, "simulate", simulate)
+def test_failed_runs_are_counted_and_named(monkeypatch):
+    def simulate(job: Job) -> Trace:
+        if job.label == "flat-ground model" and job.case.name.endswith("#2"):
+            return made_up(job, math.nan, "failed")
+        return made_up(job, job.case.initial.tilt)
+
+    monkeypatch.setattr(execution, "run_job", simulate)
     found = ensemble(CASE, runs=[], size=4, workers=1)
     methods = found.methods.set_index("method")
-    assert methods["failed"].to_dict() == {"recess": 0, "flat": 1}
-    assert methods.loc["flat", "failed_members"] == "release #2"
+    assert methods["failed"].to_dict() == {"recess model": 0, "flat-ground model": 1}
+    assert methods.loc["flat-ground model", "failed_members"] == "release #2"
     assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [3, "release #2"]
     assert len(found.members) == 8
     # of three members that do not differ; what failed has no part in the counts and quantiles of its method
     assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [3, 1.0]
-    assert methods.loc["flat", ["runs", "rocked", "overturned"]].tolist() == [4, 3, 0]
-    assert math.isfinite(methods.loc["flat", "peak_median"])
+    assert methods.loc["flat-ground model", ["runs", "rocked", "overturned"]].tolist() == [4, 3, 0]
+    assert math.isfinite(methods.loc["flat-ground model", "peak_median"])
 
 
-def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch, make_trace):
-    time = np.arange(11) * 0.1
-    # past its balance and falling at the end: what that is called is the matter of who ran it
-    runs = {
-        "recess": make_trace(time, 1.5 * PIER.alpha * time, tilt_rate=np.ones(11), message="still falling"),
-        "flat": make_trace(time, time, outcome="overturned", peak_tilt=0.5 * math.pi),
-    }
+def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
     cases = [dataclasses.replace(CASE, name=name) for name in "ab"]
-    monkeypatch.setattr(execution, "simulate", lambda job: runs[job.label])
+    # past its balance at the end: what that is called is the matter of who ran it
+    runs = {
+        "recess model": made_up(Job(case=cases[0], run=RECESS), 1.5 * PIER.alpha),
+        "flat-ground model": made_up(Job(case=cases[0], run=RECESS), 0.5 * math.pi, "overturned"),
+    }
+    monkeypatch.setattr(execution, "run_job", lambda job: runs[job.label])
     found = ensemble(cases, runs=[], workers=1)
     for method, run in runs.items():
         rows = found.members[found.members["method"] == method]
         assert rows["outcome"].tolist() == [run.outcome] * 2
-        assert rows["message"].tolist() == [run.message] * 2
         assert rows["peak_tilt"].tolist() == pytest.approx([run.peak_tilt / PIER.alpha] * 2, abs=ROUNDING)
     assert found.methods["overturned"].tolist() == [0, 2]
     assert found.methods["peak_median"].tolist() == [pytest.approx(1.5, abs=ROUNDING), math.inf]
 
 
-def test_members_are_paired_by_name_and_not_by_row(monkeypatch, make_trace):
-    time = np.arange(11) * 0.1
-    monkeypatch.setattr(
-        execution, "simulate", lambda job: make_trace(time, job.case.initial.tilt * (time + 0.1))
-    )
+def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
+    monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
     found = ensemble(CASE, runs=[], size=8, workers=1)
     shuffled = found.members.sample(frac=1.0, random_state=1)
     assert ensemble_of(shuffled, found.about).contrasts.loc[0, "ratio_95_low"] == 1.0
@@ -92,51 +91,43 @@ def test_members_are_paired_by_name_and_not_by_row(monkeypatch, make_trace):
         ensemble_of(pd.concat([found.members, found.members[:1]]), found.about)
 
 
-def test_stored_members_that_say_too_little_are_too_old(tmp_path):
+def test_a_stored_ensemble_comes_back_with_the_same_bits(tmp_path):
     found = ensemble(CASE, runs=[], size=3, workers=1)
-    file = tmp_path / "members.parquet"
-    file.write_bytes(pack(found.members, found.about))
-    assert read_ensemble(tmp_path).contrasts.equals(found.contrasts)
-    about = {name: value for name, value in found.about.items() if name != "methods"}
-    file.write_bytes(pack(found.members, about))
-    with pytest.raises(ValueError, match="too old: it does not hold methods; run the ensemble again"):
-        read_ensemble(tmp_path)
+    write_results(tmp_path, made_now(KIND, about=found.about), {"members": found.members})
+    again = stored_ensemble(read_results(tmp_path, KIND))
+    assert again.contrasts.equals(found.contrasts)
+    assert again.methods.equals(found.methods)
+    assert again.about == found.about
 
 
-def test_a_failed_run_is_no_member_that_stands(tmp_path):
+def test_a_failed_run_is_no_member_that_stands():
     found = ensemble(CASE, runs=[], size=4, workers=1)
     members = found.members
-    recess = members["method"] == "recess"
+    recess = members["method"] == "recess model"
     members.loc[recess, "outcome"] = ["overturned", "overturned", "completed", "failed"]
     # the last is how far it came before it failed: no peak
     members.loc[recess, "peak_tilt"] = [8.0, 8.0, 0.3, 0.4]
     again = ensemble_of(members, found.about)
     assert again.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
-    turned = ensemble_of(members, {**found.about, "methods": {"flat": "", "recess": ""}})
+    turned = ensemble_of(members, {**found.about, "methods": {"flat-ground model": "", "recess model": ""}})
     assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
     assert again.methods.loc[0, ["runs", "rocked", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
-    (tmp_path / "members.parquet").write_bytes(pack(members, found.about))
-    figure = describe_ensemble(tmp_path)["figures"][0]
-    assert (figure["rows"], figure["failed"]) == (4, 1)
-    assert figure["overturned [%]"] == pytest.approx(200.0 / 3.0)
-    assert figure["median peak tilt / alpha"] == "overturned"
-    assert figure["largest where not overturned"] == 0.3
 
 
 def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):
     first = ensemble(CASE, runs=[], size=3, workers=1, resume=tmp_path)
-    monkeypatch.setattr(execution, "simulate", lambda job: pytest.fail("ran again"))
+    monkeypatch.setattr(execution, "run_job", lambda job: pytest.fail("ran again"))
     again = ensemble(CASE, runs=[], size=3, workers=1, resume=tmp_path)
     assert first.members.equals(again.members)
     assert first.contrasts.equals(again.contrasts)
     assert first.about == again.about
-    assert {len(pd.read_parquet(path)) for path in (tmp_path / "members").glob("*.parquet")} == {1}
+    assert {len(pd.read_parquet(path)) for path in (tmp_path / "finished" / "ensemble").glob("*.parquet")} == {1}
 
 
 def test_every_input_is_in_the_hash_of_an_ensemble():
     hashes = [
         ensemble(CASE, runs=[], workers=1, **options).about["inputs"]
-        for options in ({"size": 2}, {"size": 3}, {"size": 2, "seed": 1}, {"size": 2, "models": ["recess"]})
+        for options in ({"size": 2}, {"size": 3}, {"size": 2, "seed": 1}, {"size": 2, "models": [RECESS]})
     ]
     assert len(set(hashes)) == 4
 

@@ -13,9 +13,8 @@ import numpy as np
 from rockwobble.models import Case, Suite, read_suite
 
 from ..bench import Bench
-from ..finding import Finding, at_most, worst_of
+from ..finding import Bound, Finding, none_wrong, worst_of
 
-LAYER = "studies"
 TEXT = """
 [[runs]]
 engine = ["mujoco", "pybullet"]
@@ -60,7 +59,8 @@ motion = { pulse = "half-sine", times_uplift = 1.2, period = 2, azimuth_deg = 90
 duration = 3
 """
 X, Y, STEP = np.array([0.0, 0.125, -0.25, 0.5]), np.array([0.25, -0.5, 0.125, 0.0]), 0.2
-ROUNDING = 1e-12  # relative: ranges are rounded to 12 digits, angles turned into radians
+# relative: ranges are rounded to 12 digits, angles turned into radians
+ROUNDING = Bound(1e-12, "the same numbers worked out by hand, to rounding")
 
 
 def check(bench: Bench) -> Iterator[Finding]:
@@ -76,20 +76,10 @@ def check(bench: Bench) -> Iterator[Finding]:
         suite = read_suite(path)
     yield _expansion(suite)
     named = {case.name: case for case in suite.cases}
-    for name, errors, part in (
-        (
-            "fields of a case, from a suite file",
-            _field_errors(named["fields"]),
-            "keys of a case, or their units",
-        ),
-        (
-            "ground motions of a suite file",
-            _motion_errors(named),
-            "scale, rotation, shift or strength of a motion",
-        ),
-    ):
-        reason = "the same numbers worked out by hand, to rounding"
-        yield worst_of(LAYER, name, errors, ROUNDING, reason=reason, part=f"suite file: {part}")
+    part = "suite file: keys of a case, or their units"
+    yield worst_of("fields of a case, from a suite file", _field_errors(named["fields"]), ROUNDING, part)
+    part = "suite file: scale, rotation, shift or strength of a motion"
+    yield worst_of("ground motions of a suite file", _motion_errors(named), ROUNDING, part)
 
 
 def _expansion(suite: Suite) -> Finding:
@@ -106,7 +96,7 @@ def _expansion(suite: Suite) -> Finding:
         tilt = math.nan if initial is None else initial.tilt / math.atan(tan_alpha)
         stated = (case.cylinder.semidiagonal, case.cylinder.tan_alpha, case.length)
         named = case.name == f"{name}, duration {duration:g}"
-        if not (named and stated == (size, tan_alpha, duration) and abs(tilt - share) < ROUNDING):
+        if not (named and stated == (size, tan_alpha, duration) and abs(tilt - share) < ROUNDING.most):
             wrong.append(case.name)
     runs = [(run.engine, run.support, run.time_step, dict(run.settings)) for run in suite.runs]
     expected = itertools.product(
@@ -114,14 +104,11 @@ def _expansion(suite: Suite) -> Finding:
     )
     if runs != list(expected):
         wrong.append("the runs")
-    return at_most(
-        LAYER,
+    return none_wrong(
         f"wrong cases and runs of a suite file with four ranges, {len(combinations)} cases",
-        len(wrong),
-        0.0,
-        reason="every combination, in the order of the file, the last key fastest",
-        part="suite file: ranges, names or order of the cases",
-        note="; ".join(wrong[:3]),
+        wrong,
+        "every combination, in the order of the file, the last key fastest",
+        "suite file: ranges, names or order of the cases",
     )
 
 
@@ -169,5 +156,5 @@ def _motion_errors(named: dict[str, Case]) -> dict[str, float]:
         at = motion.time_step * np.arange(len(motion.acceleration))
         along = np.where(at >= 0.5, 1.2 * 9.81 * 0.25 * np.sin(math.pi * (at - 0.5)), 0.0)
         apart = float(np.abs(motion.acceleration - np.column_stack([0.0 * along, along])).max()) / 9.81
-        found["pulse"] = apart if abs(motion.duration - 1.5) < ROUNDING else math.nan
+        found["pulse"] = apart if abs(motion.duration - 1.5) < ROUNDING.most else math.nan
     return found

@@ -3,88 +3,52 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
+
+from rockwobble.models import Case, Run, Trace
+from rockwobble.models.trace import Known
+
+from ..bench import Array
+from ..problems import PIER
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
+RECESS = Run(None, "recess")
+CASE = Case(PIER, duration=20.0, name="made")
 
 
-def _no_passes() -> pd.DataFrame:
-    return passes([], [])
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MadeTrace:
-    """What metrics ask of a trace; n samples. What is not given is known to nobody.
-
-    Parameters
-    ----------
-    time, tilt, rolling_angle, twist, energy : ndarray, shape (n,)
-        [s], [rad], [rad], [rad], [m^2/s^2].
-    contact_point : ndarray, shape (n, 2)
-        [m]
-    centre_of_mass : ndarray, shape (n, 3)
-        [m]
-    passes : DataFrame
-    """
-
-    time: Array
-    tilt: Array
-    rolling_angle: Array
-    contact_point: Array
-    centre_of_mass: Array
-    energy: Array
-    twist: Array
-    passes: pd.DataFrame = field(default_factory=_no_passes)
-    peak_tilt: float = math.nan
-    outcome: str = "completed"
-    message: str = ""
-    uplift_time: float = 0.0
-    uplift_direction: float = 0.0
-    wall_time: float = 1.0
-    engine: str = "made"
-    engine_version: str = "1"
-    support: str = "recess"
-    time_step: float = 1e-4
-    contact_resolution: float = 0.0
-    residual_displacement: float = math.nan
-    residual_twist: float = math.nan
-
-    def to_frame(self) -> pd.DataFrame:
-        """Return time and tilt as a table."""
-        import pandas as pd
-
-        return pd.DataFrame({"time": self.time, "tilt": self.tilt})
-
-
-def made(time: Array, tilt: Array, **fields: Array | float | str | pd.DataFrame) -> MadeTrace:
+def made(time: Array, tilt: Array, *, energy: Array | None = None, **fields: Any) -> Trace:
     """Return a trace with tilts (n,) at times (n,); fields that are not given are zero, or unknown."""
-    none = np.zeros(len(time))
-    given: dict[str, object] = {
+    none, flat, space = (np.zeros(size) for size in (len(time), (len(time), 2), (len(time), 3)))
+    given: dict[str, Any] = {
+        "case": CASE,
+        "run": RECESS,
+        "version": "1",
+        "tilt_rate": none,
         "rolling_angle": none,
-        "contact_point": np.zeros((len(time), 2)),
-        "centre_of_mass": np.zeros((len(time), 3)),
-        "energy": none,
         "twist": none,
+        "contact_point": flat,
+        "centre_of_mass": space,
         "peak_tilt": float(np.max(tilt)),
-        **fields,
+        "outcome": "completed",
+        "uplift_time": 0.0,
+        "uplift_direction": 0.0,
+        "source": Known({"energy": none if energy is None else energy}),
+        "wall_time": 1.0,
+        "time_step": 1e-4,
+        "contact_resolution": 0.0,
     }
-    return MadeTrace(time=time, tilt=tilt, **given)  # type: ignore[arg-type]
+    return Trace(time=time, tilt=tilt, **{**given, **fields})
 
 
 def passes(times: list[float], minima: list[float], resolved: list[bool] | None = None) -> pd.DataFrame:
-    """Return a table of passes; without `resolved` as of a reduced model."""
+    """Return a table of passes, each of half a turn; without `resolved` as of a reduced model."""
     import pandas as pd
 
     table = pd.DataFrame(
         {"time": times, "minimum_tilt": minima, "angle_of_turn": [math.pi] * len(times)}, dtype=float
     )
-    if resolved is not None:
-        table["resolved"] = np.array(resolved, dtype=bool)
-    return table
+    return table.assign(resolved=True if resolved is None else resolved)

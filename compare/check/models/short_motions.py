@@ -10,19 +10,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
+from ..bench import Array, Bench, why
+from ..problems import GRAVITY
 from . import differences
 from .lagrange import Shape, shape_of
 
-Array = NDArray[np.float64]
-
-GRAVITY = 9.81
 # a slender pier, a drum as wide as high, and a squat body with mass and inertias of its own
 CYLINDERS = {
     "R = 6 m, tan alpha = 0.2": Cylinder(semidiagonal=6.0, tan_alpha=0.2),
@@ -80,22 +77,18 @@ class Sampled:
     centre_curve: Array
 
 
-def sample(reduced: Any, cylinder: Cylinder) -> Sampled:
+def sample(bench: Bench, cylinder: Cylinder) -> Sampled:
     """Run the recess model from many states, and return what its motions were."""
-    shape = shape_of(cylinder, GRAVITY)
+    shape = shape_of(cylinder)
     p = math.sqrt(GRAVITY * cylinder.semidiagonal / (shape.I1 + shape.h**2 + shape.b**2))
     step = _SAMPLE / p
     reach = differences.REACH
     rows: dict[str, list[Array]] = {}
     for initial, motion in _starts(p, step):
-        found = reduced.simulate(
-            Case(cylinder, motion, initial=initial, gravity=GRAVITY),
-            sample_step=step,
-            rtol=1e-13,
-            rest_tilt=0.0,
-        )
+        case = Case(cylinder, motion, initial=initial)
+        found = bench.solve(case, sample_step=step, rtol=1e-13, rest_tilt=0.0)
         if found.outcome == "failed":
-            raise FailedMotionError(found.message)
+            raise FailedMotionError(why(found))
         # one that fell down ends between two samples, and may go on falling when the motion is over
         even = len(found.time) - (found.outcome == "overturned")
         for piece in range(min((even - 1) // _PIECE, _PIECES)):

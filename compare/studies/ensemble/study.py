@@ -1,35 +1,28 @@
-"""Ensembles: what can be compared beyond the horizon, where single traces say nothing."""
+"""Ensembles: what can be compared beyond the agreement of traces, where single runs say nothing."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.models import Case, Run, Suite
+from rockwobble.models import Case, Run, Suite, Trace
 
 from ...runs.choice import default_runs, own_model, require_runnable, run_labels
-from ...runs.execution import Crash, Job, ProgressCallback, simulate_all
-from ...runs.run_store import job_fingerprint, open_run_store
+from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
+from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint
-from ...storage.origin import read_table
-from ...storage.parquet_file import read_about
-from ...storage.provenance import about_results
+from ...storage.manifest import Results
 from .members import perturbed_starts
 from .tables import contrast_table, method_table
 
 if TYPE_CHECKING:
     import pandas as pd
 
-KIND = "rockwobble ensemble"
-TABLE = "members.parquet"
-MODELS = ("recess", "flat")
-# without which the members cannot be held against each other or described
-_NEEDED = ("methods", "members", "semidiagonal", "tan_alpha", "seeds", "versions")
-_COLUMNS = ("member", "method", "peak_tilt", "outcome")
+KIND = "ensemble"
+MODELS = (Run(None, "recess"), Run(None, "flat"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -40,7 +33,7 @@ class Ensemble:
     ----------
     members : DataFrame
         One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
-        overturned), outcome, message, wall_time [s], all as the run has them.
+        overturned), outcome, diagnostics (their codes), wall_time [s], all as the run has them.
     methods : DataFrame
         One row for each method: own_model (of the support of an engine), runs, rocked, overturned, failed,
         failed_members (their names), and of the peak tilts of what did not fail [alpha] the median with its
@@ -50,22 +43,22 @@ class Ensemble:
         One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high, its
         verdict, masked (members that failed by one of them), and both probabilities corrected for the number
         of pairs (Holm) in columns _adjusted.
-    about : dict
-        As `about_results`, with what the members are, the range of their sizes and slendernesses, and the
-        model of the support of each method.
+    about : mapping
+        What the tables do not hold: what the members are, the range of their sizes and slendernesses, the
+        model of the support of each method, the seed, and the hash of all inputs.
     """
 
     members: pd.DataFrame
     methods: pd.DataFrame
     contrasts: pd.DataFrame
-    about: dict[str, Any]
+    about: Mapping[str, Any]
 
 
 def ensemble(
     case_or_members: Case | Suite | Sequence[Case],
     *,
     runs: Iterable[Run] | None = None,
-    models: Sequence[str] = MODELS,
+    models: Sequence[Run] = MODELS,
     size: int = 20,
     perturbation: float = 0.01,
     seed: int = 0,
@@ -83,7 +76,7 @@ def ensemble(
         such as one body under many records.
     runs : iterable of Run, optional
         Default: those of the suite, else every installed engine with supports "recess" and "flat".
-    models : sequence of str, optional
+    models : sequence of Run, optional
         Reduced models. The first is named first in every contrast.
     size : int, optional
         Number of perturbed starts.
@@ -110,12 +103,12 @@ def ensemble(
     Examples
     --------
     >>> from rockwobble.models import Cylinder, el_centro_1940
-    >>> case = Case("pier", Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
+    >>> case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
     >>> found = ensemble(case, runs=[], size=5, workers=1)
     >>> found.methods[["method", "runs", "failed"]].values.tolist()
-    [['recess', 5, 0], ['flat', 5, 0]]
+    [['recess model', 5, 0], ['flat-ground model', 5, 0]]
     """
-    about: dict[str, Any] = {}
+    about: dict[str, Any] = {"seed": seed}
     if isinstance(case_or_members, Case):
         members = perturbed_starts(case_or_members, size, perturbation=perturbation, seed=seed)
         about |= {"members": f"starts of {case_or_members.name}, perturbed by {100.0 * perturbation:g} %"}
@@ -129,23 +122,18 @@ def ensemble(
     for case in members:
         for run in chosen:
             require_runnable(case, run)
-    methods: dict[str, str | Run] = {model: model for model in models}
-    methods |= dict(zip(run_labels(chosen), chosen, strict=True))
-    jobs = [
-        Job(case=case, method=method, label=label) for case in members for label, method in methods.items()
-    ]
-    with nullcontext() if resume is None else open_run_store(resume, samples=False) as store:
-        results = simulate_all(jobs, workers=workers, progress=progress, store=store)
+    methods = dict(zip(run_labels((*models, *chosen)), (*models, *chosen), strict=True))
+    jobs = [Job(case=case, run=run, label=label) for case in members for label, run in methods.items()]
+    with nullcontext() if resume is None else open_trace_cache(resume, "ensemble", samples=False) as cache:
+        results = simulate_all(jobs, workers=workers, progress=progress, cache=cache)
     table = _members(jobs, results)
-    inputs = fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
-    about |= {
-        "methods": {label: "" if isinstance(m, str) else own_model(m.support) for label, m in methods.items()}
-    }
-    return ensemble_of(table, about_results(KIND, inputs, seeds={"ensemble": seed}) | about)
+    about |= {"methods": {label: str(own_model(run)) if run.engine else "" for label, run in methods.items()}}
+    about |= {"inputs": fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])}
+    return ensemble_of(table, about)
 
 
-def ensemble_of(members: pd.DataFrame, about: dict[str, Any]) -> Ensemble:
+def ensemble_of(members: pd.DataFrame, about: Mapping[str, Any]) -> Ensemble:
     """Return the ensemble of a table of members, and of what `Ensemble.about` says of them."""
     return Ensemble(
         members=members,
@@ -155,23 +143,9 @@ def ensemble_of(members: pd.DataFrame, about: dict[str, Any]) -> Ensemble:
     )
 
 
-def read_ensemble(folder: str | Path) -> Ensemble:
-    """Return an ensemble whose members were stored as `members.parquet`.
-
-    Raises
-    ------
-    ValueError
-        If the file is missing, is not what was stored, or is too old to say what is needed.
-    """
-    file = Path(folder) / TABLE
-    members, about = read_table(file), read_about(file)
-    if about.get("kind") != KIND:
-        raise ValueError(f"{file} does not hold the members of an ensemble")
-    missing = [name for name in _NEEDED if name not in about]
-    missing += [name for name in _COLUMNS if name not in members]
-    if missing:
-        raise ValueError(f"{file} is too old: it does not hold {', '.join(missing)}; run the ensemble again")
-    return ensemble_of(members, about)
+def stored_ensemble(results: Results) -> Ensemble:
+    """Return the ensemble that is stored in a folder."""
+    return ensemble_of(results.table("members"), results.manifest.about)
 
 
 def _range(members: Sequence[Case], name: str) -> dict[str, float]:
@@ -187,21 +161,19 @@ def _runs(case_or_members: Case | Suite | Sequence[Case], runs: Iterable[Run] | 
     return default_runs()
 
 
-def _members(jobs: Sequence[Job], results: Sequence[Any]) -> pd.DataFrame:
+def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
     import pandas as pd
 
     rows = []
     for job, result in zip(jobs, results, strict=True):
-        crashed = isinstance(result, Crash)
-        failed = crashed or result.outcome == "failed"
         rows.append(
             {
                 "member": job.case.name,
                 "method": job.label,
-                "peak_tilt": math.nan if failed else result.peak_tilt / job.case.cylinder.alpha,
-                "outcome": "failed" if failed else result.outcome,
-                "message": result.message,
-                "wall_time": math.nan if crashed else result.wall_time,
+                "peak_tilt": result.peak_tilt / job.case.cylinder.alpha,
+                "outcome": result.outcome,
+                "diagnostics": " ".join(fact.code for fact in result.facts),
+                "wall_time": result.wall_time,
             }
         )
     return pd.DataFrame(rows)

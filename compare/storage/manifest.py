@@ -1,0 +1,256 @@
+"""One manifest.json for every folder of results: what they are, what made them, and which files hold them.
+
+It is written last. So a folder with a manifest is whole, and what was written to it can be checked.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockwobble.models import plain_json
+
+from .files import replace_files, write_whole
+from .parquet_file import pack
+from .provenance import code_digests, commit, package_versions, processor
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+MANIFEST = "manifest.json"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Manifest:
+    """What results are and what made them.
+
+    Attributes
+    ----------
+    kind : str
+        Of the results, such as "comparison".
+    inputs : str
+        Hash of all that they depend on, see `fingerprint`.
+    command : str
+        That asked for them; empty where it was a program.
+    date : str
+        Of the day on which they were complete (UTC).
+    commit : str
+        Of the checkout that made them, with "+" where it had changes; empty for an installed package.
+    processor : str
+    versions, code : mapping
+        Of packages and engines, and hashes of the folders of the code, by name.
+    seeds : mapping
+        Of whatever random numbers the inputs were drawn with.
+    headline : mapping
+        The main numbers, by what they are.
+    about : mapping
+        What the tables do not hold: plain values, lists and mappings.
+    files : mapping
+        SHA-256 of each file of data.
+    pages : sequence of str
+        Files drawn from the data, which can be drawn again.
+    """
+
+    kind: str
+    inputs: str = ""
+    command: str = ""
+    date: str = ""
+    commit: str = ""
+    processor: str = ""
+    versions: Mapping[str, str] = field(default_factory=dict)
+    code: Mapping[str, str] = field(default_factory=dict)
+    seeds: Mapping[str, int] = field(default_factory=dict)
+    headline: Mapping[str, float | int | str | None] = field(default_factory=dict)
+    about: Mapping[str, Any] = field(default_factory=dict)
+    files: Mapping[str, str] = field(default_factory=dict)
+    pages: tuple[str, ...] = ()
+
+
+def made_now(
+    kind: str,
+    *,
+    inputs: str = "",
+    command: str = "",
+    seeds: Mapping[str, int] | None = None,
+    headline: Mapping[str, float | int | str | None] | None = None,
+    about: Mapping[str, Any] | None = None,
+    versions: Mapping[str, str] | None = None,
+) -> Manifest:
+    """Return the manifest of what has just been computed here; `write_results` adds the files."""
+    return Manifest(
+        kind=kind,
+        inputs=inputs,
+        command=command,
+        date=datetime.now(UTC).date().isoformat(),
+        commit=commit(),
+        processor=processor(),
+        versions=dict(package_versions() if versions is None else versions),
+        code=code_digests(),
+        seeds=dict(seeds or {}),
+        headline=dict(headline or {}),
+        about=dict(about or {}),
+    )
+
+
+def write_results(
+    folder: str | Path,
+    manifest: Manifest,
+    tables: Mapping[str, pd.DataFrame],
+    *,
+    files: Mapping[str, bytes] | None = None,
+    pages: Mapping[str, bytes] | None = None,
+) -> Manifest:
+    """Write results into `folder`, whole or not at all, and their manifest last.
+
+    Files of an earlier result of this kind that are no part of this one go; all others stay, and so do the
+    results of other kinds there.
+
+    Parameters
+    ----------
+    folder : str or Path
+    manifest : Manifest
+        See `made_now`.
+    tables : mapping
+        Each becomes NAME.parquet, which says in its metadata what made it.
+    files, pages : mapping, optional
+        Other files of data, and what is drawn from them, by name.
+
+    Raises
+    ------
+    ValueError
+        If the folder cannot be written.
+    """
+    made = {name: getattr(manifest, name) for name in ("kind", "inputs", "command", "commit", "versions")}
+    data = {f"{name}.parquet": pack(table, made) for name, table in tables.items()} | dict(files or {})
+    hashes = {name: hashlib.sha256(content).hexdigest() for name, content in data.items()}
+    whole = dataclasses.replace(manifest, files=hashes, pages=tuple(pages or ()))
+    place = Path(folder)
+    before = _read_all(place)
+    replace_files(place, {**data, **(pages or {})})
+    written = {*data, *(pages or {})}
+    # a result that lost a file to this one is not whole any more
+    others = [each for each in before if each.kind != manifest.kind and not written & {*each.files}]
+    _write_all(place, [whole, *others])
+    kept = {name for each in (whole, *others) for name in (*each.files, *each.pages)}
+    for each in before:
+        for name in {*each.files, *each.pages} - kept if each.kind == manifest.kind else ():
+            (place / name).unlink(missing_ok=True)
+    return whole
+
+
+def write_pages(folder: str | Path, kind: str, pages: Mapping[str, bytes]) -> None:
+    """Write what was drawn again of the results in `folder`, which stay as they are.
+
+    Raises
+    ------
+    ValueError
+        If the folder cannot be written.
+    """
+    place = Path(folder)
+    replace_files(place, pages)
+    drawn = [
+        dataclasses.replace(each, pages=tuple(pages)) if each.kind == kind else each
+        for each in _read_all(place)
+    ]
+    if drawn:
+        _write_all(place, drawn)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Results:
+    """The results of one kind in a folder, none of its files damaged."""
+
+    folder: Path
+    manifest: Manifest
+
+    def table(self, name: str) -> pd.DataFrame:
+        """Return a table.
+
+        Raises
+        ------
+        ValueError
+            If it is not one of these results.
+        """
+        import pandas as pd
+
+        return pd.read_parquet(io.BytesIO(self.content(f"{name}.parquet")))
+
+    def content(self, name: str) -> bytes:
+        """Return what is in a file of data.
+
+        Raises
+        ------
+        ValueError
+            If it is not one of these results.
+        """
+        if name not in self.manifest.files:
+            raise ValueError(f"{self.folder} is of another version of rockwobble: {name} is not part of it")
+        return (self.folder / name).read_bytes()
+
+
+def read_results(folder: str | Path, kind: str) -> Results:
+    """Return the results of one kind in `folder`; what is installed here has no part in them.
+
+    Raises
+    ------
+    ValueError
+        If there are none, or a file is missing or damaged: the first such file is named.
+    """
+    place = Path(folder)
+    found = {each.kind: each for each in read_manifests(place)}
+    if kind not in found:
+        raise ValueError(f"{place} does not hold results of kind {kind!r}, but of {', '.join(found)}")
+    for name in found[kind].files:
+        if (state := file_state(place, found[kind], name)) != "whole":
+            raise ValueError(f"{place / name} is {state}: it is not what was written there")
+    return Results(folder=place, manifest=found[kind])
+
+
+def file_state(folder: Path, manifest: Manifest, name: str) -> str:
+    """Return whether a file of data is "whole", "damaged" or "missing"."""
+    try:
+        content = (folder / name).read_bytes()
+    except OSError:
+        return "missing"
+    return "whole" if hashlib.sha256(content).hexdigest() == manifest.files[name] else "damaged"
+
+
+def read_manifests(folder: str | Path) -> list[Manifest]:
+    """Return the manifest of each kind of results in `folder`, the last written first.
+
+    Raises
+    ------
+    ValueError
+        If there is none, or it cannot be read.
+    """
+    found = _read_all(Path(folder))
+    if not found:
+        raise ValueError(f"{folder} does not hold results of rockwobble: it has no {MANIFEST}")
+    return found
+
+
+def _read_all(folder: Path) -> list[Manifest]:
+    path = folder / MANIFEST
+    if not path.is_file():
+        return []
+    known = {each.name for each in dataclasses.fields(Manifest)}
+    try:
+        top = plain_json.loads(path.read_bytes())
+        return [
+            Manifest(**{k: v for k, v in each.items() if k in known} | {"pages": tuple(each["pages"])})
+            for each in (top, *top.get("others", ()))
+        ]
+    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"{path} cannot be read: {error}") from None
+
+
+def _write_all(folder: Path, manifests: list[Manifest]) -> None:
+    top, *others = (dataclasses.asdict(each) for each in manifests)
+    content = top | ({"others": others} if others else {})
+    write_whole(folder / MANIFEST, (plain_json.dumps(content, indent=1) + "\n").encode())

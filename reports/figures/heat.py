@@ -1,0 +1,126 @@
+"""Maps: cells by the colour of their values, the scale of the colours, and lines of equal values."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Gap:
+    """Cells of a map without a value, and why: a colour and an entry in the legend."""
+
+    name: str
+    colour: str
+    cells: NDArray[np.bool_]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Heat:
+    """Cells by the colour of their values.
+
+    Attributes
+    ----------
+    x, y : ndarray
+        Centres of the cells; for cells at even distances 0, 1, 2 and ticks on the axes, see `names`.
+    values : ndarray, shape (len(y), len(x))
+        NaN where there is none.
+    gaps : sequence of Gap
+        Why: the kinds of missing values.
+    written : str
+        Format of the number in each cell; empty: none. Left out where cells are too many to be read.
+    """
+
+    x: Array
+    y: Array
+    values: Array
+    gaps: Sequence[Gap] = ()
+    written: str = ""
+
+    def edges(self, *, log_x: bool = False, log_y: bool = False) -> tuple[Array, Array]:
+        """Return the edges of the cells, (len(x) + 1,) and (len(y) + 1,)."""
+        return _edges(self.x, log_x), _edges(self.y, log_y)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shades:
+    """The scale of the colours of all maps of a picture.
+
+    Attributes
+    ----------
+    label, unit : str
+    low, high : float
+        What is beyond is drawn as these.
+    log : bool
+    centre : float, optional
+        Of a scale with two sides, for signed values: low and high as far from it.
+    steps : int
+        Number of colours; 0: a continuous scale.
+    """
+
+    label: str
+    unit: str
+    low: float
+    high: float
+    log: bool = False
+    centre: float | None = None
+    steps: int = 0
+
+    @property
+    def title(self) -> str:
+        """Label and unit."""
+        return f"{self.label} [{self.unit}]"
+
+    def place(self, values: Array) -> Array:
+        """Return where values are on the scale, from 0 to 1; NaN stays."""
+        low, high = self.low, self.high
+        if self.log:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                values, low, high = np.log10(np.maximum(values, low)), np.log10(low), np.log10(high)
+        elif self.centre is not None:
+            reach = max(high - self.centre, self.centre - low)
+            low, high = self.centre - reach, self.centre + reach
+        return np.asarray(np.clip((values - low) / (high - low), 0.0, 1.0))
+
+    def ticks(self) -> list[tuple[float, str]]:
+        """Return places on the scale, and the values there."""
+        if self.log:
+            ends = np.log10(self.low), np.log10(self.high)
+            values = 10.0 ** np.arange(np.ceil(ends[0] - 1e-9), np.floor(ends[1] + 1e-9) + 1.0)
+            if len(values) < 2:
+                values = np.array([self.low, self.high])
+        else:
+            values = np.linspace(self.low, self.high, 5)
+        return [(float(at), f"{value:.3g}") for at, value in zip(self.place(values), values, strict=True)]
+
+
+def names(values: Sequence[object]) -> tuple[Array, list[tuple[float, str]]]:
+    """Return places 0, 1, 2, ... for values, and the ticks that name them."""
+    said = [f"{value:g}" if isinstance(value, float) else str(value) for value in values]
+    places = np.arange(len(said), dtype=np.float64)
+    return places, [(float(place), name) for place, name in zip(places, said, strict=True)]
+
+
+def contour(x: Array, y: Array, values: Array, level: float) -> tuple[Array, Array]:
+    """Return the line (n,), (n,) where values (len(y), len(x)) are `level`; NaN parts its pieces."""
+    from contourpy import contour_generator
+
+    pieces = contour_generator(x, y, np.ma.masked_invalid(values)).lines(level)
+    parted = [part for piece in pieces for part in (np.asarray(piece), np.full((1, 2), np.nan))]
+    whole = np.concatenate(parted[:-1]) if parted else np.empty((0, 2))
+    return whole[:, 0], whole[:, 1]
+
+
+def _edges(centres: Array, log: bool) -> Array:
+    if log:
+        return np.asarray(10.0 ** _edges(np.log10(centres), log=False))
+    if len(centres) == 1:
+        return np.array([centres[0] - 0.5, centres[0] + 0.5])
+    between = 0.5 * (centres[1:] + centres[:-1])
+    ends = [2.0 * centres[0] - between[0]], [2.0 * centres[-1] - between[-1]]
+    return np.concatenate([ends[0], between, ends[1]])

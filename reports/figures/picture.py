@@ -1,0 +1,253 @@
+"""What a figure shows, as data: two renderers draw it, `svg` for documents and `interactive` for pages."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .heat import Heat, Shades
+from .palette import DARK, Style
+
+Array = NDArray[np.float64]
+
+MOST_ENTRIES = 8  # of a legend: more cannot be told apart
+_LINE = Style(colour=DARK, dash="solid")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Axis:
+    """One axis.
+
+    Attributes
+    ----------
+    label : str
+        Quantity, or what the ticks name.
+    unit : str
+        "-" for a number; empty only where the ticks are names.
+    log : bool
+    low, high : float, optional
+        Ends; default: those of what is drawn.
+    ticks : sequence of (float, str)
+        Places and what stands there; empty: numbers at round places.
+    reverse : bool
+        Whether it grows downwards, as in a list.
+    """
+
+    label: str
+    unit: str
+    log: bool = False
+    low: float | None = None
+    high: float | None = None
+    ticks: Sequence[tuple[float, str]] = ()
+    reverse: bool = False
+
+    def __post_init__(self) -> None:
+        if not self.unit and not self.ticks:
+            raise ValueError(f'the axis {self.label!r} must have a unit ("-" for a number)')
+
+    @property
+    def title(self) -> str:
+        """Label and unit."""
+        return f"{self.label} [{self.unit}]" if self.unit else self.label
+
+
+TIME = Axis(label="time", unit="s")
+TILT = Axis(label="tilt / α", unit="-", low=0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Line:
+    """A line, marks on it, or marks alone.
+
+    Attributes
+    ----------
+    x, y : ndarray, shape (n,)
+        NaN is a gap.
+    name : str
+        In the legend, once for all lines of this name; empty: not there.
+    style : Style
+        Of dash "none": marks alone. Without a symbol: no marks.
+    width, size : float
+        Of line and marks [pt].
+    opacity : float
+    filled : bool or ndarray, shape (n,)
+        Of the marks.
+    steps : bool
+        Whether y holds until the next x.
+    clip : bool
+        Whether marks at the edge are cut there; not those that stand for what is beyond it.
+    notes : sequence of str
+        What a page says at each point beside its numbers.
+    """
+
+    x: Array
+    y: Array
+    name: str = ""
+    style: Style = _LINE
+    width: float = 1.4
+    size: float = 5.0
+    opacity: float = 1.0
+    filled: bool | NDArray[np.bool_] = True
+    steps: bool = False
+    clip: bool = True
+    notes: Sequence[str] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Band:
+    """What lies between two curves over x, each (n,)."""
+
+    x: Array
+    low: Array
+    high: Array
+    name: str = ""
+    colour: str = "#cfe3f1"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Bars:
+    """Horizontal bars at places of the y axis.
+
+    Attributes
+    ----------
+    places, start, end : ndarray, shape (n,)
+    colours : sequence of str
+    hatch : {"", "/", "x", "."}
+    texts : sequence of str
+        On the right of each bar.
+    """
+
+    places: Array
+    start: Array
+    end: Array
+    colours: Sequence[str]
+    name: str = ""
+    hatch: str = ""
+    texts: Sequence[str] = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Rule:
+    """A straight line across the panel at a value of x, or of y, or a strip up to `until`."""
+
+    at: float
+    axis: Literal["x", "y"]
+    text: str = ""
+    until: float | None = None
+    colour: str = DARK
+    dash: str = "dash"
+    name: str = ""
+    side: Literal["left", "right"] = "left"  # of the panel, or of a vertical line: where its text is
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Text:
+    """Words at a point."""
+
+    x: float
+    y: float
+    text: str
+    colour: str = DARK
+    anchor: Literal["left", "center", "right"] = "left"
+
+
+Layer = Line | Band | Bars | Rule | Text | Heat
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Panel:
+    """One pair of axes and what is drawn there, from the back to the front.
+
+    Attributes
+    ----------
+    x, y : Axis
+    layers : sequence of Layer
+    title : str
+    height : float
+        [inch] in a document.
+    equal : bool
+        Whether both axes have the same scale, as on a map.
+    second : (Axis, float), optional
+        An axis on the right, and what it shows over what the left one shows.
+    """
+
+    x: Axis
+    y: Axis
+    layers: Sequence[Layer]
+    title: str = ""
+    height: float = 2.6
+    equal: bool = False
+    second: tuple[Axis, float] | None = None
+
+    def entries(self) -> list[str]:
+        """Return the names in the legend, each once."""
+        return list(dict.fromkeys(name for layer in self.layers for name in _names(layer) if name))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Picture:
+    """Panels that stand together, with a title and a caption that explain them alone.
+
+    Attributes
+    ----------
+    name : str
+        Of its file.
+    title, caption : str
+    panels : sequence of Panel
+    columns : int
+        Of panels, in a document; a page has as many as fit.
+    shades : Shades, optional
+        Of the maps.
+    legend : {"below", "panels"}
+        One for all panels, or one in each.
+    link_x : bool
+        Whether the panels share their x axis: over time, say, where a page enlarges them together.
+    """
+
+    name: str
+    title: str
+    panels: Sequence[Panel]
+    caption: str = ""
+    columns: int = 1
+    shades: Shades | None = None
+    legend: Literal["below", "panels"] = "below"
+    link_x: bool = False
+    rows: Sequence[Sequence[Panel]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        if self.shades is None and any(isinstance(each, Heat) for p in self.panels for each in p.layers):
+            raise ValueError(f"the picture {self.name!r} has a map and needs shades")
+        rows = [self.panels[i : i + self.columns] for i in range(0, len(self.panels), self.columns)]
+        object.__setattr__(self, "rows", rows)
+
+    def entries(self) -> list[str]:
+        """Return the names in the legend of all panels, each once."""
+        return list(dict.fromkeys(name for panel in self.panels for name in panel.entries()))
+
+
+def ecdf(values: Array, *, total: int | None = None, end: float | None = None) -> tuple[Array, Array]:
+    """Return steps (k,), (k,) of the share of `total` values that are at most x.
+
+    Parameters
+    ----------
+    values : ndarray, shape (n,)
+    total : int, optional
+        More than n where some have no value, such as runs that overturn. Default: n.
+    end : float, optional
+        To which x the last step is drawn.
+    """
+    x = np.concatenate([[0.0], np.sort(values), [] if end is None else [end]])
+    counts = np.arange(len(values) + 1, dtype=np.float64)
+    counts = counts if end is None else np.append(counts, counts[-1])
+    return x, counts / max(len(values) if total is None else total, 1)
+
+
+def _names(layer: Layer) -> Iterator[str]:
+    if isinstance(layer, Heat):
+        yield from (gap.name for gap in layer.gaps if gap.cells.any())
+    elif not isinstance(layer, Text):
+        yield layer.name

@@ -1,0 +1,284 @@
+"""Pictures by matplotlib: as SVG for a document, the same bytes for the same numbers, or as a figure."""
+
+from __future__ import annotations
+
+import io
+import textwrap
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .heat import Heat, Shades
+from .palette import DARK, DASHES, SYMBOLS
+from .picture import MOST_ENTRIES, Axis, Band, Bars, Line, Panel, Picture, Rule, Text
+from .thinning import kept_points
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.colors import Colormap
+    from matplotlib.figure import Figure
+
+# a column of text on a screen is some 830 pixels wide, 96 to the inch [inch]
+WIDTH = 8.6
+# more points than such a column has pixels
+_POINTS = 1600
+_GRID = "#dddddd"
+# no text is smaller than 8 pt at the width at which it is shown
+_STYLE: Any = {
+    "svg.hashsalt": "rockwobble",
+    "font.size": 9.5,
+    "axes.titlesize": 10,
+    "axes.titlelocation": "left",
+    "axes.linewidth": 0.7,
+    "axes.axisbelow": True,
+    "xtick.labelsize": 8.5,
+    "ytick.labelsize": 8.5,
+    "legend.fontsize": 8.5,
+    "legend.framealpha": 0.9,
+    "hatch.linewidth": 0.5,
+    "path.simplify_threshold": 0.3,
+}
+_SMALL = 8
+_RASTER_DPI = 200  # of maps with more cells than are worth a path each
+_VECTOR_CELLS = 2500
+# more numbers than these would run into each other
+_MOST_WRITTEN = 64
+# of the scale of colours: there white letters are read better
+_DARK = 0.6
+_SEQUENTIAL, _DIVERGING, _NOTHING = "Blues", "RdBu_r", "#d9d9d9"
+_HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
+
+
+def svg(picture: Picture) -> bytes:
+    """Return a picture as SVG."""
+    import matplotlib as mpl
+
+    buffer = io.BytesIO()
+    with mpl.rc_context(_STYLE):
+        figure(picture).savefig(
+            buffer, format="svg", dpi=_RASTER_DPI, metadata={"Date": None, "Creator": "rockwobble"}
+        )
+    return buffer.getvalue()
+
+
+def figure(picture: Picture) -> Figure:
+    """Return a picture as a matplotlib figure."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    heights = [max(panel.height for panel in row) for row in picture.rows]
+    many = len(picture.panels) > 1
+    with mpl.rc_context(_STYLE):
+        drawn = Figure(figsize=(WIDTH, sum(heights) + 0.7), layout="constrained")
+        places = drawn.subplots(
+            len(heights),
+            picture.columns,
+            squeeze=False,
+            height_ratios=heights,
+            sharex="col" if picture.link_x else False,
+        )
+        for axes in places.flat[len(picture.panels) :]:
+            axes.set_axis_off()
+        for place, (axes, panel) in enumerate(zip(places.flat, picture.panels, strict=False)):
+            _panel(axes, panel, picture)
+            # what the panel below, or the one on the left, says as well
+            below = picture.panels[place + picture.columns :][:1]
+            left = picture.panels[place - 1 : place] if place % picture.columns else []
+            axes.set_xlabel("" if [each.x.title for each in below] == [panel.x.title] else panel.x.title)
+            axes.set_ylabel("" if [each.y.title for each in left] == [panel.y.title] else panel.y.title)
+            letter = f"({chr(ord('a') + place)}) " if many and panel.title else ""
+            axes.set_title(letter + panel.title)
+        if picture.shades is not None:
+            _colour_bar(drawn, places, picture.shades)
+        if picture.legend == "below" and picture.entries():
+            _legend(drawn, list(places.flat[: len(picture.panels)]))
+        drawn.align_ylabels()
+    return drawn
+
+
+def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
+    axes.grid(color=_GRID, linewidth=0.6)
+    axes.margins(x=0.0 if picture.link_x else None)
+    _scale(axes, panel)
+    for layer in panel.layers:
+        if isinstance(layer, Line):
+            _line(axes, layer)
+        elif isinstance(layer, Band):
+            axes.fill_between(
+                layer.x, layer.low, layer.high, color=layer.colour, linewidth=0.0, label=layer.name
+            )
+        elif isinstance(layer, Bars):
+            _bars(axes, layer)
+        elif isinstance(layer, Rule):
+            _rule(axes, layer)
+        elif isinstance(layer, Text):
+            axes.text(layer.x, layer.y, layer.text, color=layer.colour, ha=layer.anchor, va="bottom",
+                      fontsize=_SMALL)  # fmt: skip
+        else:
+            assert picture.shades is not None
+            _heat(axes, layer, panel, picture.shades)
+    # after what is drawn, which would move them
+    axes.set_xlim(panel.x.low, panel.x.high)
+    axes.set_ylim(panel.y.low, panel.y.high)
+    if panel.y.reverse:
+        axes.invert_yaxis()
+    if panel.equal:
+        axes.set_aspect("equal")
+    if panel.second is not None:
+        second, factor = panel.second
+        there, back = (lambda y: np.asarray(y) * factor), (lambda y: np.asarray(y) / factor)
+        axes.secondary_yaxis("right", functions=(there, back)).set_ylabel(second.title)
+    if picture.legend == "panels" and panel.entries():
+        axes.legend(*_handles([axes]), loc="best", fontsize=_SMALL)
+
+
+def _scale(axes: Axes, panel: Panel) -> None:
+    axes.set_xscale("log" if panel.x.log else "linear")
+    axes.set_yscale("log" if panel.y.log else "linear")
+    for axis, set_ticks in ((panel.x, axes.set_xticks), (panel.y, axes.set_yticks)):
+        if axis.ticks:
+            set_ticks(*_ticks(axis))
+            set_ticks([], minor=True)
+
+
+def _ticks(axis: Axis) -> tuple[list[float], list[str]]:
+    places, words = zip(*axis.ticks, strict=True)
+    return list(places), list(words)
+
+
+def _line(axes: Axes, line: Line) -> None:
+    keep = kept_points(line.x, line.y, points=_POINTS)
+    style, filled = line.style, np.broadcast_to(line.filled, line.x.shape)
+    drawn: dict[str, Any] = {
+        "color": style.colour,
+        "linewidth": line.width,
+        "alpha": line.opacity,
+        "drawstyle": "steps-post" if line.steps else "default",
+        "clip_on": line.clip,
+    }
+    if style.dash != "none":
+        axes.plot(line.x[keep], line.y[keep], linestyle=DASHES[style.dash], **drawn, **_marked(line, True))
+        return
+    for inside in (True, False):
+        chosen = keep[filled[keep] == inside]
+        if len(chosen):
+            axes.plot(line.x[chosen], line.y[chosen], linestyle="none", **drawn, **_marked(line, inside))
+
+
+def _marked(line: Line, filled: bool) -> dict[str, Any]:
+    symbol = SYMBOLS[line.style.symbol] if line.style.symbol else None
+    inside = line.style.colour if filled and line.filled is not False else "white"
+    return {"marker": symbol, "markersize": line.size, "markerfacecolor": inside, "label": line.name}
+
+
+def _bars(axes: Axes, bars: Bars) -> None:
+    axes.barh(
+        bars.places,
+        bars.end - bars.start,
+        left=bars.start,
+        height=0.78,
+        color=list(bars.colours),
+        hatch=_HATCHES[bars.hatch],
+        edgecolor="white",
+        label=bars.name,
+    )
+    for place, end, text in zip(bars.places, bars.end, bars.texts, strict=False):
+        axes.annotate(text, (end, place), xytext=(4, 0), textcoords="offset points", va="center",
+                      fontsize=_SMALL)  # fmt: skip
+
+
+def _rule(axes: Axes, rule: Rule) -> None:
+    across = axes.axvline if rule.axis == "x" else axes.axhline
+    if rule.until is None:
+        across(rule.at, color=rule.colour, linewidth=0.9, linestyle=DASHES[rule.dash], label=rule.name)
+    else:
+        strip = axes.axvspan if rule.axis == "x" else axes.axhspan
+        strip(rule.at, rule.until, color=rule.colour, linewidth=0.0, label=rule.name)
+    if not rule.text:
+        return
+    left = rule.side == "left"
+    if rule.axis == "x":
+        place, at, coordinates = (4 if not left else -4, -4), (rule.at, 1.0), ("data", "axes fraction")
+        where: dict[str, Any] = {"ha": "right" if left else "left", "va": "top"}
+    else:
+        place, at, coordinates = (4 if left else -4, 2), (0.0 if left else 1.0, rule.at), _ACROSS
+        where = {"ha": "left" if left else "right", "va": "bottom"}
+    axes.annotate(rule.text, at, xycoords=coordinates, xytext=place, textcoords="offset points",
+                  fontsize=_SMALL, bbox=_BEHIND, **where)  # fmt: skip
+
+
+_ACROSS = ("axes fraction", "data")
+_BEHIND = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0}
+
+
+def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
+    from matplotlib.colors import ListedColormap
+
+    edges = heat.edges(log_x=panel.x.log, log_y=panel.y.log)
+    place = shades.place(heat.values)
+    few = heat.values.size <= _VECTOR_CELLS
+    drawn: dict[str, Any] = {"rasterized": not few, "edgecolors": "white" if few else "none"}
+    axes.grid(visible=False)
+    axes.set_facecolor(_NOTHING)
+    axes.pcolormesh(*edges, np.ma.masked_invalid(place), cmap=_colours(shades), vmin=0.0, vmax=1.0,
+                    linewidth=0.5 if few else 0.0, **drawn)  # fmt: skip
+    for gap in heat.gaps:
+        if gap.cells.any():
+            layer = np.ma.masked_where(~gap.cells, np.zeros(gap.cells.shape))
+            axes.pcolormesh(*edges, layer, cmap=ListedColormap([gap.colour]), linewidth=0.0, **drawn)
+            axes.fill_between([], [], [], color=gap.colour, label=gap.name)
+    if heat.written and heat.values.size <= _MOST_WRITTEN:
+        sided = shades.centre is not None
+        for (row, column), value in np.ndenumerate(heat.values):
+            if np.isfinite(value):
+                at = place[row, column]
+                dark = abs(at - 0.5) > 0.5 * _DARK if sided else at > _DARK
+                where = float(heat.x[column]), float(heat.y[row])
+                axes.text(*where, format(value, heat.written), ha="center", va="center", fontsize=_SMALL,
+                          color="white" if dark else "black", clip_on=True)  # fmt: skip
+
+
+def _colours(shades: Shades) -> Colormap:
+    import matplotlib as mpl
+
+    name = _SEQUENTIAL if shades.centre is None else _DIVERGING
+    found: Colormap = mpl.colormaps[name]
+    return found.resampled(shades.steps) if shades.steps else found
+
+
+def _colour_bar(drawn: Figure, places: Any, shades: Shades) -> None:
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import Normalize
+
+    scale = ScalarMappable(Normalize(0.0, 1.0), _colours(shades))
+    bar = drawn.colorbar(scale, ax=places, location="bottom", shrink=0.6, aspect=45, pad=0.02)
+    at, words = zip(*shades.ticks(), strict=True)
+    bar.set_ticks(at, labels=words)
+    bar.set_label(shades.title)
+
+
+def _handles(panels: Sequence[Axes]) -> tuple[list[Any], list[str]]:
+    """Return what stands in a legend, each name once, at most so many as can be told apart."""
+    found: dict[str, Any] = {}
+    for axes in panels:
+        for handle, name in zip(*axes.get_legend_handles_labels(), strict=True):
+            found.setdefault(name, handle)
+    rest = len(found) - MOST_ENTRIES
+    shown = list(found)[: MOST_ENTRIES - (rest > 0)]
+    words = [textwrap.fill(name, 60) for name in shown]
+    if rest > 0:
+        from matplotlib.lines import Line2D
+
+        return [found[name] for name in shown] + [Line2D([], [], linestyle="none")], [
+            *words,
+            f"and {rest + 1} more",
+        ]
+    return [found[name] for name in shown], words
+
+
+def _legend(drawn: Figure, panels: Sequence[Axes]) -> None:
+    handles, words = _handles(panels)
+    # an entry of n letters takes some n/14 + 0.5 inches
+    columns = max(1, min(4, int(WIDTH / (max(map(len, words)) / 14.0 + 0.5))))
+    drawn.legend(handles, words, loc="outside lower center", ncols=columns, frameon=False, labelcolor=DARK)

@@ -1,0 +1,205 @@
+"""A report: one template in Markdown, shown in a terminal, as a document and as a page.
+
+A template is given plain values and says the words. In it stand ``{{ picture("name") }}``,
+``{{ table(rows, [["key", "heading [unit]", ".3g"], ...]) }}`` and ``{{ block("name") }}``, each alone in a
+paragraph; numbers in sentences are ``{{ value | number(".3g") }}``, commands ``{{ command | code }}``.
+`output` is "terminal", "markdown" or "html" where one of the three is to say more or less.
+"""
+
+from __future__ import annotations
+
+import html
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from itertools import pairwise
+from typing import TYPE_CHECKING, Literal
+
+from ..figures.interactive import plots
+from ..figures.picture import Picture
+from ..figures.svg import svg
+from .table import Row, Table, columns_of, number
+from .words import FILTERS
+
+if TYPE_CHECKING:
+    from jinja2 import Environment
+    from rich.console import Console
+
+Output = Literal["terminal", "markdown", "html"]
+_PLACE = re.compile(r"\n?@@(\d+)@@\n?")
+# what Markdown would take for markup in a name; an underscore only where a word begins or ends
+_MARKUP = re.compile(r"([\\`*<])|(?<!\w)_|_(?!\w)")
+_LEAST_WIDTH = 100  # of what is not a terminal, such as a file
+
+
+class Safe(str):
+    """Text that is Markdown already."""
+
+    __slots__ = ()
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Page:
+    """One report.
+
+    Attributes
+    ----------
+    name : str
+        Of its files.
+    template : str
+        In the folder templates, without its ending.
+    values : mapping
+        What the template is given: plain values.
+    pictures : iterable of Picture
+    blocks : mapping of str to str
+        HTML that only a page can show, such as motion in three dimensions.
+    """
+
+    name: str
+    template: str
+    values: Mapping[str, object]
+    pictures: Iterable[Picture] = ()
+    blocks: Mapping[str, str] = field(default_factory=dict)
+
+    def files(self) -> dict[str, bytes]:
+        """Return the files by name: NAME.md with its pictures as SVG beside it, and NAME.html."""
+        return {
+            f"{self.name}.md": self.markdown().encode(),
+            f"{self.name}.html": self.html().encode(),
+            **{f"{picture.name}.svg": svg(picture) for picture in self.pictures},
+        }
+
+    def markdown(self) -> str:
+        """Return the document."""
+
+        def shown(thing: Picture | Table | Safe) -> str:
+            if isinstance(thing, Picture):
+                caption = f"*{thing.title}.* {thing.caption}".strip()
+                return f"![{thing.title}]({thing.name}.svg)\n\n{caption}"
+            return thing.markdown() if isinstance(thing, Table) else ""
+
+        return (
+            "\n\n".join(part if isinstance(part, str) else shown(part) for part in self._parts("markdown"))
+            + "\n"
+        )
+
+    def html(self) -> str:
+        """Return the page, which needs nothing else."""
+        from plotly.offline import get_plotlyjs
+
+        parts = self._parts("html")
+        body = "\n".join(_html(part) for part in parts)
+        title = re.search(r"<h1.*?>(.*?)</h1>", body)
+        drawn = any(isinstance(part, Picture) for part in parts) or bool(self.blocks)
+        return (
+            _environment()
+            .get_template("base.html.j2")
+            .render(
+                title=re.sub("<.*?>", "", title[1]) if title else self.name,
+                body=body,
+                plotly_js=get_plotlyjs() if drawn else "",
+            )
+        )
+
+    def show(self, console: Console | None = None) -> None:
+        """Print the report in a terminal: its words and tables."""
+        from rich.console import Console
+        from rich.markdown import Markdown
+
+        console = console or Console()
+        if not console.is_terminal:
+            console.width = max(console.width, _LEAST_WIDTH)
+        for part in self._parts("terminal"):
+            if isinstance(part, Table):
+                console.print(part.rich(console.width))
+            elif isinstance(part, str) and not isinstance(part, Safe):
+                console.print(Markdown(part), highlight=False)
+                console.print()
+
+    def _parts(self, output: Output) -> list[str | Picture | Table | Safe]:
+        """Return the rendered template, cut where a picture, a table or a block stands."""
+        things: list[Picture | Table | Safe] = []
+        pictures = {picture.name: picture for picture in self.pictures}
+
+        def place(thing: Picture | Table | Safe) -> Safe:
+            things.append(thing)
+            return Safe(f"@@{len(things) - 1}@@")
+
+        def table(
+            rows: Iterable[Row], columns: Sequence[Sequence[str]], group: str = "", folded: bool = False
+        ) -> Safe:
+            made = Table(columns=columns_of(columns), rows=list(rows), group=group, folded=folded)
+            return place(made) if made.rows else Safe("")
+
+        text = (
+            _environment()
+            .get_template(f"{self.template}.md.j2")
+            .render(
+                {
+                    **self.values,
+                    "output": output,
+                    "picture": lambda name: place(pictures[name]),
+                    "block": lambda name: place(Safe(self.blocks[name])) if output == "html" else "",
+                    "table": table,
+                }
+            )
+        )
+        text = re.sub(r"\n{3,}", "\n\n", text).strip()
+        cut = _PLACE.split(text)
+        return [
+            things[int(part)] if index % 2 else part.strip()
+            for index, part in enumerate(cut)
+            if index % 2 or part.strip()
+        ]
+
+
+def _html(part: str | Picture | Table | Safe) -> str:
+    if isinstance(part, Picture):
+        panels = "".join(
+            f"<div>{f'<h4>{html.escape(title)}</h4>' if title else ''}{plot}</div>"
+            for title, plot in plots(part)
+        )
+        several = ' class="panels"' if len(part.panels) > 1 and not part.link_x else ""
+        words = f"<h3>{html.escape(part.title)}</h3><p>{html.escape(part.caption)}</p>"
+        return f'<figure id="{html.escape(part.name)}">{words}<div{several}>{panels}</div></figure>'
+    if isinstance(part, Table):
+        return part.html()
+    return str(part) if isinstance(part, Safe) else to_html(part)
+
+
+def to_html(text: str) -> str:
+    """Return Markdown as HTML; headings have their words as id, as on GitHub."""
+    from markdown_it import MarkdownIt
+
+    parser = MarkdownIt("commonmark", {"html": False}).enable("table")
+    tokens = parser.parse(text)
+    for opening, content in pairwise(tokens):
+        if opening.type == "heading_open":
+            opening.attrSet("id", re.sub(r"[^\w\- ]", "", content.content.lower()).replace(" ", "-"))
+    return str(parser.renderer.render(tokens, parser.options, {}))
+
+
+@cache
+def _environment() -> Environment:
+    import jinja2
+
+    environment = jinja2.Environment(
+        loader=jinja2.PackageLoader("rockwobble.reports.pages", "templates"),
+        autoescape=lambda name: bool(name) and str(name).endswith(".html.j2"),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        finalize=_escaped,
+    )
+    environment.filters |= FILTERS | {"number": number}
+    environment.filters["code"] = lambda text: Safe(f"`{text}`")
+    environment.filters["md"] = Safe
+    return environment
+
+
+def _escaped(value: object) -> object:
+    """Return a text without what Markdown would take for markup; what is Markdown already stays."""
+    if isinstance(value, str) and not isinstance(value, Safe) and not hasattr(value, "__html__"):
+        return _MARKUP.sub(lambda found: f"\\{found[0]}", value)
+    return value

@@ -1,0 +1,193 @@
+"""Tables and numbers of a page: what a value looks like, whatever it is shown on."""
+
+from __future__ import annotations
+
+import html
+import math
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.table import Table as RichTable
+
+Row = Mapping[str, object]
+NONE = "–"
+
+
+def number(value: object, form: str = ".3g") -> str:
+    """Return a value in words: a format of Python, or "percent", "duration", "words" or "tag" (as it is).
+
+    What is not known, NaN and None, is a dash.
+
+    Examples
+    --------
+    >>> number(0.12345), number(1e-7), number(float("nan")), number(True)
+    ('0.123', '1e-7', '–', 'yes')
+    >>> number(0.0312, "percent"), number(5400.0, "duration")
+    ('3.1 %', '1.5 h')
+    """
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return NONE
+    if isinstance(value, str) or form in ("words", "tag"):
+        return str(value)
+    if isinstance(value, bool) or type(value).__name__ == "bool":  # numpy's too
+        return "yes" if value else "no"
+    found = float(value)  # type: ignore[arg-type]
+    if math.isinf(found):
+        return "∞" if found > 0.0 else "-∞"
+    if form in _FORMS:
+        return _FORMS[form](found)
+    if form.endswith("d"):
+        return format(int(found), form)
+    return _short(format(found, form))
+
+
+def _percent(share: float) -> str:
+    value = 100.0 * share
+    return f"{value:.0f} %" if abs(value) >= 10.0 else f"{_short(format(value, '.2g'))} %"
+
+
+def _short(text: str) -> str:
+    """Return 1e-7 for 1e-07, which is how a computer writes it."""
+    return re.sub(r"e([+-])0*(\d)", lambda m: f"e{m[1].replace('+', '')}{m[2]}", text)
+
+
+def _duration(seconds: float) -> str:
+    for unit, length in (("h", 3600.0), ("min", 60.0)):
+        if seconds >= 1.5 * length or (unit == "h" and seconds >= length):
+            return f"{seconds / length:.2g} {unit}"
+    return f"{seconds:.0f} s" if seconds >= 10.0 else f"{seconds:.2g} s"
+
+
+_FORMS: Mapping[str, Callable[[float], str]] = {"percent": _percent, "duration": _duration}
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """One column: the name of its values in a row, what stands above it with its unit, and their format.
+
+    One that is `wide` is left out where a terminal has no room for it.
+    """
+
+    key: str
+    heading: str
+    form: str = ".3g"
+    wide: bool = False
+
+    @property
+    def text(self) -> bool:
+        """Whether it holds words, which stand on the left."""
+        return self.form in ("words", "tag")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Table:
+    """Rows under columns; with `group`, rows of one value of it stand together under that value.
+
+    Attributes
+    ----------
+    columns : sequence of Column
+    rows : sequence of mapping
+    group : str
+        Name in a row; empty: none.
+    folded : bool
+        Whether a page shows each group only when it is opened.
+    """
+
+    columns: Sequence[Column]
+    rows: Sequence[Row]
+    group: str = ""
+    folded: bool = False
+
+    def groups(self) -> list[tuple[str, list[list[str]]]]:
+        """Return the cells of the rows, by group."""
+        found = groupby(self.rows, key=lambda row: str(row[self.group]) if self.group else "")
+        return [(name, [self.cells(row) for row in rows]) for name, rows in found]
+
+    def cells(self, row: Row) -> list[str]:
+        """Return the cells of one row."""
+        return [number(row.get(column.key), column.form) for column in self.columns]
+
+    def markdown(self) -> str:
+        """Return the table in Markdown, which has no groups: they are a first column."""
+        first = [(self.group.replace("_", " "), "---")] if self.group else []
+        heads = [*first, *((c.heading, "---" if c.text else "---:") for c in self.columns)]
+        lines = [[head for head, _ in heads], [rule for _, rule in heads]]
+        lines += [[*([name] if self.group else []), *cells] for name, rows in self.groups() for cells in rows]
+        # a vertical bar would end a cell
+        return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in lines)
+
+    def html(self) -> str:
+        """Return the table as HTML: scrolled on its own where it is wider than the screen."""
+        heads = "".join(f'<th scope="col"{_class(c)}>{html.escape(c.heading)}</th>' for c in self.columns)
+        parts = []
+        for name, rows in self.groups():
+            body = "".join(self._html_row(cells) for cells in rows)
+            if self.folded:
+                parts.append(
+                    f"<details><summary>{html.escape(name)}</summary>{_scrolled(heads, body)}</details>"
+                )
+            else:
+                span = f'<tr class="group"><th colspan="{len(self.columns)}">{html.escape(name)}</th></tr>'
+                parts.append(f"<tbody>{span if name else ''}{body}</tbody>")
+        return "\n".join(parts) if self.folded else _scrolled(heads, "".join(parts))
+
+    def _html_row(self, cells: Sequence[str]) -> str:
+        found = []
+        for place, (column, cell) in enumerate(zip(self.columns, cells, strict=True)):
+            mark = f' class="tag {_slug(cell)}"' if column.form == "tag" else _class(column)
+            kind = "th" if place == 0 else "td"
+            label = "" if self.folded else f' data-label="{html.escape(column.heading)}"'
+            scope = ' scope="row"' if place == 0 else label
+            found.append(f"<{kind}{scope}{mark}>{html.escape(cell)}</{kind}>")
+        return f"<tr>{''.join(found)}</tr>"
+
+    def rich(self, width: int) -> RichTable:
+        """Return the table for a terminal of so many columns: what is wide only if there is room for it."""
+        from rich.console import Console
+
+        whole = self._rich(self.columns)
+        needed = Console(width=10_000).measure(whole).maximum
+        narrow = [column for column in self.columns if not column.wide]
+        return whole if needed <= width or len(narrow) == len(self.columns) else self._rich(narrow)
+
+    def _rich(self, columns: Sequence[Column]) -> RichTable:
+        from rich import box
+        from rich.table import Table as RichTable
+        from rich.text import Text
+
+        table = RichTable(box=box.SIMPLE_HEAD, padding=0, pad_edge=False, show_edge=False)
+        for column in columns:
+            # as a text, because brackets are markup; the unit in a line of its own
+            heading = Text(column.heading.replace(" [", "\n["))
+            table.add_column(heading, justify="left" if column.text else "right", overflow="fold")
+        kept = [self.columns.index(column) for column in columns]
+        for name, rows in self.groups():
+            if name:
+                table.add_row(Text(name, style="bold"))
+            for cells in rows:
+                table.add_row(*(Text(cells[place]) for place in kept))
+        return table
+
+
+def columns_of(given: Iterable[Sequence[str]]) -> list[Column]:
+    """Return the columns of lists as templates have them: key, heading, and maybe format and "wide"."""
+    return [
+        Column(key, heading, rest[0] if rest else ".3g", "wide" in rest[1:]) for key, heading, *rest in given
+    ]
+
+
+def _class(column: Column) -> str:
+    return ' class="words"' if column.text else ""
+
+
+def _scrolled(heads: str, body: str) -> str:
+    table = f"<table><thead><tr>{heads}</tr></thead>{body}</table>"
+    return f'<div class="scroll" tabindex="0">{table}</div>'
+
+
+def _slug(text: str) -> str:
+    return re.sub(r"\W+", "-", text.lower()).strip("-")

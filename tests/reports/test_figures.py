@@ -1,0 +1,176 @@
+"""Figures as data: both renderers draw what the data say, and nothing that they do not."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+
+from rockwobble.models import Case, Cylinder, InitialState
+from rockwobble.reduced import simulate
+from rockwobble.reports.figures.heat import Gap, Heat, Shades, contour, names
+from rockwobble.reports.figures.interactive import figures, plots
+from rockwobble.reports.figures.palette import Style, label_styles
+from rockwobble.reports.figures.picture import (
+    TIME,
+    Axis,
+    Band,
+    Bars,
+    Line,
+    Panel,
+    Picture,
+    Rule,
+    Text,
+    ecdf,
+)
+from rockwobble.reports.figures.svg import figure, svg
+
+ALPHA = Axis(label="tilt / α", unit="-", low=0.0)
+T = np.linspace(0.0, 10.0, 4001)
+
+
+def lines(count: int = 3, **options: object) -> Picture:
+    styles = label_styles([f"run {i}" for i in range(count)])
+    layers = [
+        Band(x=T, low=0.0 * T, high=0.0 * T + 0.5, name="band"),
+        *(Line(x=T, y=np.abs(np.sin(T + i)), name=name, style=styles[name]) for i, name in enumerate(styles)),
+        Rule(at=4.0, axis="x", text="until here"),
+        Rule(at=1.0, until=2.0, axis="x", name="strong"),
+        Text(x=5.0, y=0.5, text="words"),
+        Line(x=np.array([3.0]), y=np.array([0.2]), style=Style(colour="#000000", dash="none", symbol="star")),
+    ]
+    return Picture(name="lines", title="Lines", panels=[Panel(x=TIME, y=ALPHA, layers=layers)], **options)
+
+
+def maps(values: np.ndarray, shades: Shades, **heat: object) -> Picture:
+    x, x_ticks = names([0.1, 0.2])
+    y, y_ticks = names(["low", "high"])
+    panel = Panel(
+        x=Axis(label="tan α", unit="", ticks=x_ticks),
+        y=Axis(label="kind", unit="", ticks=y_ticks),
+        layers=[Heat(x=x, y=y, values=values, written=".1f", **heat)],
+    )
+    return Picture(name="maps", title="Maps", panels=[panel], shades=shades)
+
+
+def words(content: bytes) -> str:
+    # matplotlib writes each text as paths under a comment that holds it
+    return " ".join(re.findall(r"<!-- (.*?) -->", content.decode()))
+
+
+def test_svg_has_the_same_bytes_and_says_what_it_shows():
+    content = svg(lines())
+    assert content == svg(lines())
+    for said in ("time [s]", "tilt / α [-]", "run 0", "band", "strong", "until here", "words"):
+        assert said in words(content)
+
+
+def test_no_text_is_too_small_to_be_read():
+    drawn = figure(maps(np.ones((2, 2)), Shades(label="bias", unit="%", low=0.0, high=2.0)))
+    sizes = [text.get_fontsize() for text in drawn.findobj(lambda each: hasattr(each, "get_fontsize"))]
+    assert min(sizes) >= 8.0
+
+
+def test_legend_has_at_most_eight_entries_and_says_that_there_are_more():
+    drawn = figure(lines(12))
+    said = [text.get_text() for text in drawn.legends[0].get_texts()]
+    assert len(said) == 8
+    assert said[-1] == "and 7 more"  # of 14: a band, a strip and 12 runs
+    (page,) = figures(lines(12))
+    assert sum(bool(trace.showlegend) for trace in page.data) == 8
+
+
+def test_both_renderers_draw_the_same_numbers_thinned_to_what_can_be_seen():
+    (page,) = figures(lines(1))
+    drawn = next(trace for trace in page.data if trace.name == "run 0")
+    line = next(each for each in figure(lines(1)).axes[0].lines if each.get_label() == "run 0")
+    for x, y in ((drawn.x, drawn.y), line.get_data()):
+        assert len(x) < len(T)
+        np.testing.assert_allclose(y, np.abs(np.sin(np.asarray(x, dtype=float))), atol=1e-5)
+        assert np.max(y) == pytest.approx(1.0, abs=1e-6)  # extremes are kept
+
+
+def test_a_map_shows_values_gaps_by_kind_and_its_scale():
+    values = np.array([[-2.0, 1.0], [np.nan, 9.0]])
+    shades = Shades(label="bias", unit="%", low=-2.0, high=4.0, centre=0.0)
+    np.testing.assert_allclose(shades.place(values), [[0.25, 0.625], [np.nan, 1.0]])
+    picture = maps(values, shades, gaps=[Gap(name="falls", colour="#D55E00", cells=np.isnan(values))])
+    assert picture.entries() == ["falls"]
+    for said in ("bias [%]", "falls", "-2.0", "9.0", "low", "0.2"):
+        assert said in words(svg(picture)).replace("−", "-")
+    (page,) = figures(picture)
+    heat = page.data[0]
+    np.testing.assert_allclose(heat.z, shades.place(values), rtol=1e-6)
+    assert heat.customdata[1][0][2] == "falls"
+    assert heat.customdata[1][1][:3] == ["0.2", "high", "9"]
+
+
+def test_logarithmic_scale_has_its_decades_and_draws_what_is_beyond_as_its_ends():
+    shades = Shades(label="difference", unit="%", low=0.1, high=100.0, log=True)
+    assert [name for _, name in shades.ticks()] == ["0.1", "1", "10", "100"]
+    np.testing.assert_allclose(shades.place(np.array([1e-9, 1.0, 1e9])), [0.0, 1.0 / 3.0, 1.0])
+
+
+def test_cells_reach_from_edge_to_edge_on_a_logarithmic_axis():
+    heat = Heat(x=np.array([1.0, 10.0, 100.0]), y=np.array([0.0, 1.0]), values=np.zeros((2, 3)))
+    x, y = heat.edges(log_x=True)
+    np.testing.assert_allclose(x, 10.0 ** np.array([-0.5, 0.5, 1.5, 2.5]))
+    np.testing.assert_allclose(y, [-0.5, 0.5, 1.5])
+
+
+def test_contour_is_where_the_values_are():
+    x, y = np.linspace(0.0, 2.0, 41), np.linspace(0.0, 1.0, 21)
+    at = contour(x, y, np.add.outer(y, x), 1.25)
+    np.testing.assert_allclose(at[0] + at[1], 1.25, atol=1e-12)
+    assert np.ptp(at[1]) == pytest.approx(1.0)
+    assert len(contour(x, y, np.add.outer(y, x), 9.0)[0]) == 0
+
+
+def test_steps_of_a_distribution_count_those_without_a_value():
+    x, share = ecdf(np.array([0.4, 0.1]), total=4, end=1.0)
+    assert x.tolist() == [0.0, 0.1, 0.4, 1.0]
+    assert share.tolist() == [0.0, 0.25, 0.5, 0.5]
+
+
+def test_bars_start_where_others_end():
+    picture = Picture(
+        name="bars",
+        title="Bars",
+        panels=[
+            Panel(
+                x=Axis(label="share", unit="-"),
+                y=Axis(label="", unit="", ticks=[(0.0, "run")], reverse=True),
+                layers=[
+                    Bars(places=np.zeros(1), start=np.array([0.4]), end=np.ones(1), colours=["#000000"],
+                         texts=["1e-3"])
+                ],
+            )
+        ],
+    )  # fmt: skip
+    (page,) = figures(picture)
+    assert (page.data[0].base[0], page.data[0].x[0]) == (0.4, pytest.approx(0.6))
+    assert page.layout.yaxis.autorange == "reversed"
+    assert "1e-3" in words(svg(picture))
+
+
+def test_axis_without_a_unit_is_refused():
+    with pytest.raises(ValueError, match="must have a unit"):
+        Axis(label="tilt", unit="")
+
+
+def test_elements_of_a_page_carry_the_name_of_the_picture_and_what_is_linked():
+    ((title, element),) = plots(lines(link_x=True))
+    assert title == ""
+    assert 'id="lines-0"' in element
+    assert '"link":"time [s]"' in element.replace(" ", "").replace("time[s]", "time [s]")
+
+
+def test_trace_draws_itself():
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
+    drawn = simulate(Case(pier, initial=release, duration=1.0)).plot()
+    tilt, path = drawn.axes
+    assert tilt.lines[0].get_ydata()[0] == pytest.approx(0.5)
+    # the contact point keeps to the original circle
+    assert np.hypot(*path.lines[1].get_data()) == pytest.approx(1.0)

@@ -1,0 +1,139 @@
+"""One template, three outputs: they say the same, and none needs anything outside of itself."""
+
+from __future__ import annotations
+
+import io
+import math
+import re
+
+import jinja2
+import numpy as np
+import pytest
+from browser import complaints, needs_chromium
+from rich.console import Console
+
+from rockwobble.reports.figures.picture import TIME, Axis, Line, Panel, Picture
+from rockwobble.reports.pages import page as framework
+from rockwobble.reports.pages.page import Page, to_html
+from rockwobble.reports.pages.table import Column, Table, number
+
+TEMPLATE = """
+# Report of {{ name }}
+
+**It took {{ wall_time | number("duration") }}.** See [the peaks](#largest-peaks).
+
+{{ picture("tilt") }}
+
+## Largest peaks
+
+{{ table(rows, [["name", "run", "words"], ["peak", "peak [α]", ".2f"], ["verdict", "verdict", "tag"],
+                ["note", "note", "words", "wide"]], group="case") }}
+
+{% if output == "html" %}
+{{ block("player") }}
+{% endif %}
+
+{{ "- only in a terminal" | md if output == "terminal" }}
+
+Made by {{ "rockwobble compare --scale 2_3" | code }}.
+"""
+ROWS = [
+    {"case": "a|b", "name": "mujoco *recess*", "peak": 0.5, "verdict": "fine", "note": "n" * 90},
+    {"case": "a|b", "name": "pybullet", "peak": math.nan, "verdict": "not fine", "note": "n" * 90},
+    {"case": "c", "name": "dart", "peak": math.inf, "verdict": "fine", "note": "n" * 90},
+]
+
+
+@pytest.fixture
+def page(monkeypatch):
+    made = framework._environment()
+    loader = jinja2.ChoiceLoader([jinja2.DictLoader({"test.md.j2": TEMPLATE}), made.loader])
+    monkeypatch.setattr(made, "loader", loader)
+    time = np.linspace(0.0, 1.0, 50)
+    line = Line(x=time, y=time**2, name="run")
+    panel = Panel(x=TIME, y=Axis(label="tilt / α", unit="-"), layers=[line])
+    picture = Picture(name="tilt", title="Tilt", caption="Of one run.", panels=[panel])
+    values = {"name": "CHI_TCU *<b>*", "wall_time": 200.0, "rows": ROWS}
+    return Page(
+        name="report",
+        template="test",
+        values=values,
+        pictures=[picture],
+        blocks={"player": "<video></video>"},
+    )
+
+
+def shown(page: Page, width: int) -> str:
+    console = Console(file=io.StringIO(), force_terminal=True, width=width, no_color=True)
+    page.show(console)
+    return re.sub(r"\x1b\[[\d;]*m", "", console.file.getvalue())
+
+
+def test_document_has_the_words_the_table_and_the_picture_beside_it(page):
+    files = page.files()
+    assert set(files) == {"report.md", "report.html", "tilt.svg"}
+    text = files["report.md"].decode()
+    assert "![Tilt](tilt.svg)\n\n*Tilt.* Of one run." in text
+    assert "**It took 3.3 min.**" in text
+    assert "| a∣b | mujoco *recess* | 0.50 | fine |" in text
+    assert "| a∣b | pybullet | – | not fine |" in text
+    assert "`rockwobble compare --scale 2_3`" in text
+    assert "video" not in text
+    assert "\n\n\n" not in text
+
+
+def test_page_needs_nothing_else_and_a_name_is_no_markup(page):
+    text = page.html()
+    assert "<title>rockwobble: Report of CHI_TCU *&lt;b&gt;*</title>" in text
+    assert '<h2 id="largest-peaks">' in text
+    assert '<td data-label="verdict" class="tag not-fine">not fine</td>' in text
+    assert "<video></video>" in text
+    assert "<code>rockwobble compare --scale 2_3</code>" in text
+    assert 'id="tilt-0"' in text
+    assert not re.search(r'<(script|link|img)[^>]*(src|href)="https?:', text)
+    assert "only in a terminal" not in text
+
+
+def test_terminal_shows_words_and_tables_and_leaves_out_what_has_no_room(page):
+    wide, narrow = shown(page, 160), shown(page, 80)
+    for text in (wide, narrow):
+        assert "Report of CHI_TCU *<b>*" in text
+        assert "only in a terminal" in text
+        assert re.search(r"mujoco \*recess\*\s+0\.50\s+fine", text)
+    assert "nnn" in wide
+    assert "nnn" not in narrow
+
+
+def test_headings_are_reached_by_their_words():
+    assert to_html("## Peak tilt, 3D") == '<h2 id="peak-tilt-3d">Peak tilt, 3D</h2>\n'
+
+
+@needs_chromium
+def test_nobody_stumbles_over_the_page(page, tmp_path):
+    assert complaints(page.html(), tmp_path, figures=1) == []
+
+
+def test_folded_groups_open_one_by_one():
+    table = Table(columns=[Column("name", "run", "words")], rows=ROWS, group="case", folded=True)
+    assert table.html().count("<details><summary>") == 2
+
+
+@pytest.mark.parametrize(
+    ("value", "form", "said"),
+    [
+        (1.5e-10, ".1e", "1.5e-10"),
+        (3e5, ".1e", "3.0e5"),
+        (12.0, "d", "12"),
+        (-math.inf, ".3g", "-∞"),
+        (None, ".3g", "–"),
+        (np.bool_(False), ".3g", "no"),
+        (0.0, "percent", "0 %"),
+        (0.0004, "percent", "0.04 %"),
+        (-0.381, "percent", "-38 %"),
+        (59.0, "duration", "59 s"),
+        (90.0, "duration", "1.5 min"),
+        ("falls", ".3g", "falls"),
+    ],
+)
+def test_numbers_in_words(value, form, said):
+    assert number(value, form) == said
