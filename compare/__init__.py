@@ -23,10 +23,12 @@ from .runs.choice import (
     reserved_engines,
     with_settings,
 )
-from .runs.execution import Job, Progress, simulate, simulate_all
+from .runs.execution import Job, simulate, simulate_all
+from .runs.progress import Progress
+from .runs.scheduler import run_tasks
 from .storage.files import replace_files, require_writable
 from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
-from .studies.ensemble.study import Ensemble, ensemble, read_ensemble
+from .studies.ensemble.study import Ensemble, ensemble
 from .studies.sweep.cases import CaseSweep
 from .studies.sweep.grid import Grid
 from .studies.sweep.store import SweepStore, open_sweep_store
@@ -65,13 +67,13 @@ __all__ = [
     "open_sweep_store",
     "own_model",
     "perturbed_starts",
-    "read_ensemble",
     "read_trajectory",
     "relative_rms",
     "replace_files",
     "require_runnable",
     "require_writable",
     "reserved_engines",
+    "run_tasks",
     "simulate",
     "simulate_all",
     "sweep",

@@ -10,15 +10,15 @@ from typing import TYPE_CHECKING, Any
 from rockwobble.models import Case, Run, Suite, Trace
 
 from ..runs.choice import default_runs, own_model, references_of, require_runnable, run_labels
-from ..runs.execution import Job, ProgressCallback, simulate_all
-from ..runs.run_store import open_run_store
+from ..runs.execution import Job, open_trace_cache, simulate_all
+from ..runs.progress import ProgressCallback
 from ..storage.files import require_writable
 from ..storage.provenance import package_versions
 from ..traces.trajectory import External, read_trajectories
 from .case_budgets import case_budgets
 from .error_budget import ErrorBudget
 from .prediction import Simulate, estimated_error, measured_error, predict
-from .result import Comparison
+from .result import KIND, Comparison
 from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
 
 if TYPE_CHECKING:
@@ -58,7 +58,7 @@ def compare(
     progress : callable, optional
         Called with a `Progress` at the start and at the end of each run.
     resume : str or Path, optional
-        Folder, such as that of `out`, that keeps each run in `runs` as soon as it is finished. A second
+        Folder, such as that of `out`, that keeps each run in `finished` as soon as it is there. A second
         call with the same inputs, after whatever ended the first, repeats none that is there.
     external : iterable of External, str or Path, optional
         CSV files of trajectories of this case from a shake table or another code, each one more run; what
@@ -99,17 +99,17 @@ def compare(
     by_label = dict(zip(labels, chosen, strict=True))
     held_against = Run(None, "recess") if reference is None else reference
     jobs = _jobs(cases, by_label, reference, also=(held_against,) if brought else ())
-    with nullcontext() if resume is None else open_run_store(resume) as store:
+    with nullcontext() if resume is None else open_trace_cache(resume, KIND) as cache:
 
         def run_all(jobs: list[Job]) -> list[Trace]:
-            return simulate_all(jobs, workers=workers, progress=progress, store=store)
+            return simulate_all(jobs, workers=workers, progress=progress, cache=cache)
 
         found = dict(zip(jobs, run_all(list(jobs.values())), strict=True))
         budgets = case_budgets(cases, by_label, reference, found, run_all) if budget else {}
 
         def copy_of(case: Case, run: Run) -> Trace:
             # milliseconds: not worth a process, nor a word about its progress
-            return simulate_all([Job(case=case, run=run, label="copy")], workers=1, store=store)[0]
+            return simulate_all([Job(case=case, run=run, label="copy")], workers=1, cache=cache)[0]
 
         rows = [
             _row(case, name, found, label, run, budgets.get((case.name, label, name)), copy_of, until)
@@ -124,7 +124,7 @@ def compare(
     comparison = Comparison(
         summary=_table(rows),
         cases={case.name: case for case in cases},
-        traces={key: trace for key, trace in found.items() if len(trace.time)} | brought,
+        traces=found | brought,
         versions=package_versions(),
         until=until,
         budgets=budgets,

@@ -104,10 +104,11 @@ def _case(given: Mapping[str, Any], excitation: pd.DataFrame | None) -> Case:
 
 def _traces(given: Mapping[str, Any], samples: pd.DataFrame, cases: Mapping[str, Case]) -> dict[Key, Trace]:
     tables = dict(iter(samples.groupby(["case", "run"], sort=False)))
+    none = samples.iloc[:0]  # of a run whose process died
     traces = {}
     for joined, facts in given.items():
         case, _, label = joined.partition(_SEPARATOR)
-        traces[case, label] = trace_of(facts, tables[case, label], cases[case])
+        traces[case, label] = trace_of(facts, tables.get((case, label), none), cases[case])
     return traces
 
 

@@ -36,13 +36,15 @@ class Comparison:
         Case of each name.
     traces : dict
         Trace for each (case name, label), of runs and references, such as ("El Centro 1940",
-        "mujoco recess") and ("El Centro 1940", "recess model"). A run whose process died is left out.
+        "mujoco recess") and ("El Centro 1940", "recess model"). One whose process died has no samples.
     versions : dict
         Version of each package and engine that took part.
     until : float or None
         End of the window of the RMS columns, in the time of the run [s]; None is the whole run.
     budgets : dict
         Error budget for each (case, label of the run, label of the reference), where it was asked for.
+    command : str
+        That asked for what was loaded.
     """
 
     summary: pd.DataFrame
@@ -51,6 +53,7 @@ class Comparison:
     versions: Mapping[str, str]
     until: float | None = None
     budgets: Mapping[tuple[str, str, str], ErrorBudget] = field(default_factory=dict)
+    command: str = ""
 
     def save(
         self, folder: str | Path, *, command: str = "", pages: Mapping[str, bytes] | None = None
@@ -79,7 +82,7 @@ class Comparison:
             "summary.csv": self.summary.to_csv(index=False).encode(),
             ABOUT: (plain_json.dumps(whole, indent=1) + "\n").encode(),
         }
-        made = self.manifest(command)
+        made = self.manifest(command or self.command)
         write_results(folder, made, self._tables(), files=files, pages=pages)
 
     def manifest(self, command: str = "") -> Manifest:
@@ -110,7 +113,8 @@ class Comparison:
         ValueError
             If the folder holds no comparison, or a file is missing or damaged.
         """
-        return cls(**load_fields(read_results(folder, KIND)))
+        stored = read_results(folder, KIND)
+        return cls(**load_fields(stored), command=stored.manifest.command)
 
     def _tables(self) -> dict[str, pd.DataFrame]:
         tables = {
@@ -124,7 +128,7 @@ class Comparison:
     def plot(self, case: str | None = None) -> Any:
         """Return a matplotlib figure of one case, the first by default, drawn by `rockwobble.reports`."""
         # by name: a result does not depend on who draws it
-        picture = importlib.import_module("rockwobble.reports.figures.comparison_picture")
+        picture = importlib.import_module("rockwobble.reports.figures.comparison.tilt")
         return picture.draw(self, next(iter(self.cases)) if case is None else case)
 
     def __repr__(self) -> str:
@@ -140,6 +144,8 @@ class Comparison:
 
         tables = []
         for (case, label), trace in self.traces.items():
+            if not len(trace.time):  # its process died
+                continue
             table = trace.to_frame()
             table.insert(0, "case", case)
             table.insert(1, "run", label)
@@ -162,7 +168,11 @@ class Comparison:
     def _passes(self) -> pd.DataFrame:
         import pandas as pd
 
-        tables = [trace.passes.assign(case=case, run=label) for (case, label), trace in self.traces.items()]
+        tables = [
+            trace.passes.assign(case=case, run=label)
+            for (case, label), trace in self.traces.items()
+            if len(trace.time)
+        ]
         passes: pd.DataFrame = pd.concat(tables, ignore_index=True)
         return passes.set_index(["case", "run"]).reset_index()
 

@@ -84,6 +84,28 @@ def quantile_interval(values: Array, share: float) -> Interval:
     )
 
 
+def share_interval(count: int, total: int) -> Interval:
+    """Return the share of what is drawn that a sample has `count` of `total` of, and its interval.
+
+    Exact, of C. J. Clopper and E. S. Pearson, Biometrika 26, 404-413, 1934: it contains the share with 95 %
+    or more. Without a sample nothing is known, and the value is NaN.
+
+    Examples
+    --------
+    >>> found = share_interval(0, 22)
+    >>> found.value, found.low, round(found.high, 3)
+    (0.0, 0.0, 0.154)
+    """
+    from scipy.special import betaincinv
+
+    left_out = 0.5 * (1.0 - CONFIDENCE)
+    return Interval(
+        value=count / total if total else math.nan,
+        low=float(betaincinv(count, total - count + 1, left_out)) if count else 0.0,
+        high=float(betaincinv(count + 1, total - count, 1.0 - left_out)) if count < total else 1.0,
+    )
+
+
 @cache
 def end_index(count: int, share: float, left_out: float) -> float | None:
     """Return the index, from 1, of the order statistic that is above the quantile with a given probability.

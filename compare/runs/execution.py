@@ -1,20 +1,27 @@
-"""The runs of a comparison, in parallel."""
+"""A run of a case by a reduced model or an engine; many of them, kept as they are finished."""
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
 import math
-import os
-import queue
-from collections.abc import Callable, Sequence
-from concurrent.futures import Future
-from dataclasses import dataclass, replace
-from typing import Any, Literal, Protocol
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.trace import lost_trace
+from rockwobble.models.trace_file import facts_of, trace_of
 
-from .process_pool import ProcessPool, WorkerDiedError
+from ..storage.fingerprint import fingerprint
+from ..storage.parquet_file import pack, read
+from ..storage.provenance import engine_makers, reduced_makers
+from .cache import Cache, open_cache
+from .progress import ProgressCallback
+from .scheduler import run_tasks
+from .task import Lost
 
 SAMPLE_STEP = 0.01
 
@@ -38,38 +45,10 @@ class Job:
     def __post_init__(self) -> None:
         object.__setattr__(self, "label", self.label or str(self.run))
 
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Progress:
-    """What a progress callback is told, at the start and at the end of each run.
-
-    Parameters
-    ----------
-    case, label : str
-        Which run.
-    state : {"started", "finished"}
-    done, total : int
-        Runs finished so far, and in all.
-    """
-
-    case: str
-    label: str
-    state: Literal["started", "finished"]
-    done: int
-    total: int
-
-
-ProgressCallback = Callable[[Progress], None]
-
-
-class FinishedRuns(Protocol):
-    """Where finished runs are kept, as a `RunStore` does."""
-
-    def find(self, job: Job) -> Trace | None:
-        """Return the run of a job, or None if it is not there."""
-
-    def keep(self, job: Job, trace: Trace) -> None:
-        """Keep the run of a job."""
+    @property
+    def name(self) -> str:
+        """Case and label, for whoever waits."""
+        return f"{self.case.name}, {self.label}"
 
 
 def simulate(
@@ -157,20 +136,15 @@ def simulate_all(
     *,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
-    store: FinishedRuns | None = None,
+    cache: Cache[Job, Trace] | None = None,
 ) -> list[Trace]:
-    """Run all jobs; return their results in the same order.
+    """Run all jobs; return their traces in the same order.
 
     Parameters
     ----------
     jobs : sequence of Job
-    workers : int, optional
-        Number of processes; 1 runs one job after the other in this process. Default: one for each
-        core, but no more than jobs.
-    progress : callable, optional
-        Told of the start and the end of each job that runs, in this thread.
-    store : FinishedRuns, optional
-        A job found there does not run again, and one that runs is kept there at its end.
+    workers, progress, cache : optional
+        See `run_tasks`.
 
     Returns
     -------
@@ -182,68 +156,62 @@ def simulate_all(
     ValueError
         What a job raises for bad input; the other jobs are given up.
     """
-    results: list[Trace | None] = [None if store is None else store.find(job) for job in jobs]
-    open_jobs = [index for index, result in enumerate(results) if result is None]
-    found = len(jobs) - len(open_jobs)
-
-    def told(event: Progress) -> None:
-        if progress is not None:
-            progress(replace(event, done=found + event.done, total=len(jobs)))
-
-    def finished(index: int, result: Trace) -> None:
-        results[open_jobs[index]] = result
-        if store is not None and len(result.time):
-            store.keep(jobs[open_jobs[index]], result)
-
-    _run_all([jobs[index] for index in open_jobs], workers, told, finished)
-    return [result for result in results if result is not None]
+    found = run_tasks(
+        run_job, jobs, workers=workers, cost=_cost, label=lambda job: job.name, progress=progress, cache=cache
+    )
+    return [
+        lost_trace(job.case, job.run, result.why) if isinstance(result, Lost) else result
+        for job, result in zip(jobs, found, strict=True)
+    ]
 
 
-def _run_all(
-    jobs: Sequence[Job], workers: int | None, tell: ProgressCallback, finished: Callable[[int, Trace], None]
-) -> None:
-    count = min(_cores(), len(jobs)) if workers is None else workers
-    if count > 1 and jobs:
-        _in_parallel(jobs, count, tell, finished)
-        return
-    for done, job in enumerate(jobs):
-        tell(_progress(job, "started", done, len(jobs)))
-        finished(done, run_job(job))
-        tell(_progress(job, "finished", done + 1, len(jobs)))
+def open_trace_cache(
+    folder: str | Path, kind: str, *, samples: bool = True
+) -> AbstractContextManager[Cache[Job, Trace]]:
+    """Open the finished runs of a folder of results, see `open_cache`.
+
+    Parameters
+    ----------
+    folder : str or Path
+    kind : str
+        Of the results.
+    samples : bool, optional
+        Whether all samples are kept, or only the last of them beside the numbers and passes of a run.
+    """
+
+    def packed(job: Job, trace: Trace) -> bytes:
+        about = {"kind": "run", "case": job.case.name, "label": job.label, "trace": facts_of(trace)}
+        table = trace.to_frame()
+        return pack(table if samples else table.iloc[-1:], about)
+
+    def unpacked(job: Job, path: Path) -> Trace:
+        table, about = read(path)
+        return dataclasses.replace(trace_of(about["trace"], table, job.case), run=job.run)
+
+    return open_cache(folder, kind, name=job_fingerprint, pack=packed, unpack=unpacked)
 
 
-def _in_parallel(
-    jobs: Sequence[Job], workers: int, tell: ProgressCallback, keep: Callable[[int, Trace], None]
-) -> None:
-    # the callback is called from the caller's thread, so that it may draw, raise or be interrupted
-    finished: queue.SimpleQueue[int] = queue.SimpleQueue()
-    futures: dict[int, Future[Trace]] = {}
-    # the longest first, so that no core is idle at the end
-    waiting = sorted(range(len(jobs)), key=lambda index: _cost(jobs[index]))
-    with ProcessPool(workers) as pool:
-
-        def start(done: int) -> None:
-            index = waiting.pop()
-            tell(_progress(jobs[index], "started", done, len(jobs)))
-            futures[index] = pool.submit(run_job, jobs[index])
-            futures[index].add_done_callback(lambda _: finished.put(index))
-
-        for _ in range(min(workers, len(jobs))):
-            start(0)
-        for done in range(1, len(jobs) + 1):
-            index = finished.get()
-            try:
-                result = futures.pop(index).result()
-            except WorkerDiedError as error:
-                result = lost_trace(jobs[index].case, jobs[index].run, str(error))
-            keep(index, result)
-            tell(_progress(jobs[index], "finished", done, len(jobs)))
-            if waiting:
-                start(done)
+def makers_of(job: Job) -> dict[str, str]:
+    """Return versions and code on which a job depends."""
+    return reduced_makers() if job.run.engine is None else engine_makers(job.run.engine)
 
 
-def _progress(job: Job, state: Literal["started", "finished"], done: int, total: int) -> Progress:
-    return Progress(case=job.case.name, label=job.label, state=state, done=done, total=total)
+def job_fingerprint(job: Job) -> str:
+    """Return the hash of everything that the result of a job depends on."""
+    case, motion = job.case, job.case.motion
+    return fingerprint(
+        {
+            "cylinder": case.cylinder,
+            "motion": None if motion is None else (motion.acceleration, motion.time_step),
+            "initial": case.initial,
+            "length": case.length,
+            "gravity": case.gravity,
+            "friction": case.friction,
+            "method": job.run,
+            "sample step": SAMPLE_STEP,
+            "made with": makers_of(job),
+        }
+    )
 
 
 def _cost(job: Job) -> float:
@@ -254,9 +222,3 @@ def _cost(job: Job) -> float:
     step = job.run.time_step or 1e-4
     # the usual search ends at half of the default step
     return job.case.length / (2.5e-5 if step == "auto" else step) * per_step
-
-
-def _cores() -> int:
-    if hasattr(os, "sched_getaffinity"):
-        return len(os.sched_getaffinity(0))
-    return os.cpu_count() or 1

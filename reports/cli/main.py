@@ -7,7 +7,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..console.terminal import BAD_INPUT, INTERRUPTED, complain
+from ..console.terminal import BAD_INPUT, INTERRUPTED, complain, forgive_output
 from .advise import advise
 from .check import check
 from .compare import compare
@@ -26,7 +26,7 @@ from .view import view
 app = typer.Typer(
     name="rockwobble",
     help="How far can a two-degree-of-freedom model of a rocking and wobbling cylinder be trusted?",
-    add_completion=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
 )
@@ -67,6 +67,7 @@ def _root(
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; exit code 0 done, 1 a check failed, 2 bad input, 130 interrupted."""
+    forgive_output()
     try:
         code = app(arguments, prog_name="rockwobble", standalone_mode=False)
     except _USAGE_ERROR as error:

@@ -47,7 +47,8 @@ def show(store: Store, as_json: Json = False) -> None:
         for made, files in zip(found, states, strict=True):
             _print(store, made, files)
         for each in going:
-            print(f"{store}: {each.kind}, not finished: {each.done} of {each.total} tasks; the command goes on")
+            far = f"{each.done} of {each.total} tasks"
+            print(f"{store}: {each.kind}, not finished: {far}; the same command goes on")
     if any(state != "whole" for files in states for state in files.values()):
         raise typer.Exit(1)
 
@@ -72,12 +73,14 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
         "hash of the inputs": made.inputs,
         "seeds": ", ".join(f"{name} {seed}" for name, seed in made.seeds.items()),
         "versions": ", ".join(f"{name} {version}" for name, version in made.versions.items()),
-        "files": ", ".join(name if state == "whole" else f"{name} ({state})" for name, state in files.items()),
+        "files": ", ".join(
+            name + (f" ({state})" if state != "whole" else "") for name, state in files.items()
+        ),
         "pages": ", ".join(made.pages),
     }
     for name, text in lines.items():
         if text:
-            table.add_row(name, Text(text))
+            table.add_row(Text(name), Text(text))
     console = Console()
     console.print(f"[bold]{store}[/]: {made.kind}", highlight=False)
     console.print(table)

@@ -11,50 +11,56 @@ import typer
 
 from ..console.terminal import FAILED, complain, interruptible, user_input
 from .inputs import options
-from .inputs.method_values import settings
+from .inputs.method_values import restitution, settings
+from .inputs.problem import Problem, states_problem
 
 if TYPE_CHECKING:
     from rockwobble.compare import Job
-    from rockwobble.models import Case
+    from rockwobble.models import Case, Run, Trace
 
-Model = Annotated[
-    str, typer.Option("--model", help="Reduced model: recess, flat or planar.", rich_help_panel="Method")
-]
-Engine = Annotated[
-    str | None,
+_MODEL = "Reduced model"
+Plane = Annotated[
+    float | None,
     typer.Option(
-        "--engine", help="mujoco, pybullet or exudyn instead of a reduced model.", rich_help_panel="Method"
+        "--plane",
+        help="Planar motion: azimuth of the vertical plane that holds it, in rad.",
+        rich_help_panel=_MODEL,
     ),
 ]
-Support = Annotated[
-    str,
+Restitution = Annotated[
+    Any,  # a number, "momentum" or None: typer knows no type for that
     typer.Option(
-        "--support",
-        help="Of the engine: recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only).",
-        rich_help_panel="Method",
+        "--restitution",
+        parser=restitution,
+        metavar="FLOAT|momentum",
+        help="Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from "
+        "the moment of momentum about the new pivot.",
+        rich_help_panel=_MODEL,
+    ),
+]
+RestTilt = Annotated[
+    float | None,
+    typer.Option(
+        "--rest-tilt",
+        help="Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out.",
+        rich_help_panel=_MODEL,
     ),
 ]
 
 
+@states_problem
 def simulate(
-    semidiagonal: options.Semidiagonal = 6.0,
-    tan_alpha: options.TanAlpha = 0.2,
-    record_x: options.RecordX = None,
-    record_y: options.RecordY = None,
-    record_z: options.RecordZ = None,
-    units: options.Units = None,
-    scale: options.Scale = 1.0,
-    release_tilt_deg: options.ReleaseTilt = None,
-    rolling_rate: options.RollingRate = 0.0,
-    duration: options.Duration = None,
-    model: Model = "recess",
-    engine: Engine = None,
-    support: Support = "recess",
+    problem: Problem,
+    engine: options.Engine = None,
+    support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
-    out: options.Out = Path("rockwobble-out"),
+    plane: Plane = None,
+    restitution: Restitution = None,
+    rest_tilt: RestTilt = None,
+    out: options.Out = Path("rockwobble-simulate"),
 ) -> None:
-    """Run one reduced model, or one engine, on one problem.
+    """Run the reduced model, or one engine, on one problem.
 
     Without options: the recess model under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
@@ -62,112 +68,113 @@ def simulate(
     run.json with the rest; SI units and radians.
     """
     from ..pages.case_words import describe
-    from .inputs.problem import case_from_options
+    from .inputs.estimate import require_memory, time_needed
 
     with interruptible():
         with user_input():
-            from rockwobble.compare import (
-                Job,
-                replace_files,
-                require_runnable,
-                require_writable,
-                with_settings,
-            )
+            from rockwobble.compare import Job, replace_files, require_runnable, require_writable
             from rockwobble.models import Run
 
-            case = case_from_options(
-                semidiagonal=semidiagonal,
-                tan_alpha=tan_alpha,
-                record_x=record_x,
-                record_y=record_y,
-                record_z=record_z,
-                units=units,
-                scale=scale,
-                release_tilt_deg=release_tilt_deg,
-                rolling_rate=rolling_rate,
-                duration=duration,
-            )
+            case = problem.case()
             require_writable(out)
-            if engine is None and (time_step is not None or setting):
-                given = "--time-step" if time_step is not None else "--set"
-                raise ValueError(f"{given} belongs to an engine, give --engine as well")
-            job = Job(case=case, method=model, label=model)
-            if engine is not None:
-                (run,) = with_settings(case, [Run(engine, support, time_step)], settings(setting))
-                require_runnable(case, run)
-                job = Job(case=case, method=run, label=f"{engine} {support}")
-        for line in describe(case):
+            model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
+            run = _with_settings(case, Run(engine, support, time_step), setting, model)
+            require_runnable(case, run)
+            require_memory([case], [run])
+        for line in (*describe(case), *time_needed([case], [run])):
             print(line)
+        job = Job(case=case, run=run)
         trace = _run(job)
-        _print_result(case, trace, job.label)
         contents = _contents(job, trace)
         with user_input():
             replace_files(out, contents)
+        _print_result(trace, job.label)
     print(f"\nWritten to {out}: {', '.join(contents)}")
+    if trace.outcome == "failed":
+        raise typer.Exit(FAILED)
 
 
-def _run(job: Job) -> Any:
-    from rockwobble.compare import Crash, simulate_all
+def _with_settings(case: Case, run: Run, setting: list[str] | None, model: dict[str, Any]) -> Run:
+    """Return the run with the options that belong to its method; others are refused, not ignored."""
+    from rockwobble.compare import with_settings
+
+    model = {name: value for name, value in model.items() if value is not None}
+    if run.engine is None and run.time_step is not None:
+        raise ValueError("--time-step belongs to an engine, give --engine as well")
+    if run.engine is not None and model:
+        option = "--" + next(iter(model)).replace("_", "-")
+        raise ValueError(f"{option} belongs to the reduced models, got --engine {run.engine}")
+    if twice := model.keys() & settings(setting).keys():
+        raise ValueError(f"{min(twice)} is given twice, by an option and by --set")
+    (whole,) = with_settings(case, [run], settings(setting) | model)
+    return whole
+
+
+def _run(job: Job) -> Trace:
+    from rockwobble.compare import simulate_all
 
     from ..console.progress import shown_progress
+    from ..pages.diagnostic_words import sentences
 
     with user_input(), shown_progress() as tell:
         # in a process of its own, so that Ctrl-C also stops an engine in the middle of a long call
-        result = simulate_all([job], workers=2, progress=tell)[0]
-    if isinstance(result, Crash):
-        complain(f"{job.label} left no result: {result.message}")
+        trace = simulate_all([job], workers=2, progress=tell)[0]
+    if not len(trace.time):
+        complain(f"{job.label} left no result: {sentences(trace.facts)}")
         raise typer.Exit(FAILED)
-    return result
+    return trace
 
 
-def _print_result(case: Case, trace: Any, label: str) -> None:
+def _print_result(trace: Trace, label: str) -> None:
     from rich import box
     from rich.console import Console
     from rich.table import Table
+    from rich.text import Text
+
+    from ..pages.diagnostic_words import sentences
 
     table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
-    for name, value in _facts(case, trace).items():
+    for name, value in _facts(trace).items():
         table.add_row(name, value)
     console = Console()
-    console.print(f"\n[bold]{label}[/]: {trace.outcome}. {trace.message}", highlight=False)
+    said = sentences(trace.diagnostics)
+    console.print(f"\n[bold]{label}[/]: {trace.outcome}.", Text(f"{said}." if said else ""), highlight=False)
     console.print(table)
 
 
-def _facts(case: Case, trace: Any) -> dict[str, str]:
-    alpha, b = case.cylinder.alpha, case.cylinder.base_radius
+def _facts(trace: Trace) -> dict[str, str]:
+    cylinder = trace.case.cylinder
     facts = {
-        "peak tilt": f"{trace.peak_tilt / alpha:.4f} alpha = {math.degrees(trace.peak_tilt):.4f} deg"
+        "peak tilt": f"{trace.peak_tilt / cylinder.alpha:.4f} alpha = {math.degrees(trace.peak_tilt):.4f} deg"
         if math.isfinite(trace.peak_tilt)
         else "unknown: the run failed",
+        "end": f"{trace.time[-1]:.4g} s",
         "uplift": f"{trace.uplift_time:.4f} s towards {math.degrees(trace.uplift_direction):.2f} deg"
         if math.isfinite(trace.uplift_time)
         else "none",
         "passes": str(len(trace.passes)),
     }
     if len(trace.passes):
-        facts["closest pass"] = f"{trace.passes['minimum_tilt'].min() / alpha:.3g} alpha"
-    if hasattr(trace, "assumptions"):
-        facts["friction needed"] = _largest_friction(trace)
-    else:
-        facts["residual displacement"] = f"{trace.residual_displacement / b:.3g} b"
+        facts["closest pass"] = f"{trace.passes['minimum_tilt'].min() / cylinder.alpha:.3g} alpha"
+    if (held := trace.assumptions) is not None:
+        needed = held.largest_friction_needed
+        facts["friction needed"] = f"{needed:.3f}" if math.isfinite(needed) else "contact lost"
+        if held.largest_restraining_moment > 0.0:
+            facts["restraining moment"] = f"{held.largest_restraining_moment:.3g} m times the weight"
+    if trace.run.engine is not None or trace.run.support != "recess":
+        facts["residual displacement"] = f"{trace.residual_displacement / cylinder.base_radius:.3g} b"
         facts["residual twist"] = f"{math.degrees(trace.residual_twist):.3g} deg"
-        if math.isfinite(trace.first_wall_contact):
-            facts["wall contact"] = (
-                f"{trace.wall_contact[-1]:.3g} s in all, first at {trace.first_wall_contact:.4g} s"
-            )
+    if math.isfinite(first := trace.first("wall_contact")):
+        facts["wall contact"] = f"{trace.wall_contact[-1]:.3g} s in all, first at {first:.4g} s"
+    if trace.run.engine is not None:
         facts["time step"] = f"{trace.time_step:g} s"
     facts["computing time"] = f"{trace.wall_time:.3g} s"
     return facts
 
 
-def _largest_friction(trace: Any) -> str:
-    largest = float(trace.friction_needed[trace.tilt > 0.0].max(initial=0.0))
-    return f"{largest:.3f}" if math.isfinite(largest) else "contact lost"
-
-
-def _contents(job: Job, trace: Any) -> dict[str, bytes]:
+def _contents(job: Job, trace: Trace) -> dict[str, bytes]:
     from rockwobble.compare import describe_case, describe_run
-    from rockwobble.compare.runs.run_store import job_fingerprint
+    from rockwobble.compare.runs.execution import job_fingerprint
     from rockwobble.compare.storage.parquet_file import pack
     from rockwobble.compare.storage.provenance import about_results
 

@@ -15,10 +15,6 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-    from rockwobble.models import GroundMotion
-
-    Array = NDArray[np.float64]
-
 _GRID = "Grid"
 # a map of more cells than a screen has pixels is a slip of the hand
 _MOST_POINTS = 2000
@@ -49,13 +45,15 @@ SearchStep = Annotated[
     float,
     typer.Option(
         "--search-step",
-        help="Largest step of the search for the lowest intensity that overturns, in g tan alpha.",
+        help="Finest step of the search for the lowest intensity that overturns, in g tan alpha.",
         rich_help_panel="Method",
     ),
 ]
-SpatialModel = Annotated[
+Support = Annotated[
     str,
-    typer.Option("--model", help="Model in three dimensions: recess or flat.", rich_help_panel="Method"),
+    typer.Option(
+        "--support", help="Of the model in three dimensions: recess or flat.", rich_help_panel="Method"
+    ),
 ]
 
 
@@ -71,8 +69,8 @@ def spectrum(
     weakest: Weakest = 1.0,
     strongest: Strongest = 12.0,
     intensities: Intensities = 100,
-    model: SpatialModel = "recess",
-    search_step: SearchStep = 0.01,
+    support: Support = "recess",
+    search_step: SearchStep = 0.015,
     out: options.Out = Path("rockwobble-out"),
 ) -> None:
     """Map the peak tilt over size and intensity, in 3D and by planar analysis of each component.
@@ -83,82 +81,74 @@ def spectrum(
     Without options: figure 6 of the paper, the 1940 El Centro record on
     cylinders of tan alpha = 0.1.
 
-    The lowest intensity that overturns each size is searched below the grid,
-    too, in steps that are stated.
+    The lowest intensity that overturns each size is searched between the
+    intensities and below them, too; what the search misses is measured.
 
-    Writes spectrum.svg and spectrum.md, and as Parquet the cells (spectrum),
-    the lowest intensities found to overturn (lowest), the safe islands above
-    them (islands), the shares by size (contrast), and some cells run again to a
-    tighter tolerance (checked).
+    Writes spectrum.html, the same as spectrum.md with spectrum.svg, and as
+    Parquet the cells (spectrum), the lowest intensities found to overturn
+    (lowest), the safe islands above them (islands), the shares by size
+    (contrast), and some cells run again to a tighter tolerance (checked).
     """
     with interruptible():
         with user_input():
-            from rockwobble.compare import replace_files, require_writable
+            from rockwobble.compare import require_writable
+            from rockwobble.compare.studies.spectrum.series import intensity_unit
+            from rockwobble.compare.studies.spectrum.study import SUPPORTS
 
-            grid = {
-                "semidiagonals": _axis("smallest", smallest, "largest", largest, "sizes", sizes),
-                "intensities": _axis("weakest", weakest, "strongest", strongest, "intensities", intensities),
-            }
-            motion = _motion(tan_alpha, largest, record_x, record_y, record_z, units)
-            _require_method(model, search_step)
+            from .inputs.problem import case_from_options
+
+            levels = _axis("weakest", weakest, "strongest", strongest, "intensities", intensities)
+            radii = _axis("smallest", smallest, "largest", largest, "sizes", sizes)
+            case = case_from_options(
+                semidiagonal=largest,
+                tan_alpha=tan_alpha,
+                record_x=record_x,
+                record_y=record_y,
+                record_z=record_z,
+                units=units,
+            )
+            motion = case.motion
+            if motion is None:  # without a release there always is one
+                raise ValueError("a spectrum needs a ground motion")
+            intensity_unit(tan_alpha, motion, case.gravity)
+            if support not in SUPPORTS:
+                raise ValueError(f"--support must be one of {', '.join(SUPPORTS)}, got {support!r}")
+            if not _FINEST <= search_step < math.inf:
+                finest = f"--search-step must be at least {_FINEST:g} and finite"
+                raise ValueError(f"{finest}, got {search_step:g}")
             require_writable(out)
+        from rockwobble.compare.storage.fingerprint import fingerprint
+        from rockwobble.compare.storage.manifest import made_now
+        from rockwobble.compare.storage.provenance import reduced_makers
+        from rockwobble.compare.studies.spectrum.result import KIND
+        from rockwobble.compare.studies.spectrum.study import overturning_spectrum
         from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
 
-        from ..console.spectrum_output import (
-            CHECKED_CELLS,
-            describe_grid,
-            print_spectrum,
-            run_spectrum,
-            spectrum_files,
-        )
+        from ..console.progress import shown_progress
+        from ..console.results import show_and_write
+        from ..pages.case_words import describe
+        from ..pages.provenance import command_line
+        from ..pages.spectrum import spectrum_page, spectrum_tables
 
-        for line in describe_grid(tan_alpha, motion, **grid):
+        for line in describe(case)[:2]:
             print(line)
-        result = run_spectrum(tan_alpha, motion, model=model, search_step=search_step, **grid)
-        checked, lowest = check_cells(result, CHECKED_CELLS), confirm_lowest(result)
-        print_spectrum(result, checked, lowest)
-        contents = spectrum_files(result, checked, lowest)
-        with user_input():
-            replace_files(out, contents)
-    print(f"\nWritten to {out}: {', '.join(contents)}")
+        with shown_progress("series") as tell:
+            found = overturning_spectrum(
+                tan_alpha,
+                motion,
+                semidiagonals=radii,
+                intensities=levels,
+                support=support,
+                search_step=search_step,
+                progress=tell,
+            )
+        tables = spectrum_tables(found, check_cells(found), confirm_lowest(found))
+        inputs = fingerprint([found.facts(), radii, levels, motion.acceleration, reduced_makers()])
+        manifest = made_now(KIND, inputs=inputs, command=command_line(), about=found.facts())
+        show_and_write(out, spectrum_page(found, tables, manifest), manifest, tables)
 
 
-def _motion(
-    tan_alpha: float,
-    semidiagonal: float,
-    record_x: Path | None,
-    record_y: Path | None,
-    record_z: Path | None,
-    units: str | None,
-) -> GroundMotion:
-    from rockwobble.compare.studies.spectrum.series import intensity_unit
-
-    from .inputs.problem import case_from_options
-
-    case = case_from_options(
-        semidiagonal=semidiagonal,
-        tan_alpha=tan_alpha,
-        record_x=record_x,
-        record_y=record_y,
-        record_z=record_z,
-        units=units,
-    )
-    if case.motion is None:  # without a release there always is one
-        raise ValueError("a spectrum needs a ground motion")
-    intensity_unit(tan_alpha, case.motion, case.gravity)
-    return case.motion
-
-
-def _require_method(model: str, search_step: float) -> None:
-    from rockwobble.compare.studies.spectrum.series import SPATIAL_MODELS
-
-    if model not in SPATIAL_MODELS:
-        raise ValueError(f"--model must be one of {', '.join(SPATIAL_MODELS)}, got {model!r}")
-    if not _FINEST <= search_step < math.inf:
-        raise ValueError(f"--search-step must be at least {_FINEST:g} and finite, got {search_step:g}")
-
-
-def _axis(first: str, low: float, last: str, high: float, number: str, count: int) -> Array:
+def _axis(first: str, low: float, last: str, high: float, number: str, count: int) -> NDArray[np.float64]:
     import numpy as np
 
     if not (0.0 < low < math.inf and low < high < math.inf):

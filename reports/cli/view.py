@@ -12,6 +12,7 @@ from ..console.terminal import complain, interruptible, user_input
 from ..pages.provenance import command_line
 from .inputs import options
 from .inputs.method_values import settings
+from .inputs.problem import Problem, given_options, refuse, states_problem
 
 if TYPE_CHECKING:
     from rockwobble.compare import Comparison
@@ -26,42 +27,23 @@ Stored = Annotated[
 CaseName = Annotated[
     str | None, typer.Option("--case", help="Which case of the folder, where it has several.")
 ]
-Engine = Annotated[
-    str, typer.Option("--engine", help="mujoco, pybullet or exudyn.", rich_help_panel="Method")
-]
-Support = Annotated[
-    str,
-    typer.Option(
-        "--support",
-        help="recess (ideal recess), flat (flat ground) or ring (real recess).",
-        rich_help_panel="Method",
-    ),
-]
 Open = Annotated[
     bool | None,
     typer.Option("--open/--no-open", help="Show it in the browser. Default: where there is a terminal."),
 ]
 
 
+@states_problem
 def view(
     context: typer.Context,
+    problem: Problem,
     folder: Stored = None,
     case_name: CaseName = None,
-    semidiagonal: options.Semidiagonal = 6.0,
-    tan_alpha: options.TanAlpha = 0.2,
-    record_x: options.RecordX = None,
-    record_y: options.RecordY = None,
-    record_z: options.RecordZ = None,
-    units: options.Units = None,
-    scale: options.Scale = 1.0,
-    release_tilt_deg: options.ReleaseTilt = None,
-    rolling_rate: options.RollingRate = 0.0,
-    duration: options.Duration = None,
-    engine: Engine = "mujoco",
-    support: Support = "recess",
+    engine: options.Engine = "mujoco",
+    support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
-    out: options.Out = Path("rockwobble-out"),
+    out: options.Out = Path("rockwobble-view"),
     opened: Open = None,
 ) -> None:
     """Play one case in three dimensions: the engine's cylinder, and the reduced model translucent over it.
@@ -70,9 +52,6 @@ def view(
 
     Writes view.html, which needs nothing else and works offline.
     """
-    from ..pages.case_words import describe
-    from .inputs.problem import case_from_options
-
     with interruptible():
         with user_input():
             from rockwobble.compare import (
@@ -85,73 +64,40 @@ def view(
             from rockwobble.models import Run
 
             if folder is not None:
-                _refuse_other_options(context)
+                others = set(given_options(context)) - {"folder", "case_name", "out", "opened"}
+                refuse(context, others, "states a run and does not go with a stored one")
                 comparison = Comparison.load(folder)
                 name = _chosen_case(comparison, case_name)
             elif case_name is not None:
                 raise ValueError("--case chooses from a folder, give the folder of a comparison as well")
             else:
-                case = case_from_options(
-                    semidiagonal=semidiagonal,
-                    tan_alpha=tan_alpha,
-                    record_x=record_x,
-                    record_y=record_y,
-                    record_z=record_z,
-                    units=units,
-                    scale=scale,
-                    release_tilt_deg=release_tilt_deg,
-                    rolling_rate=rolling_rate,
-                    duration=duration,
-                )
+                case = problem.case()
                 (run,) = with_settings(case, [Run(engine, support, time_step)], settings(setting))
                 require_runnable(case, run)
                 name = case.name
             require_writable(out)
         if folder is None:
             from ..console.progress import shown_progress
+            from ..pages.case_words import describe
             from .compare import run_comparison
+            from .inputs.estimate import time_needed
 
-            for line in describe(case):
+            for line in (*describe(case), *time_needed([case], [run])):
                 print(line)
             with user_input(), shown_progress() as tell:
                 comparison = run_comparison([case], runs=[run], progress=tell)
-        page = view_page(comparison, name)
         with user_input():
+            from ..pages.comparison.report import view_page
+
+            page = view_page(comparison, name, command_line())
             if page is None:
                 raise ValueError(f"there is nothing to play in {name!r}: the cylinder never uplifts")
-            replace_files(out, {"view.html": page.encode()})
+            replace_files(out, {"view.html": page.html().encode()})
     print(f"\nWritten to {out}: view.html")
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser
 
         webbrowser.open((out / "view.html").resolve().as_uri())
-
-
-def view_page(comparison: Comparison, name: str) -> str | None:
-    """Return the page of one case of a comparison, None where nothing moves."""
-    from ..figures.case_view import case_views
-    from ..figures.playback import playback
-    from ..pages.case_words import describe
-    from ..pages.comparison.findings import finding
-    from ..pages.comparison.run_remarks import remark_lines
-    from ..pages.template import render
-
-    chosen = next(each for each in case_views(comparison) if each.case.name == name)
-    spec = playback(chosen)
-    if spec is None:
-        return None
-    return render(
-        "view.html.j2",
-        name=name,
-        spec=spec,
-        lines=describe(chosen.case),
-        findings=[
-            *(finding(row, chosen.case.length) for _, row in chosen.rows.iterrows()),
-            *remark_lines(chosen.rows),
-        ],
-        command=command_line(),
-        versions=comparison.versions,
-    )
 
 
 def _chosen_case(comparison: Comparison, name: str | None) -> str:
@@ -161,11 +107,3 @@ def _chosen_case(comparison: Comparison, name: str | None) -> str:
     if name is not None and name not in names:
         raise ValueError(f"--case must be one of {'; '.join(names)}, got {name!r}")
     return names[0] if name is None else name
-
-
-def _refuse_other_options(context: typer.Context) -> None:
-    allowed = ("folder", "case_name", "out", "opened")
-    for name in context.params:
-        source = context.get_parameter_source(name)
-        if name not in allowed and source is not None and source.name == "COMMANDLINE":
-            raise ValueError(f"--{name.replace('_', '-')} states a run and does not go with a stored one")

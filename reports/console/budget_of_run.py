@@ -27,7 +27,7 @@ def budget_of_run(case: Case, run: Run, reference: Run) -> list[str]:
     comparison = compare(case, runs=[run], budget=True)
     found = [budget for key, budget in comparison.budgets.items() if key[2] == str(reference)]
     if not found:
-        return ["There is no budget of the difference: the traces part at once, or there is no finer step."]
+        return ["There is no budget of the difference: traces diverge at once, or there is no finer step."]
     budget = found[0]
     rms = {part: budget.rms(part) for part in _PARTS}
     lines = [
@@ -41,6 +41,6 @@ def budget_of_run(case: Case, run: Run, reference: Run) -> list[str]:
     row = comparison.summary[comparison.summary["reference"] == str(reference)].iloc[0]
     if row["diverged"]:
         lines.append(
-            f"  traces part after {row['agreement_time']:.3g} s: {row['divergence']} of the prediction"
+            f"  traces diverge after {row['agreement_time']:.3g} s: {row['divergence']} of the prediction"
         )
     return [*lines, _ADVICE[max(rms, key=lambda part: rms[part])]]

@@ -1,116 +1,93 @@
-"""What is running, on standard error."""
+"""How far something long is, on standard error: a bar in a terminal, lines elsewhere."""
 
 from __future__ import annotations
 
+import math
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from ..pages.table import number
+
 if TYPE_CHECKING:
-    from rich.progress import TaskID
+    from rockwobble.compare.runs.progress import Progress, ProgressCallback
 
-    from rockwobble.compare import Progress
-
-Tell = Callable[["Progress"], None]
-
-_COMPILES = ("recess", "flat", "planar")
+# up to so many tasks have a line each where there is no terminal
+_FEW = 12
+_PAUSE = 10.0  # between two lines of more [s]
 
 
 @contextmanager
-def shown_progress(*, many: bool = False) -> Iterator[Tell]:
-    """Yield a callback that shows the runs: as moving lines in a terminal, as plain lines elsewhere.
-
-    Of `many` cases the runs are named with their case, and one bar says how far they are.
-    """
-    if sys.stderr.isatty():
-        with _one_bar() if many else _moving() as tell:
-            yield tell
-    else:
-        with _plain(many=many) as tell:
-            yield tell
-
-
-def _name(label: str) -> str:
-    return f"{label} model (compiled on its first run)" if label in _COMPILES else label
-
-
-@contextmanager
-def _moving() -> Iterator[Tell]:
-    from rich.console import Console
-    from rich.progress import Progress as Bars
-    from rich.progress import SpinnerColumn, TextColumn, TimeElapsedColumn
-
-    columns = (SpinnerColumn(finished_text="[green]✓"), TextColumn("{task.description}"), TimeElapsedColumn())
-    with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
-        tasks: dict[tuple[str, str], TaskID] = {}
-
-        def tell(event: Progress) -> None:
-            run = (event.case, event.label)
-            if event.state == "started":
-                tasks[run] = bars.add_task(_name(event.label), total=1)
-            else:
-                bars.update(
-                    tasks[run], completed=1, description=f"{_name(event.label)}  {event.done}/{event.total}"
-                )
-
+def shown_progress(what: str = "runs") -> Iterator[ProgressCallback]:
+    """Yield a callback that shows how far tasks are; `what` they are, in words."""
+    with _bar(what) if sys.stderr.isatty() else _lines(what) as tell:
         yield tell
 
 
+def sentence(event: Progress, what: str = "runs") -> str:
+    """Return how far it is, in words."""
+    words = f"{event.done:,} of {event.total:,} {what}"
+    if event.found:
+        words += f" ({event.found:,} of them found finished)"
+    if event.done < event.total and math.isfinite(event.left):
+        words += f", about {number(event.left, 'duration')} left"
+    return words
+
+
 @contextmanager
-def _one_bar() -> Iterator[Tell]:
+def _bar(what: str) -> Iterator[ProgressCallback]:
     from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
+    from rich.progress import BarColumn, TextColumn, TimeElapsedColumn
     from rich.progress import Progress as Bars
 
     columns = (
         BarColumn(),
-        MofNCompleteColumn(),
+        TextColumn("{task.fields[far]}"),
         TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
         # a name may have brackets, which would be markup
         TextColumn("{task.description}", markup=False),
     )
     with Bars(*columns, console=Console(stderr=True), transient=True) as bars:
-        running: dict[tuple[str, str], str] = {}
-        task = bars.add_task("", total=None)
+        task = bars.add_task("", total=None, far="")
+        running: dict[str, None] = {}
 
         def tell(event: Progress) -> None:
-            run = (event.case, event.label)
             if event.state == "started":
-                running[run] = f"{event.case}, {event.label}"
+                running[event.label] = None
             else:
-                running.pop(run, None)
-            last = next(reversed(running.values()), "")
-            bars.update(task, completed=event.done, total=event.total, description=last)
+                running.pop(event.label, None)
+            # of one task that tells how far it is, the share says more than the count
+            done = event.share * event.total if event.found == 0 else event.done
+            far = sentence(event, what)
+            bars.update(
+                task, total=event.total, completed=done, far=far, description=next(reversed(running), "")
+            )
 
         yield tell
 
 
 @contextmanager
-def _plain(*, many: bool) -> Iterator[Tell]:
-    begun: dict[tuple[str, str], float] = {}
+def _lines(what: str) -> Iterator[ProgressCallback]:
+    begun: dict[str, float] = {}
+    last = time.monotonic()
+
+    def say(words: str) -> None:
+        print(words, file=sys.stderr, flush=True)
 
     def tell(event: Progress) -> None:
-        run = (event.case, event.label)
-        place = f"{event.case}, " if many else ""
-        if event.state == "started":
-            begun[run] = time.monotonic()
-            print(f"running {place}{_name(event.label)} ...", file=sys.stderr, flush=True)
-        else:
-            took = time.monotonic() - begun[run]
-            print(
-                f"  done {place}{event.label} in {took:.1f} s ({event.done} of {event.total})",
-                file=sys.stderr,
-                flush=True,
-            )
+        nonlocal last
+        now = time.monotonic()
+        if event.total - event.found <= _FEW:
+            if event.state == "started":
+                begun[event.label] = now
+                say(f"running {event.label} ...")
+            else:
+                took = now - begun.get(event.label, now)
+                say(f"  done {event.label} in {took:.1f} s ({event.done} of {event.total})")
+        elif now - last >= _PAUSE or (event.state == "finished" and event.done == event.total):
+            last = now
+            say(sentence(event, what))
 
     yield tell

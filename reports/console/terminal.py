@@ -1,14 +1,36 @@
-"""How a command ends: exit codes, one clear line for bad input, and a clean stop on Ctrl-C."""
+"""How a command ends: exit codes, one clear line for bad input, a clean stop on Ctrl-C, a lost terminal."""
 
 from __future__ import annotations
 
+import codecs
+import io
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from typing import TYPE_CHECKING, TextIO
 
 import typer
 
+if TYPE_CHECKING:
+    from _typeshed import ReadableBuffer
+
 FAILED, BAD_INPUT, INTERRUPTED = 1, 2, 130
+# what is printed where the encoding has no such character
+_PLAIN = {
+    **{
+        "α": "alpha",
+        "π": "pi",
+        "√": "sqrt",
+        "±": "+-",
+        "×": "x",
+        "°": " deg",
+        "−": "-",
+        "–": "-",
+        "…": "...",
+    },
+    **{"▲": "^", "✓": "ok", "\u00a0": " ", "é": "e"},
+    **dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True)),
+}
 
 
 def complain(message: str) -> None:
@@ -38,3 +60,49 @@ def interruptible(left: str = "nothing was written") -> Iterator[None]:
     except KeyboardInterrupt:
         complain(f"interrupted, {left}")
         raise typer.Exit(INTERRUPTED) from None
+
+
+def forgive_output() -> None:
+    """Let no output stop a command: results outlive a closed pipe, a full device and a poor encoding."""
+    codecs.register_error("rockwobble", _plain)
+    sys.stdout, sys.stderr = _forgiving(sys.stdout, "standard output"), _forgiving(sys.stderr, "")
+
+
+def _forgiving(stream: TextIO, name: str) -> TextIO:
+    if not isinstance(stream, io.TextIOWrapper):
+        return stream
+    if stream.isatty():
+        stream.reconfigure(errors="rockwobble")
+        return stream
+    try:
+        raw = _Forgiving(stream.fileno(), "w", closefd=False)
+    except OSError:  # in memory, as in a test
+        return stream
+    raw.said = name
+    return io.TextIOWrapper(
+        io.BufferedWriter(raw), encoding=stream.encoding, errors="rockwobble", line_buffering=True
+    )
+
+
+class _Forgiving(io.FileIO):
+    """A file that says once that it cannot be written, and then takes everything."""
+
+    said = ""
+
+    def write(self, data: ReadableBuffer, /) -> int:
+        try:
+            return super().write(data)
+        except BrokenPipeError:
+            pass  # whoever read it has seen enough
+        except OSError as error:
+            if self.said:
+                complain(f"{self.said} cannot be written: {error.strerror}")
+                self.said = ""
+        return memoryview(data).nbytes
+
+
+def _plain(error: UnicodeError) -> tuple[str, int]:
+    if not isinstance(error, UnicodeEncodeError):
+        raise error
+    wanting = error.object[error.start : error.end]
+    return "".join(_PLAIN.get(character, "?") for character in wanting), error.end

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-    from rockwobble.reduced import Response
+    from rockwobble.models import Trace
 
 # a column of text on a screen is some 830 pixels wide, 96 to the inch [inch]
 WIDTH = 8.6
@@ -51,7 +51,7 @@ def drawn(draw: Callable[[Figure], None], height: float) -> bytes:
     return buffer.getvalue()
 
 
-def drawn_samples(response: Response, keep: slice | NDArray[np.intp]) -> pd.DataFrame:
+def drawn_samples(response: Trace, keep: slice | NDArray[np.intp]) -> pd.DataFrame:
     """Return what the figures show of a response at the samples to keep, by the names of its table.
 
     The whole table of the finely sampled releases would take as much memory as figure 6.

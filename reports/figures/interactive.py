@@ -44,7 +44,7 @@ def figures(picture: Picture) -> list[go.Figure]:
 def _figure(panel: Panel, picture: Picture) -> go.Figure:
     import plotly.graph_objects as go
 
-    drawn = go.Figure()
+    drawn = go.Figure(layout={"template": "none"})  # the default one takes 7 kB of a page, each time
     entries = panel.entries()
     rows = len(entries) if max(map(len, entries), default=0) > _LONG else (len(entries) + 1) // 2
     room = 8 + _ENTRY * rows

@@ -20,6 +20,7 @@ from ..figures.interactive import plots
 from ..figures.picture import Picture
 from ..figures.svg import svg
 from .table import Row, Table, columns_of, number
+from .words import FILTERS
 
 if TYPE_CHECKING:
     from jinja2 import Environment
@@ -191,7 +192,7 @@ def _environment() -> Environment:
         lstrip_blocks=True,
         finalize=_escaped,
     )
-    environment.filters["number"] = number
+    environment.filters |= FILTERS | {"number": number}
     environment.filters["code"] = lambda text: Safe(f"`{text}`")
     environment.filters["md"] = Safe
     return environment

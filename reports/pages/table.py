@@ -42,15 +42,17 @@ def number(value: object, form: str = ".3g") -> str:
         return _FORMS[form](found)
     if form.endswith("d"):
         return format(int(found), form)
-    # 1e-07 is how a computer writes it
-    return re.sub(r"e([+-])0*(\d)", lambda m: f"e{m[1].replace('+', '')}{m[2]}", format(found, form))
+    return _short(format(found, form))
 
 
 def _percent(share: float) -> str:
     value = 100.0 * share
-    size = abs(value)
-    digits = 0 if size >= 10.0 or size == 0.0 else 1 if size >= 1.0 else 2 if size >= 0.1 else None
-    return f"{value:.1g} %" if digits is None else f"{value:.{digits}f} %"
+    return f"{value:.0f} %" if abs(value) >= 10.0 else f"{_short(format(value, '.2g'))} %"
+
+
+def _short(text: str) -> str:
+    """Return 1e-7 for 1e-07, which is how a computer writes it."""
+    return re.sub(r"e([+-])0*(\d)", lambda m: f"e{m[1].replace('+', '')}{m[2]}", text)
 
 
 def _duration(seconds: float) -> str:
@@ -138,7 +140,8 @@ class Table:
         for place, (column, cell) in enumerate(zip(self.columns, cells, strict=True)):
             mark = f' class="tag {_slug(cell)}"' if column.form == "tag" else _class(column)
             kind = "th" if place == 0 else "td"
-            scope = ' scope="row"' if place == 0 else f' data-label="{html.escape(column.heading)}"'
+            label = "" if self.folded else f' data-label="{html.escape(column.heading)}"'
+            scope = ' scope="row"' if place == 0 else label
             found.append(f"<{kind}{scope}{mark}>{html.escape(cell)}</{kind}>")
         return f"<tr>{''.join(found)}</tr>"
 
@@ -156,7 +159,7 @@ class Table:
         from rich.table import Table as RichTable
         from rich.text import Text
 
-        table = RichTable(box=box.SIMPLE_HEAD, padding=(0, 2, 0, 0), pad_edge=False, show_edge=False)
+        table = RichTable(box=box.SIMPLE_HEAD, padding=0, pad_edge=False, show_edge=False)
         for column in columns:
             # as a text, because brackets are markup; the unit in a line of its own
             heading = Text(column.heading.replace(" [", "\n["))

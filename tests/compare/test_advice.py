@@ -30,7 +30,7 @@ from rockwobble.compare.studies.advice.grades import (
     trust_of,
 )
 from rockwobble.compare.studies.advice.planar import PlanarView
-from rockwobble.compare.studies.spectrum.lowest_overturning import uplift_factor
+from rockwobble.compare.studies.spectrum.series import uplift_factor
 from rockwobble.compare.studies.spectrum.series import SERIES, intensity_unit
 from rockwobble.compare.studies.spectrum.study import overturning_spectrum
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940

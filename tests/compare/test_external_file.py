@@ -8,6 +8,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import External, read_trajectory
+from rockwobble.compare.traces.trajectory import measurement
 from rockwobble.models import Case, Cylinder, InitialState
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -51,6 +52,10 @@ BAD = {
         "line 4: tilt and quaternion must agree, got tilts of 0.1 and 0 rad"
     ),
 }  # fmt: skip
+
+
+def notes(trajectory):
+    return "; ".join(fact.detail for fact in trajectory.facts if fact.code == "note")
 
 
 @pytest.mark.parametrize("text", BAD)
@@ -106,7 +111,7 @@ def test_a_signed_tilt_leans_to_the_other_side(save):
     assert trajectory.tilt == pytest.approx(planar.tilt, abs=ROUNDING)
     apart = np.exp(1j * trajectory.rolling_angle) - np.exp(1j * planar.rolling_angle)
     assert np.abs(apart[planar.tilt > 1e-3]).max() < ROUNDING
-    assert f"{(planar.signed_tilt < 0.0).sum()} negative tilts are read as a lean to" in trajectory.message
+    assert f"{(planar.signed_tilt < 0.0).sum()} negative tilts are read as a lean to" in notes(trajectory)
     alone = read_trajectory(save(table.drop(columns="azimuth [rad]")), case)
     assert alone.tilt == pytest.approx(planar.tilt, abs=ROUNDING)
     assert np.isnan(alone.rolling_angle).all()
@@ -116,10 +121,10 @@ def test_a_signed_tilt_leans_to_the_other_side(save):
 def test_a_mass_centre_alone_tells_the_pose_of_a_cylinder_in_a_recess(save, response):
     x, y, z = 100.0 * response.centre_of_mass.T
     trajectory = read_trajectory(save(columns(response, **{"x [cm]": x, "y [cm]": y, "z [cm]": z})), RELEASE)
-    assert trajectory.told == ("path",)
+    assert measurement(trajectory).told == ("path",)
     assert trajectory.tilt == pytest.approx(response.tilt, abs=ROUNDING)
     assert trajectory.rolling_angle == pytest.approx(response.rolling_angle, abs=ROUNDING)
-    assert "tilt and azimuth are those of a cylinder in a recess" in trajectory.message
+    assert "tilt and azimuth are those of a cylinder in a recess" in notes(trajectory)
 
 
 def test_lost_samples_are_left_out_and_counted(save, response):
@@ -128,7 +133,7 @@ def test_lost_samples_are_left_out_and_counted(save, response):
     trajectory = read_trajectory(save(table), RELEASE)
     # a local cubic over 0.02 s: (phi' dt)^3/24 of the tilt of 0.018 rad at the pass, where phi' is 9 rad/s
     assert trajectory.tilt == pytest.approx(response.tilt, abs=5e-6)
-    assert "2 lost samples are left out" in trajectory.message
+    assert "2 lost samples are left out" in notes(trajectory)
     table.iloc[51:53, 1:] = np.nan
     with pytest.raises(ValueError, match=r"a gap of 0\.04 s where the usual step is 0\.01 s"):
         read_trajectory(save(table), RELEASE)
@@ -145,7 +150,7 @@ def test_uneven_samples_and_a_clock_that_does_not_start_at_zero(save):
     wanted = np.interp(trajectory.time, fine.time, fine.tilt)
     # a local cubic through samples up to 0.013 s apart, times p^3 of the tilt
     assert trajectory.tilt == pytest.approx(wanted, abs=2e-5)
-    assert trajectory.noise < 1e-4 * PIER.alpha
+    assert measurement(trajectory).noise < 1e-4 * PIER.alpha
 
 
 @pytest.mark.parametrize("share", [0.001, 0.005])
@@ -158,11 +163,11 @@ def test_the_noise_is_told_by_the_samples(save, response, share):
     table = columns(response, **{"tilt [rad]": np.arcsin(np.abs(lean)), "azimuth [rad]": np.angle(lean)})
     trajectory = read_trajectory(save(table), RELEASE)
     # the median of 400 normal numbers, to three of its standard deviations
-    assert trajectory.noise == pytest.approx(share * PIER.alpha, rel=0.2)
-    assert trajectory.stands == pytest.approx(5.0 * trajectory.noise)
+    assert measurement(trajectory).noise == pytest.approx(share * PIER.alpha, rel=0.2)
+    assert measurement(trajectory).stands == pytest.approx(5.0 * measurement(trajectory).noise)
 
 
 def test_columns_that_are_not_read_are_said(save):
     trajectory = read_trajectory(save(GOOD.replace("azimuth", "heading")), RELEASE)
-    assert trajectory.told == ("tilt",)
-    assert "columns not read: heading [deg]" in trajectory.message
+    assert measurement(trajectory).told == ("tilt",)
+    assert "columns not read: heading [deg]" in notes(trajectory)

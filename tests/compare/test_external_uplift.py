@@ -51,7 +51,7 @@ def trace_of(case, sample_step):
 
 def file_of(trace, noise=0.0, seed=0):
     generator = np.random.default_rng(seed)
-    count = np.count_nonzero(trace.time <= trace.problem.duration)  # not the fall after it
+    count = np.count_nonzero(trace.time <= trace.case.length)  # not the fall after it
     lean = (np.sin(trace.tilt) * np.exp(1j * np.nan_to_num(trace.rolling_angle)))[:count]
     lean = lean + noise * (generator.normal(size=len(lean)) + 1j * generator.normal(size=len(lean)))
     return pd.DataFrame(

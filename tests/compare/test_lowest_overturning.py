@@ -9,13 +9,15 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.tilt import overturned
-from rockwobble.compare.studies.spectrum.lowest_overturning import (
+from rockwobble.compare.studies.spectrum.search import (
+    PROBES,
     STEP,
-    lowest_intensities,
     lowest_on_grid,
+    probe_below,
+    run_searches,
     search_lowest,
-    uplift_factor,
 )
+from rockwobble.compare.studies.spectrum.series import uplift_factor
 from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
 FALL = 0.5 * math.pi
@@ -40,91 +42,109 @@ class Window:
         return np.where(away <= 0.0, FALL, ALPHA * np.clip(beside, 0.3, 0.999))
 
 
-# the second lies between two calls of the model
+def search(window, start: float, grid: np.ndarray, known: np.ndarray | None = None) -> float:
+    """Search for the lowest of one cylinder."""
+    known = window(grid) if known is None else known
+    going = search_lowest(grid, known, start=start, step=STEP, alpha=ALPHA)
+    return run_searches([going], lambda _, level: window(np.array([level])), workers=1)[0]
+
+
+GRID = np.linspace(1.0, 4.0, 28)
+
+
 @pytest.mark.parametrize("centre", [1.4951, 1.3152, 1.5037, 2.7182])
-def test_a_window_narrower_than_the_step_is_found_by_its_flanks(centre):
-    window = Window(centre, 0.0012, 0.02)
-    found = search_lowest(window, 1.0, 4.0, STEP, ALPHA)
-    assert abs(found - centre) <= 0.0006
+def test_a_window_narrower_than_the_step_of_the_grid_is_found_by_its_flanks(centre):
+    window = Window(centre, 0.015, 0.3)
+    found = search(window, 1.0, GRID)
+    assert abs(found - centre) <= 0.0075
     run = np.array(window.run)
     assert not overturned(window(run[run < found])).any()
-    assert found - run[run < found].max() <= STEP / 16.0 * (1.0 + SAME)
-    # a search from below ends where it has found something
-    assert run.max() < found + 32.0 * STEP
+    assert found - run[run < found].max() <= STEP * (1.0 + SAME)
 
 
-def test_everything_between_start_and_stop_is_run_in_steps_and_nothing_else():
+def test_a_coarse_grid_is_filled_and_nothing_beyond_it_is_run():
     far = Window(9.0, 0.1, 0.02)
-    assert math.isnan(search_lowest(far, 1.003, 3.5, STEP, ALPHA))
+    assert math.isnan(search(far, 1.003, np.array([0.5, 3.5]), known=np.zeros(2)))
     run = np.sort(far.run)
-    assert (run[0], run[-1]) == (1.003, 3.5)
-    assert np.diff(run).max() <= STEP * (1.0 + SAME)
+    assert run[0] == 1.003
+    assert np.diff([*run, 3.5]).max() <= 8.0 * STEP * (1.0 + SAME)
     far.run.clear()
-    assert math.isnan(search_lowest(far, 2.0, 1.0, STEP, ALPHA))
-    assert math.isnan(search_lowest(far, math.inf, 1.0, STEP, ALPHA))
+    for start in (5.0, math.inf):
+        assert math.isnan(search(far, start, GRID, known=np.zeros(28)))
     assert far.run == []
-    assert (
-        search_lowest(lambda levels: np.where(levels == 1.2345, FALL, 0.0), 1.0, 1.2345, STEP, ALPHA)
-        == 1.2345
-    )
+
+
+def test_what_is_known_to_overturn_is_the_end_of_a_search():
+    def edge(levels: np.ndarray) -> np.ndarray:
+        return np.where(levels >= 1.2345, FALL, 0.0)
+
+    assert search(edge, 1.0, np.array([1.2345, 3.0])) == 1.2345
+    assert search(edge, 2.0, np.array([1.0, 2.0])) == 2.0
 
 
 def test_a_failed_run_stands_and_hides_nothing_beyond_its_own_step():
-    window = Window(1.5003, 0.02, 0.02)
+    window = Window(1.5003, 0.02, 0.3)
 
-    def partly(levels):
+    def partly(levels: np.ndarray) -> np.ndarray:
         return np.where((levels > 1.25) & (levels < 1.35), math.nan, window(levels))
 
-    assert 0.0 <= search_lowest(partly, 1.0, 4.0, STEP, ALPHA) - 1.4903 <= STEP / 16.0
+    assert 0.0 <= search(partly, 1.0, GRID) - 1.4903 <= STEP
 
 
-# at these sizes a grid of 100 intensities finds 1.667 as the lowest
-@pytest.mark.parametrize("size", [3.177, 4.08])
-def test_a_scan_finds_nothing_lower(size):
-    def peaks(levels):
-        return reduced.peak_tilts([size], 0.1, EL_CENTRO, UNIT * levels, rtol=1e-8)[0]
-
-    grid = np.linspace(1.0, 12.0, 100)[:8]
-    known = lowest_on_grid(grid, peaks(grid)[None])[0]
-    assert known > 1.65
-    found = search_lowest(peaks, 1.0, known, STEP, math.atan(0.1))
-    assert overturned(peaks(np.array([found]))).all()
-    # beside the steps of the search
-    scan = peaks(np.arange(1.0025, found, 0.005))
-    assert not overturned(scan).any()
-    assert found < known - 0.05
-
-
-def test_sizes_are_searched_below_their_grid_and_to_its_end():
-    levels = np.array([2.0, 3.0, 4.0])
+def test_searches_side_by_side_find_what_each_finds_alone_and_share_levels():
     edges = np.array([1.5, 2.345, 9.0, 0.5])
+    groups: list[list[int]] = []
 
-    def peaks(sizes, intensities):
-        return np.where(intensities[None, :] >= edges[sizes.astype(int)][:, None], FALL, 0.0)
+    def peaks(group: list[int], level: float) -> np.ndarray:
+        groups.append(group)
+        return np.where(level >= edges[group], FALL, 0.0)
 
-    sizes = np.arange(4.0)
-    seen: list[float] = []
-    found = lowest_intensities(
-        sizes, levels, peaks(sizes, levels), peaks, start=1.0, step=STEP, alpha=ALPHA, progress=seen.append
-    )
-    assert found[:2] == pytest.approx([1.5, 2.345], abs=STEP / 16.0)
-    assert (found[:2] >= edges[:2]).all()
+    known = np.where(edges[:, None] <= GRID, FALL, 0.0)
+    options = {"start": 1.0, "step": STEP, "alpha": ALPHA}
+    found = run_searches([search_lowest(GRID, each, **options) for each in known], peaks, workers=1)
+    alone = [search(lambda levels, e=e: np.where(levels >= e, FALL, 0.0), 1.0, GRID) for e in edges]
+    assert np.array_equal(found, alone, equal_nan=True)
+    assert all(0.0 <= low - edge <= STEP for low, edge in zip(found[:2], edges[:2], strict=True))
     assert math.isnan(found[2])
-    assert found[3] == 1.0
-    assert seen == [0.25, 0.5, 0.75, 1.0]
-    # where the search may not go below the grid its lowest stands
-    above = lowest_intensities(sizes, levels, peaks(sizes, levels), peaks, start=5.0, step=STEP, alpha=ALPHA)
-    assert above[:2].tolist() == [2.0, 3.0]
+    assert groups[0] == [0, 1, 2, 3]
 
 
 def test_an_interruption_passes_through_a_search():
-    def peaks(sizes, levels):
+    def peaks(group: list[int], level: float) -> np.ndarray:
         raise KeyboardInterrupt
 
+    going = search_lowest(np.array([2.0]), np.zeros(1), start=1.0, step=STEP, alpha=ALPHA)
     with pytest.raises(KeyboardInterrupt):
-        lowest_intensities(
-            np.ones(1), np.array([2.0]), np.zeros((1, 1)), peaks, start=1.0, step=STEP, alpha=ALPHA
-        )
+        run_searches([going], peaks)
+
+
+def test_probes_measure_the_share_that_a_search_has_missed():
+    def third(_, level: float) -> np.ndarray:
+        return np.array([FALL if 10.0 * level % 1.0 < 1.0 / 3.0 else 0.0])
+
+    found = [
+        run_searches([probe_below(1.0, 4.0, lowest, (seed,))], third, workers=1)[0]
+        for seed in range(300)
+        for lowest in (2.0, math.nan)
+    ]
+    count = sum(fell for _, fell in found)
+    total = len(found) * PROBES
+    # of so many draws the share is known to four times its standard deviation
+    assert count / total == pytest.approx(1.0 / 3.0, abs=4.0 * math.sqrt(2.0 / 9.0 / total))
+    assert all(math.isnan(low) == (fell == 0) for low, fell in found)
+    assert run_searches([probe_below(2.0, 4.0, 1.0, (0,))], third)[0][1] == 0
+
+
+def test_a_search_finds_windows_that_a_grid_does_not_see():
+    def peaks(levels: np.ndarray) -> np.ndarray:
+        return reduced.peak_tilts([3.177], 0.1, EL_CENTRO, UNIT * levels, rtol=1e-8)[0]
+
+    # at this size the lowest of a grid of 100 intensities is 1.667
+    grid = np.linspace(1.0, 12.0, 100)[:8]
+    known = lowest_on_grid(grid, peaks(grid)[None])[0]
+    found = search(peaks, 1.0, grid)
+    assert overturned(peaks(np.array([found]))).all()
+    assert found < known - 0.05
 
 
 def test_the_lowest_of_a_grid_is_the_first_that_overturns():

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
+from rockwobble.compare.studies.spectrum.result import OverturningSpectrum
+from rockwobble.compare.studies.spectrum.search import STEP
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
-from rockwobble.compare.studies.spectrum.study import OverturningSpectrum, overturning_spectrum
+from rockwobble.compare.studies.spectrum.study import overturning_spectrum
 from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
 from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
@@ -63,19 +65,6 @@ def test_the_same_bits_whatever_the_number_of_threads(spectrum):
         assert np.array_equal(one.lowest[series], spectrum.lowest[series], equal_nan=True)
 
 
-def test_progress_goes_through_the_series_in_turn():
-    seen: list[tuple[str, float]] = []
-    overturning_spectrum(
-        0.1,
-        EL_CENTRO,
-        semidiagonals=[1.0, 2.0],
-        intensities=[0.5],
-        progress=lambda series, fraction: seen.append((series, fraction)),
-    )
-    # the grid comes first, and takes little of the time
-    assert seen == [(series, fraction) for series in SERIES for fraction in (0.03, 0.06, 0.53, 1.0)]
-
-
 def test_the_tables_hold_every_cell(spectrum):
     table = spectrum.to_frame()
     assert len(table) == len(SERIES) * len(SIZES) * len(INTENSITIES)
@@ -96,7 +85,7 @@ def test_the_tables_hold_every_cell(spectrum):
     assert row["peak_acceleration"] == pytest.approx(row["intensity"] * 0.981 * share, rel=1e-14)
     assert row["on_grid"] >= row["intensity"]
     assert row["searched_from"] == pytest.approx(1.0 / share, rel=1e-14)
-    assert row["search_step"] == spectrum.search_step == 0.01
+    assert row["search_step"] == spectrum.search_step == STEP
 
 
 def test_below_a_grid_that_begins_high_the_lowest_is_found():
@@ -109,7 +98,7 @@ def test_below_a_grid_that_begins_high_the_lowest_is_found():
 
 def test_the_rolling_model_makes_another_spectrum(spectrum):
     rolling = overturning_spectrum(
-        0.1, EL_CENTRO, semidiagonals=SIZES[:2], intensities=INTENSITIES[:4], model="flat", search_step=2.0
+        0.1, EL_CENTRO, semidiagonals=SIZES[:2], intensities=INTENSITIES[:4], support="flat", search_step=2.0
     )
     single = reduced.simulate(
         Case(Cylinder(semidiagonal=4.0, tan_alpha=0.1), EL_CENTRO.scaled(rolling.scales[1])),
@@ -127,7 +116,7 @@ def test_the_rolling_model_makes_another_spectrum(spectrum):
         ({"semidiagonals": [0.0, 1.0]}, "semidiagonals must be positive"),
         ({"intensities": []}, "intensities must be a sequence"),
         ({"intensities": [1.0, math.nan]}, "intensities must be a sequence of finite"),
-        ({"model": "planar"}, "model must be one of recess, flat, got 'planar'"),
+        ({"support": "ring"}, "support must be one of recess, flat, got 'ring'"),
         ({"search_step": 0.0}, "search_step must be positive and finite, got 0.0"),
     ],
 )
@@ -165,19 +154,7 @@ def test_cells_agree_with_tighter_single_runs_unless_a_twin_differs_as_much(draw
 def test_a_wrong_cell_does_not_pass_the_check(drawn):
     wrong = {name: tilts.copy() for name, tilts in drawn.peak_tilt.items()}
     wrong[SPATIAL] *= 1.03  # beyond the 2 % that count as agreement
-    forged = OverturningSpectrum(
-        tan_alpha=0.1,
-        motion=EL_CENTRO,
-        gravity=9.81,
-        model="recess",
-        rest_tilt=drawn.rest_tilt,
-        semidiagonals=drawn.semidiagonals,
-        intensities=drawn.intensities,
-        peak_tilt=wrong,
-        lowest=drawn.lowest,
-        searched_from=drawn.searched_from,
-        search_step=drawn.search_step,
-    )
+    forged = dataclasses.replace(drawn, peak_tilt=wrong)
     checked = check_cells(forged, 12, series=[SPATIAL])
     moved = checked["single_peak_tilt"] > 0.0
     assert moved.sum() >= 8

@@ -1,25 +1,20 @@
 """Islands and shares, from grids made by hand."""
 
+import dataclasses
 import math
 
 import numpy as np
 import pytest
 
-from rockwobble.compare.studies.spectrum.lowest_overturning import (
-    Island,
-    islands_frame,
-    lowest_on_grid,
-    safe_islands,
-)
 from rockwobble.compare.studies.spectrum.planar_contrast import (
-    contrast_by_size,
     edge_difference,
     planar_contrast,
     size_bands,
     unconservative_from,
 )
+from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, safe_islands
+from rockwobble.compare.studies.spectrum.search import lowest_on_grid
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.models import GroundMotion
 
 FALL = 0.5 * math.pi
@@ -38,45 +33,37 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> OverturningSpectrum
         tan_alpha=0.1,
         motion=GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.1),
         gravity=9.81,
-        model="recess",
+        support="recess",
         rest_tilt=0.0,
         semidiagonals=np.arange(1.0, len(space) + 1.0),
         intensities=levels,
         peak_tilt=peaks,
         lowest={name: lowest_on_grid(levels, tilt) for name, tilt in peaks.items()},
+        below={name: np.zeros(len(space)) for name in peaks},
         searched_from=dict.fromkeys(peaks, 1.0),
         search_step=0.1,
     )
 
 
 def test_islands_are_what_stands_above_the_lowest_overturning_intensity():
-    spectrum = made_up(["ooXoOX", "XooXX?", "oooooo", "oXo?oX"], ["......"] * 4, ["......"] * 4)
-    tilt, lowest = spectrum.peak_tilt[SPATIAL], spectrum.lowest[SPATIAL]
-    islands = safe_islands(spectrum.semidiagonals, spectrum.intensities, tilt, lowest)
-    assert islands == [
-        Island(semidiagonal=1.0, lower=4.0, upper=5.0, closed=True),
-        Island(semidiagonal=2.0, lower=2.0, upper=3.0, closed=True),
-        Island(semidiagonal=4.0, lower=3.0, upper=3.0, closed=True),
-        Island(semidiagonal=4.0, lower=5.0, upper=5.0, closed=True),
+    spectrum = made_up(["ooXoOX", "XooXX?", "oooooo", "oXo?oX", "oXoooo"], ["......"] * 5, ["......"] * 5)
+    table = safe_islands(spectrum)
+    assert set(table["series"]) == {SPATIAL}
+    assert table[["semidiagonal", "lower", "upper", "closed"]].to_numpy().tolist() == [
+        [1.0, 4.0, 5.0, True],
+        [2.0, 2.0, 3.0, True],
+        [4.0, 3.0, 3.0, True],
+        [4.0, 5.0, 5.0, True],
+        [5.0, 3.0, 6.0, False],
     ]
-    table = islands_frame({SPATIAL: islands, PLANAR_X: []})
-    assert table.columns.tolist() == ["series", "semidiagonal", "lower", "upper", "closed"]
-    assert len(table) == 4
-
-
-def test_an_island_open_above_is_not_closed():
-    tilts = np.array([[0.1, FALL, 0.1]])
-    (island,) = safe_islands(np.array([1.0]), LEVELS[:3], tilts, np.array([2.0]))
-    assert not island.closed
-    assert island.upper == 3.0
 
 
 def test_an_island_begins_above_a_window_that_the_grid_does_not_see():
-    tilts = np.array([[0.1, 0.1, 0.1, FALL, 0.1]])
-    islands = safe_islands(np.array([1.0]), LEVELS[:5], tilts, np.array([1.5]))
-    assert [(island.lower, island.upper, island.closed) for island in islands] == [
-        (2.0, 3.0, True),
-        (5.0, 5.0, False),
+    spectrum = made_up(["oooXo"], ["....."], ["....."])
+    seen = dataclasses.replace(spectrum, lowest={**spectrum.lowest, SPATIAL: np.array([1.5])})
+    assert safe_islands(seen)[["lower", "upper", "closed"]].to_numpy().tolist() == [
+        [2.0, 3.0, True],
+        [5.0, 5.0, False],
     ]
 
 
@@ -101,14 +88,6 @@ def test_shares_count_cells_and_leave_out_failed_ones():
     assert every["missed"] == pytest.approx(1 / 11)
     assert every["larger_tilt"] == pytest.approx(2 / 11)
     assert (every["smallest"], every["largest"]) == (1.0, 3.0)
-
-
-def test_shares_by_size_have_a_row_for_each():
-    spectrum = made_up(["oX", "oo"], ["oo", "oX"], ["oo", "oo"])
-    table = contrast_by_size(spectrum)
-    assert table["smallest"].tolist() == [1.0, 2.0]
-    assert table["missed"].tolist() == [0.5, 0.0]
-    assert table["overcalled"].tolist() == [0.0, 0.5]
 
 
 def test_the_worse_plane_decides_the_edge():

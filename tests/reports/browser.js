@@ -17,7 +17,7 @@ window.addEventListener("load", () => setTimeout(() => {
     for (const name of ["xaxis", "yaxis"]) {
       const title = drawn[name].title.text || "";
       // names of runs say what they are
-      if (drawn[name].type === "category" && !title) continue;
+      if ((drawn[name].type === "category" || drawn[name].ticktext) && !title) continue;
       if (!/\[.+\]/.test(title)) say(`${name} without a unit: "${title}"`);
     }
     if (!plot.querySelector(MARKS)) say("empty");

@@ -12,56 +12,39 @@ from rockwobble import reduced
 from rockwobble.compare import Comparison, compare
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.runs.execution import Job
-from rockwobble.models import Case, Cylinder, Run, el_centro_1940
+from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
+
+RESOLUTION = 2e-5  # [rad]
 
 
-class Disguised:
-    """A response that answers as an engine's trajectory; `fields` replace what it has."""
-
-    def __init__(self, response: reduced.Response, run: Run, **fields: Any) -> None:
-        self._response = response
-        self._fields = {
-            "engine": run.engine,
-            "engine_version": "1",
-            "support": run.support,
-            "time_step": run.time_step or 1e-4,
-            "contact_resolution": 2e-5,
-            "residual_displacement": 1e-6 if run.support == "recess" else 0.4,
-            "residual_twist": 1e-7 if run.support == "recess" else 0.2,
-            "wall_time": 5.0,
-            "message": "",
-        } | fields
-
-    def __getattr__(self, name: str) -> Any:
-        if name == "assumptions":
-            raise AttributeError(name)
-        return self._fields[name] if name in self._fields else getattr(self._response, name)
-
-    @property
-    def passes(self) -> Any:
-        passes = self._response.passes
-        return passes.assign(resolved=passes["minimum_tilt"] > self.contact_resolution)
-
-
-def disguised(job: Job, **fields: Any) -> Any:
-    """Return a response; for an engine that of a body slightly off, on the model of its support."""
-    case, method = job.case, job.method
-    given = {"initial": case.initial, "duration": case.duration}
-    if isinstance(method, str):
-        return reduced.simulate(Case(case.cylinder, case.motion), **reduced.MODELS[method], **given)
+def disguised(job: Job, **fields: Any) -> Trace:
+    """Return the trace of a model; for an engine that of a body slightly off, on the model of its support."""
+    case, run = job.case, job.run
+    if run.engine is None:
+        return reduced.simulate(case, support=run.support, **run.settings)
     off = dataclasses.replace(case.cylinder, semidiagonal=case.cylinder.semidiagonal * (1.0 + 1e-5))
-    model = "flat" if method.support == "flat" else "recess"
-    return Disguised(
-        reduced.simulate(Case(off, case.motion), **reduced.MODELS[model], **given), method, **fields
-    )
+    recess = run.support != "flat"
+    model = reduced.simulate(dataclasses.replace(case, cylinder=off), support="recess" if recess else "flat")
+    given = {
+        "case": case,
+        "run": run,
+        "version": "1",
+        "time_step": run.time_step or 1e-4,
+        "contact_resolution": RESOLUTION,
+        "passes": model.passes.assign(resolved=model.passes["minimum_tilt"] > RESOLUTION),
+        "residual_displacement": 1e-6 if recess else 0.4,
+        "twist": model.twist + (1e-7 if recess else 0.2),
+        "wall_time": 5.0,
+    } | fields
+    return dataclasses.replace(model, **given)
 
 
 @pytest.fixture
 def no_engines(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
-    """Replace the engines of every comparison in this test; `fields` are those of the trajectories."""
+    """Replace the engines of every comparison in this test; `fields` are those of their traces."""
 
     def use(**fields: Any) -> None:
-        def simulate_all(jobs: list[Job], **_: Any) -> list[Any]:
+        def simulate_all(jobs: list[Job], **_: Any) -> list[Trace]:
             return [disguised(job, **fields) for job in jobs]
 
         monkeypatch.setattr(driver, "simulate_all", simulate_all)

@@ -15,10 +15,9 @@ from rockwobble.compare.studies.extremes import read_extremes
 from rockwobble.compare.studies.tradeoff import read_tradeoff
 from rockwobble.compare.studies.validity import read_validity
 from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
-from rockwobble.reports.cli.view import view_page
 from rockwobble.reports.pages.advice.page import advice_page
-from rockwobble.reports.pages.comparison.page import comparison_page
-from rockwobble.reports.pages.comparison.suite_page import suite_page
+from rockwobble.reports.pages.comparison import report
+from rockwobble.reports.pages.comparison.report import comparison_page, view_page
 from rockwobble.reports.pages.ensemble.page import ensemble_page
 from rockwobble.reports.pages.extremes.page import extremes_page
 from rockwobble.reports.pages.tradeoff.page import tradeoff_page
@@ -77,14 +76,15 @@ def test_page_of_a_study_is_drawn(name: str, tmp_path: Path):
 
 
 @needs_chromium
-def test_pages_of_a_comparison_are_drawn(comparison: Comparison, tmp_path: Path):
-    assert complaints(comparison_page(comparison), tmp_path, figures=13, further=PLAYER) == []
+def test_pages_of_a_comparison_are_drawn(comparison: Comparison, tmp_path: Path, monkeypatch):
+    assert complaints(comparison_page(comparison).html(), tmp_path, figures=15, further=PLAYER) == []
     (name,) = comparison.cases
     played = view_page(comparison, name)
     assert played is not None
     # drawn without a graphics card, a player takes its time: the page above had it at both widths
-    assert complaints(played, tmp_path, figures=0, further=PLAYER, widths=["phone"]) == []
-    assert complaints(suite_page(comparison), tmp_path, figures=5, further=CHOOSER) == []
+    assert complaints(played.html(), tmp_path, figures=0, further=PLAYER, widths=["phone"]) == []
+    monkeypatch.setattr(report, "SINGLY", 0)
+    assert complaints(comparison_page(comparison).html(), tmp_path, figures=7, further=CHOOSER) == []
 
 
 @needs_chromium

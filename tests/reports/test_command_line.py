@@ -9,12 +9,16 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 import pytest
 
 from rockwobble.compare.runs import choice as runs
 from rockwobble.compare.runs import execution
+from rockwobble.compare.runs.execution import Job
+from rockwobble.models import Trace
+from rockwobble.models.trace import lost_trace
 from rockwobble.reports.cli import compare as compare_command
 from rockwobble.reports.cli.main import main
 
@@ -86,11 +90,11 @@ BAD = {
     ),
     "not its support": (
         ["--engine", "exudyn", "--support", "recess", "--release-tilt-deg", "5"],
-        "support must be free in exudyn, got 'recess'",
+        "support must be flat in exudyn, got 'recess'",
     ),
     "unknown support": (
         ["--engine", "mujoco", "--support", "glued"],
-        "support must be one of guided, free, ring in mujoco, got 'glued'",
+        "support must be one of recess, flat, ring in mujoco, got 'glued'",
     ),
     "large time step": (["--engine", "mujoco", "--time-step", "0.01"], "time_step must be at most 0.001 s"),
     "folder that is a file": (["--out", "taken"], "the output folder must be a folder, got taken"),
@@ -102,7 +106,7 @@ BAD = {
 @pytest.mark.parametrize("command", ["compare", "simulate"])
 @pytest.mark.parametrize("kind", BAD)
 def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch, capsys, kind, command):
-    monkeypatch.setattr(execution, "simulate", lambda _: pytest.fail("it ran"))
+    monkeypatch.setattr(execution, "simulate_run", lambda *_: pytest.fail("it ran"))
     monkeypatch.setattr(execution, "ProcessPool", lambda _: pytest.fail("it ran"))
     before = sorted(path.name for path in folder.iterdir())
     arguments, words = BAD[kind]
@@ -134,12 +138,10 @@ def test_compare_prints_and_writes(folder, no_engines, capsys):
         "mine.txt",
         "summary.csv",
         "summary.parquet",
-        "responses.parquet",
-        "trajectories.parquet",
+        "traces.parquet",
         "passes.parquet",
         "excitation.parquet",
         "comparison.json",
-        "restore.json",
         "report.html",
         "figure.svg",
     }
@@ -164,7 +166,7 @@ def test_naming_an_engine_that_is_not_installed_is_bad_input(folder, monkeypatch
     assert call(command, "--engine", "pybullet") == 2
     captured = capsys.readouterr()
     assert re.fullmatch(r"rockwobble: engine 'pybullet' is not installed here: [^\n]+\n", captured.err)
-    assert list(folder.glob("rockwobble-out")) == []
+    assert list(folder.glob("rockwobble-*")) == []
 
 
 def test_free_response_from_the_command_line(folder, no_engines, capsys):
@@ -181,7 +183,7 @@ def test_ctrl_c_is_one_line_and_nothing_written(folder, monkeypatch, capsys):
     monkeypatch.setattr(compare_command, "run_comparison", interrupted)
     assert call("compare", "--engine", "mujoco") == 130
     assert capsys.readouterr().err == "rockwobble: interrupted, nothing was written\n"
-    assert not (folder / "rockwobble-out").exists()
+    assert not (folder / "rockwobble-compare").exists()
 
 
 def test_simulate_a_reduced_model(folder, capsys):
@@ -189,20 +191,75 @@ def test_simulate_a_reduced_model(folder, capsys):
     captured = capsys.readouterr()
     assert "peak tilt" in captured.out
     assert "running recess model" in captured.err
-    samples = pd.read_csv("rockwobble-out/run.csv")
+    samples = pd.read_csv("rockwobble-simulate/run.csv")
     assert len(samples) == 201
-    kept = pd.read_parquet("rockwobble-out/run.parquet").astype(samples.dtypes.to_dict())
+    kept = pd.read_parquet("rockwobble-simulate/run.parquet").astype(samples.dtypes.to_dict())
     # the default parser of older pandas is off by a rounding
     pd.testing.assert_frame_equal(samples, kept, rtol=1e-15, atol=0.0)
-    about = json.loads(Path("rockwobble-out/run.json").read_text())
+    about = json.loads(Path("rockwobble-simulate/run.json").read_text())
     assert about["result"]["outcome"] == "completed"
     assert about["case"]["initial"]["rolling_rate"] == 0.5
 
 
-def test_unknown_model(folder, capsys):
-    assert call("simulate", "--model", "block") == 2
-    assert "block" in capsys.readouterr().err.splitlines()[-1]
-    assert not (folder / "rockwobble-out").exists()
+NOT_TOGETHER = {
+    "a ring without an engine": (["--support", "ring"], "support must be one of recess, flat"),
+    "a plane with an engine": (
+        ["--engine", "mujoco", "--plane", "0"],
+        "--plane belongs to the reduced models",
+    ),
+    "a loss in three dimensions": (["--restitution", "0.9"], "restitution"),
+    "an unknown loss": (["--restitution", "half"], "must be a number or \"momentum\", got 'half'"),
+    "spin in a plane": (
+        ["--plane", "0", "--release-tilt-deg", "5", "--rolling-rate", "1"],
+        "planar motion has no rolling_rate",
+    ),
+    "a threshold twice": (["--rest-tilt", "0", "--set", "rest_tilt=1e-9"], "rest_tilt is given twice"),
+    "a diameter alone": (["--diameter", "2"], "--diameter and --height go together"),
+    "two sizes": (["--diameter", "2", "--height", "9", "--tan-alpha", "0.2"], "in place of --semidiagonal"),
+    "no diameter": (["--diameter", "0", "--height", "9"], "--diameter must be positive [m], got 0"),
+    "a mass centre without an outline": (["--mass-centre-height", "3"], "goes with --diameter and --height"),
+    "a model that is gone": (["--model", "flat"], "No such option: --model"),
+    "more samples than memory": (["--duration", "1e9", "--scale", "0.1"], "give a shorter --duration"),
+}
+
+
+@pytest.mark.parametrize("kind", NOT_TOGETHER)
+def test_nothing_is_ignored_in_silence(folder, monkeypatch, capsys, kind):
+    monkeypatch.setattr(execution, "simulate_run", lambda *_: pytest.fail("it ran"))
+    arguments, words = NOT_TOGETHER[kind]
+    assert call("simulate", *arguments) == 2
+    assert words in capsys.readouterr().err.splitlines()[-1]
+    assert not (folder / "rockwobble-simulate").exists()
+
+
+def result(*arguments: str) -> dict[str, Any]:
+    assert call("simulate", *arguments) == 0
+    return json.loads(Path("rockwobble-simulate/run.json").read_text())
+
+
+def test_each_model_is_chosen_by_its_options(folder):
+    release = ["--release-tilt-deg", "5", "--duration", "2"]
+    spin = [*release, "--rolling-rate", "0.5"]
+    recess, flat = result(*spin), result(*spin, "--support", "flat")
+    assert [each["run"] for each in (recess, flat)] == ["recess model", "flat-ground model"]
+    assert recess["result"]["residual_displacement"] == 0.0 < flat["result"]["residual_displacement"]
+    planar = result(*release, "--plane", "0.3", "--restitution", "0.9", "--rest-tilt", "1e-6")
+    assert planar["run"] == "planar model"
+    settings = {name: planar["result"]["settings"][name] for name in ("plane", "restitution", "rest_tilt")}
+    assert settings == {"plane": 0.3, "restitution": 0.9, "rest_tilt": 1e-6}
+
+
+def test_a_cylinder_by_its_dimensions_is_the_same_cylinder(folder):
+    # R = 5 m and tan alpha = 3/4, on the moon and on ice
+    same = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "1"]
+    same += ["--gravity", "1.62", "--friction", "0.1"]
+    by_size = result("--semidiagonal", "5", "--tan-alpha", "0.75", *same)
+    by_dimensions = result("--diameter", "6", "--height", "8", *same)
+    assert by_dimensions["case"] == by_size["case"]
+    assert by_dimensions["inputs"] == by_size["inputs"]
+    assert (by_size["case"]["gravity"], by_size["case"]["friction"]) == (1.62, 0.1)
+    hollow = result("--diameter", "6", "--height", "8", "--axial-inertia", "9", *same)
+    assert hollow["inputs"] != by_size["inputs"]
 
 
 @pytest.mark.parametrize("command", ["compare", "simulate"])
@@ -280,11 +337,13 @@ def _alive(pid: int) -> bool:
 
 
 def test_a_run_that_takes_its_process_with_it_is_one_line_and_exit_code_1(folder, monkeypatch, capsys):
-    crash = execution.Crash("the process ended with status -11")
-    monkeypatch.setattr("rockwobble.compare.simulate_all", lambda *_, **__: [crash])
+    def died(jobs: list[Job], **_: Any) -> list[Trace]:
+        return [lost_trace(job.case, job.run, "status -11") for job in jobs]
+
+    monkeypatch.setattr("rockwobble.compare.simulate_all", died)
     assert call("simulate", "--engine", "mujoco") == 1
     assert (
         capsys.readouterr().err
-        == "rockwobble: mujoco recess left no result: the process ended with status -11\n"
+        == "rockwobble: mujoco recess left no result: the run ended its process: status -11\n"
     )
-    assert not (folder / "rockwobble-out").exists()
+    assert not (folder / "rockwobble-simulate").exists()

@@ -5,17 +5,16 @@ from types import SimpleNamespace
 
 import pandas as pd
 import pytest
-from rich.console import Console
 
-from rockwobble.compare.comparison.external.verdict import VERDICT_COLUMNS, no_verdict
-from rockwobble.reports.pages.comparison.external_words import (
+from rockwobble.compare.comparison.external.verdict import no_verdict
+from rockwobble.reports.pages.comparison.external import (
+    external_rows,
     external_sentences,
-    external_table,
-    mistake_words,
+    mistakes,
     scope,
     within,
 )
-from rockwobble.reports.pages.comparison.findings import finding, headline
+from rockwobble.reports.pages.comparison.findings import Finding, finding, headline, reason
 
 AGREES = {"azimuth_rms": 0.2, "path_rms": 0.001, "tilt_bound": 0.01, "noise": 0.0}
 
@@ -25,10 +24,12 @@ def row(**values):
         "run": "table",
         "engine": "table",
         "support": "external",
-        "reference": "recess",
+        "reference": "recess model",
+        "reference_support": "recess",
+        "case": "El Centro",
+        "predicted_by": "",
         "outcome": "completed",
         "reference_outcome": "completed",
-        "message": "",
         "peak_tilt": 0.25,
         "reference_peak_tilt": 0.25,
         "agreement_time": 8.0,
@@ -43,16 +44,30 @@ def row(**values):
     return SimpleNamespace(**(common | no_verdict() | AGREES | values))
 
 
+def said(given):
+    return finding(
+        Finding(
+            row=given,
+            failed="",
+            uplifted=True,
+            reference_uplifted=True,
+            reason=reason(given, 8.0),
+            bound=within(given),
+            end=math.nan,
+        )
+    )
+
+
 def table(*rows):
     return pd.DataFrame([vars(each) for each in rows])
 
 
 def test_what_agrees_is_said_to_agree():
     assert headline(table(row()), 8.0) == (
-        "Brought from elsewhere (external), table follows the recess model within 1 % of alpha for the whole "
+        "Brought from elsewhere, table follows the recess model within 1 % of alpha for the whole "
         "run (8.0 s), in tilt, azimuth and path."
     )
-    words = finding(row(), 8.0)
+    words = said(row())
     assert "The azimuth differs by 0.2 deg (rms while the tilts agree), which is agreement." in words
     assert "mistake" not in words
 
@@ -83,7 +98,7 @@ def test_a_mistake_stands_in_the_headline_and_what_is_left_without_it():
         "for the whole run (8.0 s), in tilt but not in azimuth and path of the mass centre. Likely mistake: "
         "its axes are turned by 10.0 deg (counter-clockwise)."
     )
-    words = finding(row(**WRONG), 8.0)
+    words = said(row(**WRONG))
     assert "The azimuth differs by 10.0 deg (rms while the tilts agree), from 2.80 s on." in words
     assert words.endswith("Without it, the tilt follows the model for 8.0 s.")
     left = external_sentences(row(**WRONG, differs_without_mistake="tilt; path"))
@@ -118,13 +133,13 @@ def test_a_difference_that_no_mistake_explains_is_said_to_be_none():
     ],
 )
 def test_each_code_has_its_words(mistake, value, words):
-    (said,) = mistake_words(row(likely_mistake=mistake, likely_mistake_value=value))
+    (said,) = mistakes(row(likely_mistake=mistake, likely_mistake_value=value))
     assert said.startswith(words)
 
 
 def test_two_mistakes_keep_their_own_values():
     both = row(likely_mistake="axes: x_reversed; path: length_unit", likely_mistake_value="; 100")
-    assert mistake_words(both) == [
+    assert mistakes(both) == [
         "its axes are mirrored: x has the other sign",
         "x, y and z are in cm, read as m",
     ]
@@ -149,25 +164,24 @@ def test_noise_widens_what_agreement_means_and_says_so():
     assert "within 3.4 % of alpha (1 % and the noise)" in headline(table(row(tilt_bound=0.034)), 8.0)
 
 
-def printed(rows):
-    console = Console(width=160)
-    with console.capture() as caught:
-        console.print(external_table(rows))
-    return caught.get()
-
-
 def test_the_table_has_the_numbers_and_codes_of_each_external_trajectory():
     engine = row(support="recess", run="mujoco recess")
-    text = printed(table(engine, row(**WRONG, uplift_time_uncertainty=0.012)))
-    assert "mujoco" not in text
-    line = next(line for line in text.splitlines() if line.startswith("table"))
-    cells = line.split()
-    assert cells[:8] == ["table", "10.0", "2.80", "0.001", "5.96", "0.004", "0.012", "-"]
-    assert line.rstrip().endswith("azimuth; path axes: turned")
-    assert external_table(table(engine)) is None
+    (line,) = external_rows(table(engine, row(**WRONG, uplift_time_uncertainty=0.012)))
+    names = ("run", "azimuth_rms", "azimuth_differs_from", "path_rms", "path_differs_from", "uplift")
+    assert [line[name] for name in names] == ["table", 10.0, 2.8, 0.001, 5.96, 0.004]
+    assert (line["differs_in"], line["likely_mistake"]) == ("azimuth; path", "axes: turned")
+    # of the direction nothing is known
+    assert (line["towards"], line["towards_uncertainty"]) == (None, None)
+    (other,) = external_rows(table(row(uplift_direction_uncertainty=4.0)))
+    assert (other["towards"], other["towards_uncertainty"]) == (math.degrees(-0.5), 180.0)
+    assert external_rows(table(engine)) == []
 
 
-def test_results_of_before_there_were_verdicts_are_told_as_they_were():
-    old = {name: value for name, value in vars(row()).items() if name not in VERDICT_COLUMNS}
-    assert external_table(pd.DataFrame([old])) is None
-    assert "for the whole run (8.0 s), in tilt." in headline(pd.DataFrame([old]), 8.0)
+def test_a_divergence_of_an_external_trajectory_has_its_own_reasons():
+    text = said(row(diverged=True, agreement_time=4.0))
+    assert "the closest pass until then comes within 0.003 alpha of upright" in text
+    assert "small difference there is in the body, its start, the ground motion or the method" in text
+    none = said(row(diverged=True, closest_pass=math.nan))
+    assert "not chance but the body, its start, the ground motion or the method differs" in none
+    assert "resolve" not in text + none
+    assert "then they diverge: see the likely mistake." in said(row(diverged=True, **WRONG))

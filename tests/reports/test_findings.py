@@ -6,8 +6,12 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from rockwobble.reports.pages.comparison.budget_words import parting_lines
-from rockwobble.reports.pages.comparison.findings import finding, headline, small
+from rockwobble.models import Diagnostic
+from rockwobble.models.diagnostic import CODES
+from rockwobble.reports.pages.comparison.budgets import divergence_sentences
+from rockwobble.reports.pages.comparison.findings import Finding, counted_remarks, finding, headline, reason
+from rockwobble.reports.pages.diagnostic_words import counted, failure, sentence, sentences
+from rockwobble.reports.pages.words import small
 
 LENGTH = 50.0
 
@@ -15,91 +19,111 @@ LENGTH = 50.0
 def row(**values):
     return SimpleNamespace(
         **{
+            "case": "El Centro",
+            "run": "mujoco recess",
             "engine": "mujoco",
             "support": "recess",
-            "reference": "recess",
+            "reference": "recess model",
+            "reference_support": "recess",
             "outcome": "completed",
             "reference_outcome": "completed",
-            "message": "",
             "peak_tilt": 0.25,
             "reference_peak_tilt": 0.25,
             "agreement_time": 20.0,
             "diverged": True,
             "agreed_passes": 7,
             "predicted_agreement_time": 18.0,
+            "predicted_by": "pass",
             "contact_resolution": 2e-5,
             "closest_pass": 3e-3,
+            "likely_mistake": "",
         }
         | values
     )
 
 
+def said(touched=False, failed="", uplifted=True, end=math.nan, **values):
+    given = row(**values)
+    return finding(
+        Finding(
+            row=given,
+            failed=failed,
+            uplifted=uplifted,
+            reference_uplifted=uplifted,
+            reason=reason(given, LENGTH, touched=touched),
+            bound="1 % of alpha",
+            end=end,
+        )
+    )
+
+
+FLAT = {"run": "mujoco flat", "support": "flat"}
+OWN = {"reference": "flat-ground model", "reference_support": "flat"}
+RING = {"run": "mujoco ring", "support": "ring"}
+HALF = {"reference": "mujoco ring, half the step", "reference_support": "ring"}
+
+
 def test_agreement_to_the_end():
-    text = finding(row(diverged=False, agreement_time=50.0), LENGTH)
-    assert "stays within 1 % of alpha of the recess model for the whole run (50.0 s, 7 passes" in text
-    assert "part" not in text.replace("parts", "")
+    text = said(diverged=False, agreement_time=50.0)
+    assert text.startswith(
+        "mujoco recess stays within 1 % of alpha of the recess model for the whole run (50.0 s"
+    )
+    assert "diverge" not in text
 
 
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({}, "at 18.0 s a pass comes closer to upright than the contact resolves (2 × 10⁻⁵ rad)"),
+        ({}, "at 18.0 s a pass comes closer to upright than the contact resolves (2\u00a0×\u00a010⁻⁵ rad)"),
         ({"predicted_agreement_time": 30.0}, "the closest of which comes within 0.003 alpha of upright"),
         (
             {"predicted_agreement_time": 30.0, "closest_pass": math.nan},
             "an error of the method and not of chance",
         ),
-        ({"support": "flat"}, "on open ground the cylinder may roll out"),
-        ({"support": "flat", "reference": "flat"}, "a pass comes closer to upright"),
-        ({"support": "ring"}, "only where it has rolled out as far as their clearance"),
-        (
-            {"support": "ring", "reference": "flat", "message": "the cylinder touched a wall from 2 s on"},
-            "each touch takes energy",
-        ),
-        ({"support": "ring", "reference": "flat"}, "a pass comes closer to upright"),
+        (FLAT, "on flat ground the cylinder may roll out"),
+        (FLAT | OWN, "a pass comes closer to upright"),
+        (RING, "only where it has rolled out as far as their clearance"),
+        (RING | OWN | {"touched": True}, "each touch takes energy"),
+        (RING | OWN, "a pass comes closer to upright"),
+        # its own walls, at a finer step: no difference of support
+        (RING | HALF | {"touched": True}, "a pass comes closer to upright"),
     ],
 )
-def test_a_parting_and_its_reason_follow_from_the_numbers(values, words):
-    text = finding(row(**values), LENGTH)
-    assert "for 20.0 s from uplift or release (7 passes), then they part" in text
+def test_a_divergence_and_its_reason_follow_from_the_numbers(values, words):
+    text = said(**values)
+    assert "for 20.0 s from uplift or release (7 passes by upright), then they diverge" in text
     assert words in text
 
 
-def test_of_a_trajectory_from_elsewhere_nothing_is_said_about_contact():
-    unknown = {"support": "external", "engine": "table", "contact_resolution": math.nan}
-    text = finding(row(**unknown, predicted_by=""), LENGTH)
-    assert "table external stays within 1 % of alpha of the recess model for 20.0 s" in text
-    assert "closest pass until then comes within 0.003 alpha of upright" in text
-    none = finding(row(**unknown, predicted_by="", closest_pass=math.nan), LENGTH)
-    assert "not chance but the body, its start, the ground motion or the method differs" in none
-    assert "resolve" not in text + none
-    assert headline(table(row(**unknown)), LENGTH).startswith(
-        "Brought from elsewhere (external), table follows"
-    )
+def test_of_two_reduced_models_nothing_is_said_about_contact():
+    models = {"run": "planar model", "engine": "reduced", "contact_resolution": math.nan, "predicted_by": ""}
+    text = said(**models)
+    assert text.startswith("planar model stays within 1 % of alpha of the recess model")
+    assert "the closest pass until then comes within 0.003 alpha of upright; near passes" in text
+    assert "resolve" not in text
 
 
-def test_a_trajectory_from_elsewhere_cannot_part_too_early():
-    early = {"case": "El Centro", "run": "table external", "divergence": "earlier"}
-    assert parting_lines(table(row(**early, support="external"))) == []
-    assert "a finding" in parting_lines(table(row(**early)))[0]
+def test_an_external_trajectory_cannot_diverge_too_early():
+    early = {"run": "table", "divergence": "earlier"}
+    assert divergence_sentences(table(row(**early, support="external"))) == []
+    assert "a finding" in divergence_sentences(table(row(**early)))[0]
 
 
 def test_peaks_are_told_apart_only_where_they_differ():
-    assert "Peak tilt is the same to 0.4 %" in finding(row(peak_tilt=0.251), LENGTH)
-    assert "Peak tilt is 0.3 alpha against 0.25 alpha." in finding(row(peak_tilt=0.3), LENGTH)
+    assert "Peak tilt is the same to 0.4 %" in said(peak_tilt=0.251)
+    assert "Peak tilt is 0.3 alpha against 0.25 alpha." in said(peak_tilt=0.3)
 
 
 def test_outcomes_that_are_no_traces():
-    fell = row(outcome="overturned", message="only mujoco overturned; compared up to 9 s")
-    assert "Only mujoco overturned" in finding(fell, LENGTH)
-    both = row(outcome="overturned", reference_outcome="overturned", message="both overturned")
-    assert finding(both, LENGTH).endswith("Both overturn.")
-    failed = row(outcome="failed", message="mujoco failed: it gained energy", peak_tilt=math.nan)
-    assert (
-        finding(failed, LENGTH) == "mujoco recess against the recess model: mujoco failed: it gained energy."
+    fell = said(outcome="overturned", end=9.0)
+    assert fell.endswith("Only mujoco recess overturns; compared up to 9 s.")
+    assert said(outcome="overturned", reference_outcome="overturned").endswith("Both overturn.")
+    assert said(failed="mujoco recess failed: why", outcome="failed", peak_tilt=math.nan) == (
+        "mujoco recess against the recess model: mujoco recess failed: why."
     )
-    still = row(message="neither uplifted: there is no motion to compare", peak_tilt=0.0)
-    assert "does not uplift the cylinder" in finding(still, LENGTH)
+    assert said(uplifted=False, peak_tilt=0.0) == (
+        "mujoco recess and the recess model both stay at rest: this excitation does not uplift the cylinder."
+    )
 
 
 def table(*rows):
@@ -108,13 +132,13 @@ def table(*rows):
 
 def test_headline_speaks_of_each_run_against_the_model_of_its_support():
     first = row(agreement_time=20.0)
-    second = row(engine="pybullet", agreement_time=12.0)
-    other = row(support="flat", agreement_time=2.0)
-    own = row(support="flat", reference="flat", diverged=False, agreement_time=50.0)
+    second = row(run="pybullet recess", engine="pybullet", agreement_time=12.0)
+    other = row(**FLAT, agreement_time=2.0)
+    own = row(**FLAT, **OWN, diverged=False, agreement_time=50.0)
     assert headline(table(first, second, other, own), LENGTH) == (
-        "In an ideal recess (guided), mujoco and pybullet follow the recess model within 1 % of alpha "
+        "In an ideal recess, mujoco and pybullet follow the recess model within 1 % of alpha "
         "for 12.0 s to 20.0 s from uplift or release. "
-        "On open ground (free), mujoco follows the flat-ground model within 1 % of alpha "
+        "On flat ground, mujoco follows the flat-ground model within 1 % of alpha "
         "for the whole run (50.0 s). "
         "Once traces have diverged, compare distributions."
     )
@@ -122,6 +146,61 @@ def test_headline_speaks_of_each_run_against_the_model_of_its_support():
         "within 1 % of alpha for the whole run (50.0 s)."
     )
     assert headline(table(row(outcome="failed")), LENGTH) == "No run could be compared."
+    ring = row(**RING), row(**RING, **HALF, diverged=False)
+    assert "In a ring of walls, mujoco follows the recess model" in headline(table(*ring), LENGTH)
+
+
+WORDS = {
+    "energy_gain": ("the engine gained energy that nothing supplied at 2 s", {}),
+    "died": ("the run ended its process: status -11", {"time": math.nan, "detail": "status -11"}),
+    "step_budget": ("the 500 steps allowed were used up at 2 s", {"size": 500.0}),
+    "tolerance": ("no step met the tolerance of 1e-08 at 2 s", {"bound": 1e-8}),
+    "slip": ("contact slipped from 2 s on", {}),
+    "lift_off": ("the cylinder left the ground at 2 s", {}),
+    "tension": ("contact is lost at 2 s: a joint holds the rim down", {}),
+    "friction_needed": (
+        "the rim would slip at 2 s, for 0.5 s in all: it needs a friction of 0.4, where there is 0.3",
+        {"duration": 0.5, "size": 0.4, "bound": 0.3},
+    ),
+    "wall_contact": ("the cylinder touched a wall from 2 s on", {}),
+    "energy": ("contact took 2.2e-02 of the energy of the motion, which shows from 2 s on", {"size": -0.022}),
+    "solver": ("the solver had not converged in 3 of the 90 steps looked at", {"size": 3, "bound": 90}),
+    "unresolved_pass": ("1 pass is closer to upright than the 8.1e-06 rad", {"size": 1, "bound": 8.1e-6}),
+    "settled": (
+        "the tilt is, until 3 s, within 1.0e-05 alpha",
+        {"duration": 3.0, "size": 1e-5, "bound": 1.0},
+    ),
+    "unsettled": ("the tilt has not settled by halving the step: a smaller step fails", {"detail": "fails"}),
+    "missed_pass": ("2 near passes fell between two samples, first at 2 s", {"size": 2}),
+    "note": ("positions are in mm", {"detail": "positions are in mm"}),
+}
+
+
+@pytest.mark.parametrize("code", CODES)
+def test_each_code_has_words_with_its_numbers(code):
+    words, values = WORDS.get(code, ("", {}))
+    text = sentence(Diagnostic(**{"code": code, "time": 2.0} | values))
+    assert text.startswith(words)
+    assert text
+    assert "nan" not in text
+
+
+def test_words_are_joined_counted_and_told_from_failures():
+    slipped, gained = Diagnostic(code="slip", time=1.0), Diagnostic(code="energy_gain", time=2.0)
+    assert sentences([slipped, slipped]) == "contact slipped from 1 s on; contact slipped from 1 s on"
+    assert failure([slipped, gained]) == "the engine gained energy that nothing supplied at 2 s"
+    assert counted([["slip", "slip"], ["slip", "lift_off"], ["energy_gain"], [""]]) == [
+        "2 slipped",
+        "1 left the ground",
+    ]
+    rows = table(row(diagnostics="slip, lift_off"), row(diagnostics="slip, lift_off", reference="other"))
+    assert counted_remarks(rows) == [
+        "By their own account, of the runs 1 slipped, 1 left the ground; see the column diagnostics of "
+        "summary.csv."
+    ]
+    assert (
+        counted_remarks(table(row(diagnostics=""), row(diagnostics="slip", run="b", outcome="failed"))) == []
+    )
 
 
 @pytest.mark.parametrize(

@@ -8,9 +8,9 @@ import pytest
 from rockwobble.compare import compare
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.cli.view import view_page
-from rockwobble.reports.figures.case_view import case_views
-from rockwobble.reports.figures.playback import playback
+from rockwobble.reports.figures.comparison.playback import playback
+from rockwobble.reports.figures.comparison.view import case_views
+from rockwobble.reports.pages.comparison.report import view_page
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 # a page plays in float32: seven digits of some metres
@@ -31,11 +31,8 @@ def comparison():
 def test_the_pose_of_the_page_puts_the_mass_centre_where_the_run_has_it(comparison):
     spec = playback(case_views(comparison)[0])
     b, h = spec["base_radius"], 0.5 * spec["height"]
-    for body, trace in zip(
-        [*spec["models"], *spec["runs"]],
-        [*comparison.responses.values(), *comparison.trajectories.values()],
-        strict=True,
-    ):
+    for body in (*spec["models"], *spec["runs"]):
+        trace = comparison.traces["release", body["label"]]
         tilt, phi = _numbers(body["tilt"]), _numbers(body["rolling_angle"])
         # as playback.js: the base stands on its rim at the contact point
         radial = h * np.sin(tilt) - b * np.cos(tilt)
@@ -57,7 +54,7 @@ def test_a_fall_after_the_end_of_the_case_is_played():
         PIER, initial=InitialState(tilt=1.1 * PIER.alpha, rolling_rate=0.1), duration=0.5, name="gone"
     )
     found = compare(gone, runs=[Run("mujoco", "recess", 1e-3)], workers=1)
-    ends = [float(trace.time[-1]) for trace in (*found.responses.values(), *found.trajectories.values())]
+    ends = [float(trace.time[-1]) for trace in found.traces.values()]
     assert max(ends) > 1.0
     assert playback(case_views(found)[0])["length"] == max(ends)
     # traces of different length are compared as far as both reach

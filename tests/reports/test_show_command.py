@@ -1,21 +1,19 @@
-"""`rockwobble show` and `rockwobble sweep` from the outside."""
+"""`rockwobble show` and `report` from the outside: what a folder holds, and its pages again."""
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
-import pandas as pd
 import pytest
 
-from rockwobble.compare import SweepProgress, compare
-from rockwobble.compare.storage.parquet_file import read_about
-from rockwobble.models import Case, Cylinder, InitialState, Run
+from rockwobble.compare import Comparison, compare
+from rockwobble.compare.storage.manifest import MANIFEST
+from rockwobble.models import Case, Cylinder, InitialState, Run, plain_json
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.console.sweep_progress import sentence
 
-GRID = ["--semidiagonal", "1:20:4", "--tan-alpha", "0.1,0.2", "--scale", "0.3,2", "--workers", "1"]
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+CASE = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.5, name="release")
+RUNS = [Run("mujoco", "recess", 1e-3)]
 
 
 def call(*arguments: str) -> int:
@@ -25,123 +23,89 @@ def call(*arguments: str) -> int:
     return ended.value.code
 
 
-def described(folder: Path, capsys) -> dict:
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory) -> Path:
+    folder = tmp_path_factory.mktemp("stored")
+    compare(CASE, runs=RUNS, workers=1, out=folder)
+    return folder
+
+
+@pytest.fixture
+def nothing_runs(monkeypatch):
+    """Let nothing run, and no engine be looked at."""
+
+    def refuse(*_, **__):
+        raise AssertionError("something ran, or looked at what is installed")
+
+    for name in ("rockwobble.reduced.simulate", "rockwobble.multibody.simulate"):
+        monkeypatch.setattr(name, refuse)
+    monkeypatch.setattr("rockwobble.multibody.available_engines", refuse)
+
+
+def described(folder: Path, capsys, code: int = 0) -> list[dict]:
     capsys.readouterr()
-    assert call("show", str(folder), "--json") == 0
-    (result,) = json.loads(capsys.readouterr().out)["results"]
-    return result
+    assert call("show", str(folder), "--json") == code
+    return plain_json.loads(capsys.readouterr().out)["results"]
 
 
-def made_with(result: dict) -> None:
-    assert len(result["inputs"]["fingerprint"]) == 32
+@pytest.mark.usefixtures("nothing_runs")
+def test_show_says_what_is_there_and_what_made_it(stored, capsys):
+    (result,) = described(stored, capsys)
+    assert (result["kind"], result["complete"]) == ("comparison", True)
+    assert result["headline"]["rows"] == len(Comparison.load(stored).summary)
     assert {"python", "numpy", "mujoco", "rockwobble"} <= set(result["versions"])
+    assert set(result["states"].values()) == {"whole"}
+    assert call("show", str(stored)) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    for words in ("comparison", "median agreement time [s]", "commit", "traces.parquet", result["inputs"]):
+        assert words in said
 
 
-def test_a_sweep_prints_what_it_keeps_and_show_prints_it_again(tmp_path, capsys):
-    assert call("sweep", *GRID, "--out", str(tmp_path)) == 0
-    printed = capsys.readouterr().out
-    assert "alpha = 5.711 to 11.31 deg" in printed
-    assert "Runs: 16 (4 sizes, 2 slendernesses, 2 scales, 1 records, models recess)" in printed
-    assert "complete, 16 runs" in printed
-    result = described(tmp_path, capsys)
-    table = pd.read_parquet(tmp_path / "chunks")
-    assert result["kind"] == "a sweep"
-    assert (result["complete"], result["runs"], result["chunks"]) == (True, 16, 2)
-    assert result["outcomes"] == table["outcome"].value_counts().to_dict()
-    assert result["inputs"]["semidiagonals"] == {"from": 1.0, "to": 20.0, "count": 4}
-    assert {"numba", "mujoco", "rockwobble"} <= set(result["versions"])
-    (row,) = result["figures"]
-    assert row["overturned [%]"] == 100.0 * (table["outcome"] == "overturned").mean()
+def test_show_names_a_damaged_file_and_fails(tmp_path, capsys):
+    compare(CASE, runs=RUNS, workers=1, out=tmp_path)
+    (tmp_path / "passes.parquet").write_bytes(b"torn")
+    (result,) = described(tmp_path, capsys, code=1)
+    assert result["states"]["passes.parquet"] == "damaged"
+    assert call("report", str(tmp_path)) == 2
+    error = capsys.readouterr().err
+    assert "passes.parquet is damaged" in error
+    assert error.count("\n") == 1
 
 
-def test_a_sweep_that_was_ended_says_how_far_it_is(tmp_path, capsys):
-    assert call("sweep", *GRID, "--chunk", "4", "--out", str(tmp_path)) == 0
-    next((tmp_path / "chunks").glob("*.parquet")).unlink()
-    result = described(tmp_path, capsys)
-    assert (result["complete"], result["runs_finished"], result["chunks_finished"]) == (False, 12, 3)
+def test_show_says_how_far_it_is_and_nothing_when_it_is_done(tmp_path, capsys):
+    def interrupt(event):
+        if event.state == "finished":
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        compare(CASE, runs=RUNS, workers=1, resume=tmp_path, progress=interrupt)
+    (going,) = described(tmp_path, capsys)
+    assert going == {"kind": "comparison", "done": 1, "total": 2, "complete": False}
     assert call("show", str(tmp_path)) == 0
-    assert "12 of 16 runs are finished (75 %)" in " ".join(capsys.readouterr().out.split())
-    assert call("sweep", *GRID, "--chunk", "4", "--out", str(tmp_path)) == 0
-    assert "16 of 16 runs (12 of them found finished)" in capsys.readouterr().err
+    assert "comparison, not finished: 1 of 2 tasks" in capsys.readouterr().out
+    compare(CASE, runs=RUNS, workers=1, resume=tmp_path, out=tmp_path)
+    assert [each["complete"] for each in described(tmp_path, capsys)] == [True]
 
 
-def test_a_comparison_and_one_that_is_not_finished(tmp_path, capsys):
-    case = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.5, name="release")
-    compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1, resume=tmp_path)
-    result = described(tmp_path, capsys)
-    assert result["kind"] == "a comparison that is not finished"
-    kept = len(list((tmp_path / "runs").glob("*.parquet")))
-    assert kept >= 2
-    assert (result["complete"], result["runs_finished"]) == (False, kept)
-    compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1, resume=tmp_path, out=tmp_path)
-    result = described(tmp_path, capsys)
-    assert (result["kind"], result["complete"], result["runs"]) == ("a comparison", True, 2)
-    assert result["outcomes"] == {"completed": 1}
-    assert result["figures"][0]["run"] == "mujoco recess against recess"
-    assert len(result["inputs"]["fingerprint"]) == 32
+@pytest.mark.usefixtures("nothing_runs")
+def test_report_draws_again_here_or_elsewhere_and_leaves_the_results_as_they_are(stored, tmp_path, capsys):
+    before = {path.name: path.read_bytes() for path in stored.iterdir()}
+    assert call("report", str(stored), "--out", str(tmp_path)) == 0
+    pages = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
+    assert "figure.svg" in pages
+    assert {path.name for path in stored.iterdir()} == set(before)
+    assert call("report", str(stored)) == 0
+    assert {name: (stored / name).read_bytes() for name in pages} == pages
+    results = {name: (stored / name).read_bytes() for name in before if name != MANIFEST}
+    assert results == {name: content for name, content in before.items() if name != MANIFEST}
+    (made,) = described(stored, capsys)
+    assert set(made["pages"]) == set(pages)
 
 
-def test_a_spectrum_and_a_run(tmp_path, capsys):
-    assert call("spectrum", "--sizes", "3", "--intensities", "4", "--out", str(tmp_path / "a")) == 0
-    result = described(tmp_path / "a", capsys)
-    assert (result["kind"], result["runs"]) == ("an overturning spectrum", 36)
-    assert sum(result["outcomes"].values()) == 36
-    assert [row["run"] for row in result["figures"]] == ["3d", "planar_x", "planar_y"]
-    made_with(result)
-    for name in ("lowest", "islands", "contrast", "checked"):
-        about = read_about(tmp_path / "a" / f"{name}.parquet")
-        assert (about["kind"], about["inputs"]) == (f"rockwobble {name}", result["inputs"]["fingerprint"])
-    release = ["--release-tilt-deg", "5", "--duration", "0.5", "--out", str(tmp_path / "b")]
-    assert call("simulate", *release) == 0
-    result = described(tmp_path / "b", capsys)
-    assert (result["kind"], result["outcomes"]) == ("a single run", {"completed": 1})
-    made_with(result)
-    assert read_about(tmp_path / "b" / "run.parquet")["inputs"] == result["inputs"]["fingerprint"]
-
-
-def test_an_ensemble_and_one_that_is_not_finished(tmp_path, capsys):
-    release = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--members", "3"]
-    assert call("ensemble", *release, "--out", str(tmp_path)) == 0
-    result = described(tmp_path, capsys)
-    assert (result["kind"], result["complete"], result["runs"]) == ("an ensemble", True, 6)
-    assert result["inputs"]["members"] == "3: starts of free response, perturbed by 1 %"
-    assert (result["seeds"], result["outcomes"]) == ({"ensemble": 0}, {"completed": 6})
-    made_with(result)
-    (tmp_path / "members.parquet").unlink()
-    result = described(tmp_path, capsys)
-    assert (result["kind"], result["runs_finished"]) == ("an ensemble that is not finished", 6)
-
-
+@pytest.mark.parametrize("command", ["show", "report"])
 @pytest.mark.parametrize("folder", ["", "nowhere"])
-def test_what_is_no_store_gets_one_clear_line(tmp_path, capsys, folder):
-    assert call("show", str(tmp_path / folder)) == 2
+def test_what_holds_no_results_gets_one_clear_line(tmp_path, capsys, command, folder):
+    assert call(command, str(tmp_path / folder)) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
     assert str(tmp_path / folder) in error
-
-
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        (["--semidiagonal", "a"], "--semidiagonal must be a number, a list such as 1,2,6 or a range"),
-        (["--scale", "1:2"], "--scale must be a number"),
-        (["--tan-alpha", "1:2:1"], "--tan-alpha must be a number"),
-        (["--model", "flat"], "models must be of recess, flat, planar, got 'flat'"),
-        (["--record-x", "a.at2"], "each record needs both horizontal components"),
-        (["--units", "g"], "--record-z and --units belong to a record"),
-        (["no-such-suite"], "no-such-suite"),
-        (["quick", "--units", "g"], "the records of a suite stand in its file"),
-    ],
-)
-def test_bad_input_of_a_sweep_gets_one_clear_line(tmp_path, capsys, arguments, words):
-    assert call("sweep", *arguments, "--out", str(tmp_path / "out")) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert words in error
-    assert not (tmp_path / "out").exists()
-
-
-def test_progress_in_words():
-    assert sentence(SweepProgress(done=0, total=10, found=0, left=float("nan"))) == "0 of 10 runs"
-    event = SweepProgress(done=1500, total=3000, found=500, left=200.0)
-    assert sentence(event) == "1,500 of 3,000 runs (500 of them found finished), about 3 min left"

@@ -1,32 +1,37 @@
 from __future__ import annotations
 
 import io
+import re
 
 import pytest
 from rich.console import Console
 
 from rockwobble.compare import compare
 from rockwobble.models import Case, Cylinder, Run
-from rockwobble.reports.console.summary_table import summary_table
+from rockwobble.reports.pages.comparison.report import comparison_page
+
+
+def printed(comparison, width: int) -> str:
+    console = Console(width=width, file=io.StringIO(), force_terminal=True, no_color=True)
+    comparison_page(comparison, drawn=False).show(console)
+    return re.sub(r"\x1b\[[\d;]*m", "", console.file.getvalue())
 
 
 @pytest.mark.parametrize("width", [80, 100])
-def test_table_fits_its_terminal_whole(comparison, width):
-    console = Console(width=width, record=True, file=io.StringIO())
-    console.print(summary_table(comparison.summary, width))
-    text = console.export_text()
+def test_the_table_fits_its_terminal_and_every_row_its_line(comparison, width):
+    text = printed(comparison, width)
     assert "…" not in text
-    assert max(len(line) for line in text.splitlines()) <= width
-    assert len(text.splitlines()) == 3 + len(comparison.summary)
-    for heading in ("agrees", "[α]", "[%]", "[s]", "[deg]", "[b]"):
+    assert max(len(line.rstrip()) for line in text.splitlines()) <= width
+    rows = [line for line in text.splitlines() if re.match(r"(mujoco|pybullet) (recess|flat) +(recess|flat) ", line)]
+    assert len(rows) == len(comparison.summary)
+    for heading in ("agrees", "[α]", "[s]", "[deg]", "[b]"):
         assert heading in text
+    assert ("ratio" in text.split("peak, of")[0]) == (width >= 100)
 
 
 def test_a_failed_run_is_no_number(no_engines):
     no_engines(outcome="failed", peak_tilt=float("nan"), residual_displacement=float("nan"))
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0, name="still")
-    console = Console(width=100, record=True, file=io.StringIO())
-    console.print(summary_table(compare(case, runs=[Run("mujoco", "recess")]).summary, 100))
-    text = console.export_text()
-    assert "fails" in text
+    text = printed(compare(case, runs=[Run("mujoco", "recess")]), 100)
+    assert "failed" in text
     assert "nan" not in text

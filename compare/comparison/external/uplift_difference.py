@@ -12,7 +12,7 @@ import numpy as np
 
 from rockwobble.models import Trace
 
-from ...traces.trajectory import Trace, measurement
+from ...traces.trajectory import measurement
 from ...traces.uplift import CONFIDENCE
 from .part import Part
 

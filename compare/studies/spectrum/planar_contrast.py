@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from .result import OverturningSpectrum
 from .series import PLANAR_X, PLANAR_Y, SPATIAL
-from .study import OverturningSpectrum
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -69,14 +69,6 @@ def planar_contrast(spectrum: OverturningSpectrum, edges: Sequence[float] | None
     groups = [np.flatnonzero(band == i) for i in range(len(bounds) - 1)]
     rows = [_row(spectrum, group) for group in groups if len(group)]
     return pd.DataFrame([*rows, _row(spectrum, np.arange(len(sizes)))], columns=list(CONTRAST_COLUMNS))
-
-
-def contrast_by_size(spectrum: OverturningSpectrum) -> pd.DataFrame:
-    """Return the columns of `CONTRAST_COLUMNS` for each size."""
-    import pandas as pd
-
-    rows = [_row(spectrum, np.array([i])) for i in range(len(spectrum.semidiagonals))]
-    return pd.DataFrame(rows, columns=list(CONTRAST_COLUMNS))
 
 
 def edge_difference(spectrum: OverturningSpectrum) -> Array:

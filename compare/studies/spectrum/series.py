@@ -7,23 +7,32 @@ same shaking and leave the other out, as a planar analysis does.
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import TypedDict
+
+import numpy as np
 
 from rockwobble.models import GroundMotion
 
-from .lowest_overturning import uplift_factor
-
 SPATIAL, PLANAR_X, PLANAR_Y = "3d", "planar_x", "planar_y"
 SERIES = (SPATIAL, PLANAR_X, PLANAR_Y)
-SPATIAL_MODELS = ("recess", "flat")
+TITLES = {
+    SPATIAL: "3D, both components",
+    PLANAR_X: "planar, east-west alone",
+    PLANAR_Y: "planar, north-south alone",
+}
 _AZIMUTH = {PLANAR_X: 0.0, PLANAR_Y: 0.5 * math.pi}  # of the plane [rad]
 
 
-def series_options(series: str, model: str) -> dict[str, Any]:
-    """Return the options of a reduced run that make it one of a series; `model` is that in 3D."""
-    if series == SPATIAL:
-        return {"support": model}
-    return {"plane": _AZIMUTH[series]}
+class Options(TypedDict, total=False):
+    """Options of a reduced run."""
+
+    support: str
+    plane: float
+
+
+def series_options(series: str, support: str) -> Options:
+    """Return the options of a reduced run that make it one of a series; `support` is that in 3D."""
+    return {"support": support} if series == SPATIAL else {"plane": _AZIMUTH[series]}
 
 
 def uplift_of_series(
@@ -44,3 +53,38 @@ def intensity_unit(tan_alpha: float, motion: GroundMotion, gravity: float) -> fl
     if motion.peak == 0.0:
         raise ValueError("motion must have a horizontal acceleration to scale, got none")
     return gravity * tan_alpha / motion.peak
+
+
+def uplift_factor(
+    motion: GroundMotion,
+    tan_alpha: float,
+    gravity: float,
+    *,
+    plane: float | None = None,
+    until: float = math.inf,
+) -> float:
+    """Return the factor on a ground motion at which a cylinder at rest uplifts [-]; inf if none does.
+
+    Exact: f of equation (25) is convex between samples, and so is largest at one of them.
+
+    Parameters
+    ----------
+    motion : GroundMotion
+    tan_alpha : float
+    gravity : float
+        [m/s^2]
+    plane : float, optional
+        Azimuth of the plane of planar motion [rad]. Default: motion in space.
+    until : float, optional
+        End of the run [s].
+    """
+    samples, times = motion.acceleration, np.arange(len(motion.acceleration)) * motion.time_step
+    if until < motion.duration:
+        last = [np.interp(until, times, column) for column in samples.T]
+        samples = np.vstack([samples[times <= until], last])
+    x, y = samples[:, 0], samples[:, 1]
+    drive = np.hypot(x, y) if plane is None else np.abs(x * math.cos(plane) + y * math.sin(plane))
+    if motion.has_vertical:
+        drive = drive - samples[:, 2] * tan_alpha
+    largest = float(drive.max())
+    return gravity * tan_alpha / largest if largest > 0.0 else math.inf

@@ -3,161 +3,24 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable
 from functools import partial
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from rockwobble import reduced
 from rockwobble.models import GroundMotion
 
-from ...metrics.tilt import overturned
-from .lowest_overturning import STEP, lowest_intensities, lowest_on_grid
-from .series import SERIES, SPATIAL, SPATIAL_MODELS, intensity_unit, series_options, uplift_of_series
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-Array = NDArray[np.float64]
-Progress = Callable[[float], None]
-ProgressCallback = Callable[[str, float], None]
+from ...runs.progress import ProgressCallback, Stages
+from .result import Array, OverturningSpectrum
+from .search import STEP, probe_below, run_searches, search_lowest
+from .series import SERIES, TITLES, intensity_unit, series_options, uplift_of_series
 
 # Steps end at each sample of the record, so a tenth of the tolerance of `reduced.peak_tilts` costs only
 # 4 % of the time, and the cells that it moves by 2 % of their tilt fall from 2 in 1000 to none.
 RTOL = 1e-8
-_GRID_SHARE = 0.06  # of the time of a series with 100 intensities, of which a search runs a thousand and more
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class OverturningSpectrum:
-    """Peak tilts of cylinders of one slenderness under one record, over size and intensity.
-
-    Attributes
-    ----------
-    tan_alpha : float
-        Slenderness b/h [-].
-    motion : GroundMotion
-        The record at its own scale.
-    gravity : float
-        [m/s^2]
-    model : str
-        The model in three dimensions, "recess" or "flat".
-    rest_tilt : float
-        As in `reduced.simulate`.
-    semidiagonals : ndarray, shape (n_R,)
-        Sizes R [m].
-    intensities : ndarray, shape (n_I,)
-        Peak of the horizontal resultant over g tan(alpha) [-]; 1 is the threshold of uplift in three
-        dimensions without vertical motion.
-    peak_tilt : mapping
-        For each of `SERIES` an ndarray, shape (n_R, n_I) [rad]: 0 without uplift, pi/2 if overturned,
-        NaN if the run failed.
-    lowest : mapping
-        For each of `SERIES` an ndarray, shape (n_R,): the lowest intensity found to overturn [-]; NaN
-        where none was found.
-    searched_from : mapping
-        For each of `SERIES` the intensity at which it uplifts [-], from which `lowest` was searched: up to
-        where something overturns, or to the last of the grid. inf where it uplifts at none.
-    search_step : float
-        Largest step of that search [-]: see `search_lowest`. A window of overturning that is narrower may
-        lie below `lowest`.
-    """
-
-    tan_alpha: float
-    motion: GroundMotion
-    gravity: float
-    model: str
-    rest_tilt: float
-    semidiagonals: Array
-    intensities: Array
-    peak_tilt: Mapping[str, Array]
-    lowest: Mapping[str, Array]
-    searched_from: Mapping[str, float]
-    search_step: float
-
-    @property
-    def alpha(self) -> float:
-        """Slenderness [rad]."""
-        return math.atan(self.tan_alpha)
-
-    @property
-    def scales(self) -> Array:
-        """Factor on the record for each intensity (n_I,) [-]."""
-        return self.intensities * intensity_unit(self.tan_alpha, self.motion, self.gravity)
-
-    def component_share(self, series: str) -> float:
-        """Peak of what drives a series over the peak of the horizontal resultant [-]."""
-        if series == SPATIAL:
-            return 1.0
-        column = self.motion.acceleration[:, SERIES.index(series) - 1]
-        return float(np.abs(column).max()) / self.motion.peak
-
-    def overturned(self, series: str) -> NDArray[np.bool_]:
-        """Whether each cell overturns (n_R, n_I); False where the run failed."""
-        return overturned(self.peak_tilt[series])
-
-    def failed(self) -> NDArray[np.bool_]:
-        """Whether any run of a cell failed (n_R, n_I): such cells are left out of every share."""
-        tilts = np.stack([self.peak_tilt[series] for series in SERIES])
-        return np.asarray(np.isnan(tilts).any(axis=0), dtype=np.bool_)
-
-    def to_frame(self) -> pd.DataFrame:
-        """Return one row for each cell and series.
-
-        Columns: series, semidiagonal [m], intensity [-], scale [-], peak_acceleration [m/s^2] (of what
-        drives the series), peak_tilt [rad], peak_tilt_over_alpha [-], overturned.
-        """
-        import pandas as pd
-
-        sizes, intensities = np.meshgrid(self.semidiagonals, self.intensities, indexing="ij")
-        _, scales = np.meshgrid(self.semidiagonals, self.scales, indexing="ij")
-        tables = [
-            pd.DataFrame(
-                {
-                    "series": series,
-                    "semidiagonal": sizes.ravel(),
-                    "intensity": intensities.ravel(),
-                    "scale": scales.ravel(),
-                    "peak_acceleration": self.component_share(series) * self.motion.peak * scales.ravel(),
-                    "peak_tilt": self.peak_tilt[series].ravel(),
-                    "peak_tilt_over_alpha": self.peak_tilt[series].ravel() / self.alpha,
-                    "overturned": self.overturned(series).ravel(),
-                }
-            )
-            for series in SERIES
-        ]
-        return pd.concat(tables, ignore_index=True)
-
-    def lowest_frame(self) -> pd.DataFrame:
-        """Return the lowest intensities found to overturn, one row for each size and series.
-
-        Columns: series, semidiagonal [m], intensity [-], peak_acceleration [m/s^2] (of what drives the
-        series), on_grid [-], the lowest intensity of the grid that overturns, each NaN where nothing does;
-        searched_from and search_step [-].
-        """
-        import pandas as pd
-
-        tables = []
-        for series in SERIES:
-            lowest = self.lowest[series]
-            acceleration = lowest * self.gravity * self.tan_alpha * self.component_share(series)
-            tables.append(
-                pd.DataFrame(
-                    {
-                        "series": series,
-                        "semidiagonal": self.semidiagonals,
-                        "intensity": lowest,
-                        "peak_acceleration": acceleration,
-                        "on_grid": lowest_on_grid(self.intensities, self.peak_tilt[series]),
-                        "searched_from": self.searched_from[series],
-                        "search_step": self.search_step,
-                    }
-                )
-            )
-        return pd.concat(tables, ignore_index=True)
+SUPPORTS = ("recess", "flat")
 
 
 def overturning_spectrum(
@@ -166,7 +29,7 @@ def overturning_spectrum(
     *,
     semidiagonals: ArrayLike,
     intensities: ArrayLike,
-    model: str = "recess",
+    support: str = "recess",
     rtol: float = RTOL,
     rest_tilt: float = reduced.REST_TILT,
     gravity: float = 9.81,
@@ -185,16 +48,16 @@ def overturning_spectrum(
         Sizes R, increasing [m].
     intensities : array_like, shape (n_I,)
         Peak of the horizontal resultant over g tan(alpha), increasing [-].
-    model : {"recess", "flat"}, optional
-        The model in three dimensions.
+    support : {"recess", "flat"}, optional
+        Of the model in three dimensions.
     rtol, rest_tilt, gravity
         As in `reduced.simulate`.
     search_step : float, optional
-        Largest step of the search for the lowest overturning intensity [-].
+        Finest step of the search for the lowest overturning intensity [-]; see `search_lowest`.
     workers : int, optional
-        Number of threads; default: that of the cores. It does not influence the result.
+        Number of threads. It does not influence the result.
     progress : callable, optional
-        Called with the series at work and the fraction of it that is done.
+        Told of the start and the end of each series.
 
     Returns
     -------
@@ -215,69 +78,52 @@ def overturning_spectrum(
     [[False, True], [False, False]]
     """
     sizes, levels = _axis("semidiagonals", semidiagonals), _axis("intensities", intensities)
-    if model not in SPATIAL_MODELS:
-        raise ValueError(f"model must be one of {', '.join(SPATIAL_MODELS)}, got {model!r}")
+    if support not in SUPPORTS:
+        raise ValueError(f"support must be one of {', '.join(SUPPORTS)}, got {support!r}")
     if not 0.0 < search_step < math.inf:
         raise ValueError(f"search_step must be positive and finite, got {search_step!r}")
     unit = intensity_unit(tan_alpha, motion, gravity)
-    peaks: dict[str, Array] = {}
-    lowest: dict[str, Array] = {}
-    searched_from: dict[str, float] = {}
-    for series in SERIES:
-        run: Callable[..., Array] = partial(
-            _run,
+    peaks, lowest, below, start = {}, {}, {}, {}
+    stages = Stages(progress, len(SERIES))
+    for index, name in enumerate(SERIES):
+        start[name] = uplift_of_series(name, motion, tan_alpha, gravity) / unit
+        run = partial(
+            reduced.peak_tilts,
             tan_alpha=tan_alpha,
-            motion=motion,
+            motion=motion.scaled(unit),
             rtol=rtol,
             rest_tilt=rest_tilt,
             gravity=gravity,
-            **series_options(series, model),
+            **series_options(name, support),
         )
-        grid_done, search_done = _parts(series, progress)
-        peaks[series] = run(sizes, unit * levels, workers=workers, progress=grid_done)
-        uplift = uplift_of_series(series, motion, tan_alpha, gravity)
-        searched_from[series] = uplift / unit
-        lowest[series] = lowest_intensities(
-            sizes,
-            unit * levels,
-            peaks[series],
-            partial(run, workers=1),
-            start=uplift,
-            step=unit * search_step,
-            alpha=math.atan(tan_alpha),
-            workers=workers,
-            progress=search_done,
+        search = partial(
+            search_lowest, levels, start=start[name], step=search_step, alpha=math.atan(tan_alpha)
         )
-        lowest[series] /= unit
+        with stages.stage(TITLES[name]):
+            peaks[name] = run(sizes, scales=levels, workers=workers)
+            at = partial(_at_level, run, sizes)
+            found = run_searches([search(known) for known in peaks[name]], at, workers=workers)
+            probes = [probe_below(start[name], levels[-1], each, (index, i)) for i, each in enumerate(found)]
+            probed = np.array(run_searches(probes, at, workers=workers))
+        lowest[name], below[name] = np.fmin(found, probed[:, 0]), probed[:, 1]
     return OverturningSpectrum(
         tan_alpha=tan_alpha,
         motion=motion,
         gravity=gravity,
-        model=model,
+        support=support,
         rest_tilt=rest_tilt,
         semidiagonals=sizes,
         intensities=levels,
         peak_tilt=peaks,
         lowest=lowest,
-        searched_from=searched_from,
+        below=below,
+        searched_from=start,
         search_step=search_step,
     )
 
 
-def _run(
-    semidiagonals: Array, scales: Array, *, tan_alpha: float, motion: GroundMotion, **options: Any
-) -> Array:
-    return reduced.peak_tilts(semidiagonals, tan_alpha, motion, scales, **options)
-
-
-def _parts(series: str, progress: ProgressCallback | None) -> tuple[Progress | None, Progress | None]:
-    """Return what tells of the grid, and of the search after it, as parts of one series."""
-    if progress is None:
-        return None, None
-    return (
-        lambda done: progress(series, _GRID_SHARE * done),
-        lambda done: progress(series, _GRID_SHARE + (1.0 - _GRID_SHARE) * done),
-    )
+def _at_level(run: Callable[..., Array], sizes: Array, group: list[int], level: float) -> Array:
+    return run(sizes[group], scales=[level], workers=1)[:, 0]
 
 
 def _axis(name: str, values: ArrayLike) -> Array:

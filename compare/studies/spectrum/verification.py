@@ -12,8 +12,8 @@ from rockwobble import reduced
 from rockwobble.models import Case, Cylinder
 
 from ...metrics.tilt import overturned
+from .result import OverturningSpectrum
 from .series import SERIES, series_options
-from .study import OverturningSpectrum
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -23,11 +23,12 @@ CHECK_RTOL = 1e-9
 # matter of chance and says nothing of accuracy.
 NUDGE = 1e-9
 AGREEMENT = 0.02  # of the peak tilt
+CELLS = 60  # enough to find one wrong cell in twenty almost surely, in half a second
 
 
 def check_cells(
     spectrum: OverturningSpectrum,
-    count: int,
+    count: int = CELLS,
     *,
     series: Sequence[str] = SERIES,
     nudge: float = NUDGE,
@@ -38,7 +39,7 @@ def check_cells(
     Parameters
     ----------
     spectrum : OverturningSpectrum
-    count : int
+    count : int, optional
         Number of cells, drawn without repetition; at most those there are.
     series : sequence of str, optional
         From which to draw.
@@ -128,7 +129,7 @@ def _single(spectrum: OverturningSpectrum, series: str, i: int, scale: float) ->
         rtol=CHECK_RTOL,
         rest_tilt=spectrum.rest_tilt,
         sample_step=spectrum.motion.duration,
-        **series_options(series, spectrum.model),
+        **series_options(series, spectrum.support),
     )
     return run.peak_tilt
 

@@ -12,8 +12,7 @@ from rockwobble.models.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
 from ...runs.choice import require_runnable, run_labels
-from ...runs.execution import Job, run_job
-from ...runs.run_store import job_fingerprint, makers_of
+from ...runs.execution import Job, job_fingerprint, makers_of, run_job
 from ...storage.fingerprint import fingerprint
 
 # An engine's run takes seconds, a reduced one milliseconds.

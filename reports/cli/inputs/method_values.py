@@ -26,6 +26,22 @@ def time_step(text: str) -> float | Literal["auto"]:
         raise typer.BadParameter(f'must be a number [s] or "auto", got {text!r}') from None
 
 
+def restitution(text: str) -> float | Literal["momentum"]:
+    """Return a coefficient of restitution, or "momentum".
+
+    Raises
+    ------
+    BadParameter
+        If the text is neither.
+    """
+    if text == "momentum":
+        return "momentum"
+    try:
+        return float(text)
+    except ValueError:
+        raise typer.BadParameter(f'must be a number or "momentum", got {text!r}') from None
+
+
 def settings(given: Sequence[str] | None) -> dict[str, Any]:
     """Return settings from texts of the form name=value: a whole number, a number, or the text itself.
 

@@ -13,14 +13,51 @@ import typer
 from .method_values import time_step
 
 _BODY, _GROUND, _RELEASE, _METHOD = "Cylinder", "Ground motion", "Release", "Method"
-_FOREIGN = "Trajectory of a shake table or another code"
+_EXTERNAL = "Trajectory of a shake table or another code"
 
 Semidiagonal = Annotated[
-    float, typer.Option("--semidiagonal", help="R = sqrt(b^2 + h^2), in m.", rich_help_panel=_BODY)
+    float | None,
+    typer.Option("--semidiagonal", help="R = sqrt(b^2 + h^2), in m. Default: 6.", rich_help_panel=_BODY),
 ]
-TanAlpha = Annotated[
+TAN_ALPHA = typer.Option(
+    "--tan-alpha", help="Slenderness b/h, radius over half the height.", rich_help_panel=_BODY
+)
+TanAlpha = Annotated[float, TAN_ALPHA]
+Diameter = Annotated[
+    float | None,
+    typer.Option(
+        "--diameter", help="2b, in m; with --height in place of the two above.", rich_help_panel=_BODY
+    ),
+]
+Height = Annotated[float | None, typer.Option("--height", help="2h, in m.", rich_help_panel=_BODY)]
+MassCentreHeight = Annotated[
+    float | None,
+    typer.Option(
+        "--mass-centre-height",
+        help="Of the mass centre above the base, in m; with --diameter and --height. Default: half of that.",
+        rich_help_panel=_BODY,
+    ),
+]
+TransverseInertia = Annotated[
+    float | None,
+    typer.Option(
+        "--transverse-inertia",
+        help="I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.",
+        rich_help_panel=_BODY,
+    ),
+]
+AxialInertia = Annotated[
+    float | None, typer.Option("--axial-inertia", help="I2/m about the axis, in m2.", rich_help_panel=_BODY)
+]
+Gravity = Annotated[float, typer.Option("--gravity", help="g, in m/s2.", rich_help_panel=_GROUND)]
+Friction = Annotated[
     float,
-    typer.Option("--tan-alpha", help="Slenderness b/h, radius over half the height.", rich_help_panel=_BODY),
+    typer.Option(
+        "--friction",
+        help="Coefficient of cylinder and ground. The reduced models assume that it suffices and say where "
+        "it would not.",
+        rich_help_panel=_GROUND,
+    ),
 ]
 RecordX = Annotated[
     Path | None,
@@ -92,13 +129,27 @@ TimeStep = Annotated[
         rich_help_panel=_METHOD,
     ),
 ]
+Engine = Annotated[
+    str | None,
+    typer.Option(
+        "--engine", help="mujoco, pybullet or exudyn. Default: the reduced model.", rich_help_panel=_METHOD
+    ),
+]
+Support = Annotated[
+    str,
+    typer.Option(
+        "--support",
+        help="recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only).",
+        rich_help_panel=_METHOD,
+    ),
+]
 Settings = Annotated[
     list[str] | None,
     typer.Option(
         "--set",
         metavar="NAME=VALUE",
-        help="Setting of the engines or of the ring, such as ring_clearance=0.01 or integrator=discrete, "
-        "for each run that has one of that name; may be repeated.",
+        help="Setting of the method, such as ring_clearance=0.01, integrator=discrete or rtol=1e-10, for "
+        "each run that has one of that name; may be repeated.",
         rich_help_panel=_METHOD,
     ),
 ]
@@ -116,7 +167,7 @@ Trajectories = Annotated[
         "--trajectory",
         help="CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a "
         "shake table or another code. What it does not hold is not compared; may be repeated.",
-        rich_help_panel=_FOREIGN,
+        rich_help_panel=_EXTERNAL,
     ),
 ]
 TrajectoryAngles = Annotated[
@@ -124,7 +175,7 @@ TrajectoryAngles = Annotated[
     typer.Option(
         "--trajectory-angles",
         help="deg or rad, where its header does not say.",
-        rich_help_panel=_FOREIGN,
+        rich_help_panel=_EXTERNAL,
     ),
 ]
 TrajectoryOffset = Annotated[
@@ -132,7 +183,7 @@ TrajectoryOffset = Annotated[
     typer.Option(
         "--trajectory-offset",
         help="Added to its times, in s, so that 0 is the start of the run.",
-        rich_help_panel=_FOREIGN,
+        rich_help_panel=_EXTERNAL,
     ),
 ]
 TrajectoryNoise = Annotated[
@@ -141,7 +192,7 @@ TrajectoryNoise = Annotated[
         "--trajectory-noise-deg",
         help="Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least "
         "1e-4 alpha.",
-        rich_help_panel=_FOREIGN,
+        rich_help_panel=_EXTERNAL,
     ),
 ]
 Budget = Annotated[

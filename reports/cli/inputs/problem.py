@@ -1,72 +1,176 @@
-"""From the options of a command to a case."""
+"""The options that state a problem, the same for every command, and the case that they make."""
 
 from __future__ import annotations
 
+import inspect
 import math
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from functools import wraps
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+
+import typer
+
+from . import options
 
 if TYPE_CHECKING:
-    from rockwobble.models import Case, GroundMotion
+    from rockwobble.models import Case, Cylinder, GroundMotion
 
 # length of a free response where the user does not say [s]
 FREE_DURATION = 10.0
+SEMIDIAGONAL, TAN_ALPHA = 6.0, 0.2  # [m], [-]
 
 
-def case_from_options(
-    *,
-    semidiagonal: float,
-    tan_alpha: float,
-    record_x: Path | None = None,
-    record_y: Path | None = None,
-    record_z: Path | None = None,
-    units: str | None = None,
-    scale: float = 1.0,
-    release_tilt_deg: float | None = None,
-    rolling_rate: float = 0.0,
-    duration: float | None = None,
-) -> Case:
-    """Return the case that the common options state.
+@dataclass(frozen=True, kw_only=True)
+class Problem:
+    """The options that state a problem."""
+
+    semidiagonal: options.Semidiagonal = None
+    tan_alpha: Annotated[float | None, options.TAN_ALPHA] = None
+    diameter: options.Diameter = None
+    height: options.Height = None
+    mass_centre_height: options.MassCentreHeight = None
+    transverse_inertia: options.TransverseInertia = None
+    axial_inertia: options.AxialInertia = None
+    record_x: options.RecordX = None
+    record_y: options.RecordY = None
+    record_z: options.RecordZ = None
+    units: options.Units = None
+    scale: options.Scale = 1.0
+    gravity: options.Gravity = 9.81
+    friction: options.Friction = 1.0
+    release_tilt_deg: options.ReleaseTilt = None
+    rolling_rate: options.RollingRate = 0.0
+    duration: options.Duration = None
+
+    def case(self) -> Case:
+        """Return the case that they state.
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range, or two do not go together.
+        """
+        from rockwobble.models import Case, InitialState
+
+        released = self.release_tilt_deg is not None
+        if self.rolling_rate and not released:
+            raise ValueError("--rolling-rate needs a release, give --release-tilt-deg [deg] as well")
+        cylinder, motion = self.cylinder(), self._motion(still=released)
+        initial = None
+        if self.release_tilt_deg is not None:
+            initial = InitialState(tilt=math.radians(self.release_tilt_deg), rolling_rate=self.rolling_rate)
+        duration = FREE_DURATION if motion is None and self.duration is None else self.duration
+        scaled = f" × {self.scale:g}" if self.scale != 1.0 else ""
+        name = "free response" if motion is None else motion.name + scaled
+        return Case(
+            cylinder,
+            motion,
+            initial=initial,
+            duration=duration,
+            gravity=self.gravity,
+            friction=self.friction,
+            name=name,
+        )
+
+    def cylinder(self) -> Cylinder:
+        """Return the cylinder, by semidiagonal and slenderness or by diameter and height."""
+        from rockwobble.models import Cylinder
+
+        inertias = {
+            "transverse_inertia": self.transverse_inertia,
+            "axial_inertia": self.axial_inertia,
+        }
+        if self.diameter is not None and self.height is not None:
+            if self.semidiagonal is not None or self.tan_alpha is not None:
+                raise ValueError("--diameter and --height stand in place of --semidiagonal and --tan-alpha")
+            if not self.diameter > 0.0:
+                raise ValueError(f"--diameter must be positive [m], got {self.diameter:g}")
+            return Cylinder.from_dimensions(
+                base_radius=0.5 * self.diameter,
+                height=self.height,
+                mass_centre_height=self.mass_centre_height,
+                **inertias,
+            )
+        if self.diameter is not None or self.height is not None:
+            raise ValueError("--diameter and --height go together, got one without the other")
+        if self.mass_centre_height is not None:
+            raise ValueError("--mass-centre-height goes with --diameter and --height")
+        return Cylinder(
+            semidiagonal=SEMIDIAGONAL if self.semidiagonal is None else self.semidiagonal,
+            tan_alpha=TAN_ALPHA if self.tan_alpha is None else self.tan_alpha,
+            **inertias,
+        )
+
+    def _motion(self, *, still: bool) -> GroundMotion | None:
+        from rockwobble.models import el_centro_1940, read_record
+
+        x, y, z, scale = self.record_x, self.record_y, self.record_z, self.scale
+        if not (math.isfinite(scale) and scale > 0.0):
+            raise ValueError(f"--scale must be positive and finite, got {scale:g}")
+        if x is None and y is None:
+            if z is not None or self.units is not None:
+                raise ValueError(
+                    "--record-z and --units belong to a record, give --record-x and --record-y as well"
+                )
+            if not still:
+                return el_centro_1940().scaled(scale)
+            if scale != 1.0:
+                raise ValueError("--scale belongs to a record, give --record-x and --record-y as well")
+            return None
+        if x is None or y is None:
+            given, missing = ("--record-y", "--record-x") if x is None else ("--record-x", "--record-y")
+            raise ValueError(f"both horizontal components are needed, got {given} without {missing}")
+        return read_record(x, y, z, units=self.units).scaled(scale)
+
+
+def states_problem(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command the options of a problem in the place of its parameter `problem`."""
+    types, own = get_type_hints(Problem, include_extras=True), get_type_hints(command, include_extras=True)
+    names = [field.name for field in fields(Problem)]
+    parameters = []
+    for name, parameter in inspect.signature(command).parameters.items():
+        if name == "problem":
+            parameters += [
+                inspect.Parameter(
+                    field.name, parameter.KEYWORD_ONLY, default=field.default, annotation=types[field.name]
+                )
+                for field in fields(Problem)
+            ]
+        else:
+            parameters.append(parameter.replace(kind=parameter.KEYWORD_ONLY, annotation=own[name]))
+
+    @wraps(command)
+    def with_options(**given: Any) -> None:
+        command(problem=Problem(**{name: given.pop(name) for name in names}), **given)
+
+    with_options.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # typer reads it
+    with_options.__annotations__ = {each.name: each.annotation for each in parameters}
+    return with_options
+
+
+def given_options(context: typer.Context) -> list[str]:
+    """Return the options that the user gave, by the names of their parameters."""
+    sources = {name: context.get_parameter_source(name) for name in context.params}
+    return [name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"]
+
+
+def refuse(context: typer.Context, names: set[str], why: str) -> None:
+    """Refuse options that the user gave and that would be ignored.
 
     Raises
     ------
     ValueError
-        If an option is out of range, or two do not go together.
+        Naming the first of them.
     """
-    from rockwobble.models import Case, Cylinder, InitialState
-
-    cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
-    released = release_tilt_deg is not None
-    if rolling_rate and not released:
-        raise ValueError("--rolling-rate needs a release, give --release-tilt-deg [deg] as well")
-    motion = _motion(record_x, record_y, record_z, units, scale, still=released)
-    initial = None
-    if release_tilt_deg is not None:
-        initial = InitialState(tilt=math.radians(release_tilt_deg), rolling_rate=rolling_rate)
-    if motion is None and duration is None:
-        duration = FREE_DURATION
-    name = "free response" if motion is None else motion.name + (f" × {scale:g}" if scale != 1.0 else "")
-    return Case(cylinder, motion, initial=initial, duration=duration, name=name)
+    for name in given_options(context):
+        if name in names:
+            raise ValueError(f"--{name.replace('_', '-')} {why}")
 
 
-def _motion(
-    x: Path | None, y: Path | None, z: Path | None, units: str | None, scale: float, *, still: bool
-) -> GroundMotion | None:
-    from rockwobble.models import el_centro_1940, read_record
+PROBLEM = frozenset(field.name for field in fields(Problem))
 
-    if not (math.isfinite(scale) and scale > 0.0):
-        raise ValueError(f"--scale must be positive and finite, got {scale:g}")
-    if x is None and y is None:
-        if z is not None or units is not None:
-            raise ValueError(
-                "--record-z and --units belong to a record, give --record-x and --record-y as well"
-            )
-        if still:
-            if scale != 1.0:
-                raise ValueError("--scale belongs to a record, give --record-x and --record-y as well")
-            return None
-        return el_centro_1940().scaled(scale)
-    if x is None or y is None:
-        given, missing = ("--record-y", "--record-x") if x is None else ("--record-x", "--record-y")
-        raise ValueError(f"both horizontal components are needed, got {given} without {missing}")
-    return read_record(x, y, z, units=units).scaled(scale)
+
+def case_from_options(**given: Any) -> Case:
+    """Return the case that options state, see `Problem.case`."""
+    return Problem(**given).case()

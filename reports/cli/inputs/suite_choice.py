@@ -2,46 +2,28 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
+import typer
+
 from ...pages.case_words import group_of
+from .estimate import time_needed
+from .problem import PROBLEM, refuse
 
 if TYPE_CHECKING:
     from rockwobble.models import Case, Run, Suite
 
-# options that state a problem, which a suite does itself
-_PROBLEM = (
-    "semidiagonal",
-    "tan_alpha",
-    "record_x",
-    "record_y",
-    "record_z",
-    "units",
-    "scale",
-    "release_tilt_deg",
-    "rolling_rate",
-    "duration",
-)
-# computing time of one step [s], and the default step of a cylinder of 6 m [s]: good enough to say how long
-_STEP_COSTS = {"mujoco": 1.2e-5, "pybullet": 3.6e-5}
-_DEFAULT_STEP = 1e-4
 
-
-def refuse_problem_options(context: Any, suite: str) -> None:
-    """Refuse options that contradict the file.
+def refuse_problem_options(context: typer.Context, suite: str) -> None:
+    """Refuse options that contradict the file of a suite.
 
     Raises
     ------
     ValueError
         If the user gave an option that states a problem.
     """
-    for name in _PROBLEM:
-        source = context.get_parameter_source(name)
-        if source is not None and source.name == "COMMANDLINE":
-            option = "--" + name.replace("_", "-")
-            raise ValueError(f"{option} does not go with a suite, got {suite}: the file states the problems")
+    refuse(context, set(PROBLEM), f"does not go with a suite, got {suite}: the file states the problems")
 
 
 def chosen_runs(
@@ -103,22 +85,4 @@ def describe_suite(name: str, cases: Sequence[Case], runs: Sequence[Run]) -> Ite
     counted = (f"{group} ({count})" if count > 1 else group for group, count in groups.items())
     yield f"Cases: {', '.join(counted)}"
     yield f"Runs: {', '.join(run_labels(runs))}"
-    yield f"Computing time: {_time_in_words(_computing_time(cases, runs))}, shared by the cores"
-
-
-def _computing_time(cases: Sequence[Case], runs: Sequence[Run]) -> float:
-    """Rough time on one core [s]."""
-    total = 0.0
-    for case in cases:
-        default = _DEFAULT_STEP * math.sqrt(case.cylinder.semidiagonal / 6.0 * 9.81 / case.gravity)
-        for run in runs:
-            step = run.time_step if isinstance(run.time_step, float) else default
-            total += case.length / step * _STEP_COSTS.get(run.engine, _STEP_COSTS["pybullet"])
-    return total
-
-
-def _time_in_words(seconds: float) -> str:
-    if seconds < 90.0:
-        return f"about {max(10.0, round(seconds, -1)):.0f} s"
-    minutes = seconds / 60.0
-    return f"about {minutes:.0f} min" if minutes < 90.0 else f"about {minutes / 60.0:.0f} h"
+    yield from time_needed(cases, runs, always=True)

@@ -1,167 +1,176 @@
-"""What a comparison found, in sentences made from its numbers."""
+"""What a comparison found: what is to be said of each row of the summary, and the sentences on it."""
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
-from rockwobble.compare import own_model
+from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
-from .external_words import EXTERNAL, external_sentences, mistake_words, scope, within
+from ...figures.comparison.view import CaseView, own_rows, rows_of
+from ..diagnostic_words import counted, failure, sentences
+from ..words import sentence
+from .external import external_sentences, mistakes, scope, within
 
-PEAK_WORTH_A_WORD = 0.01  # difference of peak tilts, relative
-PLACES = {
-    "recess": "In an ideal recess (guided)",
-    "flat": "On open ground (free)",
-    "ring": "In a recess of walls (ring)",
-    "external": "Brought from elsewhere (external)",
-}
-TOUCHED = "touched a wall"  # in the message of a run
-_SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+if TYPE_CHECKING:
+    import pandas as pd
+
+WORDS = "findings.md.j2"
 
 
-def finding(row: Any, length: float) -> str:
-    """Return one or two sentences on a row of the summary: how long it agrees, and why it parts.
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Finding:
+    """What is to be said of one row of the summary.
 
-    Parameters
+    Attributes
     ----------
-    row : Series
-        Row of `Comparison.summary`.
-    length : float
-        Length of the run [s].
+    row : namedtuple
+    failed : str
+        Why there is nothing to compare; empty where there is.
+    uplifted, reference_uplifted : bool
+    reason : str
+        Why they diverge: "support", "walls", "pass" (one that contact does not resolve), "near passes",
+        "mistake" (of an external trajectory), or "" (no pass: not chance).
+    bound : str
+        What agreement means, in words.
+    end : float
+        Up to when traces of different length are compared [s]; NaN where it is to the end.
     """
-    run = f"{row.engine} {row.support}"
-    model = f"the {row.reference} model"
-    if row.outcome == "failed" or row.reference_outcome == "failed":
-        return f"{run} against {model}: {row.message}."
-    if "neither uplifted" in row.message:
-        return f"{run} and {model} both stay at rest: this excitation does not uplift the cylinder."
-    sentences = f"{_agreement(row, run, model, length)} {_peaks(row)}"
-    return f"{sentences} {external_sentences(row)}".strip() if row.support == EXTERNAL else sentences
+
+    row: Any
+    failed: str
+    uplifted: bool
+    reference_uplifted: bool
+    reason: str
+    bound: str
+    end: float
+
+    @property
+    def external(self) -> bool:
+        """Whether it is of an external trajectory."""
+        return bool(self.row.support == EXTERNAL)
+
+    @property
+    def peak_share(self) -> float:
+        """Difference of the peak tilts over that of the reference."""
+        ours, theirs = self.row.peak_tilt, self.row.reference_peak_tilt
+        return abs(ours - theirs) / theirs if theirs > 0.0 else math.inf
 
 
-def _agreement(row: Any, run: str, model: str, length: float) -> str:
-    passes = f"{row.agreed_passes} pass{'' if row.agreed_passes == 1 else 'es'} by upright"
-    if not row.diverged:
-        return (
-            f"{run} stays within {within(row)} of {model} for the whole run "
-            f"({row.agreement_time:.1f} s, {passes})."
+def findings(view: CaseView) -> Iterator[Finding]:
+    """Yield what is to be said of each row of a case."""
+    traces, length = view.traces, view.case.length
+    for row in rows_of(view.rows):
+        lost = [
+            f"{label} failed: {failure(view.facts.get(label, ()))}"
+            for label, outcome in ((row.run, row.outcome), (row.reference, row.reference_outcome))
+            if outcome == "failed"
+        ]
+        pair = [traces[label] for label in (row.run, row.reference) if label in traces]
+        moved = [math.isfinite(trace.uplift_time) for trace in pair] if len(pair) == 2 else [True, True]
+        end = min((float(trace.time[-1]) for trace in pair), default=length)
+        yield Finding(
+            row=row,
+            failed="; ".join(lost),
+            uplifted=moved[0],
+            reference_uplifted=moved[1],
+            reason=reason(
+                row, length, touched=any(fact.code == "wall_contact" for fact in view.facts[row.run])
+            ),
+            bound=within(row) if row.support == EXTERNAL else "1 % of alpha",
+            end=end if end < length * (1.0 - 1e-9) else math.nan,
         )
-    return (
-        f"{run} stays within {within(row)} of {model} for {seconds(row.agreement_time)} from uplift or "
-        f"release ({passes}), then they part: {_reason(row, length)}."
-    )
 
 
-def _reason(row: Any, length: float) -> str:
+def reason(row: Any, length: float, *, touched: bool = False) -> str:
+    """Return why a run diverges from its reference, see `Finding`; `touched` says whether it met a wall."""
+    against_recess = row.reference_support == "recess"
+    if row.support == "flat" and against_recess:
+        return "support"
+    if row.support == "ring" and row.reference_support != "ring" and (against_recess or touched):
+        return "walls"
+    if row.support == EXTERNAL and mistakes(row):
+        return "mistake"
     predicted = row.predicted_agreement_time
-    if row.support == "flat" and row.reference == "recess":
-        return (
-            "on open ground the cylinder may roll out of its place, which a recess forbids; this is a "
-            "difference of support, not of accuracy"
+    by_pass = row.predicted_by == "pass" and row.support != EXTERNAL and predicted < length
+    if by_pass and row.agreement_time >= predicted:
+        return "pass"
+    return "near passes" if math.isfinite(row.closest_pass) else ""
+
+
+def finding(found: Finding) -> str:
+    """Return the sentences on one row: how long it agrees, and why it diverges."""
+    more = external_sentences(found.row) if found.external and not found.failed else ""
+    return f"{sentence(WORDS, 'finding', found)} {more}".strip()
+
+
+def finding_sentences(view: CaseView) -> list[str]:
+    """Return one or two sentences on each row of a case, and what limits each run by its own account."""
+    said = [finding(found) for found in findings(view)]
+    # of a run that failed its finding says why
+    sound = [row for row in rows_of(view.rows) if "failed" not in (row.outcome, row.reference_outcome)]
+    runs = [run for run in dict.fromkeys(row.run for row in sound) if view.facts[run]]
+    return [*said, *(sentence(WORDS, "remark", run, sentences(view.facts[run])) for run in runs)]
+
+
+def counted_remarks(summary: pd.DataFrame) -> list[str]:
+    """Return one sentence on how many runs of many cases have which diagnostic; none if no run has any."""
+    runs = summary[(summary["outcome"] != "failed") & (summary["reference_outcome"] != "failed")]
+    runs = runs.drop_duplicates(["case", "run"])
+    counts = counted(str(codes).split(", ") for codes in runs["diagnostics"])
+    return [sentence(WORDS, "remarks", counts)] if counts else []
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Group:
+    """The runs of one support, held against their own model, for a headline."""
+
+    support: str
+    names: list[str]
+    references: list[str]
+    rows: int
+    bound: str
+    diverged: bool
+    shortest: float
+    longest: float
+    length: float
+    scope: str = ""
+
+
+def headline(rows: pd.DataFrame, length: float) -> str:
+    """Return what stands above the rows of a case: how long runs of each support follow their own model."""
+    rows = own_rows(rows[rows["outcome"] != "failed"])
+    parts, diverged = [], False
+    for support in rows["support"].unique():
+        of_support = rows[rows["support"] == support]
+        # external trajectories have little in common
+        single = support == EXTERNAL
+        groups = [[index] for index in of_support.index] if single else [list(of_support.index)]
+        parts += [sentence(WORDS, "followed", _group(of_support.loc[group], length)) for group in groups]
+        explained = [single and bool(mistakes(row)) for row in rows_of(of_support)]
+        diverged = diverged or any(
+            row.diverged and not known for row, known in zip(rows_of(of_support), explained, strict=True)
         )
-    if row.support == "ring" and (row.reference == "recess" or TOUCHED in row.message):
-        return (
-            "the walls of a ring hold the cylinder only where it has rolled out as far as their clearance, "
-            "and each touch takes energy, which neither model knows; this is a difference of support, not of "
-            "accuracy"
-        )
-    if row.support == EXTERNAL:
-        return _external_reason(row)
-    by_pass = getattr(row, "predicted_by", "pass") == "pass"
-    if by_pass and predicted < length and row.agreement_time >= predicted:
-        return (
-            f"at {seconds(predicted)} a pass comes closer to upright than the contact resolves "
-            f"({small(row.contact_resolution)} rad); what is left to chance there grows from then on"
-        )
-    if math.isfinite(row.closest_pass):
-        return (
-            f"the contact resolves every pass until then, the closest of which comes within "
-            f"{small(row.closest_pass)} alpha of upright; near passes amplify what small difference there is"
-        )
-    return "without a pass, so that it is an error of the method and not of chance"
-
-
-def _external_reason(row: Any) -> str:
-    if mistake_words(row):
-        return "see the likely mistake"
-    differs = "the body, its start, the ground motion or the method"
-    if math.isfinite(row.closest_pass):
-        return (
-            f"the closest pass until then comes within {small(row.closest_pass)} alpha of upright; near "
-            f"passes amplify what small difference there is in {differs}"
-        )
-    return f"without a pass, so that not chance but {differs} differs"
-
-
-def _peaks(row: Any) -> str:
-    ours, theirs = row.peak_tilt, row.reference_peak_tilt
-    if "only" in row.message and "overturned" in row.message:
-        said = [part for part in row.message.split("; ") if part.startswith(("only ", "compared up to "))]
-        return f"{said[0][0].upper()}{'; '.join(said)[1:]}."
-    if row.outcome == row.reference_outcome == "overturned":
-        return "Both overturn."
-    relative = abs(ours - theirs) / theirs if theirs > 0.0 else math.inf
-    if relative < PEAK_WORTH_A_WORD:
-        return f"Peak tilt is the same to {100.0 * relative:.1g} % ({ours:.3g} alpha)."
-    return f"Peak tilt is {ours:.3g} alpha against {theirs:.3g} alpha."
-
-
-def seconds(value: float) -> str:
-    """Return a time with as many digits as say something."""
-    return f"{value:.2f} s" if value < 1.0 else f"{value:.1f} s"
-
-
-def small(value: float) -> str:
-    """Return a positive number with one digit, as a power of ten where it is small."""
-    if value >= 1e-3 or value <= 0.0:
-        return f"{value:.1g}"
-    digit, exponent = f"{value:.0e}".split("e")
-    # spaces that do not break
-    return f"{digit}\u00a0×\u00a010{str(int(exponent)).translate(_SUPERSCRIPTS)}"
-
-
-def headline(summary: Any, length: float) -> str:
-    """Return what stands above everything: how long the runs of each support follow their own model."""
-    parts = []
-    diverged = False
-    for support in summary["support"].unique():
-        rows = summary[(summary["support"] == support) & (summary["outcome"] != "failed")]
-        own = rows[rows["reference"] == own_model(support)]
-        rows = own if len(own) else rows
-        if not len(rows):
-            continue
-        if support == EXTERNAL:
-            # each is something else
-            parts += [
-                f"{_followed(rows[rows.index == at], length)}{scope(row)}." for at, row in rows.iterrows()
-            ]
-            diverged = diverged or any(row.diverged and not mistake_words(row) for _, row in rows.iterrows())
-            continue
-        diverged = diverged or bool(rows["diverged"].any())
-        parts.append(f"{_followed(rows, length)}.")
     if not parts:
         return "No run could be compared."
-    if diverged:
-        parts.append("Once traces have diverged, compare distributions.")
-    return " ".join(parts)
+    return " ".join([*parts, *(["Once traces have diverged, compare distributions."] if diverged else [])])
 
 
-def _followed(rows: Any, length: float) -> str:
-    support = rows["support"].iloc[0]
-    models = " and ".join(rows["reference"].unique())
-    follow = "follow" if len(rows) > 1 else "follows"
-    engines = " and ".join(rows["engine"].unique())
-    bound = within(rows.iloc[0]) if support == EXTERNAL else "1 % of alpha"
-    return (
-        f"{PLACES.get(support, f'With support {support}')}, {engines} {follow} the {models} model within "
-        f"{bound} {_span(rows, length)}"
+def _group(rows: pd.DataFrame, length: float) -> Group:
+    first = next(iter(rows_of(rows)))
+    external = first.support == EXTERNAL
+    names = rows["engine"].where(rows["engine"] != "reduced", rows["run"].map(lambda run: f"the {run}"))
+    return Group(
+        support=str(first.support),
+        names=list(names.unique()),
+        references=list(rows["reference"].unique()),
+        rows=len(rows),
+        bound=within(first) if external else "1 % of alpha",
+        diverged=bool(rows["diverged"].any()),
+        shortest=float(rows["agreement_time"].min()),
+        longest=float(rows["agreement_time"].max()),
+        length=length,
+        scope=scope(first) if external else "",
     )
-
-
-def _span(rows: Any, length: float) -> str:
-    if not bool(rows["diverged"].any()):
-        return f"for the whole run ({length:.1f} s)"
-    shortest, longest = rows["agreement_time"].min(), rows["agreement_time"].max()
-    span = seconds(longest) if shortest == longest else f"{seconds(shortest)} to {seconds(longest)}"
-    return f"for {span} from uplift or release"

@@ -1,10 +1,13 @@
 // a stretch selected in one of the figures that share an axis is selected in all of them, and so is a point
-const linked = new Map();
-document.querySelectorAll(".plotly-graph-div").forEach((plot) => {
-  const link = plot.layout && plot.layout.meta && plot.layout.meta.link;
-  if (link) linked.set(link, [...(linked.get(link) || []), plot]);
-});
-linked.forEach((plots) => {
+function linkFigures(root) {
+  const linked = new Map();
+  root.querySelectorAll(".plotly-graph-div").forEach((plot) => {
+    const link = plot.layout && plot.layout.meta && plot.layout.meta.link;
+    if (link) linked.set(link, [...(linked.get(link) || []), plot]);
+  });
+  linked.forEach(linkPlots);
+}
+function linkPlots(plots) {
   let busy = false;
   const others = (plot) => plots.filter((other) => other !== plot);
   plots.forEach((plot) => {
@@ -22,10 +25,11 @@ linked.forEach((plots) => {
       Plotly.relayout(other, { shapes: pinned(other) });
     }));
   });
-});
+}
 function pinned(plot) {
   return (plot.layout.shapes || []).filter((shape) => shape.name !== "pin");
 }
 function pin(x) {
   return { name: "pin", type: "line", x0: x, x1: x, y0: 0, y1: 1, yref: "paper", line: { color: "#888", width: 1 } };
 }
+linkFigures(document);

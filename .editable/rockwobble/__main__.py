@@ -1,0 +1,5 @@
+"""`python -m rockwobble` is the command line."""
+
+from rockwobble.reports.cli.main import main
+
+main()

@@ -1,0 +1,146 @@
+"""Finished tasks in a folder of results, each found again by what it depends on."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import AbstractContextManager, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Generic, TypeVar
+
+from rockwobble.models import plain_json
+
+from ..storage.files import remove_leftovers, sole_writer, write_whole
+from ..storage.parquet_file import pack, read
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+T = TypeVar("T")
+R = TypeVar("R")
+
+CACHE = "finished"
+_PLAN = "tasks.json"  # there only until all tasks are done
+
+
+class Cache(Generic[T, R]):
+    """The folder finished/KIND in a folder of results: one file for each finished task.
+
+    A second run, after whatever ended the first, repeats none that is there.
+
+    Parameters
+    ----------
+    folder : Path
+        That of the files, which exists.
+    kind : str
+        Of the results.
+    name : callable
+        Returns the hash of all that the result of a task depends on: inputs, versions and code. What a task
+        is called is no part of it: renaming it repeats nothing.
+    pack, unpack : callable
+        A result as the bytes of a file, and back.
+    """
+
+    def __init__(
+        self,
+        folder: Path,
+        kind: str,
+        *,
+        name: Callable[[T], str],
+        pack: Callable[[T, R], bytes],
+        unpack: Callable[[T, Path], R],
+    ) -> None:
+        self._folder, self._kind = folder, kind
+        self._name, self._pack, self._unpack = name, pack, unpack
+        self._used: set[Path] = set()
+        self._expected = 0
+
+    def find(self, task: T) -> R | None:
+        """Return the result of a task if it is there."""
+        path = self._path(task)
+        return self._unpack(task, path) if path.exists() else None
+
+    def keep(self, task: T, result: R) -> None:
+        """Keep the result of a task.
+
+        Raises
+        ------
+        ValueError
+            If it cannot be written.
+        """
+        write_whole(self._path(task), self._pack(task, result))
+
+    def expect(self, count: int) -> None:
+        """Note how many tasks there will be, at least: what is finished can then be told from what is not."""
+        if count > self._expected:
+            self._expected = count
+            plan = {"kind": self._kind, "total": count}
+            write_whole(self._folder / _PLAN, plain_json.dumps(plan).encode())
+
+    def complete(self) -> None:
+        """Remove the results that nobody has asked for since this was opened."""
+        for path in set(self._folder.glob("*.parquet")) - self._used:
+            path.unlink()
+        (self._folder / _PLAN).unlink(missing_ok=True)
+
+    def _path(self, task: T) -> Path:
+        path = self._folder / f"{self._name(task)}.parquet"
+        self._used.add(path)
+        return path
+
+
+@contextmanager
+def open_cache(
+    folder: str | Path,
+    kind: str,
+    *,
+    name: Callable[[T], str],
+    pack: Callable[[T, R], bytes],
+    unpack: Callable[[T, Path], R],
+) -> Iterator[Cache[T, R]]:
+    """Open the finished tasks of one kind of results in `folder`; nobody else can meanwhile.
+
+    What was left half-written is removed. If the block ends well, so are the results that it did not ask
+    for; if it does not, all are kept. See `Cache` for the parameters.
+
+    Raises
+    ------
+    ValueError
+        If nothing can be written there, or another process has it open.
+    """
+    path = Path(folder) / CACHE / kind
+    with sole_writer(path):
+        remove_leftovers(path)
+        cache: Cache[T, R] = Cache(path, kind, name=name, pack=pack, unpack=unpack)
+        yield cache
+        cache.complete()
+
+
+def open_table_cache(
+    folder: str | Path, kind: str, name: Callable[[T], str]
+) -> AbstractContextManager[Cache[T, pd.DataFrame]]:
+    """Open the finished tasks whose results are tables; see `open_cache`."""
+
+    def packed(task: T, table: pd.DataFrame) -> bytes:
+        return pack(table, {"kind": f"task of {kind}", "task": task})
+
+    return open_cache(folder, kind, name=name, pack=packed, unpack=lambda _, path: read(path)[0])
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Unfinished:
+    """Tasks of a kind of results that has not come to its end: finished, and in all."""
+
+    kind: str
+    done: int
+    total: int
+
+
+def unfinished(folder: str | Path) -> list[Unfinished]:
+    """Return what in a folder of results has not come to its end."""
+    found = []
+    for path in sorted(Path(folder).glob(f"{CACHE}/*/{_PLAN}")):
+        plan = plain_json.loads(path.read_bytes())
+        done = len(list(path.parent.glob("*.parquet")))
+        found.append(Unfinished(kind=plan["kind"], done=min(done, plan["total"]), total=plan["total"]))
+    return found

@@ -1,0 +1,105 @@
+"""How far something long is, for whoever waits for it."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from typing import Literal
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Progress:
+    """How far tasks are.
+
+    Parameters
+    ----------
+    label : str
+        The task that has begun or ended.
+    state : {"started", "finished"}
+    done, total : int
+        Tasks finished, those found finished included, and in all.
+    found : int
+        Tasks found finished: they did not run.
+    share : float
+        Of the computing time of those that run, from 0 to 1, as far as it is known beforehand.
+    left : float
+        Seconds to go if the rest is as fast as what ran so far; NaN before anything has.
+    """
+
+    label: str
+    state: Literal["started", "finished"]
+    done: int
+    total: int
+    found: int = 0
+    share: float = 0.0
+    left: float = math.nan
+
+
+ProgressCallback = Callable[[Progress], None]
+
+
+class Clock:
+    """Tells a callback how far it is, from the costs of the tasks.
+
+    Parameters
+    ----------
+    tell : callable or None
+    costs : sequence of float
+        Of the tasks that run, in any unit.
+    found : int
+        Tasks found finished.
+    """
+
+    def __init__(self, tell: ProgressCallback | None, costs: list[float], found: int = 0) -> None:
+        self._tell = tell
+        self._costs = costs
+        self._whole = sum(costs)
+        self._found = self._done = found
+        self._spent = 0.0
+        self._begun = time.monotonic()
+
+    def __call__(self, state: Literal["started", "finished"], label: str, index: int = -1) -> None:
+        """Tell of the start or the end of the task of this index."""
+        if state == "finished":
+            self._done += 1
+            self._spent += self._costs[index]
+        share = self._spent / self._whole if self._whole > 0.0 else 0.0
+        left = (time.monotonic() - self._begun) * (1.0 / share - 1.0) if share > 0.0 else math.nan
+        if self._tell is not None:
+            self._tell(
+                Progress(
+                    label=label,
+                    state=state,
+                    done=self._done,
+                    total=self._found + len(self._costs),
+                    found=self._found,
+                    share=share,
+                    left=left,
+                )
+            )
+
+
+class Stages:
+    """Tells a callback of one stage after the other, each a with block.
+
+    Parameters
+    ----------
+    tell : callable or None
+    total : int
+        Number of stages.
+    """
+
+    def __init__(self, tell: ProgressCallback | None, total: int) -> None:
+        self._clock = Clock(tell, [1.0] * total)
+        self._done = 0
+
+    @contextmanager
+    def stage(self, label: str) -> Iterator[None]:
+        """Tell of the start and the end of what is in the block."""
+        self._clock("started", label)
+        yield
+        self._clock("finished", label, self._done)
+        self._done += 1

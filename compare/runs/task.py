@@ -1,0 +1,34 @@
+"""What becomes of a task, wherever it runs."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from dataclasses import dataclass
+from typing import Generic, TypeAlias, TypeVar
+
+R = TypeVar("R")
+
+
+@dataclass(frozen=True, slots=True)
+class Lost:
+    """What stands in the place of a result where the process of a task died, and its last words."""
+
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Started:
+    """A task, by its place among all, has begun."""
+
+    place: int
+
+
+@dataclass(frozen=True, slots=True)
+class Finished(Generic[R]):
+    """A task, by its place among all, has ended."""
+
+    place: int
+    result: R | Lost
+
+
+Events: TypeAlias = Generator[Started | Finished[R], None, None]

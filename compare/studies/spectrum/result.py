@@ -1,0 +1,223 @@
+"""What an overturning spectrum holds, and its tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import GroundMotion
+
+from ...metrics.tilt import overturned
+from ...storage.manifest import Results
+from .search import PROBES, lowest_on_grid
+from .series import SERIES, SPATIAL, intensity_unit
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+KIND = "overturning spectrum"
+_FACTS = ("tan_alpha", "gravity", "support", "rest_tilt", "searched_from", "search_step")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class OverturningSpectrum:
+    """Peak tilts of cylinders of one slenderness under one record, over size and intensity.
+
+    Attributes
+    ----------
+    tan_alpha : float
+        Slenderness b/h [-].
+    motion : GroundMotion
+        The record at its own scale.
+    gravity : float
+        [m/s^2]
+    support : str
+        Of the model in three dimensions, "recess" or "flat".
+    rest_tilt : float
+        As in `reduced.simulate`.
+    semidiagonals : ndarray, shape (n_R,)
+        Sizes R [m].
+    intensities : ndarray, shape (n_I,)
+        Peak of the horizontal resultant over g tan(alpha) [-]; 1 is the threshold of uplift in three
+        dimensions without vertical motion.
+    peak_tilt : mapping
+        For each of `SERIES` an ndarray, shape (n_R, n_I) [rad]: 0 without uplift, pi/2 if overturned,
+        NaN if the run failed.
+    lowest : mapping
+        For each of `SERIES` an ndarray, shape (n_R,): the lowest intensity found to overturn [-]; NaN
+        where none was found.
+    below : mapping
+        For each of `SERIES` an ndarray, shape (n_R,): how many of `PROBES` intensities, drawn at random
+        below what the search had found, overturned; then `lowest` is one of them.
+    searched_from : mapping
+        For each of `SERIES` the intensity at which it uplifts [-], from which `lowest` was searched: up to
+        where something overturns, or to the last of the grid. inf where it uplifts at none.
+    search_step : float
+        Finest step of that search [-].
+    """
+
+    tan_alpha: float
+    motion: GroundMotion
+    gravity: float
+    support: str
+    rest_tilt: float
+    semidiagonals: Array
+    intensities: Array
+    peak_tilt: Mapping[str, Array]
+    lowest: Mapping[str, Array]
+    below: Mapping[str, Array]
+    searched_from: Mapping[str, float]
+    search_step: float
+
+    @property
+    def alpha(self) -> float:
+        """Slenderness [rad]."""
+        return math.atan(self.tan_alpha)
+
+    @property
+    def scales(self) -> Array:
+        """Factor on the record for each intensity (n_I,) [-]."""
+        return self.intensities * intensity_unit(self.tan_alpha, self.motion, self.gravity)
+
+    def component_share(self, series: str) -> float:
+        """Peak of what drives a series over the peak of the horizontal resultant [-]."""
+        if series == SPATIAL:
+            return 1.0
+        column = self.motion.acceleration[:, SERIES.index(series) - 1]
+        return float(np.abs(column).max()) / self.motion.peak
+
+    def overturned(self, series: str) -> NDArray[np.bool_]:
+        """Whether each cell overturns (n_R, n_I); False where the run failed."""
+        return overturned(self.peak_tilt[series])
+
+    def failed(self) -> NDArray[np.bool_]:
+        """Whether any run of a cell failed (n_R, n_I): such cells are left out of every share."""
+        tilts = np.stack([self.peak_tilt[series] for series in SERIES])
+        return np.asarray(np.isnan(tilts).any(axis=0), dtype=np.bool_)
+
+    def facts(self) -> dict[str, object]:
+        """Return what the tables do not hold, for a manifest."""
+        motion = {"name": self.motion.name, "time_step": self.motion.time_step}
+        return {name: getattr(self, name) for name in _FACTS} | {"motion": motion}
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return one row for each cell and series.
+
+        Columns: series, semidiagonal [m], intensity [-], scale [-], peak_acceleration [m/s^2] (of what
+        drives the series), peak_tilt [rad], peak_tilt_over_alpha [-], overturned.
+        """
+        import pandas as pd
+
+        sizes, intensities = np.meshgrid(self.semidiagonals, self.intensities, indexing="ij")
+        _, scales = np.meshgrid(self.semidiagonals, self.scales, indexing="ij")
+        tables = [
+            pd.DataFrame(
+                {
+                    "series": series,
+                    "semidiagonal": sizes.ravel(),
+                    "intensity": intensities.ravel(),
+                    "scale": scales.ravel(),
+                    "peak_acceleration": self.component_share(series) * self.motion.peak * scales.ravel(),
+                    "peak_tilt": self.peak_tilt[series].ravel(),
+                    "peak_tilt_over_alpha": self.peak_tilt[series].ravel() / self.alpha,
+                    "overturned": self.overturned(series).ravel(),
+                }
+            )
+            for series in SERIES
+        ]
+        return pd.concat(tables, ignore_index=True)
+
+    def lowest_frame(self) -> pd.DataFrame:
+        """Return the lowest intensities found to overturn, one row for each size and series.
+
+        Columns: series, semidiagonal [m], intensity [-], peak_acceleration [m/s^2] (of what drives the
+        series), on_grid [-], the lowest intensity of the grid that overturns, each NaN where nothing does;
+        searched_from and search_step [-]; probed and overturned_below, intensities drawn below and how many
+        of them overturned.
+        """
+        import pandas as pd
+
+        tables = []
+        for series in SERIES:
+            lowest = self.lowest[series]
+            searched = self.searched_from[series] < self.intensities[-1]
+            tables.append(
+                pd.DataFrame(
+                    {
+                        "series": series,
+                        "semidiagonal": self.semidiagonals,
+                        "intensity": lowest,
+                        "peak_acceleration": lowest
+                        * (self.gravity * self.tan_alpha * self.component_share(series)),
+                        "on_grid": lowest_on_grid(self.intensities, self.peak_tilt[series]),
+                        "searched_from": self.searched_from[series],
+                        "search_step": self.search_step,
+                        "probed": PROBES if searched else 0,
+                        "overturned_below": self.below[series].astype(int),
+                    }
+                )
+            )
+        return pd.concat(tables, ignore_index=True)
+
+
+def record_frame(motion: GroundMotion) -> pd.DataFrame:
+    """Return the samples of a ground motion, one column for each component [m/s^2]."""
+    import pandas as pd
+
+    return pd.DataFrame(dict(zip("xyz", motion.acceleration.T, strict=False)))
+
+
+def spectrum_of(results: Results) -> OverturningSpectrum:
+    """Return the spectrum that is stored in a folder, with the same bits."""
+    cells, lowest, about = results.table("spectrum"), results.table("lowest"), results.manifest.about
+    motion = GroundMotion(results.table("record").to_numpy(), **about["motion"])
+    sizes, levels = (np.unique(cells[name].to_numpy()) for name in ("semidiagonal", "intensity"))
+    by_series = dict(iter(lowest.groupby("series")))
+    return OverturningSpectrum(
+        **{name: about[name] for name in _FACTS},
+        motion=motion,
+        semidiagonals=sizes,
+        intensities=levels,
+        peak_tilt={
+            name: cells.loc[cells["series"] == name, "peak_tilt"].to_numpy().reshape(len(sizes), -1)
+            for name in SERIES
+        },
+        lowest={name: by_series[name]["intensity"].to_numpy() for name in SERIES},
+        below={name: by_series[name]["overturned_below"].to_numpy(float) for name in SERIES},
+    )
+
+
+def safe_islands(spectrum: OverturningSpectrum) -> pd.DataFrame:
+    """Return the ranges of intensities above the lowest overturning one in which a cylinder stands.
+
+    Columns: series, semidiagonal [m], lower and upper, the first and last intensity of the grid that the
+    cylinder stands [-], closed, whether a higher one overturns it again. A failed run ends an island, and
+    neither opens one nor closes it.
+    """
+    import pandas as pd
+
+    rows = []
+    for series in SERIES:
+        tilts, fell = spectrum.peak_tilt[series], spectrum.overturned(series)
+        stands = ~fell & ~np.isnan(tilts)
+        for i in np.flatnonzero(np.isfinite(spectrum.lowest[series])):
+            first = int(np.searchsorted(spectrum.intensities, spectrum.lowest[series][i]))
+            row = np.concatenate([[False], stands[i, first:], [False]]).astype(np.int8)
+            begins, ends = (np.flatnonzero(np.diff(row) == turn) + first for turn in (1, -1))
+            rows += [
+                (
+                    series,
+                    spectrum.semidiagonals[i],
+                    spectrum.intensities[begin],
+                    spectrum.intensities[end - 1],
+                    bool(fell[i, end:].any()),
+                )
+                for begin, end in zip(begins, ends, strict=True)
+            ]
+    return pd.DataFrame(rows, columns=["series", "semidiagonal", "lower", "upper", "closed"])

@@ -1,0 +1,157 @@
+"""Search for the lowest intensity that overturns a cylinder.
+
+Overturning is not monotonic in intensity: a cylinder that one shaking overturns may stand the same shaking
+made stronger, and what overturns may be a window much narrower than the step of a grid. So the lowest is
+searched from the threshold of uplift up, below which nothing moves: a grid is refined wherever a tilt that
+changes as fast as its neighbours do could reach alpha, down to the step that is stated. What the search has
+missed is measured: intensities drawn at random below the lowest are run, too.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from functools import partial
+from typing import Any, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...metrics.tilt import overturned
+
+Array = NDArray[np.float64]
+T = TypeVar("T")
+# Yields intensities (m,), is sent the peak tilts of one cylinder there (m,) [rad], returns what it found.
+# Many searches go on side by side; those that want the same intensity share the preparation of its motion.
+Search = Generator[Array, Array, T]
+
+# Finest step, over the intensity at which the peak of the horizontal resultant is g tan(alpha): no peak
+# acceleration is known to such a step.
+STEP = 0.015
+_COARSEST = 8.0  # of these, where nothing asks for a finer one
+# A step is halved where a tilt that goes on as fast as there, or in one of the two steps beside it on either
+# side, reaches alpha within so many times its length: next to a window the tilt changes fast.
+_REACH, _BESIDE = 6.0, 2
+PROBES = 5  # intensities drawn for each lowest
+
+
+def lowest_on_grid(intensities: Array, peak_tilts: Array) -> Array:
+    """Return the lowest intensity (n_I,) of a grid that overturns each size, (n_R,); NaN where none does."""
+    fell = overturned(peak_tilts)
+    return np.where(fell.any(axis=1), intensities[fell.argmax(axis=1)], math.nan)
+
+
+def search_lowest(
+    intensities: Array, known: Array, *, start: float, step: float, alpha: float
+) -> Search[float]:
+    """Search for the lowest intensity that overturns one cylinder; NaN where none is found.
+
+    A run that fails counts as one that stands.
+
+    Parameters
+    ----------
+    intensities, known : ndarray, shape (n,)
+        A grid, increasing, and the peak tilts on it [rad]. The search ends at the first that overturns, or
+        at the last.
+    start : float
+        Intensity of uplift, from which it begins.
+    step : float
+        Steps are halved until they are no longer than this, where tilts change so fast that something
+        between may overturn; none is longer than eight times this.
+    alpha : float
+        Slenderness [rad].
+    """
+    fell = overturned(known)
+    last = int(fell.argmax()) if fell.any() else len(intensities) - 1
+    if not start <= intensities[last]:
+        return float(intensities[last]) if fell.any() else math.nan
+    inside = intensities[: last + 1] > start
+    levels = np.concatenate([[start], intensities[: last + 1][inside]])
+    parts = np.ceil(np.diff(levels) / (_COARSEST * step) * (1.0 - 1e-12)).astype(int)
+    between = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(levels, levels[1:], parts, strict=False)]
+    wanted = np.concatenate([levels[:1], *between])
+    levels, tilts = levels[1:], known[: last + 1][inside]
+    while len(wanted):
+        levels, tilts = np.concatenate([levels, wanted]), np.concatenate([tilts, (yield wanted)])
+        order = np.argsort(levels, kind="stable")
+        levels, tilts = levels[order], tilts[order]
+        fell = overturned(tilts)
+        if fell.any():
+            levels, tilts = levels[: fell.argmax() + 1], tilts[: fell.argmax() + 1]
+        widths = np.diff(levels)
+        slopes = np.pad(np.abs(np.diff(tilts)) / widths, _BESIDE)
+        # a failed run tells nothing of the steps beside its own
+        steepest = np.fmax.reduce([slopes[i : i + len(widths)] for i in range(2 * _BESIDE + 1)])
+        reached = np.fmax(tilts[:-1], tilts[1:]) + _REACH * steepest * widths > alpha
+        halved = np.flatnonzero(reached & (widths > step * (1.0 + 1e-9)))
+        wanted = 0.5 * (levels[halved] + levels[halved + 1])
+    return float(levels[-1]) if overturned(tilts).any() else math.nan
+
+
+def probe_below(start: float, stop: float, lowest: float, seed: Sequence[int]) -> Search[tuple[float, int]]:
+    """Run intensities drawn at random from `start` to the lowest found, or to `stop` where it is NaN.
+
+    Returns the lowest that overturns, NaN where none does, and how many do: their share is what the search
+    has missed.
+    """
+    end = stop if math.isnan(lowest) else lowest
+    if not start < end:
+        return math.nan, 0
+    drawn = np.sort(np.random.default_rng(seed).uniform(start, end, PROBES))
+    fell = overturned((yield drawn))
+    return (float(drawn[fell.argmax()]) if fell.any() else math.nan), int(fell.sum())
+
+
+def run_searches(
+    searches: Sequence[Search[T]],
+    peak_tilts: Callable[[list[int], float], Array],
+    *,
+    workers: int | None = None,
+) -> list[T]:
+    """Run searches side by side; return what each found.
+
+    Parameters
+    ----------
+    searches : sequence of Search
+    peak_tilts : callable
+        Runs some of them, by index, at one intensity, in one thread, for their peak tilts [rad].
+    workers : int, optional
+        Number of threads.
+    """
+    found: dict[int, T] = {}
+    wanted: dict[int, Array] = {}
+
+    def go_on(i: int, step: Callable[[], Array]) -> None:
+        try:
+            wanted[i] = step()
+        except StopIteration as end:
+            found[i] = end.value
+
+    for i, search in enumerate(searches):
+        go_on(i, search.__next__)
+    while wanted:
+        groups: dict[float, list[int]] = {}
+        for i, levels in wanted.items():
+            for level in levels.tolist():
+                groups.setdefault(level, []).append(i)
+        tilts: dict[tuple[int, float], float] = {}
+        results = in_threads(peak_tilts, groups.values(), groups, workers=workers)
+        for (level, group), result in zip(groups.items(), results, strict=True):
+            tilts |= {(i, level): tilt for i, tilt in zip(group, result.tolist(), strict=True)}
+        asked, wanted = wanted, {}
+        for i, levels in asked.items():
+            go_on(i, partial(searches[i].send, np.array([tilts[i, level] for level in levels.tolist()])))
+    return [found[i] for i in range(len(searches))]
+
+
+def in_threads(
+    function: Callable[..., T], *arguments: Iterable[Any], workers: int | None = None
+) -> Iterator[T]:
+    """Yield what a compiled function gives for each of its arguments, in order; an exception ends all."""
+    with ThreadPoolExecutor(workers) as pool:
+        try:
+            yield from pool.map(function, *arguments)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise

@@ -1,0 +1,129 @@
+"""What differences are made of: shares of all parts, and the parts against time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget
+
+from ..heat import names
+from ..palette import Style, pale
+from ..picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text
+from ..thinning import envelope
+from .tilt import WINDOW
+from .view import CaseView, rows_of
+
+if TYPE_CHECKING:
+    from rockwobble.compare import Comparison
+
+# blue, pale orange and vermilion of Okabe and Ito: apart in every kind of colour vision and in grey
+PARTS = {
+    "model_form": ("model form", Style(colour="#0072B2", dash="solid"), "/"),
+    "numerics": ("numerics", Style(colour="#E69F00", dash="dash"), ""),
+    "unexplained": ("unexplained", Style(colour="#D55E00", dash="dot"), "x"),
+}
+_WHOLE = ("whole", Style(colour="#000000", dash="solid"), "")
+# a logarithm has no zero [alpha]
+_SMALLEST = 1e-10
+# a taller picture cannot be read any more; the table has them all
+_MOST = 60
+_CAPTION = (
+    "Model form: the reduced model of the support minus what is asked about. Numerics: the engine minus the "
+    "engine extrapolated to a time step of zero. What is left nobody explains. RMS until 80 % of the "
+    "agreement, over the sum of the three; on the right the RMS of the whole difference."
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Bar:
+    """One difference: its name, its budget, and whether it is worth explaining."""
+
+    name: str
+    budget: ErrorBudget
+    worth: bool = True
+
+
+def part_shares(budget: ErrorBudget) -> dict[str, float]:
+    """Return the RMS of each part over the sum of all three: signed parts may cancel, these may not."""
+    sizes = {part: budget.rms(part) for part in PARTS}
+    total = sum(sizes.values())
+    return {part: size / total if total > 0.0 else 0.0 for part, size in sizes.items()}
+
+
+def budget_picture(view: CaseView, name: str) -> Picture:
+    """Return the stacked parts of each run and reference of a case."""
+    bars = [Bar(name=f"{run} − {model}", budget=budget) for (run, model), budget in view.budgets.items()]
+    return _stacked(bars, name)
+
+
+def all_budgets_picture(comparison: Comparison, name: str = "budget") -> Picture:
+    """Return a bar for each row of the summary with a budget, the findings on top.
+
+    The order is: rows above the bound, the worst first; then those worth explaining; then the rest, which
+    is drawn pale.
+    """
+    summary = comparison.summary[comparison.summary["whole_rms"].notna()]
+    worth = summary["whole_rms"] > WORTH_EXPLAINING
+    finding = worth & (summary["unexplained_share"] > LARGEST_SHARE)
+    ordered = summary.assign(worth=worth, finding=finding).sort_values(
+        ["finding", "worth", "unexplained_share"], ascending=False
+    )
+    bars = [
+        Bar(
+            name=f"{'▲ ' if row.finding else ''}{row.case}, {row.run} − {row.reference}",
+            budget=comparison.budgets[row.case, row.run, row.reference],
+            worth=row.worth,
+        )
+        for row in rows_of(ordered.head(_MOST))
+    ]
+    return _stacked(bars, name)
+
+
+def _stacked(bars: Sequence[Bar], name: str) -> Picture:
+    places, ticks = names([bar.name for bar in bars])
+    ends = np.zeros(len(bars))
+    layers: list[Bars | Text] = []
+    for part, (words, style, hatch) in PARTS.items():
+        starts, ends = ends, ends + np.array([part_shares(bar.budget)[part] for bar in bars])
+        colours = [style.colour if bar.worth else pale(style.colour) for bar in bars]
+        layers.append(
+            Bars(places=places, start=starts, end=ends, colours=colours, name=words, hatch=hatch)
+        )
+    whole = [f"{bar.budget.rms('whole'):.1e} α" for bar in bars]
+    layers += [
+        Text(x=1.02, y=place + 0.3, text=text) for place, text in zip(places, whole, strict=True)
+    ]
+    shares = [(share, f"{share:g}") for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    panel = Panel(
+        x=Axis(label="share of the parts", unit="-", low=0.0, high=1.25, ticks=shares),
+        y=Axis(label="", unit="", ticks=ticks, low=-0.6, high=len(bars) - 0.4, reverse=True),
+        layers=layers,
+        height=0.9 + 0.27 * len(bars),
+    )
+    return Picture(name=name, title="What the difference is made of", caption=_CAPTION, panels=[panel])
+
+
+def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture | None:
+    """Return the parts against time, of differences whose RMS is at least `above` [alpha]."""
+    y = Axis(label="|part| / α", unit="-", log=True)
+    panels = []
+    for (run, model), budget in view.budgets.items():
+        if budget.rms("whole") < above:
+            continue
+        lines = []
+        for part, (words, style, _) in ({"whole": _WHOLE} | PARTS).items():
+            values = np.abs(getattr(budget, part))
+            if values.any():
+                upper = np.maximum(envelope(budget.time, values, WINDOW), _SMALLEST)
+                width = 0.9 if part == "whole" else 1.6
+                lines.append(Line(x=budget.time, y=upper, name=words, style=style, width=width))
+        layers: list[Layer] = [*lines, Rule(at=budget.covered, axis="x", text="counted up to here")]
+        panels.append(Panel(x=TIME, y=y, layers=layers, title=f"{run} − {model}"))
+    caption = "Each as its largest value within the last second."
+    if not panels:
+        return None
+    return Picture(name=name, title="The parts against time", caption=caption, panels=panels, link_x=True)

@@ -1,0 +1,94 @@
+"""The main result of a comparison as a picture: tilt, and how the tilts diverge."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble.compare import AGREEMENT, make_pair
+
+from ..palette import Style
+from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
+from ..svg import figure
+from ..thinning import envelope
+from .view import CaseView, case_views
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from rockwobble.compare import Comparison
+
+# smaller differences are drawn here: a logarithm has no zero [alpha]
+SMALLEST = 1e-7
+# the difference is drawn as its largest value within this time, about one swing [s]
+WINDOW = 1.0
+_FALLS = 1.5  # [alpha] where tilts are cut if one goes farther
+_HEIGHT = 2.3  # [inch]
+
+
+def draw(comparison: Comparison, case: str) -> Figure:
+    """Return a matplotlib figure of one case."""
+    (view,) = (view for view in case_views(comparison) if view.case.name == case)
+    return figure(tilt_picture(view))
+
+
+def tilt_picture(view: CaseView, name: str = "figure") -> Picture:
+    """Return the tilts of one case by support, each with the model of the support, and their differences."""
+    cylinder = view.case.cylinder
+    groups = [
+        [label for label, trace in view.runs.items() if trace.run.support == support]
+        for support in view.supports
+    ]
+    return Picture(
+        name=name,
+        title=f"Tilt: {view.case.name}, R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}",
+        caption="Angle of the axis from the vertical over the slenderness, of the runs of each support and "
+        "the model that they are drawn with. Below, the difference from what a run is held against: its "
+        "largest value within the last second. A straight rise on this scale is a difference that grows in "
+        "proportion to itself. Diamonds mark where 1 % of α is first exceeded: beyond it single traces say "
+        "nothing about each other.",
+        panels=[
+            *(_tilts(view, group, support) for group, support in zip(groups, view.supports, strict=True)),
+            *(_differences(view, reference) for reference in view.rows["reference"].unique()),
+        ],
+        link_x=True,
+    )
+
+
+def _tilts(view: CaseView, runs: Sequence[str], support: str) -> Panel:
+    shown = dict.fromkeys([*runs, *map(view.partner, runs)])
+    traces = view.traces
+    layers = [
+        Line(
+            x=traces[label].time,
+            y=traces[label].tilt / view.case.cylinder.alpha,
+            name=label,
+            style=view.styles[label],
+            width=1.6 if label in runs else 0.9,
+        )
+        for label in shown
+    ]
+    # a fall would leave nothing to be seen of the rest
+    falls = any(float(np.nanmax(line.y, initial=0.0)) > _FALLS for line in layers)
+    y = replace(TILT, high=_FALLS if falls else None)
+    return Panel(x=TIME, y=y, layers=layers, title=f"support {support}", height=_HEIGHT)
+
+
+def _differences(view: CaseView, reference: str) -> Panel:
+    layers: list[Layer] = [Rule(at=AGREEMENT, axis="y", text="1 % of α", side="right")]
+    for row, other, trial in view.pairs():
+        if row.reference != reference:
+            continue
+        pair = make_pair(view.case.cylinder, other, trial, until=view.case.length)
+        style = view.styles[row.run]
+        apart = np.maximum(envelope(pair.time, np.abs(pair.tilt_difference), WINDOW), SMALLEST)
+        layers.append(Line(x=pair.time, y=apart, name=row.run, style=style))
+        if row.diverged:
+            mark = Style(colour=style.colour, dash="none", symbol="diamond")
+            at = np.array([view.divergence(row)])
+            layers.append(Line(x=at, y=np.array([AGREEMENT]), style=mark, size=7.0))
+    y = Axis(label="|tilt difference| / α", unit="-", log=True, low=SMALLEST, high=3.0)
+    return Panel(x=TIME, y=y, layers=layers, title=f"difference from {reference}", height=_HEIGHT)

@@ -1,0 +1,109 @@
+"""Maps of peak tilt over size and intensity, and the lowest intensities found to overturn."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from rockwobble.compare.studies.spectrum.result import Array, OverturningSpectrum, safe_islands
+from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
+
+from .heat import Gap, Heat, Shades
+from .palette import Style, model_style, run_styles
+from .picture import Axis, Line, Panel, Picture
+
+NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-south"}
+_OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
+_HEIGHT = 3.4
+_ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: islands side by side
+
+
+def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
+    """Return a map of each series, and the lowest intensities with the safe islands above them."""
+    size = Axis(label="R", unit="m")
+    low, high = (float(spectrum.intensities[end]) for end in (0, -1))
+    intensity = Axis(label="peak resultant / (g tan α)", unit="-", low=low, high=high)
+    maps = [
+        Panel(
+            x=size,
+            y=intensity,
+            title=TITLES[series],
+            layers=[
+                _map(spectrum, series),
+                Line(
+                    x=spectrum.semidiagonals,
+                    y=spectrum.lowest[series],
+                    name="lowest found to overturn",
+                    width=1.1,
+                ),
+            ],
+            height=_HEIGHT,
+            second=_own_peak(spectrum.component_share(series)),
+        )
+        for series in SERIES
+    ]
+    curves = Panel(
+        x=size,
+        y=intensity,
+        title="lowest found to overturn, safe islands (thin)",
+        layers=_curves(spectrum),
+        height=_HEIGHT,
+    )
+    return Picture(
+        name="spectrum",
+        title=f"Peak tilt of sizes under intensities, {spectrum.motion.name or 'record'}, "
+        f"tan α = {spectrum.tan_alpha:g}",
+        caption="Each cell is a run. What overturns has a colour of its own, what does not uplift none. "
+        f"The lowest intensity is the lowest found, in steps down to {spectrum.search_step:g}.",
+        panels=[*maps, curves],
+        columns=2,
+        shades=Shades(label="peak tilt / α", unit="-", low=0.0, high=1.0, steps=10),
+    )
+
+
+def _map(spectrum: OverturningSpectrum, series: str) -> Heat:
+    tilt, fell = spectrum.peak_tilt[series].T / spectrum.alpha, spectrum.overturned(series).T
+    return Heat(
+        x=spectrum.semidiagonals,
+        y=spectrum.intensities,
+        values=np.where(fell | (tilt == 0.0), np.nan, tilt),
+        gaps=[
+            Gap(name="overturned", colour=_OVERTURNED, cells=fell),
+            Gap(name="no uplift", colour=_NO_UPLIFT, cells=tilt == 0.0),
+            Gap(name="not solved", colour=_FAILED, cells=np.isnan(tilt)),
+        ],
+    )
+
+
+def _own_peak(share: float) -> tuple[Axis, float] | None:
+    own = Axis(label="peak of the component / (g tan α)", unit="-")
+    return None if share in (0.0, 1.0) else (own, share)
+
+
+def _curves(spectrum: OverturningSpectrum) -> list[Line]:
+    planes = run_styles([PLANAR_X, PLANAR_Y])
+    styles = {SPATIAL: model_style(spectrum.support), **planes}
+    islands = safe_islands(spectrum)
+    spacing = float(np.diff(spectrum.semidiagonals).min(initial=np.inf))
+    half = 0.5 * float(np.diff(spectrum.intensities).min(initial=np.inf))
+    found: list[Line] = []
+    for series in SERIES:
+        closed = islands[islands["closed"] & (islands["series"] == series)]
+        place = closed["semidiagonal"].to_numpy(float) + _ASIDE[series] * spacing
+        ends = closed["lower"].to_numpy(float) - half, closed["upper"].to_numpy(float) + half
+        thin = Style(colour=styles[series].colour)
+        found += [
+            Line(x=_parted(place, place), y=_parted(*ends), style=thin, width=0.7, opacity=0.45),
+            Line(
+                x=spectrum.semidiagonals,
+                y=spectrum.lowest[series],
+                name=NAMES[series],
+                style=styles[series],
+                width=1.6,
+            ),
+        ]
+    return found
+
+
+def _parted(first: Array, second: Array) -> Array:
+    """Return the ends of bars one after the other, parted by NaN."""
+    return np.column_stack([first, second, np.full(len(first), np.nan)]).ravel()

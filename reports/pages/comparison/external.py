@@ -1,0 +1,118 @@
+"""What a comparison found of an external trajectory: numbers for a table, and sentences made from codes."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
+
+from ...figures.comparison.view import rows_of
+from ..table import Row
+from ..words import sentence
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+WORDS = "external.md.j2"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Told:
+    """What the codes of a row of an external trajectory say.
+
+    Attributes
+    ----------
+    row : namedtuple
+        Of the summary.
+    differs, left : list of str
+        Parts that differ, and that still do without the mistake.
+    missing : list of (str, str)
+        Parts that were not compared, and why.
+    mistakes, alternatives : list of str
+        Likely mistakes in words, and what explains the azimuth just as well.
+    """
+
+    row: Any
+    differs: list[str]
+    left: list[str]
+    missing: list[tuple[str, str]]
+    mistakes: list[str]
+    alternatives: list[str]
+
+    @property
+    def agrees(self) -> list[str]:
+        """What agrees besides the tilt."""
+        known = [part for part in ("azimuth", "path") if math.isfinite(getattr(self.row, f"{part}_rms"))]
+        return [part for part in known if part not in self.differs]
+
+    @property
+    def wrong(self) -> list[str]:
+        """What differs besides the tilt."""
+        return [part for part in self.differs if part != "tilt"]
+
+
+def told(row: Any) -> Told:
+    """Return what the codes of a row say."""
+    missing = [each.split(": ", 1) for each in _split(row.not_compared)]
+    return Told(
+        row=row,
+        differs=_split(row.differs_in),
+        left=_split(row.differs_without_mistake),
+        missing=[(part, why) for part, why in missing],
+        mistakes=mistakes(row),
+        alternatives=mistakes(row, "alternative_mistake"),
+    )
+
+
+def mistakes(row: Any, column: str = "likely_mistake") -> list[str]:
+    """Return each mistake that explains the differences of a row, in words."""
+    if not (codes := _split(getattr(row, column))):
+        return []
+    values = str(getattr(row, f"{column}_value")).split("; ")
+    return [
+        sentence(WORDS, "mistake", *code.split(": ", 1), float(value) if value else math.nan)
+        for code, value in zip(codes, values, strict=True)
+    ]
+
+
+def within(row: Any) -> str:
+    """Return what agreement of the tilts means for a run."""
+    return sentence(WORDS, "within", row.tilt_bound)
+
+
+def scope(row: Any) -> str:
+    """Return what of an external trajectory agrees while the tilts do, and what does not, for a headline."""
+    return sentence(WORDS, "scope", told(row))
+
+
+def external_sentences(row: Any) -> str:
+    """Return the sentences on azimuth, path, uplift and likely mistakes of an external trajectory."""
+    return sentence(WORDS, "sentences", told(row))
+
+
+def external_rows(summary: pd.DataFrame) -> list[Row]:
+    """Return one line of numbers and codes for each external trajectory."""
+    return [
+        {
+            **row._asdict(),
+            "uplift": row.uplift_time_difference if math.isfinite(row.uplift_time_uncertainty) else None,
+            "towards": _degrees(row.uplift_direction_difference, row.uplift_direction_uncertainty),
+            "towards_uncertainty": _degrees(
+                # beyond half a turn there is nothing left to tell
+                min(row.uplift_direction_uncertainty, math.pi), row.uplift_direction_uncertainty
+            ),
+            "differs_in": row.differs_in or None,
+            "likely_mistake": row.likely_mistake or None,
+        }
+        for row in rows_of(summary[summary["support"] == EXTERNAL])
+    ]
+
+
+def _degrees(angle: float, uncertainty: float) -> float | None:
+    return math.degrees(angle) if math.isfinite(uncertainty) else None
+
+
+def _split(codes: str) -> list[str]:
+    return [part for part in str(codes).split("; ") if part]

@@ -1,0 +1,198 @@
+"""The report of a comparison: of few cases each in full, of many an overview and one at a time."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
+
+from rockwobble.compare import WORTH_EXPLAINING
+
+from ...figures.comparison.budget import all_budgets_picture, budget_picture, parts_picture
+from ...figures.comparison.contact import azimuth_picture, contact_picture, turn_picture
+from ...figures.comparison.excitation import excitation_picture
+from ...figures.comparison.place import orbit_picture, residual_picture
+from ...figures.comparison.playback import playback
+from ...figures.comparison.tilt import tilt_picture
+from ...figures.comparison.view import CaseView, case_views, own_rows
+from ...figures.picture import Layer, Line, Picture
+from ...figures.svg import svg
+from ...figures.thinning import kept_points
+from ..case_words import describe, group_of
+from ..page import Page
+from ..words import fragment
+from .budgets import budget_sentences, divergence_sentences
+from .external import external_rows
+from .findings import counted_remarks, finding_sentences, headline
+from .tables import all_columns, diverging_runs, group_rows, main_rows, meanings, worst_first
+
+if TYPE_CHECKING:
+    from rockwobble.compare import Comparison
+
+# up to so many cases each has a part of the report of its own
+SINGLY = 3
+# points of all lines of a page together: ten bytes each, and the page stays below 8 MB
+_ALL_POINTS = 125_000
+# more are not to be seen, fewer are no curve
+_MOST_POINTS, _FEWEST_POINTS = 1500, 120
+_BESIDE = ("figure", "budget")  # pictures that stand beside the page as files
+_NAMED = 10  # runs that diverge, by name
+
+
+def comparison_files(comparison: Comparison, command: str = "") -> dict[str, bytes]:
+    """Return name and content of what a person opens: page, document and the main pictures."""
+    page = comparison_page(comparison, command or comparison.command)
+    return {
+        "report.html": page.html().encode(),
+        "report.md": page.markdown().encode(),
+        **{f"{picture.name}.svg": svg(picture) for picture in page.pictures if picture.name in _BESIDE},
+    }
+
+
+def comparison_page(comparison: Comparison, command: str = "", *, drawn: bool = True) -> Page:
+    """Return the report, for a terminal without its pictures."""
+    views = case_views(comparison)
+    many = len(views) > SINGLY
+    summary, lengths = comparison.summary, {view.case.name: view.case.length for view in views}
+    pictures = {place: list(_pictures(view, place, many)) for place, view in enumerate(views) if drawn}
+    whole = [picture for of_case in pictures.values() for picture in of_case]
+    if many:
+        whole = _thinned(whole)
+    if drawn and comparison.budgets:
+        whole.append(all_budgets_picture(comparison))
+    blocks = _blocks(views, many=many) if drawn else {}
+    diverging = diverging_runs(summary, lengths) if many else []
+    return Page(
+        name="report",
+        template="comparison",
+        values={
+            "many": many,
+            "command": command,
+            "versions": comparison.versions,
+            "budgets": bool(comparison.budgets),
+            "group_rows": group_rows(summary, lengths) if many else [],
+            "worst": worst_first(summary, lengths) if many else [],
+            "diverging": diverging[:_NAMED],
+            "others": len(diverging[_NAMED:]),
+            "remarks": [
+                *budget_sentences(summary),
+                *divergence_sentences(summary),
+                *counted_remarks(summary),
+            ]
+            if many
+            else [],
+            "meanings": meanings(),
+            "failed": int((own_rows(summary)["outcome"] == "failed").sum()),
+            "cases": [
+                {
+                    **_case(view),
+                    "pictures": [picture.name for picture in pictures.get(place, [])],
+                    "player": name if (name := f"player-{place}") in blocks else "",
+                }
+                for place, view in enumerate(views)
+            ],
+        },
+        pictures=whole,
+        blocks=blocks,
+    )
+
+
+def _case(view: CaseView) -> dict[str, object]:
+    rows, length = view.rows, view.case.length
+    numbers, columns = all_columns(rows)
+    return {
+        "name": view.case.name,
+        "lines": describe(view.case),
+        "headline": headline(rows, length),
+        "findings": [*finding_sentences(view), *budget_sentences(rows), *divergence_sentences(rows)],
+        "rows": main_rows(rows),
+        "external": external_rows(rows),
+        "numbers": numbers,
+        "columns": columns,
+    }
+
+
+def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
+    """Yield what is drawn of a case; of many cases what every one has to show."""
+    yield tilt_picture(view, f"figure-{place}" if place else "figure")
+    if not many:
+        yield orbit_picture(view, f"orbits-{place}")
+        yield contact_picture(view, f"contact-{place}")
+    else:
+        yield azimuth_picture(view, f"contact-{place}")
+    yield turn_picture(view, f"turns-{place}", notes=not many)
+    if view.budgets:
+        yield budget_picture(view, f"budget-{place}")
+        # where there is nothing to explain they are a megabyte for nothing
+        parts = parts_picture(view, f"parts-{place}", above=WORTH_EXPLAINING if many else 0.0)
+        yield from () if parts is None else (parts,)
+    if not many:
+        yield residual_picture(view, f"residuals-{place}")
+    excitation = excitation_picture(view, f"excitation-{place}")
+    yield from () if excitation is None else (excitation,)
+
+
+def _thinned(pictures: Sequence[Picture]) -> list[Picture]:
+    """Return the pictures with as many points as the page can hold, the same for every line."""
+    curves = [
+        layer for picture in pictures for panel in picture.panels for layer in panel.layers if _is_curve(layer)
+    ]
+    points = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // max(1, len(curves))))
+
+    def fewer(layer: Layer) -> Layer:
+        if not (isinstance(layer, Line) and _is_curve(layer)):
+            return layer
+        keep = kept_points(layer.x, layer.y, points=points)
+        return dataclasses.replace(layer, x=layer.x[keep], y=layer.y[keep])
+
+    return [
+        dataclasses.replace(
+            picture,
+            panels=[
+                dataclasses.replace(panel, layers=[fewer(layer) for layer in panel.layers])
+                for panel in picture.panels
+            ],
+        )
+        for picture in pictures
+    ]
+
+
+def _is_curve(layer: Layer) -> bool:
+    return isinstance(layer, Line) and layer.style.dash != "none"
+
+
+def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:
+    """Return what only a page shows: the chooser of many cases, the player of each of few."""
+    if many:
+        groups: dict[str, list[tuple[int, str]]] = {}
+        for place, view in enumerate(views):
+            groups.setdefault(group_of(view.case.name), []).append((place, view.case.name))
+        found = {f"open-{place}": f'<template id="case-{place}">' for place in range(len(views))}
+        return {**found, "close": "</template>", "chooser": fragment("chooser.html.j2", groups=groups)}
+    specs = {f"player-{place}": playback(view) for place, view in enumerate(views)}
+    return {
+        name: fragment("player.html.j2", name=name, spec=spec)
+        for name, spec in specs.items()
+        if spec is not None
+    }
+
+
+def view_page(comparison: Comparison, name: str, command: str = "") -> Page | None:
+    """Return the page that plays one case of a comparison, None where nothing moves."""
+    (view,) = (view for view in case_views(comparison) if view.case.name == name)
+    spec = playback(view)
+    if spec is None:
+        return None
+    return Page(
+        name="view",
+        template="view",
+        values={
+            "name": name,
+            "lines": describe(view.case),
+            "findings": finding_sentences(view),
+            "command": command,
+            "versions": comparison.versions,
+        },
+        blocks={"player": fragment("player.html.j2", name="player", spec=spec)},
+    )

@@ -1,0 +1,116 @@
+"""The tables of a comparison: the main columns, all of them, and what many cases say together."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from rockwobble.compare import SUMMARY_COLUMNS
+
+from ...figures.comparison.view import own_rows, rows_of
+from ..case_words import group_of
+from ..table import Row
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def main_rows(rows: pd.DataFrame) -> list[Row]:
+    """Return the main columns of the summary; what fell or failed has a word for its peak."""
+    return [
+        {
+            **row._asdict(),
+            "against": row.reference.removesuffix(" model").removesuffix("-ground"),
+            "peak": _peak(row.peak_tilt, row.outcome),
+            "reference_peak": _peak(row.reference_peak_tilt, row.reference_outcome),
+            "agrees": f"{row.agreement_time:.2f}{' ' if row.diverged else '+'}",
+        }
+        for row in rows_of(rows)
+    ]
+
+
+def _peak(value: float, outcome: str) -> float | str:
+    return outcome if outcome in ("overturned", "failed") else value
+
+
+def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
+    """Return a line for each column of the summary, and the columns of that table: one for each row."""
+    found = list(rows_of(rows))
+    lines: list[Row] = [
+        {
+            "all": "All numbers",
+            "name": name.replace("_", " ") + (f" [{unit}]" if unit else ""),
+            **{str(index): getattr(row, name) for index, row in enumerate(found)},
+        }
+        for name, (unit, _) in SUMMARY_COLUMNS.items()
+        if name not in ("case", "run", "reference")
+    ]
+    columns = [[str(index), f"{row.run} against {row.reference}", ".4g"] for index, row in enumerate(found)]
+    return lines, [["name", "column", "words"], *columns]
+
+
+def meanings() -> list[Row]:
+    """Return what each column of summary.csv means, and its unit."""
+    return [
+        {"all": "Columns of summary.csv", "name": name, "unit": unit or "-", "meaning": meaning}
+        for name, (unit, meaning) in SUMMARY_COLUMNS.items()
+    ]
+
+
+def group_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]:
+    """Return a line for each group of cases and run, the group with the shortest agreement first.
+
+    Parameters
+    ----------
+    summary : DataFrame
+        That of the comparison.
+    lengths : mapping
+        Length of the run of each case [s].
+    """
+    rows = _with_shares(summary, lengths)
+    shortest = rows.groupby("group")["share"].min().sort_values(kind="stable")
+    found: list[Row] = []
+    for group in shortest.index:
+        inside = rows[rows["group"] == group]
+        for run in inside["run"].unique():
+            chosen = inside[inside["run"] == run]
+            found.append(
+                {
+                    "group": group,
+                    "run": run,
+                    "cases": len(chosen),
+                    "agree": int((~chosen["diverged"]).sum()),
+                    "least": float(chosen["share"].min()),
+                    "rms": float(chosen["tilt_rms_relative"].median()),
+                    "worst": float(chosen["tilt_rms_relative"].max()),
+                    "peak": float(chosen["peak_tilt_difference"].abs().max()),
+                    "time": float(chosen["wall_time"].sum(min_count=1)),
+                }
+            )
+    return found
+
+
+def worst_first(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Any]:
+    """Return the worst run of each case, the worst case first; with its share and the length of its run."""
+    rows = _with_shares(summary, lengths)
+    worst = rows.sort_values(["share", "tilt_rms_relative"], ascending=[True, False], kind="stable")
+    order = {name: index for index, name in enumerate(lengths)}
+    once = worst.drop_duplicates("case")
+    return list(rows_of(once.assign(length=once["case"].map(lengths), place=once["case"].map(order))))
+
+
+def diverging_runs(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Any]:
+    """Return the runs that diverge from the model of their support, the first to do so first."""
+    rows = _with_shares(summary, lengths)
+    found = rows[rows["diverged"]].sort_values("share", kind="stable")
+    return list(rows_of(found.assign(length=found["case"].map(lengths))))
+
+
+def _with_shares(summary: pd.DataFrame, lengths: Mapping[str, float]) -> pd.DataFrame:
+    """Add the group of each case, and the share of the run for which the tilts agree."""
+    rows = own_rows(summary)
+    share = (rows["agreement_time"] / rows["case"].map(lengths)).clip(upper=1.0)
+    share = share.where(rows["diverged"], 1.0)
+    known = share.where(share.map(math.isfinite), 0.0)
+    return rows.assign(group=rows["case"].map(group_of), share=known)

@@ -1,0 +1,133 @@
+"""Diagnostics in words: each code of `rockwobble.models.diagnostic`, with its numbers."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping
+from types import MappingProxyType
+
+from rockwobble.models import Diagnostic
+from rockwobble.models.diagnostic import FAILURES
+
+# why halving the step did not settle it
+_UNSETTLED = {
+    "fails": "a smaller step fails",
+    "still_changes": "it still changes at the smallest step allowed",
+    "no_later": "a smaller step does not put off the divergence",
+    "no_closer": "a smaller step does not bring it closer",
+}
+_WORDS: Mapping[str, Callable[[Diagnostic], str]] = MappingProxyType(
+    {
+        "step_budget": lambda fact: (
+            f"the {fact.size:.0f} steps allowed were used up{_at(fact)}: the motion chatters near upright, "
+            "which a larger rest threshold ends"
+        ),
+        "tolerance": lambda fact: f"no step met the tolerance of {fact.bound:g}{_at(fact)}",
+        "slip": lambda fact: f"contact slipped{_from(fact)}",
+        "lift_off": lambda fact: f"the cylinder left the ground{_at(fact)}",
+        "tension": lambda fact: (
+            f"contact is lost{_at(fact)}: a joint holds the rim down"
+            if math.isnan(fact.size)
+            else f"contact is lost{_at(fact)}, for {_s(fact.duration)} in all: the ground would have to pull "
+            f"(normal force {fact.size:.3g} weights)"
+        ),
+        "friction_needed": lambda fact: (
+            f"a joint holds the rim{_at(fact)}, where the friction of the case would let it slip"
+            if math.isnan(fact.size)
+            else f"the rim would slip{_at(fact)}, for {_s(fact.duration)} in all: it needs a friction of "
+            f"{fact.size:.3g}, where there is {fact.bound:g}"
+        ),
+        "wall_contact": lambda fact: f"the cylinder touched a wall{_from(fact)}",
+        "energy": lambda fact: (
+            f"contact {'made' if fact.size > 0.0 else 'took'} {abs(fact.size):.1e} of the energy of the "
+            f"motion, which shows{_from(fact)}"
+        ),
+        "undecided": lambda _: (
+            "it ends in the middle of a fall, and whether that overturns it is not decided"
+        ),
+        "solver": lambda fact: (
+            f"the solver had not converged in {fact.size:.0f} of the {fact.bound:.0f} steps looked at"
+        ),
+        "unresolved_pass": lambda fact: (
+            f"{_count(fact.size, 'pass', 'is', 'are')} closer to upright than the {fact.bound:.1e} rad that "
+            f"contact resolves, first{_at(fact)}"
+        ),
+        "settled": lambda fact: (
+            f"the tilt is, until {_s(fact.duration)}, within {fact.size:.1e} alpha of its limit for a "
+            f"vanishing step, by Richardson with order {fact.bound:.2g}"
+        ),
+        "unsettled": lambda fact: (
+            f"the tilt has not settled by halving the step: {_UNSETTLED.get(fact.detail, fact.detail)}"
+            + (
+                ""
+                if math.isnan(fact.size)
+                else f"; until {_s(fact.duration)} it differs by {fact.size:.1e} alpha from that at twice "
+                "the step"
+            )
+        ),
+        "side": lambda fact: (
+            f"it passed through upright itself, first{_at(fact)}: the ground had moved in one plane, and the "
+            "side of such a pass is undetermined"
+        ),
+        "note": lambda fact: fact.detail,
+        "missed_pass": lambda fact: (
+            f"{_count(fact.size, 'near pass', 'fell', 'fell')} between two samples, first{_at(fact)}"
+        ),
+    }
+)
+# what each is called where many runs are counted
+_MANY: Mapping[str, str] = MappingProxyType(
+    {
+        "slip": "slipped",
+        "lift_off": "left the ground",
+        "wall_contact": "touched a wall",
+        "tension": "lost contact but for a joint",
+        "friction_needed": "needed more friction than there is",
+        "energy": "lost or gained energy",
+        "solver": "had steps whose solver did not converge",
+        "unsettled": "did not settle with the time step",
+        "unresolved_pass": "had passes closer to upright than contact resolves",
+        "undecided": "ended in the middle of a fall",
+        "side": "passed through upright itself",
+    }
+)
+
+
+def sentence(fact: Diagnostic) -> str:
+    """Return a diagnostic in words, without capital and full stop."""
+    if fact.code in _WORDS:
+        return _WORDS[fact.code](fact)
+    return f"{fact.meaning}{_at(fact)}" + (f": {fact.detail}" if fact.detail else "")
+
+
+def sentences(facts: Iterable[Diagnostic]) -> str:
+    """Return diagnostics in words, separated by semicolons."""
+    return "; ".join(map(sentence, facts))
+
+
+def failure(facts: Iterable[Diagnostic]) -> str:
+    """Return why a run failed, in words."""
+    return sentences(fact for fact in facts if fact.code in FAILURES) or "it failed"
+
+
+def counted(codes: Iterable[Iterable[str]]) -> list[str]:
+    """Return how many runs have which diagnostic, from the codes of each run; failures left out."""
+    found = Counter(code for of_run in codes for code in set(of_run))
+    return [f"{found[code]} {words}" for code, words in _MANY.items() if found[code]]
+
+
+def _at(fact: Diagnostic) -> str:
+    return "" if math.isnan(fact.time) else f" at {_s(fact.time)}"
+
+
+def _from(fact: Diagnostic) -> str:
+    return "" if math.isnan(fact.time) else f" from {_s(fact.time)} on"
+
+
+def _s(time: float) -> str:
+    return f"{time:.4g} s"
+
+
+def _count(number: float, what: str, one: str, many: str) -> str:
+    return f"1 {what} {one}" if number == 1 else f"{number:.0f} {what}es {many}"

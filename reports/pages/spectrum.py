@@ -1,0 +1,119 @@
+"""What the page of a spectrum is given: its words are in the template spectrum.md.j2."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble.compare.metrics.order_statistics import share_interval
+from rockwobble.compare.storage.manifest import Manifest, read_results
+from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast, unconservative_from
+from rockwobble.compare.studies.spectrum.result import (
+    KIND,
+    OverturningSpectrum,
+    record_frame,
+    safe_islands,
+    spectrum_of,
+)
+from rockwobble.compare.studies.spectrum.series import SPATIAL
+from rockwobble.compare.studies.spectrum.verification import AGREEMENT, CHECK_RTOL, NUDGE
+
+from ..figures.spectrum import spectrum_picture
+from .page import Page
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+def spectrum_page(
+    spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame], manifest: Manifest
+) -> Page:
+    """Return the page of a spectrum and its tables, of `spectrum_tables`."""
+    return Page(
+        name="spectrum",
+        template="spectrum",
+        values={**spectrum_values(spectrum, tables), "about": manifest},
+        pictures=[spectrum_picture(spectrum)],
+    )
+
+
+def stored_page(folder: Path) -> Page:
+    """Return the page of the spectrum that is stored in a folder."""
+    results = read_results(folder, KIND)
+    tables = {name: results.table(name) for name in ("lowest", "islands", "contrast", "checked")}
+    return spectrum_page(spectrum_of(results), tables, results.manifest)
+
+
+def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame]) -> dict[str, object]:
+    """Return what a template says of a spectrum, for its own page and for that of the paper."""
+    contrast, checked = tables["contrast"], tables["checked"]
+    bands, every = contrast.iloc[:-1], contrast.iloc[-1]
+    return {
+        "spectrum": spectrum,
+        "cell_rows": contrast.assign(
+            band=[f"{row.smallest:.3g} to {row.largest:.3g}" for row in contrast.itertuples()]
+        )
+        .replace(math.inf, math.nan)
+        .to_dict("records"),
+        "every": every,
+        "worst": bands.iloc[int(bands["missed"].fillna(0.0).argmax())],
+        "wrong": bands[bands["missed"] > bands["overcalled"]].to_dict("records"),
+        "falls": any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()),
+        "unconservative_from": unconservative_from(spectrum),
+        "islands": _islands(tables["islands"]),
+        "failed": int(spectrum.failed().sum()),
+        "search": _search(spectrum, tables["lowest"]),
+        "checked": {
+            "count": len(checked),
+            "agree": int(checked["agrees"].sum()),
+            "chance": int((~checked["agrees"] & checked["sensitive"]).sum()),
+        },
+        "tolerance": CHECK_RTOL,
+        "nudge": NUDGE,
+        "agreement": AGREEMENT,
+    }
+
+
+def spectrum_tables(
+    spectrum: OverturningSpectrum, checked: pd.DataFrame, lowest: pd.DataFrame
+) -> dict[str, pd.DataFrame]:
+    """Return the tables of a spectrum by name; `checked` and `lowest` from its verification."""
+    return {
+        "spectrum": spectrum.to_frame(),
+        "record": record_frame(spectrum.motion),
+        "lowest": lowest,
+        "islands": safe_islands(spectrum),
+        "contrast": planar_contrast(spectrum),
+        "checked": checked,
+    }
+
+
+def _islands(islands: pd.DataFrame) -> dict[str, object] | None:
+    closed = islands[islands["closed"] & (islands["series"] == SPATIAL)]
+    if not len(closed):
+        return None
+    widest = closed.iloc[int((closed["upper"] - closed["lower"]).argmax())]
+    return {"count": len(closed), "sizes": closed["semidiagonal"].nunique(), "widest": widest}
+
+
+def _search(spectrum: OverturningSpectrum, lowest: pd.DataFrame) -> dict[str, object]:
+    space = lowest[lowest["series"] == SPATIAL]
+    found = space[np.isfinite(space["intensity"])]
+    spacing = float(np.diff(spectrum.intensities).max(initial=0.0))
+    chance = found[~found["confirmed"].astype(bool)]
+    probed, fell = int(space["probed"].sum()), int(space["overturned_below"].sum())
+    return {
+        "start": spectrum.searched_from[SPATIAL],
+        "found": len(found),
+        "unseen": int((found["intensity"] < found["on_grid"].fillna(math.inf) - spacing).sum()),
+        "probed": probed,
+        "below": fell,
+        "below_most": share_interval(fell, probed).high,
+        "chance": len(chance),
+        "chance_from": chance["semidiagonal"].min(),
+        "chance_to": chance["semidiagonal"].max(),
+    }

@@ -1,0 +1,39 @@
+"""Tasks for other processes, where a test file cannot be imported by name."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from pathlib import Path
+
+import pandas as pd
+
+
+def squared(task: int) -> pd.DataFrame:
+    return pd.DataFrame({"square": [task * task]})
+
+
+def refuse(task: int) -> None:
+    raise ValueError(f"must be at least 1, got {task}")
+
+
+def signalled(number: int) -> None:
+    if number:
+        os.kill(os.getpid(), number)
+
+
+def die_once(mark: str) -> str:
+    if not Path(mark).exists():
+        Path(mark).touch()
+        os.kill(os.getpid(), signal.SIGKILL)
+    return mark
+
+
+def killed(task: int) -> pd.DataFrame:
+    os.kill(os.getpid(), signal.SIGKILL)
+    return squared(task)
+
+
+def never_the_same() -> dict[str, str]:
+    return {"call": str(time.monotonic_ns())}

@@ -1,0 +1,248 @@
+"""Tasks wherever they run: results in their order, a death told as such, and nothing left behind."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import textwrap
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+import scheduled
+from scheduled import die_once, killed, never_the_same, refuse, signalled, squared
+
+from rockwobble.compare.runs import dask_backend
+from rockwobble.compare.runs.cache import CACHE, open_table_cache, unfinished
+from rockwobble.compare.runs.progress import Progress
+from rockwobble.compare.runs.scheduler import run_tasks
+from rockwobble.compare.runs.task import Lost
+from rockwobble.models import cpus
+from rockwobble.models.cpus import usable_cpus
+
+
+def counted(task: int) -> pd.DataFrame:
+    RAN.append(task)
+    return squared(task)
+
+
+RAN: list[int] = []
+
+
+@pytest.fixture(autouse=True)
+def importable_there(monkeypatch):
+    here = [str(Path(scheduled.__file__).parent), *os.environ.get("PYTHONPATH", "").split(os.pathsep)]
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(filter(None, here)))
+
+
+def table_cache(folder, kind="study"):
+    return open_table_cache(folder, kind, name=lambda task: f"{task:032d}")
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+def test_results_come_in_the_order_of_the_tasks(workers):
+    told: list[Progress] = []
+    tasks = [-3, 2, -1, 5]
+    found = run_tasks(abs, tasks, workers=workers, cost=lambda task: float(task), progress=told.append)
+    assert found == [3, 2, 1, 5]
+    assert [event.label for event in told if event.state == "started"] == [
+        "5",
+        "2",
+        "-1",
+        "-3",
+    ]  # longest first
+    assert [event.done for event in told if event.state == "finished"] == [1, 2, 3, 4]
+    assert told[-1].share == pytest.approx(1.0)
+    assert told[-1].left == pytest.approx(0.0)
+
+
+def test_processes_are_kept_and_are_not_this_one():
+    pids = run_tasks(os.getpgid, [0] * 8, workers=2)
+    assert len(set(pids)) <= 2
+    assert os.getpgid(0) not in pids
+
+
+def test_bad_input_is_raised_here_with_where_it_came_from():
+    with pytest.raises(ValueError, match="at least 1") as caught:
+        run_tasks(refuse, [1, 2], workers=2)
+    assert "refuse" in "".join(caught.value.__notes__)
+
+
+def test_a_process_that_dies_loses_only_its_own_task():
+    found = run_tasks(signalled, [0, int(signal.SIGABRT), 0], workers=2)
+    assert (found[0], found[2]) == (None, None)
+    assert found[1] == Lost(f"the process ended with status -{signal.SIGABRT.value}")
+
+
+def test_a_task_whose_process_was_ended_from_outside_begins_again(tmp_path):
+    marks = [str(tmp_path / name) for name in ("a", "b")]
+    assert run_tasks(die_once, marks, workers=2, tries=2) == marks
+    assert [type(each) for each in run_tasks(die_once, [f"{mark}2" for mark in marks], workers=2)] == [
+        Lost,
+        Lost,
+    ]
+
+
+def test_ctrl_c_ends_the_processes_at_once_and_leaves_nothing(monkeypatch, tmp_path):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+
+    def interrupt(event):
+        raise KeyboardInterrupt
+
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        run_tasks(time.sleep, [60.0, 60.0, 60.0], workers=2, progress=interrupt)
+    assert time.monotonic() - begun < 20.0
+    assert list(tmp_path.iterdir()) == []  # the folders of the processes went with them
+
+
+def test_a_finished_task_does_not_run_again(tmp_path):
+    with table_cache(tmp_path) as cache:
+        first = run_tasks(counted, [1, 2, 3], workers=1, cache=cache)
+    RAN.clear()
+    told: list[Progress] = []
+    with table_cache(tmp_path) as cache:
+        again = run_tasks(counted, [3, 4, 2], workers=1, cache=cache, progress=told.append)
+    assert RAN == [4]
+    pd.testing.assert_frame_equal(first[2], again[0], check_exact=True)
+    assert [(event.found, event.done, event.total) for event in told] == [(2, 2, 3), (2, 3, 3)]
+    # the first is of another study: it went when this one was complete
+    assert len(list((tmp_path / CACHE / "study").glob("*.parquet"))) == 3
+
+
+def test_what_was_finished_before_an_interruption_is_kept_and_counted(tmp_path):
+    def interrupt(event):
+        if event.done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt), table_cache(tmp_path) as cache:
+        run_tasks(squared, [1, 2, 3, 4], workers=1, cache=cache, progress=interrupt)
+    (going,) = unfinished(tmp_path)
+    assert (going.kind, going.done, going.total) == ("study", 2, 4)
+    RAN.clear()
+    with table_cache(tmp_path) as cache:
+        run_tasks(counted, [1, 2, 3, 4], workers=1, cache=cache)
+    assert RAN == [3, 4]
+    assert unfinished(tmp_path) == []
+
+
+def test_a_lost_task_is_not_kept(tmp_path):
+    with table_cache(tmp_path) as cache:
+        found = run_tasks(killed, [1, 2], workers=2, cache=cache)
+        assert [type(each) for each in found] == [Lost, Lost]
+        assert cache.find(1) is None
+
+
+def test_one_run_at_a_time_writes_to_a_folder_and_leftovers_go(tmp_path):
+    place = tmp_path / CACHE / "study"
+    place.mkdir(parents=True)
+    (place / ".abc.parquet.1.part").write_bytes(b"PAR1")
+    with (
+        table_cache(tmp_path),
+        pytest.raises(ValueError, match="another process is writing to"),
+        table_cache(tmp_path),
+    ):
+        pass
+    assert not list(place.glob("*.part"))
+
+
+def test_no_scheduler_is_one_clear_line(monkeypatch):
+    monkeypatch.setattr(dask_backend, "_PATIENCE", 0.5)
+    with pytest.raises(ValueError, match="no Dask scheduler answers at 'tcp://127"):
+        run_tasks(abs, [1], scheduler="tcp://127.0.0.1:1")
+
+
+def test_dask_gives_the_same_andrefuses_other_code():
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+    ) as cluster:
+        address = cluster.scheduler_address
+        assert run_tasks(abs, [-2, 1, -3], scheduler=address) == [2, 1, 3]
+        with pytest.raises(ValueError, match="must have what the caller has: call"):
+            run_tasks(abs, [1], scheduler=address, makers=never_the_same)
+
+
+def test_a_function_that_cannot_be_imported_there_is_said(tmp_path):
+    # the script's own functions are those of __main__, which is another module there
+    script = tmp_path / "script.py"
+    script.write_text(
+        textwrap.dedent(
+            """
+            from rockwobble.compare.runs.scheduler import run_tasks
+            def own(_): pass
+            print(run_tasks(own, [1, 2], workers=2)[0].why)
+            """
+        )
+    )
+    run = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, check=True)
+    assert run.stdout.startswith("the process ended with status 1: AttributeError: ")
+    assert "'own'" in run.stdout
+
+
+def test_a_script_without_a_main_guard_runs_once(tmp_path):
+    script = tmp_path / "plain.py"
+    script.write_text(
+        textwrap.dedent(
+            """
+            from rockwobble.compare.runs.scheduler import run_tasks
+            print("top")
+            print(sum(run_tasks(abs, [-1, 2, -4], workers=2)))
+            """
+        )
+    )
+    done = subprocess.run([sys.executable, script], capture_output=True, text=True, timeout=60, check=True)
+    assert done.stdout.split() == ["top", "7"]
+
+
+def test_workers_end_with_a_caller_that_iskilled(tmp_path):
+    script = (
+        "import os, time\n"
+        "from rockwobble.compare.runs.worker import Worker\n"
+        "worker = Worker()\n"
+        "print(worker.call(os.getpid), flush=True)\n"
+        "worker.call(time.sleep, 60.0)\n"
+    )
+    caller = subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, text=True, cwd=tmp_path)
+    assert caller.stdout is not None
+    worker = int(caller.stdout.readline())
+    caller.kill()
+    caller.wait()
+    caller.stdout.close()
+    deadline = time.monotonic() + 20.0
+    while _runs(worker) and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert not _runs(worker)
+
+
+def _runs(pid: int) -> bool:
+    try:
+        # a zombie has ended; that nobody has waited for it yet does not count
+        return Path(f"/proc/{pid}/stat").read_text().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def test_an_answer_that_cannot_travel_is_an_error_of_its_task():
+    with pytest.raises((TypeError, AttributeError, RuntimeError), match="pickle"):
+        run_tasks(memoryview, [b"", b""], workers=2)
+
+
+def test_what_a_task_prints_does_not_mix_with_its_answer():
+    assert run_tasks(os.system, ["echo noise", "echo more"], workers=2) == [0, 0]
+    assert run_tasks(print, ["noise", "more"], workers=2) == [None, None]
+
+
+def test_workers_follow_the_processors_of_this_process(monkeypatch, tmp_path):
+    quota = tmp_path / "cpu.max"
+    monkeypatch.setattr(cpus, "_QUOTA", quota)
+    whole = usable_cpus()
+    assert whole == len(os.sched_getaffinity(0))
+    quota.write_text("max 100000\n")
+    assert usable_cpus() == whole
+    quota.write_text("50000 100000\n")
+    assert usable_cpus() == 1

@@ -1,0 +1,37 @@
+"""How far something is, in words that a person reads."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+
+from rockwobble.compare import Progress
+from rockwobble.reports.console.progress import sentence, shown_progress
+
+
+@pytest.mark.parametrize(
+    ("far", "words"),
+    [
+        ({"done": 0, "total": 10}, "0 of 10 runs"),
+        (
+            {"done": 1500, "total": 3000, "found": 500, "left": 200.0},
+            "1,500 of 3,000 runs (500 of them found finished), about 3.3 min left",
+        ),
+        ({"done": 10, "total": 10, "left": 0.0}, "10 of 10 runs"),
+        ({"done": 1, "total": 10, "left": math.nan}, "1 of 10 runs"),
+    ],
+)
+def test_progress_in_words(far, words):
+    assert sentence(Progress(label="a", state="finished", **far)) == words
+
+
+def test_few_tasks_have_a_line_each_and_many_one_at_the_end(capsys):
+    with shown_progress("cells") as tell:
+        tell(Progress(label="[a]", state="started", done=0, total=2))
+        tell(Progress(label="[a]", state="finished", done=1, total=2))
+    assert capsys.readouterr().err.splitlines()[0] == "running [a] ..."
+    with shown_progress("cells") as tell:
+        for done in range(1, 101):
+            tell(Progress(label="[a]", state="finished", done=done, total=100))
+    assert capsys.readouterr().err == "100 of 100 cells\n"

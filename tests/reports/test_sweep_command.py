@@ -1,0 +1,37 @@
+"""`rockwobble sweep` from the outside."""
+
+from __future__ import annotations
+
+import pytest
+
+from rockwobble.reports.cli.main import main
+
+GRID = ["--semidiagonal", "1:20:4", "--tan-alpha", "0.1,0.2", "--scale", "0.3,2", "--workers", "1"]
+
+
+def call(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main(list(arguments))
+    assert isinstance(ended.value.code, int)
+    return ended.value.code
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--semidiagonal", "a"], "--semidiagonal must be a number, a list such as 1,2,6 or a range"),
+        (["--scale", "1:2"], "--scale must be a number"),
+        (["--tan-alpha", "1:2:1"], "--tan-alpha must be a number"),
+        (["--model", "flat"], "models must be of recess, flat, planar, got 'flat'"),
+        (["--record-x", "a.at2"], "each record needs both horizontal components"),
+        (["--units", "g"], "--record-z and --units belong to a record"),
+        (["no-such-suite"], "no-such-suite"),
+        (["quick", "--units", "g"], "the records of a suite stand in its file"),
+    ],
+)
+def test_bad_input_of_a_sweep_gets_one_clear_line(tmp_path, capsys, arguments, words):
+    assert call("sweep", *arguments, "--out", str(tmp_path / "out")) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert words in error
+    assert not (tmp_path / "out").exists()
