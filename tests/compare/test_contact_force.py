@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
 
 # Of the force: the goal. Measured: 0.4 % in free response, 0.5 % under El Centro.
 FORCE = 0.01

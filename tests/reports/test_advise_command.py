@@ -120,7 +120,10 @@ ENGINE = {
         ({"engine": ENGINE | {"diverged": False}}, "agreed to the end;"),
         ({"engine": ENGINE | {"divergence": "earlier"}}, "rely on neither before you know why"),
         ({"engine": ENGINE | {"outcome": "overturned"}}, "as predicted; it overturns."),
-        ({"engine": ENGINE | {"outcome": "failed", "diagnostics": "energy_gain"}}, "could not verify that: energy"),
+        (
+            {"engine": ENGINE | {"outcome": "failed", "diagnostics": "energy_gain"}},
+            "could not verify that: energy",
+        ),
         ({"trust": {"kind": "trace", "until": 8.0, "because": ""}}, "To its end: neither the method nor"),
         ({"trust": {"kind": "peak", "until": 7.0, "because": "data"}}, "the copies are spread over half"),
         ({"prediction": {"length": 7.0, "reason": "pass"}}, "for 7 s from uplift or release: a pass then"),
@@ -131,7 +134,10 @@ ENGINE = {
         ({"lowest": {"3d": {"factor": math.nan, "confirmed": False, "start": 0.5}}}, "No scale up to 16"),
         ({"records": "synthetic"}, "22 made-up ground motions"),
         ({"recess": None}, "no recess holds that"),
-        ({"outcome": "failed", "moves": False, "failure": ["step_budget"]}, "the recess model failed (the steps"),
+        (
+            {"outcome": "failed", "moves": False, "failure": ["step_budget"]},
+            "the recess model failed (the steps",
+        ),
     ],
 )
 def test_words_turn_with_the_numbers(stored, changes, words):
