@@ -28,11 +28,10 @@ from .runs.progress import Progress
 from .runs.scheduler import run_tasks
 from .storage.files import replace_files, require_writable
 from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
-from .studies.ensemble.study import Ensemble, ensemble, read_ensemble
+from .studies.ensemble.study import Ensemble, ensemble
 from .studies.sweep.cases import CaseSweep
 from .studies.sweep.grid import Grid
-from .studies.sweep.store import SweepStore, open_sweep_store
-from .studies.sweep.study import SweepIncompleteError, SweepProgress, sweep
+from .studies.sweep.study import SweepIncompleteError, sweep
 from .traces.pair import Pair, make_pair
 from .traces.trajectory import External, read_trajectory
 
@@ -52,8 +51,6 @@ __all__ = [
     "Pair",
     "Progress",
     "SweepIncompleteError",
-    "SweepProgress",
-    "SweepStore",
     "compare",
     "default_runs",
     "describe_case",
@@ -63,10 +60,8 @@ __all__ = [
     "installed_engines",
     "make_pair",
     "missing_engines",
-    "open_sweep_store",
     "own_model",
     "perturbed_starts",
-    "read_ensemble",
     "read_trajectory",
     "relative_rms",
     "replace_files",

@@ -12,9 +12,9 @@ its model of a structure, its records and its suites may look like this:
 
 with a suite (what it may hold is said in the docstring of `rockwobble.models.suites.file`):
 
-    [bounds]                     # without this table: what contact at this time step explains
+    [bounds]                     # without this table: what the time step leaves, measured on each run
     tilt_rms = 2e-3              # alpha
-    agreement_time = 10       # s, at least
+    agreement_time = 10          # s, at least
 
     [[runs]]
     engine = ["mujoco", "pybullet"]
@@ -26,8 +26,9 @@ with a suite (what it may hold is said in the docstring of `rockwobble.models.su
     duration = 20
 
 `pytest tests/pier.suite.toml -k "scale 1.5"` runs a part. An item fails where a bound is exceeded, and then
-says what the difference is made of: model form, numerics, and what stays unexplained. That repeats the run
-at finer steps; `--no-rockwobble-budget` leaves it out. An engine that is not installed is skipped.
+says which of engine, time step and model is to blame, and what the difference is made of: model form,
+numerics, and what stays unexplained. That repeats the run at finer steps; `--no-rockwobble-budget` leaves it
+out. An engine that is not installed is skipped.
 """
 
 from __future__ import annotations
@@ -101,24 +102,20 @@ class SuiteItem(pytest.Item):
         """Run engine and model, and raise what is beyond a bound."""
         from rockwobble import reduced
         from rockwobble.compare.check import Bench
-        from rockwobble.compare.check.engines.agreement import check_run, model_of
-
-        bench = Bench(reduced=reduced, suite=self.suite, shipped=False, workers=1)
-        (trajectory,) = bench.engine_runs([(self.case, self.run, self.label)])
-        model = model_of(bench, self.run)
-        response = bench.response(self.case, model)
-        found = list(check_run(bench, self.case, self.run, self.label, trajectory, response))
-        failed = [finding for finding in found if finding.failed]
-        if failed:
-            budget = [] if self.config.getoption(_OPTION) else self._budget(model, trajectory)
-            raise DisagreementError(failed, budget)
-
-    def _budget(self, model: str, trajectory: Any) -> list[str]:
-        from rockwobble.compare.check.bench import crashed
+        from rockwobble.compare.check.engines.agreement import check_run, reference_of
+        from rockwobble.compare.runs.execution import Job
 
         from .console.budget_of_run import budget_of_run
 
-        return [] if crashed(trajectory) else budget_of_run(self.case, self.run, model)
+        bench = Bench(reduced=reduced, suite=self.suite, shipped=False, workers=1)
+        job = Job(case=self.case, run=self.run, label=self.label)
+        (trace,) = bench.traces([job])
+        failed = [finding for finding in check_run(bench, job, trace) if finding.failed]
+        if failed:
+            wanted = trace.outcome != "failed" and not self.config.getoption(_OPTION)
+            reference = reference_of(bench, self.run)
+            budget = budget_of_run(self.case, self.run, reference) if wanted else []
+            raise DisagreementError(failed, budget)
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """Return the bounds that do not hold, and the budget; anything else as pytest has it."""
@@ -145,7 +142,7 @@ class DisagreementError(Exception):
     """
 
     def __init__(self, failed: list[Finding], budget: list[str]) -> None:
-        from .console.check_output import in_words
+        from .pages.check import in_words
 
         super().__init__("\n".join([*(in_words(finding) for finding in failed), *budget]))
         self.failed = failed

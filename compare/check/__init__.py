@@ -5,8 +5,8 @@ and the part that is suspect where it fails. `rockwobble check` runs them.
 """
 
 from .bench import Bench
-from .finding import FAILED, LAYERS, NO_BASELINE, NOT_RUN, PASSED, Finding
-from .layers import first_failure, run_checks
+from .finding import FAILED, NO_BASELINE, NOT_RUN, PASSED, Finding
+from .layers import LAYERS, first_failure, run_checks
 
 __all__ = [
     "FAILED",

@@ -13,7 +13,6 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-FOLDER = "baselines"
 Values = Mapping[str, float]
 
 
@@ -33,35 +32,35 @@ class Baseline:
     reasons: tuple[Mapping[str, Any], ...] = ()
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Change:
-    """A value that an update would change; None where there is none."""
-
-    group: str
-    name: str
-    before: float | None
-    after: float | None
+def folder() -> Path:
+    """Return the folder of the data files: where an update writes."""
+    return Path(str(files("rockwobble.compare.check") / "baselines"))
 
 
 def read_baseline(name: str) -> Baseline:
     """Return the baselines of the file `name`; empty if there is no such file."""
-    place = files("rockwobble.compare.check") / FOLDER / f"{name}.json"
+    place = folder() / f"{name}.json"
     if not place.is_file():
         return Baseline(values={})
     content = json.loads(place.read_text(encoding="utf-8"))
     return Baseline(values=content["values"], reasons=tuple(content["reasons"]))
 
 
-def changes(old: Baseline, new: Mapping[str, Values]) -> list[Change]:
-    """Return what would change if the groups of `new` took the place of those of `old`."""
-    found = []
-    for group, values in new.items():
-        before = old.values.get(group, {})
-        for name in dict.fromkeys([*before, *values]):
-            was, now = before.get(name), values.get(name)
-            if was != now:
-                found.append(Change(group=group, name=name, before=was, after=now))
-    return found
+def changes(old: Baseline, new: Mapping[str, Values]) -> list[tuple[str, str, float | None, float | None]]:
+    """Return what would change if the groups of `new` took the place of those of `old`.
+
+    Returns
+    -------
+    list of (group, name, before, after)
+        None where there is no value.
+    """
+    return [
+        (group, name, before.get(name), values.get(name))
+        for group, values in new.items()
+        for before in [old.values.get(group, {})]
+        for name in dict.fromkeys([*before, *values])
+        if before.get(name) != values.get(name)
+    ]
 
 
 def updated(
@@ -83,19 +82,3 @@ def updated(
         "values": {**old.values, **{group: dict(values) for group, values in new.items()}},
     }
     return json.dumps(content, indent=1, allow_nan=False) + "\n"
-
-
-def folder() -> Path:
-    """Return the folder of the data files: where an update writes.
-
-    Raises
-    ------
-    ValueError
-        If the package is not a folder on disk.
-    """
-    place = files("rockwobble.compare.check") / FOLDER
-    if not isinstance(place, Path):
-        raise ValueError(  # noqa: TRY004 (not a matter of types for who reads it)
-            f"baselines can be written in a folder only, got {place}"
-        )
-    return place

@@ -2,16 +2,23 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from rockwobble.models import Case, Run, Suite
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Case, Run, Suite, Trace
 
 from ..runs.choice import installed_engines, run_labels
-from ..runs.execution import Job, ProgressCallback, simulate_all
+from ..runs.execution import Job, simulate_all
+from ..runs.progress import ProgressCallback
 from ..storage.fingerprint import fingerprint
 from .finding import Finding, not_run
+
+Array = NDArray[np.float64]
 
 # the engines that every installation is meant to have, and whose accuracy at the default step is known
 ENGINES = ("mujoco", "pybullet")
@@ -49,38 +56,30 @@ class Bench:
     adjust: Callable[[Run], Run] = _as_given
     workers: int | None = None
     progress: ProgressCallback | None = None
-    kept: dict[str, Any] = field(default_factory=dict)
+    kept: dict[str, Trace] = field(default_factory=dict)
 
-    def rows(self) -> Iterator[tuple[Case, Run, str, Any]]:
-        """Yield case, run, label and trace of every run of the suite."""
+    def jobs(self) -> list[Job]:
+        """Return every run of the suite, labelled as in tables."""
         labels = run_labels(self.suite.runs)
-        wanted = [
-            (case, run, label)
+        return [
+            Job(case=case, run=self.adjust(run), label=label)
             for case in self.suite.cases
             for run, label in zip(self.suite.runs, labels, strict=True)
         ]
-        found = self.engine_runs([(case, self.adjust(run), label) for case, run, label in wanted])
-        for (case, run, label), trajectory in zip(wanted, found, strict=True):
-            yield case, run, label, trajectory
 
-    def engine_runs(self, wanted: Sequence[tuple[Case, Run, str]]) -> list[Any]:
-        """Return the trace of each case and run, labelled for the progress."""
-        keys = [fingerprint([case, run]) for case, run, _ in wanted]
-        missing = {key: each for key, each in zip(keys, wanted, strict=True) if key not in self.kept}
-        jobs = [Job(case=case, run=run, label=label) for case, run, label in missing.values()]
-        found = simulate_all(jobs, workers=self.workers, progress=self.progress)
-        self.kept.update(zip(missing, found, strict=True))
+    def traces(self, jobs: Sequence[Job]) -> list[Trace]:
+        """Return the trace of each job."""
+        keys = [fingerprint([job.case, job.run]) for job in jobs]
+        missing = {key: job for key, job in zip(keys, jobs, strict=True) if key not in self.kept}
+        made = simulate_all(list(missing.values()), workers=self.workers, progress=self.progress)
+        self.kept.update(zip(missing, made, strict=True))
         return [self.kept[key] for key in keys]
 
-    def response(self, case: Case, model: str, **options: Any) -> Any:
-        """Return the response of a reduced model to a case, with the samples of an engine run."""
-        return self.reduced.simulate(
-            Case(
-                case.cylinder, case.motion, initial=case.initial, duration=case.duration, gravity=case.gravity
-            ),
-            **self.reduced.MODELS[model],
-            **options,
-        )
+    def solve(self, case: Case, model: str = "recess", **options: Any) -> Trace:
+        """Return the trace of a reduced model: "recess", "flat" or "planar"."""
+        model_options = {"plane": 0.0} if model == "planar" else {"support": model}
+        trace: Trace = self.reduced.simulate(case, **{**model_options, **options})
+        return trace
 
 
 def engines_here() -> tuple[str, ...]:
@@ -88,18 +87,30 @@ def engines_here() -> tuple[str, ...]:
     return tuple(name for name in ENGINES if name in installed_engines())
 
 
-def not_here(layer: str, what: str) -> Iterator[Finding]:
+def not_here(what: str) -> Iterator[Finding]:
     """Yield for each of `ENGINES` that is not installed that `what` was not checked with it."""
     for name in ENGINES:
         if name not in engines_here():
-            yield not_run(layer, f"{what}, {name}", part=name, note=f"{name} is not installed here")
+            yield not_run(f"{what}, {name}", name, f"{name} is not installed here")
 
 
-def crashed(trajectory: Any) -> bool:
-    """Return whether an engine left no trajectory, or one that it had to give up."""
-    return bool(trajectory.outcome == "failed")
+def why(trace: Trace) -> str:
+    """Return what ended a run, for a note."""
+    return "; ".join(f"{fact.meaning} {fact.detail}".strip() for fact in trace.facts)
 
 
-def why(trace: Any) -> str:
-    """Return the codes and what is said beside them of what ended a run."""
-    return "; ".join(" ".join([fact.meaning, fact.detail]).strip() for fact in trace.facts)
+def rms(values: Array) -> float:
+    """Return the root mean square of values (n,)."""
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def largest(values: Array) -> float:
+    """Return the largest size of values of any shape; NaN of none."""
+    return float(np.abs(values).max()) if np.size(values) else math.nan
+
+
+def tilts_apart(one: Trace, other: Trace) -> float:
+    """Return the largest difference of two tilts [alpha]; infinite where one ended earlier."""
+    if len(one.tilt) != len(other.tilt):
+        return math.inf
+    return largest(one.tilt - other.tilt) / one.case.cylinder.alpha

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -13,23 +13,23 @@ FAILED: Outcome = "FAILED"
 NO_BASELINE: Outcome = "no baseline"
 NOT_RUN: Outcome = "not run"
 
-# tightest first: what comes later rests on what comes earlier
-LAYERS = (
-    "records",
-    "equations",
-    "conserved",
-    "exact",
-    "rest",
-    "invariance",
-    "properties",
-    "order",
-    "residual",
-    "metrics",
-    "studies",
-    "traces",
-    "agreement",
-    "baseline",
-)
+
+@dataclass(frozen=True, slots=True)
+class Bound:
+    """What a measured value may be at most.
+
+    Parameters
+    ----------
+    most : float
+    reason : str
+        Where the bound comes from.
+    unit : str, optional
+        Empty for a ratio.
+    """
+
+    most: float
+    reason: str
+    unit: str = ""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,7 +39,7 @@ class Finding:
     Parameters
     ----------
     layer : str
-        One of `LAYERS`.
+        One of `LAYERS`; empty until `run_checks` has put it in its place.
     name : str
         What was measured.
     value, bound : float
@@ -55,7 +55,7 @@ class Finding:
         What else there is to say, such as the budget of a difference.
     """
 
-    layer: str
+    layer: str = ""
     name: str
     value: float
     bound: float
@@ -71,57 +71,34 @@ class Finding:
         return self.outcome == FAILED
 
 
-def at_most(
-    layer: str,
-    name: str,
-    value: float,
-    bound: float,
-    *,
-    reason: str,
-    part: str,
-    unit: str = "",
-    note: str = "",
-) -> Finding:
+def at_most(name: str, value: float, bound: Bound, part: str, note: str = "") -> Finding:
     """Return the finding that holds `value` against `bound`; a value that is no number fails."""
     value = float(value)
     return Finding(
-        layer=layer,
         name=name,
         value=value,
-        bound=bound,
-        unit=unit,
-        reason=reason,
+        bound=bound.most,
+        unit=bound.unit,
+        reason=bound.reason,
         part=part,
-        outcome=PASSED if math.isfinite(value) and value <= bound else FAILED,
+        outcome=PASSED if math.isfinite(value) and value <= bound.most else FAILED,
         note=note,
     )
 
 
-def worst_of(
-    layer: str,
-    name: str,
-    errors: Mapping[str, float],
-    bound: float,
-    *,
-    reason: str,
-    part: str,
-    unit: str = "",
-) -> Finding:
+def worst_of(name: str, errors: Mapping[str, float], bound: Bound, part: str, note: str = "") -> Finding:
     """Return the finding on the largest of several errors, and say which; one that is no number fails."""
     place = max(errors, key=lambda key: abs(errors[key]) if math.isfinite(errors[key]) else math.inf)
-    note = f"worst of {len(errors)}: {place}"
-    return at_most(layer, name, abs(errors[place]), bound, reason=reason, part=part, unit=unit, note=note)
+    notes = [f"worst of {len(errors)}: {place}", *([note] if note else [])]
+    return at_most(name, abs(errors[place]), bound, part, "; ".join(notes))
 
 
-def not_run(layer: str, name: str, *, part: str, note: str) -> Finding:
+def none_wrong(name: str, wrong: Sequence[str], reason: str, part: str, *, made: bool = True) -> Finding:
+    """Return the finding that nothing is wrong, with the first of what is; fails where it was not `made`."""
+    return at_most(name, len(wrong) if made else math.nan, Bound(0.0, reason), part, "; ".join(wrong[:3]))
+
+
+def not_run(name: str, part: str, note: str) -> Finding:
     """Return the finding of a check that could not run, and why: not a failure, but said."""
-    return Finding(
-        layer=layer,
-        name=name,
-        value=math.nan,
-        bound=math.nan,
-        reason="",
-        part=part,
-        outcome=NOT_RUN,
-        note=note,
-    )
+    nan = math.nan
+    return Finding(name=name, value=nan, bound=nan, reason="", part=part, outcome=NOT_RUN, note=note)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
+import math
 from collections.abc import Callable, Iterator, Sequence
 
 from .bench import Bench
-from .engines import agreement, engine_baseline, engine_equations, traces
-from .finding import FAILED, LAYERS, Finding, at_most
+from .engines import agreement, engine_baseline, engine_equations, engine_settings, traces
+from .finding import Bound, Finding, at_most
 from .inputs import ground_motions, record_files, suites
 from .measures import batch, external_trajectories, metrics, predicted_times, sweeps
 from .models import (
@@ -26,26 +28,25 @@ from .models import (
 
 Check = Callable[[Bench], Iterator[Finding]]
 
-
-def parts_of(layer: str, bench: Bench) -> tuple[Check, ...]:
-    """Return the checks of a layer; engine baselines exist for the suite that ships only."""
-    parts: dict[str, tuple[Check, ...]] = {
-        "records": (record_files.check, ground_motions.check),
-        "equations": (equations.check, engine_equations.check),
-        "conserved": (conserved.check,),
-        "exact": (exact.check,),
-        "rest": (rest.check, landing.check, after_record.check),
-        "invariance": (invariance.check,),
-        "properties": (properties.check, turning_points.check),
-        "order": (order.check,),
-        "residual": (residual.check,),
-        "metrics": (metrics.check, predicted_times.check, external_trajectories.check),
-        "studies": (batch.check, suites.check, sweeps.check),
-        "traces": (traces.check,),
-        "agreement": (agreement.check,),
-        "baseline": (reduced_baseline.check, *((engine_baseline.check,) if bench.shipped else ())),
-    }
-    return parts[layer]
+# what comes later rests on what comes earlier
+PARTS: dict[str, tuple[Check, ...]] = {
+    "records": (record_files.check, ground_motions.check),
+    "equations": (equations.check, engine_equations.check),
+    "conserved": (conserved.check,),
+    "exact": (exact.check,),
+    "rest": (rest.check, landing.check, after_record.check),
+    "invariance": (invariance.check,),
+    "properties": (properties.check, turning_points.check),
+    "order": (order.check,),
+    "residual": (residual.check,),
+    "metrics": (metrics.check, predicted_times.check, external_trajectories.check),
+    "studies": (batch.check, suites.check, sweeps.check),
+    "traces": (traces.check,),
+    "agreement": (engine_settings.check, agreement.check),
+    "baseline": (reduced_baseline.check, engine_baseline.check),
+}
+LAYERS = tuple(PARTS)
+_ENDS = Bound(0.0, "a check must reach its end")
 
 
 def run_checks(bench: Bench, layers: Sequence[str] = LAYERS) -> Iterator[Finding]:
@@ -62,25 +63,20 @@ def run_checks(bench: Bench, layers: Sequence[str] = LAYERS) -> Iterator[Finding
         if layer not in LAYERS:
             raise ValueError(f"a layer must be one of {', '.join(LAYERS)}, got {layer!r}")
     for layer in (name for name in LAYERS if name in layers):
-        for part in parts_of(layer, bench):
-            yield from _guarded(layer, part, bench)
+        for part in PARTS[layer]:
+            for finding in _guarded(part, bench):
+                yield dataclasses.replace(finding, layer=layer)
 
 
 def first_failure(bench: Bench, layers: Sequence[str] = LAYERS) -> Finding | None:
     """Return the first finding that failed, without running what comes after it."""
-    return next((finding for finding in run_checks(bench, layers) if finding.outcome == FAILED), None)
+    return next((finding for finding in run_checks(bench, layers) if finding.failed), None)
 
 
-def _guarded(layer: str, part: Check, bench: Bench) -> Iterator[Finding]:
+def _guarded(part: Check, bench: Bench) -> Iterator[Finding]:
     try:
         yield from part(bench)
     except Exception as error:  # whatever a broken model or engine raises is a failure, said in its place
-        yield at_most(
-            layer,
-            f"{part.__module__.rsplit('.', 1)[-1].replace('_', ' ')} could not be checked",
-            float("nan"),
-            0.0,
-            reason="a check must reach its end",
-            part=f"whatever raised {type(error).__name__}",
-            note=" ".join(str(error).split()),
-        )
+        name = part.__module__.rsplit(".", 1)[-1].replace("_", " ")
+        suspect = f"whatever raised {type(error).__name__}"
+        yield at_most(f"{name} could not be checked", math.nan, _ENDS, suspect, " ".join(str(error).split()))

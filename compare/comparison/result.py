@@ -43,6 +43,8 @@ class Comparison:
         End of the window of the RMS columns, in the time of the run [s]; None is the whole run.
     budgets : dict
         Error budget for each (case, label of the run, label of the reference), where it was asked for.
+    command : str
+        That asked for what was loaded.
     """
 
     summary: pd.DataFrame
@@ -51,6 +53,7 @@ class Comparison:
     versions: Mapping[str, str]
     until: float | None = None
     budgets: Mapping[tuple[str, str, str], ErrorBudget] = field(default_factory=dict)
+    command: str = ""
 
     def save(
         self, folder: str | Path, *, command: str = "", pages: Mapping[str, bytes] | None = None
@@ -79,7 +82,7 @@ class Comparison:
             "summary.csv": self.summary.to_csv(index=False).encode(),
             ABOUT: (plain_json.dumps(whole, indent=1) + "\n").encode(),
         }
-        made = self.manifest(command)
+        made = self.manifest(command or self.command)
         write_results(folder, made, self._tables(), files=files, pages=pages)
 
     def manifest(self, command: str = "") -> Manifest:
@@ -110,7 +113,8 @@ class Comparison:
         ValueError
             If the folder holds no comparison, or a file is missing or damaged.
         """
-        return cls(**load_fields(read_results(folder, KIND)))
+        stored = read_results(folder, KIND)
+        return cls(**load_fields(stored), command=stored.manifest.command)
 
     def _tables(self) -> dict[str, pd.DataFrame]:
         tables = {

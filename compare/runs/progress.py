@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
@@ -79,3 +80,26 @@ class Clock:
                     left=left,
                 )
             )
+
+
+class Stages:
+    """Tells a callback of one stage after the other, each a with block.
+
+    Parameters
+    ----------
+    tell : callable or None
+    total : int
+        Number of stages.
+    """
+
+    def __init__(self, tell: ProgressCallback | None, total: int) -> None:
+        self._clock = Clock(tell, [1.0] * total)
+        self._done = 0
+
+    @contextmanager
+    def stage(self, label: str) -> Iterator[None]:
+        """Tell of the start and the end of what is in the block."""
+        self._clock("started", label)
+        yield
+        self._clock("finished", label, self._done)
+        self._done += 1

@@ -12,7 +12,6 @@ from ..console.terminal import FAILED, complain, interruptible, user_input
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Bench, Finding
-    from rockwobble.models import Run
 
 _OUTPUT = "Output for programs"
 Suite = Annotated[
@@ -77,19 +76,24 @@ def check(
     with the engines on a suite; stored baselines. Each check says what it measured, what it may be, why, and
     what is wrong if it is more.
 
+    A suite of your own is held against the bounds that it states. One that states none is held against what
+    the time step of each run leaves, which is measured by a second run of twice that step.
+
     Exit code 0 if all checks hold, 1 if one does not, 2 for bad input.
     """
     with interruptible("no file was written"):
         with user_input():
-            from rockwobble.compare.check import LAYERS, Bench
+            from rockwobble.compare.check import LAYERS
 
             if reason is not None and not update_baseline:
                 raise ValueError("--reason belongs to --update-baseline, got it alone")
             for layer in only or ():
                 if layer not in LAYERS:
                     raise ValueError(f"--only must be one of {', '.join(LAYERS)}, got {layer!r}")
-            _require_writable(json, junit, markdown)
-            bench = _bench(suite, workers, Bench)
+            for path in (json, junit, markdown):
+                if path is not None and (path.is_dir() or not path.absolute().parent.is_dir()):
+                    raise ValueError(f"a report must be a file in a folder that exists, got {path}")
+            bench = _bench(suite, workers)
         if update_baseline:
             from ..console.check_update import update
 
@@ -100,59 +104,45 @@ def check(
                     )
                 update(bench, reason)
             return
-        findings, seconds = _run(bench, only)
-        from rockwobble.compare.storage.provenance import package_versions
-
-        from ..console.check_output import as_json, as_junit, as_markdown, headline
-
-        versions = package_versions()
-        if json is not None:
-            _replace(json, as_json(findings, versions, seconds))
-        if junit is not None:
-            _replace(junit, as_junit(findings, seconds))
-        if markdown is not None:
-            # the summary of a CI job may hold pages of other steps
-            with markdown.open("a", encoding="utf-8") as file:
-                file.write(as_markdown(findings, versions, seconds))
-        print(f"\n{headline(findings, seconds)}")
+        findings, seconds = _run(bench, [layer for layer in LAYERS if not only or layer in only])
+        _write(findings, seconds, json, junit, markdown)
     if any(finding.failed for finding in findings):
         raise typer.Exit(FAILED)
 
 
-def _bench(suite: str, workers: int | None, make: type[Bench]) -> Bench:
+def _bench(suite: str, workers: int | None) -> Bench:
     from rockwobble import reduced
     from rockwobble.compare import require_runnable
+    from rockwobble.compare.check import Bench
     from rockwobble.models import Suite as Cases
     from rockwobble.models import read_suite
 
     from .inputs.suite_choice import chosen_runs, without_missing
 
     read = read_suite(suite)
-    runs: list[Run]
     runs, missing = without_missing(chosen_runs(read, None, None, None), None)
     for engine in missing:
         complain(f"{engine} is not installed here and is left out")
     for case in read.cases:
         for run in runs:
             require_runnable(case, run)
-    return make(
-        reduced=reduced, suite=Cases(read.cases, runs, read.bounds), shipped=suite == "quick", workers=workers
-    )
+    cases = Cases(read.cases, runs, read.bounds)
+    return Bench(reduced=reduced, suite=cases, shipped=suite == "quick", workers=workers)
 
 
-def _run(bench: Bench, only: list[str] | None) -> tuple[list[Finding], float]:
+def _run(bench: Bench, layers: list[str]) -> tuple[list[Finding], float]:
     """Run the layers, and print each when it is done."""
     from rich.console import Console
 
-    from rockwobble.compare.check import LAYERS, run_checks
+    from rockwobble.compare.check import run_checks
 
     from ..console.check_progress import shown_progress
-    from ..console.check_table import print_layer
+    from ..pages.check import print_layer
 
     console = Console()
     begun = time.monotonic()
     findings: list[Finding] = []
-    for layer in (name for name in LAYERS if not only or name in only):
+    for layer in layers:
         with shown_progress(layer) as (tell, count):
             bench.progress = tell
             of_layer = []
@@ -164,14 +154,21 @@ def _run(bench: Bench, only: list[str] | None) -> tuple[list[Finding], float]:
     return findings, time.monotonic() - begun
 
 
-def _require_writable(*paths: Path | None) -> None:
-    for path in paths:
-        if path is not None and (path.is_dir() or not path.absolute().parent.is_dir()):
-            raise ValueError(f"a report must be a file in a folder that exists, got {path}")
+def _write(
+    findings: list[Finding], seconds: float, json: Path | None, junit: Path | None, markdown: Path | None
+) -> None:
+    from rockwobble.compare import replace_files
+    from rockwobble.compare.storage.provenance import package_versions
 
+    from ..pages.check import as_json, as_junit, headline, page
 
-def _replace(path: Path, text: str) -> None:
-    """Write beside, and put in place: never half a file."""
-    beside = path.with_name(f".{path.name}.part")
-    beside.write_text(text, encoding="utf-8")
-    beside.replace(path)
+    versions = package_versions()
+    if json is not None:
+        replace_files(json.parent, {json.name: as_json(findings, versions, seconds).encode()})
+    if junit is not None:
+        replace_files(junit.parent, {junit.name: as_junit(findings, seconds).encode()})
+    if markdown is not None:
+        # the summary of a CI job may hold pages of other steps
+        with markdown.open("a", encoding="utf-8") as file:
+            file.write(page(findings, versions, seconds).markdown())
+    print(f"\n{headline(findings, seconds)}")

@@ -72,8 +72,8 @@ def ensemble(
 
     Whatever ends it, the same command goes on where it stopped.
 
-    Writes members, methods and contrasts as CSV and members as Parquet, ensemble.json, ensemble.svg and
-    ensemble.html.
+    Writes ensemble.html, the same as ensemble.md with ensemble.svg, and members, methods and contrasts as
+    Parquet and CSV.
     """
     from ..pages.case_words import describe
     from .inputs.problem import case_from_options
@@ -106,8 +106,12 @@ def ensemble(
                     print(line)
                 print(f"Members: {len(motions) or members}, {_source(synthetic, far_field, perturbation)}")
             runs = _runs(engine, support, time_step, stated=suite is not None)
-        from ..console.ensemble_output import ensemble_files, print_ensemble
+        from rockwobble.compare.storage.manifest import made_now
+        from rockwobble.compare.studies.ensemble.study import KIND
+
         from ..console.progress import shown_progress
+        from ..console.results import show_and_write
+        from ..pages.ensemble import ensemble_page
         from ..pages.provenance import command_line
 
         with user_input(), shown_progress() as tell:
@@ -121,12 +125,20 @@ def ensemble(
                 resume=out,
                 source=_source(synthetic, far_field, perturbation) if suite is None else f"cases of {suite}",
             )
-        found = dataclasses.replace(found, about={**found.about, "command": command_line()})
-        print_ensemble(found)
-        contents = ensemble_files(found)
-        with user_input():
-            compare.replace_files(out, contents)
-    print(f"\nWritten to {out}: {', '.join(contents)}")
+        manifest = made_now(
+            KIND,
+            inputs=found.about["inputs"],
+            command=command_line(),
+            seeds={"ensemble": seed},
+            headline={
+                f"{row['method']} / {row['against']}, median ratio": row["ratio"]
+                for row in found.contrasts.to_dict("records")
+            },
+            about=found.about,
+        )
+        tables = {"members": found.members, "methods": found.methods, "contrasts": found.contrasts}
+        sheets = {f"{name}.csv": table.to_csv(index=False).encode() for name, table in tables.items()}
+        show_and_write(out, ensemble_page(found, manifest), manifest, tables, sheets)
 
 
 def _suite(context: typer.Context, name: str) -> Suite:

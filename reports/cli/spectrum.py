@@ -118,21 +118,21 @@ def spectrum(
                 raise ValueError(f"{finest}, got {search_step:g}")
             require_writable(out)
         from rockwobble.compare.storage.fingerprint import fingerprint
-        from rockwobble.compare.storage.manifest import made_now, write_results
+        from rockwobble.compare.storage.manifest import made_now
         from rockwobble.compare.storage.provenance import reduced_makers
         from rockwobble.compare.studies.spectrum.result import KIND
         from rockwobble.compare.studies.spectrum.study import overturning_spectrum
         from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
 
-        from ..console.spectrum_progress import shown_fraction
-        from ..figures.spectrum import TITLES
+        from ..console.progress import shown_progress
+        from ..console.results import show_and_write
         from ..pages.case_words import describe
         from ..pages.provenance import command_line
         from ..pages.spectrum import spectrum_page, spectrum_tables
 
         for line in describe(case)[:2]:
             print(line)
-        with shown_fraction(list(TITLES.values())) as tell:
+        with shown_progress("series") as tell:
             found = overturning_spectrum(
                 tan_alpha,
                 motion,
@@ -140,16 +140,12 @@ def spectrum(
                 intensities=levels,
                 support=support,
                 search_step=search_step,
-                progress=lambda series, fraction: tell(TITLES[series], fraction),
+                progress=tell,
             )
         tables = spectrum_tables(found, check_cells(found), confirm_lowest(found))
         inputs = fingerprint([found.facts(), radii, levels, motion.acceleration, reduced_makers()])
         manifest = made_now(KIND, inputs=inputs, command=command_line(), about=found.facts())
-        page = spectrum_page(found, tables, manifest)
-        page.show()
-        with user_input():
-            write_results(out, manifest, tables, pages=page.files())
-    print(f"\nWritten to {out}: {', '.join([*(f'{name}.parquet' for name in tables), *page.files()])}")
+        show_and_write(out, spectrum_page(found, tables, manifest), manifest, tables)
 
 
 def _axis(first: str, low: float, last: str, high: float, number: str, count: int) -> NDArray[np.float64]:

@@ -20,25 +20,25 @@ _ADVICE = {
 }
 
 
-def budget_of_run(case: Case, run: Run, model: str) -> list[str]:
+def budget_of_run(case: Case, run: Run, reference: Run) -> list[str]:
     """Return the lines; they rest on runs at finer time steps, made here."""
     from rockwobble.compare import compare
 
     comparison = compare(case, runs=[run], budget=True)
-    found = [budget for key, budget in comparison.budgets.items() if key[2] == model]
+    found = [budget for key, budget in comparison.budgets.items() if key[2] == str(reference)]
     if not found:
         return ["There is no budget of the difference: traces diverge at once, or there is no finer step."]
     budget = found[0]
     rms = {part: budget.rms(part) for part in _PARTS}
     lines = [
         f"What the difference is made of (RMS in alpha until {budget.covered:.3g} s, 80 % of the agreement):",
-        f"  {'whole':12} {budget.rms('whole'):8.1e}  engine minus {model}",
+        f"  {'whole':12} {budget.rms('whole'):8.1e}  engine minus the {reference}",
     ]
     lines += [f"  {name:12} {rms[part]:8.1e}  {meaning}" for part, (name, meaning) in _PARTS.items()]
     steps = ", ".join(f"{step:g}" for step in budget.limit.steps)
     order = "" if math.isnan(budget.limit.order) else f"; measured order {budget.limit.order:.1f}"
     lines.append(f"  known to {budget.rms('limit_error'):.1e}, from time steps of {steps} s{order}")
-    row = comparison.summary[comparison.summary["reference"] == model].iloc[0]
+    row = comparison.summary[comparison.summary["reference"] == str(reference)].iloc[0]
     if row["diverged"]:
         lines.append(
             f"  traces diverge after {row['agreement_time']:.3g} s: {row['divergence']} of the prediction"

@@ -10,12 +10,9 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rockwobble.compare import Progress
 
-Tell = Callable[["Progress"], None]
-Count = Callable[[int], None]
-
 
 @contextmanager
-def shown_progress(layer: str) -> Iterator[tuple[Tell, Count]]:
+def shown_progress(layer: str) -> Iterator[tuple[Callable[[Progress], None], Callable[[int], None]]]:
     """Yield callbacks for engine runs and for finished checks: a moving line, or one for each layer."""
     if not sys.stderr.isatty():
         print(f"checking {layer} ...", file=sys.stderr, flush=True)
@@ -24,17 +21,15 @@ def shown_progress(layer: str) -> Iterator[tuple[Tell, Count]]:
     from rich.console import Console
 
     with Console(stderr=True).status(f"{layer} ...") as status:
-        state = {"runs": "", "checks": ""}
-
-        def show() -> None:
-            status.update(f"{layer} ...{state['checks']}{state['runs']}")
+        checks = 0
 
         def tell(event: Progress) -> None:
-            state["runs"] = f" engine runs {event.done} of {event.total}: {event.case}, {event.label}"
-            show()
+            run = f"engine runs {event.done} of {event.total}: {event.label}"
+            status.update(f"{layer} ... {checks} checks done, {run}")
 
         def count(done: int) -> None:
-            state["checks"], state["runs"] = f" {done} checks done", ""
-            show()
+            nonlocal checks
+            checks = done
+            status.update(f"{layer} ... {done} checks done")
 
         yield tell, count

@@ -10,7 +10,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from rockwobble.compare.check import Bench
-    from rockwobble.compare.check.baseline_file import Change
 
 _SHOWN = 20
 
@@ -23,6 +22,7 @@ def update(bench: Bench, reason: str | None) -> None:
     ValueError
         If there is no reason, or a file cannot be written.
     """
+    from rockwobble.compare import replace_files
     from rockwobble.compare.check.baseline_file import changes, folder, read_baseline, updated
     from rockwobble.compare.check.engines import engine_baseline
     from rockwobble.compare.check.models import reduced_baseline
@@ -46,41 +46,28 @@ def update(bench: Bench, reason: str | None) -> None:
         reason = input("Reason (empty: leave everything as it is): ")
     if not (reason or "").strip():
         raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
-    for name, changed in found.items():
-        if changed:
-            text = updated(
-                read_baseline(name),
-                new[name],
-                reason=reason or "",
-                date=datetime.datetime.now(tz=datetime.UTC).date().isoformat(),
-                versions=package_versions(),
-            )
-            path = folder() / f"{name}.json"
-            try:
-                folder().mkdir(exist_ok=True)
-                beside = path.with_suffix(".part")
-                beside.write_text(text, encoding="utf-8")
-                beside.replace(path)
-            except OSError as error:
-                raise ValueError(f"cannot write the baselines {path}: {error.strerror or error}") from None
-            print(f"Written: {path}")
+    date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
+    words = {"reason": reason or "", "date": date}
+    for name in (name for name, changed in found.items() if changed):
+        text = updated(read_baseline(name), new[name], versions=package_versions(), **words)
+        replace_files(folder(), {f"{name}.json": text.encode()})
+        print(f"Written: {folder() / name}.json")
 
 
-def _show(name: str, changed: Sequence[Change]) -> None:
+def _show(name: str, changed: Sequence[tuple[str, str, float | None, float | None]]) -> None:
     """Print the changes, the largest first, and what is new in one line."""
-    known = [each for each in changed if each.before is not None and each.after is not None]
-    known.sort(key=lambda each: -abs((each.after or 0.0) - (each.before or 0.0)))
-    for each in known[:_SHOWN]:
-        assert each.before is not None
-        assert each.after is not None
-        print(
-            f"{each.group}, {each.name}: {each.before:.12g} -> {each.after:.12g} "
-            f"({each.after - each.before:+.1e})"
-        )
+    known = [
+        (group, what, before, after)
+        for group, what, before, after in changed
+        if before is not None and after is not None
+    ]
+    known.sort(key=lambda each: -abs(each[3] - each[2]))
+    for group, what, before, after in known[:_SHOWN]:
+        print(f"{group}, {what}: {before:.12g} -> {after:.12g} ({after - before:+.1e})")
     if len(known) > _SHOWN:
         print(f"... and {len(known) - _SHOWN} more values of {name}, which change by less")
-    for group in dict.fromkeys(each.group for each in changed):
-        fresh = sum(each.before is None for each in changed if each.group == group)
-        gone = sum(each.after is None for each in changed if each.group == group)
+    for group in dict.fromkeys(each[0] for each in changed):
+        fresh = sum(each[2] is None for each in changed if each[0] == group)
+        gone = sum(each[3] is None for each in changed if each[0] == group)
         if fresh or gone:
             print(f"{group}: {fresh} new values, {gone} that are no longer there")

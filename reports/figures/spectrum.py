@@ -5,17 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from rockwobble.compare.studies.spectrum.result import Array, OverturningSpectrum, safe_islands
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
+from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
 
 from .heat import Gap, Heat, Shades
 from .palette import Style, model_style, run_styles
 from .picture import Axis, Line, Panel, Picture
 
-TITLES = {
-    SPATIAL: "3D, both components",
-    PLANAR_X: "planar, east-west alone",
-    PLANAR_Y: "planar, north-south alone",
-}
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-south"}
 _OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
 _HEIGHT = 3.4
@@ -31,7 +26,7 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
         Panel(
             x=size,
             y=intensity,
-            title=f"({letter}) {TITLES[series]}",
+            title=TITLES[series],
             layers=[
                 _map(spectrum, series),
                 Line(
@@ -44,12 +39,12 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
             height=_HEIGHT,
             second=_own_peak(spectrum.component_share(series)),
         )
-        for letter, series in zip("abc", SERIES, strict=True)
+        for series in SERIES
     ]
     curves = Panel(
         x=size,
         y=intensity,
-        title="(d) lowest found to overturn; thin: safe islands above it",
+        title="lowest found to overturn, safe islands (thin)",
         layers=_curves(spectrum),
         height=_HEIGHT,
     )

@@ -82,8 +82,11 @@ def figure(picture: Picture) -> Figure:
             axes.set_axis_off()
         for place, (axes, panel) in enumerate(zip(places.flat, picture.panels, strict=False)):
             _panel(axes, panel, picture)
-            hidden = picture.link_x and place + picture.columns < len(picture.panels)
-            axes.set_xlabel("" if hidden else panel.x.title)
+            # what the panel below, or the one on the left, says as well
+            below = picture.panels[place + picture.columns :][:1]
+            left = picture.panels[place - 1 : place] if place % picture.columns else []
+            axes.set_xlabel("" if [each.x.title for each in below] == [panel.x.title] else panel.x.title)
+            axes.set_ylabel("" if [each.y.title for each in left] == [panel.y.title] else panel.y.title)
             letter = f"({chr(ord('a') + place)}) " if many and panel.title else ""
             axes.set_title(letter + panel.title)
         if picture.shades is not None:
@@ -122,7 +125,6 @@ def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
         axes.invert_yaxis()
     if panel.equal:
         axes.set_aspect("equal")
-    axes.set_ylabel(panel.y.title)
     if panel.second is not None:
         second, factor = panel.second
         there, back = (lambda y: np.asarray(y) * factor), (lambda y: np.asarray(y) / factor)

@@ -15,20 +15,32 @@ KINDS: Mapping[str, tuple[str, str]] = {
         "rockwobble.reports.pages.comparison.report:comparison_files",
     ),
     "ensemble": (
-        "rockwobble.compare.studies.ensemble.study:read_ensemble",
-        "rockwobble.reports.console.ensemble_output:ensemble_pages",
+        "rockwobble.reports.pages.ensemble:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
+    ),
+    "overturning spectrum": (
+        "rockwobble.reports.pages.spectrum:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
+    ),
+    "advice": (
+        "rockwobble.reports.pages.advice:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
     ),
     "validity": (
-        "rockwobble.compare.studies.validity.store:read_validity",
-        "rockwobble.reports.pages.validity.output:validity_pages",
+        "rockwobble.compare.studies.validity.study:read_validity",
+        "rockwobble.reports.pages.validity:validity_pages",
     ),
     "tradeoff": (
-        "rockwobble.compare.studies.tradeoff.store:read_tradeoff",
-        "rockwobble.reports.pages.tradeoff.page:tradeoff_pages",
+        "rockwobble.compare.studies.tradeoff.study:read_tradeoff",
+        "rockwobble.reports.pages.tradeoff:tradeoff_pages",
     ),
     "extremes": (
-        "rockwobble.compare.studies.extremes.store:read_extremes",
-        "rockwobble.reports.pages.extremes.page:extremes_pages",
+        "rockwobble.compare.studies.extremes.study:read_extremes",
+        "rockwobble.reports.pages.extremes:extremes_pages",
+    ),
+    "paper": (
+        "rockwobble.reports.paper.page:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
     ),
 }
 

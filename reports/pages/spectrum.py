@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rockwobble.compare.metrics.order_statistics import share_interval
-from rockwobble.compare.storage.manifest import Manifest, Results
+from rockwobble.compare.storage.manifest import Manifest, read_results
 from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast, unconservative_from
 from rockwobble.compare.studies.spectrum.result import (
+    KIND,
     OverturningSpectrum,
     record_frame,
     safe_islands,
@@ -39,8 +41,9 @@ def spectrum_page(
     )
 
 
-def page_of(results: Results) -> Page:
-    """Return the page of a stored spectrum."""
+def stored_page(folder: Path) -> Page:
+    """Return the page of the spectrum that is stored in a folder."""
+    results = read_results(folder, KIND)
     tables = {name: results.table(name) for name in ("lowest", "islands", "contrast", "checked")}
     return spectrum_page(spectrum_of(results), tables, results.manifest)
 

@@ -42,15 +42,17 @@ def number(value: object, form: str = ".3g") -> str:
         return _FORMS[form](found)
     if form.endswith("d"):
         return format(int(found), form)
-    # 1e-07 is how a computer writes it
-    return re.sub(r"e([+-])0*(\d)", lambda m: f"e{m[1].replace('+', '')}{m[2]}", format(found, form))
+    return _short(format(found, form))
 
 
 def _percent(share: float) -> str:
     value = 100.0 * share
-    size = abs(value)
-    digits = 0 if size >= 10.0 or size == 0.0 else 1 if size >= 1.0 else 2 if size >= 0.1 else None
-    return f"{value:.1g} %" if digits is None else f"{value:.{digits}f} %"
+    return f"{value:.0f} %" if abs(value) >= 10.0 else f"{_short(format(value, '.2g'))} %"
+
+
+def _short(text: str) -> str:
+    """Return 1e-7 for 1e-07, which is how a computer writes it."""
+    return re.sub(r"e([+-])0*(\d)", lambda m: f"e{m[1].replace('+', '')}{m[2]}", text)
 
 
 def _duration(seconds: float) -> str:

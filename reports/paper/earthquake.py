@@ -4,23 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import asdict, dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, Trace, el_centro_1940
 
-from ..figures.drawing import drawn, drawn_samples, line, with_grid
-
-if TYPE_CHECKING:
-    import pandas as pd
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-    from rockwobble.reduced import Response
+from .free import RESIDUAL, displacement
+from .statement import Statement, verdict_of
 
 Array = NDArray[np.float64]
 
@@ -36,12 +29,12 @@ _NEIGHBOUR_STEP = 2e-3  # [s]; enough to count by
 _ABRUPT = 10.0
 # less than tells two instruments apart
 NUDGE = 1e-3
-_PARTED = 0.01  # of alpha
-_HEIGHT = 8.6
-_COLOUR = "#0072B2"
+_DIVERGED = 0.01  # of alpha
+# a difference of a quarter is seen in a figure
+_PLAINLY = 1.25
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
     """How the contact point moves in a part of the record.
 
@@ -71,69 +64,42 @@ class Part:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Shaken:
-    """The response of figure 5, its two parts, and those of its neighbours.
+    """The response, its parts before and after `strong_end`, and those of its neighbours.
 
-    Attributes
-    ----------
-    motion : GroundMotion
-    response : Response
-    strong_end : float
-        Last time the record by itself could uplift the cylinder [s].
-    strong, weak : Part
-        Before and after.
-    neighbours : sequence of (Part, Part)
-        The same of the neighbours that do not overturn.
-    horizon : float
-        Time at which a twin, its record stronger by `NUDGE`, first differs by 1 % of alpha [s]; infinite
-        if it never does.
+    `strong_end` is the last time the record by itself could uplift the cylinder [s]; from `agreement` [s] on
+    a perturbed copy, its record stronger by `NUDGE`, differs by 1 % of alpha: inf if it never does.
     """
 
-    motion: GroundMotion
-    response: Response
+    trace: Trace
     strong_end: float
     strong: Part
     weak: Part
     neighbours: Sequence[tuple[Part, Part]]
-    horizon: float
-
-    def to_frame(self) -> pd.DataFrame:
-        """Return the samples at the time step of the record, and the record."""
-        response = self.response
-        every = round(self.motion.time_step / _SAMPLE_STEP)
-        table = drawn_samples(response, slice(None, None, every))
-        times = np.arange(len(self.motion.acceleration)) * self.motion.time_step
-        for i, name in enumerate(("ground_x", "ground_y")):
-            table[name] = np.interp(table["time"], times, self.motion.acceleration[:, i])
-        return table
+    agreement: float
 
 
 def shaken() -> Shaken:
-    """Run the record, its neighbours and the twin."""
+    """Run the record, its neighbours that do not overturn, and the perturbed copy."""
     motion = el_centro_1940()
-    response = _run(motion)
-    twin = _run(motion.scaled(1.0 + NUDGE))
-    count = min(len(response.tilt), len(twin.tilt))
-    apart = np.abs(response.tilt[:count] - twin.tilt[:count]) > _PARTED * CYLINDER.alpha
+    trace, copy = _run(motion), _run(motion.scaled(1.0 + NUDGE))
+    count = min(len(trace.tilt), len(copy.tilt))
+    apart = np.abs(trace.tilt[:count] - copy.tilt[:count]) > _DIVERGED * CYLINDER.alpha
     end = strong_end(motion)
-    strong, weak = parts(response, end)
-    neighbours = []
-    for scale in _NEIGHBOURS:
-        scaled = motion.scaled(scale)
-        other = _run(scaled, _NEIGHBOUR_STEP)
-        if other.outcome != "overturned":
-            neighbours.append(parts(other, strong_end(scaled)))
+    strong, weak = parts(trace, end)
+    others = [(motion.scaled(scale), _run(motion.scaled(scale), _NEIGHBOUR_STEP)) for scale in _NEIGHBOURS]
     return Shaken(
-        motion=motion,
-        response=response,
+        trace=trace,
         strong_end=end,
         strong=strong,
         weak=weak,
-        neighbours=neighbours,
-        horizon=float(response.time[apart.argmax()]) if apart.any() else math.inf,
+        neighbours=[
+            parts(other, strong_end(scaled)) for scaled, other in others if other.outcome != "overturned"
+        ],
+        agreement=float(trace.time[apart.argmax()]) if apart.any() else math.inf,
     )
 
 
-def _run(motion: GroundMotion, sample_step: float = _SAMPLE_STEP) -> Response:
+def _run(motion: GroundMotion, sample_step: float = _SAMPLE_STEP) -> Trace:
     return reduced.simulate(Case(CYLINDER, motion), rtol=_RTOL, sample_step=sample_step)
 
 
@@ -143,12 +109,11 @@ def strong_end(motion: GroundMotion) -> float:
     return float(np.flatnonzero(over)[-1] * motion.time_step)
 
 
-def parts(response: Response, end: float) -> tuple[Part, Part]:
+def parts(trace: Trace, end: float) -> tuple[Part, Part]:
     """Return how the contact point moves before and after `end` [s]."""
-    passes = response.passes
-    time, turn = passes["time"].to_numpy(), passes["angle_of_turn"].to_numpy()
-    half = half_turn_times(response)
-    energy = np.interp(time, response.time, response.energy)
+    time, turn = (trace.passes[name].to_numpy() for name in ("time", "angle_of_turn"))
+    half = half_turn_times(trace)
+    energy = np.interp(time, trace.time, trace.energy)
     change = np.abs(np.diff(energy)) / np.maximum(energy[1:], energy[:-1])
     found = []
     for inside in (time < end, time >= end):
@@ -169,16 +134,15 @@ def parts(response: Response, end: float) -> tuple[Part, Part]:
 def abrupt_time() -> float:
     """Return the time below which the middle half of a turn counts as abrupt [s]."""
     # a turn is half of the way round, or a little more
-    steady = 0.25 * reduced.wobbling_period(CYLINDER, 0.5 * CYLINDER.alpha)
+    steady = 0.25 * float(reduced.wobbling_period(CYLINDER, 0.5 * CYLINDER.alpha))
     return steady / _ABRUPT
 
 
-def half_turn_times(response: Response) -> Array:
+def half_turn_times(trace: Trace) -> Array:
     """Return for each pass the time in which the middle half of its turn is made (n,) [s]."""
-    passes = response.passes
-    time, angle = response.time, response.rolling_angle
+    time, angle = trace.time, trace.rolling_angle
     times = []
-    for at, turn in zip(passes["time"], passes["angle_of_turn"], strict=True):
+    for at, turn in zip(trace.passes["time"], trace.passes["angle_of_turn"], strict=True):
         # counted in the direction of the turn, from where the tilt is least
         way = (angle - np.interp(at, time, angle)) * math.copysign(1.0, turn)
         begin, end = np.searchsorted(time, [at, at])
@@ -202,50 +166,52 @@ def _median(values: Array) -> float:
     return float(np.median(known)) if len(known) else math.nan
 
 
-def earthquake_figure(data: Shaken) -> bytes:
-    """Return the figure as SVG: response above, record below, the strong part shaded."""
-
-    def draw(figure: Figure) -> None:
-        response, motion = data.response, data.motion
-        at = np.arange(len(motion.acceleration), dtype=np.float64) * motion.time_step
-        rows = figure.subplots(6, 1, sharex=True, height_ratios=[1.3, 1, 1.3, 1.1, 0.9, 0.9])
-        shown = (
-            (response.time, response.tilt / CYLINDER.alpha, "θ / α [-]"),
-            (response.time, response.tilt_rate, "θ' [rad/s]"),
-            (response.time, response.rolling_angle / math.pi, "φ / π [-]"),
-            (response.time, response.rolling_rate, "φ' [rad/s]"),
-            (at, motion.acceleration[:, 0] / _GRAVITY, "east-west\n[g]"),
-            (at, motion.acceleration[:, 1] / _GRAVITY, "north-south\n[g]"),
-        )
-        for axes, (time, values, label) in zip(rows, shown, strict=True):
-            axes.axvspan(response.uplift_time, data.strong_end, color="#f3e3c3", linewidth=0)
-            if math.isfinite(data.horizon):
-                axes.axvline(data.horizon, color="#777777", linewidth=0.9, linestyle=(0, (4, 2)))
-            colour = "#444444" if time is at else _COLOUR
-            line(axes, time, values, color=colour, linewidth=0.8)
-            axes.set_ylabel(label)
-            with_grid(axes)
-        rows[0].set_ylim(bottom=0.0)
-        _signed_log(rows[3])
-        rows[0].set_title(_title(data))
-        largest = 1.1 * float(np.abs(motion.acceleration[:, :2]).max()) / _GRAVITY
-        for axes in rows[4:]:
-            axes.set_ylim(-largest, largest)
-        rows[-1].set_xlim(0.0, response.time[-1])
-        rows[-1].set_xlabel("time [s]")
-        figure.align_ylabels(rows)
-
-    return drawn(draw, _HEIGHT)
-
-
-def _signed_log(axes: Axes) -> None:
-    axes.set_yscale("symlog", linthresh=1.0)
-    ticks = [-1000.0, -10.0, 0.0, 10.0, 1000.0]
-    axes.set_yticks(ticks, [f"{tick:g}" for tick in ticks])
+def statements(data: Shaken) -> list[Statement]:
+    """Hold what the paper says of the figure against the response and its neighbours."""
+    strong, weak, trace = data.strong, data.weak, data.trace
+    both = {f"{name}_{key}": value for name, part in (("strong", strong), ("weak", weak))
+            for key, value in asdict(part).items()}  # fmt: skip
+    abrupt = both | {
+        "from": trace.uplift_time,
+        "until": data.strong_end,
+        "abrupt_time": abrupt_time(),
+        "neighbours": len(data.neighbours),
+        "neighbours_abrupt": sum(2 * part.abrupt > part.passes for part, _ in data.neighbours),
+        "agreement": data.agreement,
+        "nudge": NUDGE,
+    }
+    tests = {"free": _quasi_free, "slower": _slower, "smoother": _smoother}
+    counts = {name: sum(test(*pair) for pair in data.neighbours) for name, test in tests.items()}
+    away = displacement(float(trace.passes["minimum_tilt"].min()))
+    twist = float(np.abs(trace.twist).max())
+    place = {
+        "peak": trace.peak_tilt / CYLINDER.alpha,
+        "last_tilt": float(trace.tilt[-1]) / CYLINDER.alpha,
+        "last_away": displacement(float(trace.tilt[-1])),
+        "rests": trace.outcome == "rest",
+        "passes": len(trace.passes),
+        "away": away,
+        "twist": twist,
+    }
+    smooth = verdict_of(*(test(strong, weak) for test in tests.values()))
+    back = verdict_of(trace.outcome in ("rest", "completed"), away < RESIDUAL, twist == 0.0)
+    found = [
+        ("abrupt", abrupt, verdict_of(strong.abrupt > 0, 2 * strong.abrupt > strong.passes)),
+        ("smooth", both | counts | {"neighbours": len(data.neighbours), "until": data.strong_end}, smooth),
+        ("place", place, back),
+    ]
+    return [Statement(figure=5, name=name, numbers=n, verdict=verdict) for name, n, verdict in found]
 
 
-def _title(data: Shaken) -> str:
-    note = f"R = {CYLINDER.semidiagonal:g} m, tan α = {CYLINDER.tan_alpha:g}; shaded: the record can uplift"
-    if not math.isfinite(data.horizon):
-        return note
-    return f"{note}; dashed: a record {100.0 * NUDGE:g} % stronger parts here"
+def _quasi_free(strong: Part, weak: Part) -> bool:
+    return _PLAINLY * weak.energy_change < strong.energy_change
+
+
+def _slower(strong: Part, weak: Part) -> bool:
+    return weak.half_turn > _PLAINLY * strong.half_turn
+
+
+def _smoother(strong: Part, weak: Part) -> bool:
+    # reversals by the pass, without a division where there is none
+    steadier = _PLAINLY * weak.scatter < strong.scatter
+    return steadier and _PLAINLY * weak.reversals * strong.passes < strong.reversals * weak.passes

@@ -1,81 +1,94 @@
-"""The page of the paper's figures, in Markdown."""
+"""The page of the paper's figures: what is kept of them, and the report on it."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from collections import Counter
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
 
-from ..pages.provenance import made_by
-from .claim import Claim
+from rockwobble.compare.runs.progress import Clock, ProgressCallback
+from rockwobble.compare.storage.fingerprint import fingerprint
+from rockwobble.compare.storage.manifest import Manifest, made_now, read_results
+from rockwobble.compare.storage.provenance import code_digests, package_versions
+from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, spectrum_of
+from rockwobble.compare.studies.spectrum.study import overturning_spectrum
+from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
+
+from ..pages.page import Page
+from ..pages.spectrum import spectrum_tables, spectrum_values
+from . import earthquake, free, overturning, period, pictures
+from .statement import from_frame, to_frame
 
 if TYPE_CHECKING:
     import pandas as pd
 
-SOURCE = (
-    "M. F. Vassiliou, S. Burger, M. Egger, J. A. Bachmann, M. Broccardo, B. Stojadinovic, *Behavior of "
-    "inverted pendulum cylindrical structures that rock and wobble during earthquakes*, 16th World "
-    "Conference on Earthquake Engineering, Santiago, 2017"
-)
+R = TypeVar("R")
+KIND = "paper"
+_SAMPLES = 12_000  # of figure 5 that are kept
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Section:
-    """A figure of the paper.
+def compute(
+    grid: int, command: str = "", progress: ProgressCallback | None = None
+) -> tuple[Manifest, dict[str, pd.DataFrame], OverturningSpectrum]:
+    """Run figures 3 to 6, the last on `grid` sizes and as many intensities, and keep them as tables."""
+    clock = Clock(progress, [1.0, 20.0, 40.0, 0.005 * grid * grid])
 
-    Attributes
-    ----------
-    number : int
-        Of the figure in the paper.
-    title, text : str
-        The text stands under the picture, before the claims.
-    claims : sequence of Claim
-    svg : bytes
-    tables : mapping of file name to DataFrame
-        What the picture shows.
-    """
+    def timed(number: int, run: Callable[[], R]) -> R:
+        clock("started", f"figure {number}")
+        found = run()
+        clock("finished", f"figure {number}", number - 3)
+        return found
 
-    number: int
-    title: str
-    text: str
-    claims: Sequence[Claim]
-    svg: bytes
-    tables: dict[str, pd.DataFrame]
-
-    @property
-    def picture(self) -> str:
-        """File name of the picture."""
-        return f"figure-{self.number}.svg"
-
-
-def paper_page(sections: Sequence[Section]) -> str:
-    """Return the page; pictures and tables are beside it."""
-    parts = [
-        "# The paper's figures, computed again",
-        f"Figures {sections[0].number} to {sections[-1].number} of {SOURCE}, from the equations of motion "
-        "(18) and (19) as they are printed, and (24) without its misprints. Under each figure stands "
-        "what the paper says of it, what this run finds, and whether the one bears the other out: every "
-        "number and every verdict is computed from the run.",
+    curves = timed(3, period.periods)
+    modes = timed(4, free.free_modes)
+    shaken = timed(5, earthquake.shaken)
+    spectrum = timed(6, lambda: overturning_spectrum(**overturning.problem(grid)))
+    found = [
+        *period.statements(curves),
+        *free.statements(modes),
+        *earthquake.statements(shaken),
+        *overturning.statements(spectrum),
     ]
-    for section in sections:
-        tables = ", ".join(f"[{name}]({name})" for name in section.tables)
-        parts += [
-            f"## Figure {section.number}: {section.title}",
-            f"![Figure {section.number}: {section.title}]({section.picture})",
-            section.text,
-            "\n".join(claim.markdown() for claim in section.claims),
-            f"Data: {tables}",
-        ]
-    return "\n\n".join([*parts, "---", made_by(), ""])
+    tables = {
+        "figure-3": curves,
+        "figure-4": free.to_frame(modes),
+        "figure-5": free.drawn_samples(shaken.trace, _SAMPLES),
+        "statements": to_frame(found),
+        **spectrum_tables(spectrum, check_cells(spectrum), confirm_lowest(spectrum)),
+    }
+    inputs = fingerprint([grid, code_digests(), package_versions()])
+    headline = dict(Counter(each.verdict for each in found))
+    made = made_now(KIND, inputs=inputs, command=command, headline=headline, about=spectrum.facts())
+    return made, tables, spectrum
 
 
-def claims_frame(sections: Sequence[Section]) -> pd.DataFrame:
-    """Return the claims as a table: figure, paper, run, verdict."""
-    import pandas as pd
+def paper_page(tables: dict[str, pd.DataFrame], manifest: Manifest, spectrum: OverturningSpectrum) -> Page:
+    """Return the page of computed or stored tables."""
+    found = {each.name: each for each in from_frame(tables["statements"])}
+    shaken = {**found["abrupt"].numbers, "time_step": spectrum.motion.time_step}
+    return Page(
+        name="paper",
+        template="paper",
+        values={
+            **spectrum_values(spectrum, tables),
+            "statements": found,
+            "cylinder": free.CYLINDER,
+            "release": free.RELEASE,
+            "about": manifest,
+        },
+        pictures=[
+            pictures.period_picture(tables["figure-3"]),
+            pictures.free_picture(tables["figure-4"]),
+            pictures.earthquake_picture(tables["figure-5"], tables["record"], shaken),
+            pictures.overturning_picture(spectrum),
+        ],
+    )
 
-    rows = [
-        (section.number, claim.says, claim.found, claim.verdict)
-        for section in sections
-        for claim in section.claims
-    ]
-    return pd.DataFrame(rows, columns=["figure", "paper", "run", "verdict"])
+
+def stored_page(folder: Path) -> Page:
+    """Return the page of the results in a folder."""
+    results = read_results(folder, KIND)
+    names = [name.removesuffix(".parquet") for name in results.manifest.files]
+    tables = {name: results.table(name) for name in names}
+    return paper_page(tables, results.manifest, spectrum_of(results))

@@ -16,6 +16,7 @@ SCRIPTS = (
     "agreement_times",
     "engine_settings",
     "ensemble_intervals",
+    "false_alarms",
     "ring_losses",
     "run_overhead",
     "scene_cost",

@@ -2,9 +2,9 @@
 
 `python tests/benchmarks convergence` prints three tables.
 
-1. In the recess against the recess model and on flat ground against the flat-ground model over 8 s, released at 0.3, 0.5 and
-   0.8 alpha with 0.5 rad/s at 6 m, for tan(alpha) from 0.1 to 3: error at each step, and the order. A release
-   in which the model itself loses contact with the ground is left out, and said below the table.
+1. In the recess against the recess model and on flat ground against the flat-ground model over 8 s, released
+   at 0.3, 0.5 and 0.8 alpha with 0.5 rad/s at 6 m, for tan(alpha) from 0.1 to 3: error at each step, and the
+   order. A release in which the model itself loses contact is left out, and said below the table.
 2. The angle of turn from tilt maximum to tilt maximum, b = 1 m, h = 2 b, released at alpha/2 with 0.1 rad/s,
    against exact quadrature (recess) and against the flat-ground model; Exudyn, which has no recess, as well.
 3. The first table's release at 0.5 alpha for cylinders of 1 cm, 6 m and 100 m.
@@ -24,7 +24,8 @@ import numpy as np
 
 from rockwobble import multibody, reduced
 from rockwobble.compare.runs.choice import SUPPORTS
-from rockwobble.compare.runs.execution import Job, ProgressCallback, simulate_all
+from rockwobble.compare.runs.execution import Job, simulate_all
+from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.compare.traces.pair import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 from rockwobble.multibody.engines.registry import find_engine
@@ -216,7 +217,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Print the tables."""
     parser = options_of(
         "convergence",
-        "How the engines converge to the reduced models. Example: --table free_response --engine mujoco --tan-alpha 3",
+        "How the engines converge to the reduced models. Example: --table size --engine mujoco --tan-alpha 3",
     )
     parser.add_argument("--table", action="append", choices=TABLES, help="may be repeated (default: all)")
     parser.add_argument(

@@ -135,5 +135,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     table = measure(say=lambda line: print(line, file=sys.stderr, flush=True))
     formats = {"extreme": "", "value": "", "tan_alpha": "g", "engine": "", "support": ""}
     counts = ", ".join(f"{count} {verdict}" for verdict, count in table["verdict"].value_counts().items())
-    show(table, "Engines at their extremes", formats | {"verdict": "", "error": ".1e", "diagnostics": ""}, counts)
+    show(
+        table,
+        "Engines at their extremes",
+        formats | {"verdict": "", "error": ".1e", "diagnostics": ""},
+        counts,
+    )
     return 1 if (table["verdict"] == "wrong").any() else 0

@@ -24,7 +24,8 @@ import numpy as np
 from rockwobble import multibody
 from rockwobble.compare.metrics.tilt import tilt_rms_relative
 from rockwobble.compare.runs.choice import SUPPORTS
-from rockwobble.compare.runs.execution import Job, ProgressCallback, simulate_all
+from rockwobble.compare.runs.execution import Job, simulate_all
+from rockwobble.compare.runs.progress import ProgressCallback
 from rockwobble.compare.traces.pair import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run, el_centro_1940
 
@@ -190,9 +191,7 @@ def measure(
     ratio = [value / base[variant.engine] for variant, value in zip(chosen, cost, strict=True)]
     steps = [STEP * (1.0 if abs(each - 1.0) < 0.1 else each) for each in ratio]
     problems = cases(turns)
-    jobs = [
-        Job(case=case, run=Run(None, support)) for case in problems for support in SUPPORTS
-    ]
+    jobs = [Job(case=case, run=Run(None, support)) for case in problems for support in SUPPORTS]
     for variant, step in zip(chosen, steps, strict=True):
         for case in problems:
             unit_time = math.sqrt(case.cylinder.semidiagonal / 6.0)

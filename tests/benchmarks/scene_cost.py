@@ -73,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             given.engine,
             rounds=given.rounds,
             steps=given.steps,
-            say=lambda line: print(line, file=sys.stderr),
+            tell=lambda: print("another round is done", file=sys.stderr),
         )
     except ValueError as error:
         parser.error(str(error))

@@ -1,19 +1,13 @@
-"""The table of what a ring costs: its runs, and its lines."""
+"""The table of what a ring costs: its runs, and its medians."""
 
 from __future__ import annotations
 
 import math
 
-from benchmarks.ring_losses import ring_runs, table
-from rockwobble.compare.studies.validity.ring_losses import RingRow
+import pandas as pd
+import pytest
 
-
-def row(support: str, loss: float, **settings: float) -> RingRow:
-    return RingRow(
-        case="short", support=support, settings=settings, outcome="completed", first_contact=math.nan,
-        contact_time=0.0, passes=2, loss=loss, rolled_out=0.0, at_end=0.0, residual=0.0, twist=0.0, peak=0.5,
-        recess_peak=0.5, against_recess=1e-5, against_flat=1e-2,
-    )  # fmt: skip
+from benchmarks.ring_losses import INTENSITIES, medians, ring_cases, ring_runs
 
 
 def test_every_run_of_the_table_differs() -> None:
@@ -22,10 +16,22 @@ def test_every_run_of_the_table_differs() -> None:
     assert len({(run.support, *run.settings.items()) for run in runs}) == len(runs)
 
 
+def test_the_cases_turn() -> None:
+    (free, shaken), (turned, turned_shaken) = (ring_cases(0.2, turn).values() for turn in (0.0, 0.1))
+    assert free.initial is not None
+    assert turned.initial is not None
+    assert turned.initial.rolling_angle == pytest.approx(0.1)
+    assert shaken.motion is not None
+    assert turned_shaken.motion is not None
+    assert turned_shaken.motion.peak == pytest.approx(shaken.motion.peak)
+    # as many times the acceleration that uplifts as the table says
+    assert shaken.motion.peak / (9.81 * 0.2) == pytest.approx(INTENSITIES[0.2])
+
+
 def test_a_line_holds_the_medians_of_the_turns() -> None:
-    rings = [row("ring", loss, ring_clearance=0.01) for loss in (0.01, 0.02, 0.06)]
-    lines = table([row("recess", 0.0), *rings]).splitlines()
-    assert lines[1] == "short"
-    assert [line.split()[0] for line in lines[4:]] == ["recess", "clearance"]
-    # percent: median, least and most, and the median over two passes
-    assert lines[-1].split()[5:9] == ["2.000", "1.000", "6.000", "1.000"]
+    same = {"outcome": "completed", "first_contact": math.inf, "contact_time": 0.0, "passes": 2,
+            "rolled_out": 0.0, "at_end": 0.0, "twist": 0.0, "recess": 1e-5, "flat": 1e-2}  # fmt: skip
+    rows = [{"case": "short", "run": "clearance 0.01", "loss": loss, **same} for loss in (0.01, 0.02, 0.06)]
+    line = medians(pd.DataFrame(rows)).iloc[0]
+    assert line[["lost", "from", "to", "a pass"]].tolist() == pytest.approx([2.0, 1.0, 6.0, 1.0])
+    assert math.isnan(line["first"])

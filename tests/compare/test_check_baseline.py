@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import json
-from types import SimpleNamespace
-from typing import Any
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -14,8 +13,10 @@ from rockwobble import reduced
 from rockwobble.compare.check import FAILED, NO_BASELINE, PASSED, Bench, baseline_file
 from rockwobble.compare.check.baseline_file import Baseline, changes, read_baseline, updated
 from rockwobble.compare.check.engines import engine_baseline
+from rockwobble.compare.check.measures.made_traces import made
 from rockwobble.compare.check.models import reduced_baseline as kept_numbers
-from rockwobble.models import Suite, read_suite
+from rockwobble.compare.runs.execution import Job
+from rockwobble.models import Suite, Trace, read_suite
 
 SUITE = read_suite("quick")
 ONE = Suite(SUITE.cases[:1], SUITE.runs[:1])
@@ -30,17 +31,11 @@ def bench_with(shift: float, version: str) -> Bench:
     label = f"{run.engine} {run.support}"
     times = case.length * np.arange(1, engine_baseline.INSTANTS + 1) / engine_baseline.INSTANTS
     tilts = [kept[f"{case.name}, {label}: tilt at {time:g} s [alpha]"] for time in times]
-    trace = SimpleNamespace(
-        engine=run.engine,
-        engine_version=version,
-        time_step=1e-4,
-        outcome="completed",
-        time=times,
-        tilt=(np.array(tilts) + shift) * case.cylinder.alpha,
-    )
+    tilt = (np.array(tilts) + shift) * case.cylinder.alpha
+    trace = made(times, tilt, case=case, run=run, version=version)
 
     class Made(Bench):
-        def engine_runs(self, wanted: Any) -> list[Any]:
+        def traces(self, jobs: Sequence[Job]) -> list[Trace]:
             return [trace]
 
     return Made(reduced=reduced, suite=ONE)
@@ -86,7 +81,7 @@ def test_a_number_that_moved_fails_and_is_shown(monkeypatch: pytest.MonkeyPatch)
 def test_an_update_keeps_the_reason_and_the_other_groups() -> None:
     old = Baseline(values={"a 1": {"x": 1.0}, "b 1": {"y": 2.0}}, reasons=({"reason": "first"},))
     new = {"a 1": {"x": 1.5, "z": 3.0}}
-    assert [(c.name, c.before, c.after) for c in changes(old, new)] == [("x", 1.0, 1.5), ("z", None, 3.0)]
+    assert changes(old, new) == [("a 1", "x", 1.0, 1.5), ("a 1", "z", None, 3.0)]
     found = json.loads(
         updated(old, new, reason=" a  new kernel ", date="2026-11-21", versions={"numpy": "2"})
     )

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.check import LAYERS, Bench
+from rockwobble.compare.check import Bench
 from rockwobble.compare.check.finding import NOT_RUN
 from rockwobble.compare.check.inputs import ground_motions, record_files, suites
 from rockwobble.compare.check.measures import external_trajectories, metrics, predicted_times, sweeps
@@ -25,7 +25,7 @@ PARTS = (record_files, ground_motions, metrics, predicted_times, external_trajec
 def test_what_is_installed_holds(part: Any) -> None:
     findings = list(part.check(BENCH))
     assert findings
-    assert all(finding.layer in LAYERS and finding.part for finding in findings)
+    assert all(finding.name and finding.part and finding.reason for finding in findings)
     assert not [f"{f.name}: {f.value}, {f.note}" for f in findings if f.failed]
 
 
@@ -44,7 +44,7 @@ def changed(monkeypatch: pytest.MonkeyPatch, place: Any, name: str, change: Any)
     [
         ("tilt_rms", lambda value: 1.001 * value, "RMS of the tilt"),
         ("tilt_rms_relative", lambda value: value * math.sqrt(2.0), "RMS of the tilt"),
-        ("contact_rms", lambda value: value / 5.1, "RMS of the contact"),
+        ("contact_rms", lambda value: value / 5.1, "contact RMS"),
         ("turn_difference", lambda value: math.remainder(value, 2.0 * math.pi), "turning"),
         ("direction_difference", lambda value: -value, "turning"),
         ("first_unresolved_pass", lambda value: value + 1.0, "turning"),
@@ -70,8 +70,8 @@ def test_a_wrong_column_of_the_summary_is_found(monkeypatch: pytest.MonkeyPatch,
     ("name", "change"),
     [
         ("close_pass", lambda found: type(found)(length=found.length + 0.05, reason=found.reason)),
-        ("predict_horizon", lambda found: type(found)(length=1.01 * found.length, reason=found.reason)),
-        ("predict_horizon", lambda found: type(found)(length=found.length, reason="growth")),
+        ("predict", lambda found: type(found)(length=1.01 * found.length, reason=found.reason)),
+        ("predict", lambda found: type(found)(length=found.length, reason="growth")),
         ("verdict", lambda word: "in time"),
         ("contrast", lambda found: replace(found, ratio_p=0.5 * found.ratio_p)),
         ("contrast", lambda found: replace(found, overturned_p=1.0)),

@@ -15,24 +15,27 @@ from rockwobble.compare.check import Bench
 from rockwobble.compare.check.finding import Finding
 from rockwobble.compare.check.measures import batch
 from rockwobble.compare.check.models import after_record, landing, properties, rest, turning_points
-from rockwobble.models import Case, GroundMotion, read_suite
+from rockwobble.models import Case, GroundMotion, Trace, read_suite
 
 SUITE = read_suite("quick")
 PARTS = (rest, landing, after_record, properties, turning_points, batch)
-Change = Callable[[GroundMotion | None, dict[str, Any]], GroundMotion | None]
+Options = dict[str, Any]
+Change = Callable[[GroundMotion | None, Options], GroundMotion | None]
 
 
-def bench_with(change: Change | None = None, answer: Callable[[Any], Any] = lambda found: found) -> Bench:
+def as_given(motion: GroundMotion | None, options: Options) -> GroundMotion | None:
+    return motion
+
+
+def bench_with(change: Change = as_given, answer: Callable[[Trace], Trace] = lambda found: found) -> Bench:
     """A bench whose model is asked another question, or gives another answer."""
 
-    def simulate(cylinder: Any, motion: Any = None, **options: Any) -> Any:
-        motion = motion if change is None else change(motion, options)
-        return answer(reduced.simulate(Case(cylinder, motion), **options))
+    def simulate(case: Case, **options: Any) -> Trace:
+        other = dataclasses.replace(case, motion=change(case.motion, options), duration=case.length)
+        return answer(reduced.simulate(other, **options))
 
     def peak_tilts(sizes: Any, tan_alpha: float, motion: Any, scales: Any, **options: Any) -> Any:
-        motion = motion if change is None else change(motion, options)
-        options.pop("duration", None)
-        return reduced.peak_tilts(sizes, tan_alpha, motion, scales, **options)
+        return reduced.peak_tilts(sizes, tan_alpha, change(motion, options), scales, **options)
 
     return Bench(reduced=SimpleNamespace(simulate=simulate, peak_tilts=peak_tilts), suite=SUITE)
 
@@ -49,41 +52,39 @@ def test_the_model_holds(part: Any) -> None:
     assert not [f"{f.name}: {f.value}, {f.note}" for f in findings if f.failed]
 
 
-def vertical_reversed(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+def vertical_reversed(motion: GroundMotion | None, options: Options) -> GroundMotion | None:
     if motion is None or not motion.has_vertical:
         return motion
     return GroundMotion(motion.acceleration * [1.0, 1.0, -1.0], motion.time_step)
 
 
-def held_after_the_end(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+def held_after_the_end(motion: GroundMotion | None, options: Options) -> GroundMotion | None:
     if motion is None:
         return None
-    options["duration"] = options.get("duration") or motion.duration
     last = np.tile(motion.acceleration[-1:], (round(20.0 / motion.time_step) + 1, 1))
     return GroundMotion(np.vstack([motion.acceleration, last]), motion.time_step)
 
 
-def ends_a_sample_early(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+def ends_a_sample_early(motion: GroundMotion | None, options: Options) -> GroundMotion | None:
     if motion is None or len(motion.acceleration) < 3:
         return motion
-    options["duration"] = options.get("duration") or motion.duration
     return GroundMotion(motion.acceleration[:-1], motion.time_step)
 
 
-def half_a_sample_late(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+def half_a_sample_late(motion: GroundMotion | None, options: Options) -> GroundMotion | None:
     if motion is None:
         return None
     a = motion.acceleration
     return GroundMotion(np.vstack([a[:1], 0.5 * (a[1:] + a[:-1])]), motion.time_step)
 
 
-def lossier(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+def lossier(motion: GroundMotion | None, options: Options) -> GroundMotion | None:
     if isinstance(options.get("restitution"), float):
         options["restitution"] **= 2
     return motion
 
 
-def rests_early(motion: GroundMotion | None, options: dict[str, Any]) -> GroundMotion | None:
+def rests_early(motion: GroundMotion | None, options: Options) -> GroundMotion | None:
     options["rest_tilt"] = 1.3 * options.get("rest_tilt", 0.0)
     return motion
 
@@ -92,7 +93,7 @@ def rests_early(motion: GroundMotion | None, options: dict[str, Any]) -> GroundM
     ("part", "change", "word"),
     [
         (rest, vertical_reversed, "vertical"),
-        (rest, rests_early, "rest_tilt"),
+        (rest, rests_early, "rest threshold"),
         (landing, lossier, "landing"),
         (after_record, held_after_the_end, "end of the record"),
         (after_record, vertical_reversed, "end of the record"),
@@ -106,18 +107,18 @@ def test_a_wrong_question_is_found(part: Any, change: Change, word: str) -> None
     assert any(word in each for each in parts), parts
 
 
-def forgets_the_peak(found: Any) -> Any:
+def forgets_the_peak(found: Trace) -> Trace:
     every_fifth = found.tilt[:: max(1, len(found.tilt) // 40)]
     return dataclasses.replace(found, peak_tilt=float(every_fifth.max()))
 
 
-def turns_late(found: Any) -> Any:
+def turns_late(found: Trace) -> Trace:
     rows = found.extrema.copy()
     rows[:, 0] += 1e-6
     return dataclasses.replace(found, extrema=rows)
 
 
-def slower(found: Any) -> Any:
+def slower(found: Trace) -> Trace:
     return dataclasses.replace(found, tilt_rate=1.0001 * found.tilt_rate)
 
 
@@ -131,7 +132,7 @@ def slower(found: Any) -> Any:
         (batch, forgets_the_peak, "batch kernel"),
     ],
 )
-def test_a_wrong_answer_is_found(part: Any, answer: Callable[[Any], Any], word: str) -> None:
+def test_a_wrong_answer_is_found(part: Any, answer: Callable[[Trace], Trace], word: str) -> None:
     parts = [finding.part for finding in failed(part, bench_with(answer=answer))]
     assert any(word in each for each in parts), parts
 

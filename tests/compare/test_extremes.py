@@ -1,25 +1,26 @@
-"""The table of extremes: what each verdict means, and that nothing wrong passes in silence."""
+"""The extremes: what each verdict means, and that nothing wrong passes in silence."""
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
+import dataclasses
+import math
 
+import numpy as np
 import pytest
 
-from rockwobble import multibody
-from rockwobble.compare.studies.extremes import EXTREMES, METHODS, conditions, scan
-from rockwobble.models import Case, InitialState
+from rockwobble.compare.runs.execution import simulate_run
+from rockwobble.compare.studies.extremes import EXTREMES, FINE, Condition, conditions, judge, verdict
+from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 
-RECESS = ("reduced recess", "recess", "")
-GUIDED = ("MuJoCo recess", "mujoco", "recess")
+PLANAR, RECESS = Run(None, "flat", plane=0.0), Run(None, "recess")
+ENGINE, RING = Run("mujoco", "recess"), Run("mujoco", "ring")
 
 
-def at(extreme: str, value: str) -> Any:
+def at(extreme: str, value: str) -> Condition:
     return next(each for each in conditions() if (each.extreme, each.value) == (extreme, value))
 
 
-def test_every_extreme_has_conditions_and_quick_keeps_its_ends():
+def test_every_extreme_has_conditions_and_quick_keeps_its_ends() -> None:
     assert {each.extreme for each in conditions()} == set(EXTREMES)
     quick = conditions(quick=True)
     assert len(quick) == 2 * len(EXTREMES)
@@ -27,42 +28,86 @@ def test_every_extreme_has_conditions_and_quick_keeps_its_ends():
 
 
 @pytest.mark.parametrize("extreme", [("size", "R = 0.001 m"), ("slenderness", "tan α = 100")])
-def test_a_fine_answer_of_the_recess_model_is_backed_by_the_exact_one(extreme):
-    row = scan.run(at(*extreme), RECESS)
-    assert row["verdict"] == "fine"
-    assert "the energy kept" in row["backed_by"]
+def test_a_fine_answer_of_the_recess_model_is_backed_by_the_exact_one(extreme: tuple[str, str]) -> None:
+    found = judge(at(*extreme), RECESS)
+    assert found.verdict == "fine"
+    assert "energy" in found.reference
     # the integration is good to 1e-8 a step
-    assert row["error"] < 1e-5
+    assert found.error < 1e-5
 
 
 @pytest.mark.parametrize(
-    ("extreme", "method", "verdict", "words"),
+    ("extreme", "run", "wanted", "limit"),
     [
-        (("time step", "100 times the default"), GUIDED, "refused", "time_step must be at most"),
-        (("contact stiffness", "time constant 0.1 steps"), GUIDED, "caught", "energy"),
-        (("friction", "0"), RECESS, "inaccurate", "slips"),
+        (("time step", "100 times the default"), ENGINE, "refused", "time_step must be at most"),
+        (("spin", "3 rad/s"), PLANAR, "refused", "planar motion has no rolling_rate"),
+        (("spin", "0 rad/s"), PLANAR, "fine", ""),
+        (("size", "R = 0.01 m"), PLANAR, "fine", ""),  # there without the spin
+        (("contact stiffness", "time constant 0.1 steps"), ENGINE, "caught", "energy_gain"),
+        (("friction", "0"), RECESS, "flagged", "friction_needed"),
+        (("friction", "0"), ENGINE, "no reference", "slip"),  # on ice the model holds for no time
+        (("size", "R = 0.01 m"), RING, "fine", ""),
         (("time step", "100 times the default"), RECESS, "n/a", ""),
-        (("contact stiffness", "time constant 0.1 steps"), ("PyBullet flat", "pybullet", "flat"), "n/a", ""),
+        (("contact stiffness", "time constant 0.1 steps"), Run("pybullet", "flat"), "n/a", ""),
     ],
 )
-def test_what_goes_wrong_is_refused_caught_or_said(extreme, method, verdict, words):
-    row = scan.run(at(*extreme), method)
-    assert row["verdict"] == verdict
-    assert words in row["message"]
+def test_what_goes_wrong_is_refused_caught_or_flagged(
+    extreme: tuple[str, str], run: Run, wanted: str, limit: str
+) -> None:
+    found = judge(at(*extreme), run)
+    assert found.verdict == wanted
+    assert limit in (found.refusal or found.limit)
+    # an error of what nothing is known about is no number
+    assert math.isnan(found.error) == (wanted not in ("fine", "flagged"))
 
 
-def test_the_answer_to_another_question_is_called_silent(monkeypatch):
+def test_a_ring_is_held_against_itself_at_half_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
+    steps = []
+
+    def counted(case: Case, run: Run, *, sample_step: float) -> Trace:
+        steps.append((run.support, run.time_step))
+        return simulate_run(case, run, sample_step=sample_step)
+
+    monkeypatch.setattr(verdict, "simulate_run", counted)
+    condition = at("time step", "5 times the default")
+    assert judge(condition, RING).reference == "half_step"
+    (ours, step), (other, half) = steps
+    assert ours == other == "ring"
+    assert isinstance(step, float)
+    assert half == 0.5 * step
+
+
+# a tilt off by 0.05 alpha from the start, of which the run says
+@pytest.mark.parametrize(
+    ("facts", "wanted"),
+    [
+        ((), "silent"),
+        ((Diagnostic(code="slip", time=0.0),), "flagged"),
+        ((Diagnostic(code="slip", time=0.1),), "silent"),  # it begins later than the error
+        ((Diagnostic(code="settled", time=0.0),), "silent"),  # it explains no error
+        ((Diagnostic(code="solver", size=3.0),), "silent"),  # it has no time
+        ((Diagnostic(code="energy", time=0.05), Diagnostic(code="wall_contact", time=0.0)), "flagged"),
+    ],
+)
+def test_only_a_diagnostic_that_explains_an_error_and_is_no_later_flags_it(
+    monkeypatch: pytest.MonkeyPatch, facts: tuple[Diagnostic, ...], wanted: str
+) -> None:
     condition = at("duration", "0.001 s")
-    longer = replace(condition, case=replace(condition.case, duration=0.2))
-    case = longer.case
-    other = multibody.simulate(
-        Case(case.cylinder, initial=InitialState(0.45 * case.cylinder.alpha, rolling_rate=0.5), duration=0.2)
-    )
-    monkeypatch.setattr(scan.multibody, "simulate", lambda *_, **__: other)
-    row = scan.run(longer, GUIDED)
-    assert row["verdict"] == "silent"
-    assert row["error"] == pytest.approx(0.05, rel=0.5)
+    longer = dataclasses.replace(condition, case=dataclasses.replace(condition.case, duration=0.2))
+    alpha = longer.case.cylinder.alpha
 
+    def other(case: Case, run: Run, *, sample_step: float) -> Trace:
+        if run.engine is None:
+            return simulate_run(case, run, sample_step=sample_step)
+        moved = dataclasses.replace(case, initial=InitialState(0.45 * alpha, rolling_rate=0.5))
+        found = simulate_run(moved, run, sample_step=sample_step)
+        return dataclasses.replace(found, facts=facts, case=case)
 
-def test_methods_are_the_three_models_and_each_support_of_each_engine():
-    assert len({name for name, *_ in METHODS}) == 9
+    monkeypatch.setattr(verdict, "simulate_run", other)
+    found = judge(longer, ENGINE)
+    assert found.verdict == wanted
+    assert found.limit == (min(facts, key=lambda fact: fact.time).code if wanted == "flagged" else "")
+    assert found.error == pytest.approx(0.05, rel=0.5)
+    assert found.error > FINE
+    assert found.begins == 0.0
+    assert np.isinf(found.until)

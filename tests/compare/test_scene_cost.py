@@ -12,9 +12,9 @@ ENGINES = [name for name in ("mujoco", "pybullet") if name in multibody.availabl
 
 @pytest.mark.parametrize("engine", ENGINES)
 def test_every_scene_is_counted(engine: str) -> None:
-    lines: list[str] = []
-    table = scene_costs([engine], rounds=2, steps=20, say=lines.append)
-    assert len(lines) == 2
+    told: list[bool] = []
+    table = scene_costs([engine], rounds=2, steps=20, tell=lambda: told.append(True))
+    assert len(told) == 2
     assert set(table["engine"]) == {engine}
     assert (table["degrees_of_freedom"] == 6).all()
     assert (table["microseconds"] > 0.0).all()

@@ -65,22 +65,6 @@ def test_the_same_bits_whatever_the_number_of_threads(spectrum):
         assert np.array_equal(one.lowest[series], spectrum.lowest[series], equal_nan=True)
 
 
-def test_progress_goes_through_the_series_in_turn():
-    seen: list[tuple[str, float]] = []
-    overturning_spectrum(
-        0.1,
-        EL_CENTRO,
-        semidiagonals=[1.0, 2.0],
-        intensities=[2.0],
-        progress=lambda series, fraction: seen.append((series, fraction)),
-    )
-    assert list(dict.fromkeys(series for series, _ in seen)) == list(SERIES)
-    for series in SERIES:
-        fractions = [fraction for name, fraction in seen if name == series]
-        assert fractions == sorted(fractions)
-        assert fractions[-1] == 1.0
-
-
 def test_the_tables_hold_every_cell(spectrum):
     table = spectrum.to_frame()
     assert len(table) == len(SERIES) * len(SIZES) * len(INTENSITIES)

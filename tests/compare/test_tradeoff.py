@@ -4,118 +4,142 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.studies.tradeoff import conclusions, fastest, plateaus, rest_tilt_price
-from rockwobble.compare.studies.tradeoff.methods import methods_for
-from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, _turn, _wasserstein, problems
+from rockwobble.compare.studies.tradeoff import costs, engine_factors, plateaus, rest_tilt_price
+from rockwobble.compare.studies.tradeoff import problem as problems
+from rockwobble.compare.studies.tradeoff.methods import BASE_LINE, Method, methods_for
+from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, Problem
 
 # a release at a tolerance of 1e-8 turns by 1.5e-7 deg too much or too little
 TURN_ERROR = 1e-6
-# of the reference on open ground: it changes by 5e-11 deg with its tolerance
+# of the reference on flat ground: it changes by 5e-11 deg with its tolerance
 CONVERGED = 1e-8
+MOST_LINES = 6  # of a panel
 
 
 @pytest.fixture(scope="module")
-def turn():
-    return _turn()
+def turn() -> Problem:
+    return problems.turn(quick=True)
 
 
-def test_the_reference_in_a_recess_is_the_quadrature_and_that_on_open_ground_has_converged(turn):
-    case = turn.cases[0]
-    exact = math.degrees(reduced.angle_of_turn(PIER, case.initial))
-    assert turn.references["recess"][0] == pytest.approx([exact], rel=1e-15)
-    assert turn.doubt["recess"] == 0.0
-    assert 0.0 < turn.doubt["flat"] < CONVERGED
+@pytest.fixture(scope="module")
+def methods(turn: Problem) -> list[Method]:
+    return methods_for(turn, quick=True)
 
 
-def test_the_kernel_and_scipy_find_the_angle_of_turn(turn):
-    chosen = [m for m in methods_for(turn, quick=True) if m.family in ("reduced", "scipy")]
-    errors = {(m.line, m.value): turn.error(m.model, [m.solve(turn.cases[0]).quantity]) for m in chosen}
-    assert errors["reduced, recess", 1e-8] < TURN_ERROR
-    assert errors["reduced, rolling", 1e-8] < TURN_ERROR
-    assert errors["reduced, recess", 1e-4] > 10.0 * errors["reduced, recess", 1e-8]
+def error(problem: Problem, method: Method) -> float:
+    return problem.error(method.support, [method.solve(problem.cases[0]).quantity])
+
+
+def test_each_support_has_its_own_answer(turn: Problem) -> None:
+    initial = turn.cases[0].initial
+    assert initial is not None
+    recess, flat, ring = (turn.references[support] for support in ("recess", "flat", "ring"))
+    assert recess.quantities[0] == pytest.approx(
+        [math.degrees(reduced.angle_of_turn(PIER, initial))], rel=1e-15
+    )
+    assert (recess.doubt, recess.source) == (0.0, "exact")
+    assert flat.source == "tight"
+    assert 0.0 < flat.doubt < CONVERGED
+    # a ring that is not yet touched lets the cylinder roll as flat ground does: but for the engine's error
+    assert ring.source == "half_step"
+    assert ring.quantities[0] == pytest.approx(flat.quantities[0], abs=20.0 * ring.doubt)
+
+
+def test_the_models_and_scipy_find_the_angle_of_turn(turn: Problem, methods: list[Method]) -> None:
+    chosen = [m for m in methods if m.family in ("reduced", "scipy")]
+    errors = {(m.line, m.value): error(turn, m) for m in chosen}
+    assert errors["recess model", 1e-8] < TURN_ERROR
+    assert errors["flat-ground model", 1e-8] < TURN_ERROR
+    assert errors["recess model", 1e-4] > 10.0 * errors["recess model", 1e-8]
     # coarse solvers, a thousandth of a turn and better
-    assert errors["scipy DOP853, Python", 1e-5] < 1e-3
-    assert sum(m.base for m in chosen) == 1
+    assert errors["DOP853, Python", 1e-5] < 1e-3
+    assert sum(m.base for m in methods) == 1
 
 
-def test_an_engine_comes_closer_with_its_step(turn):
-    line = [m for m in methods_for(turn, quick=True) if m.line == "MuJoCo recess"]
-    errors = [turn.error(m.model, [m.solve(turn.cases[0]).quantity]) for m in line]
-    assert errors[0] > 2.0 * errors[1] > 4.0 * errors[2] > 0.0
+@pytest.mark.parametrize("line", ["mujoco recess", "mujoco ring"])
+def test_an_engine_comes_closer_with_its_step(turn: Problem, methods: list[Method], line: str) -> None:
+    errors = [error(turn, m) for m in methods if m.line == line]
+    assert all(coarse > 1.9 * fine > 0.0 for coarse, fine in pairwise(errors))
 
 
-def test_a_refused_run_has_a_message_and_no_error(turn):
-    method = next(m for m in methods_for(turn, quick=True) if m.line == "MuJoCo recess")
+def test_a_refused_run_says_so_and_has_no_error(turn: Problem, methods: list[Method]) -> None:
+    method = next(m for m in methods if m.line == "mujoco recess")
     # a step that is right for a pier is not for a cylinder of 6 mm
     answer = method.solve(replace(turn.cases[0], cylinder=replace(PIER, semidiagonal=0.006)))
-    assert answer.message.startswith("refused: time_step must be at most")
+    assert answer.said.startswith("time_step must be at most")
     assert math.isnan(turn.error("recess", [answer.quantity]))
 
 
-def test_the_distance_of_distributions_does_not_know_the_order():
+def test_no_panel_has_more_lines_than_can_be_read(turn: Problem) -> None:
+    lines = {(m.support, m.panel, m.line) for m in methods_for(turn)}
+    counts = pd.DataFrame(list(lines), columns=["support", "panel", "line"]).groupby(["support", "panel"])
+    assert counts.size().max() <= MOST_LINES
+
+
+def test_the_distance_of_distributions_does_not_know_the_order() -> None:
     ours, theirs = [np.array([0.1]), np.array([0.4])], [np.array([0.5]), np.array([0.1])]
-    assert _wasserstein(ours, theirs) == pytest.approx(0.05)
+    assert problems._wasserstein(ours, theirs) == pytest.approx(0.05)
 
 
-def points(line: str, family: str, rows: list[tuple[float, float, float]], knob: str = "time step"):
-    return pd.DataFrame(
-        [
-            {
-                "problem": "turn",
-                "model": "recess",
-                "family": family,
-                "line": line,
-                "knob": knob,
-                "value": value,
-                "ratio": ratio,
-                "milliseconds": ratio,
-                "error": error,
-            }
-            for value, ratio, error in rows
-        ]
+def test_the_ensemble_knows_what_chance_alone_does() -> None:
+    peaks = problems.peaks(quick=True)
+    assert 0.0 < problems.sampling_distance(peaks, "recess") < 1.0
+    assert max(peaks.references[support].doubt for support in ("recess", "flat")) < CONVERGED
+
+
+def points(
+    line: str, family: str, rows: list[tuple[float, float, float]], knob: str = "time step"
+) -> pd.DataFrame:
+    found = pd.DataFrame(rows, columns=["value", "ratio", "error"])
+    return found.assign(
+        problem="turn", support="recess", panel="methods", family=family, line=line, knob=knob
     )
 
 
-def test_the_fastest_holds_its_error_at_the_next_finer_setting():
+def test_the_cheapest_holds_its_error_at_the_next_finer_setting() -> None:
     lucky = points(
         "lucky", "mujoco", [(4.0, 1.0, 0.5), (2.0, 2.0, 0.001), (1.0, 4.0, 0.2), (0.5, 8.0, 0.001)]
     )
     steady = points("steady", "pybullet", [(4.0, 3.0, 0.5), (2.0, 6.0, 0.008), (1.0, 12.0, 0.004)])
-    found = fastest(pd.concat([lucky, steady]), "turn", "recess", 0.01)
-    assert [(each.family, each.value) for each in found] == [("pybullet", 2.0), ("mujoco", 0.5)]
-    assert fastest(steady, "turn", "recess", 1e-6) == []
+    both = pd.concat([lucky, steady])
+    found = costs(both)
+    at = found[found["target"] == 0.01]
+    assert at[["family", "value"]].to_numpy().tolist() == [["pybullet", 2.0], ["mujoco", 0.5]]
+    # nothing but the recess model at its default tolerance is what times are told in
+    assert engine_factors(both) == (6.0, 8.0)
+    assert costs(points("none", "mujoco", [(1.0, 1.0, 1.0)])).empty
 
 
-def test_a_plateau_begins_where_the_error_stops_falling():
-    falls = points("falls", "mujoco", [(4.0, 1.0, 0.4), (2.0, 2.0, 0.1), (1.0, 4.0, 0.02)])
-    flat = points("flat", "mujoco", [(4.0, 1.0, 0.4), (2.0, 2.0, 0.1), (1.0, 4.0, 0.08), (0.5, 8.0, 0.09)])
-    rises = points("rises", "mujoco", [(4.0, 1.0, 0.4), (2.0, 2.0, 0.01), (1.0, 4.0, 0.2)])
-    found = {each.line: each for each in plateaus(pd.concat([falls, flat, rises]))}
-    assert math.isnan(found["falls"].begins)
-    assert found["falls"].level == pytest.approx(0.02)
-    assert (found["flat"].begins, found["flat"].level) == (2.0, pytest.approx(0.09))
-    assert found["rises"].begins == 2.0
+@pytest.mark.parametrize(
+    ("errors", "verdict", "begins"),
+    [
+        ((0.4, 0.2, 0.1), "falls", math.nan),  # of first order: a factor of two at each halving
+        ((0.4, 0.1, 0.08, 0.09), "flat", 2.0),
+        ((0.4, 0.01, 0.02, 0.04), "grows", 2.0),
+        ((0.1, 0.2, 0.4), "grows", 4.0),
+    ],
+)
+def test_a_plateau_is_flat_and_an_error_that_falls_or_grows_is_none(
+    errors: tuple[float, ...], verdict: str, begins: float
+) -> None:
+    rows = [(4.0 / 2**n, 1.0, each) for n, each in enumerate(errors)]
+    found = plateaus(points("line", "mujoco", rows)).iloc[0]
+    assert found["verdict"] == verdict
+    np.testing.assert_equal(found["begins"], begins)
+    assert found["best"] == 4.0 / 2 ** int(np.argmin(errors))
 
 
-def test_the_price_of_seating_is_told_at_equal_tolerance():
-    none = points(f"reduced, rest threshold {FINE_REST_TILT:g}", "reduced", [(1e-6, 2.0, 1e-7)], "tolerance")
-    coarse = points(
-        "reduced, rest threshold 0.1", "reduced", [(1e-6, 1.0, 0.2), (1e-4, 1.0, 0.2)], "tolerance"
-    )
-    price = rest_tilt_price(pd.concat([none, coarse]))
-    assert price[["tolerance", "speed_up", "error_without"]].to_numpy().tolist() == [[1e-6, 2.0, 1e-7]]
-
-
-def test_the_ensemble_knows_what_chance_alone_does():
-    from rockwobble.compare.studies.tradeoff.problem import sampling_distance
-
-    peaks = problems(quick=True)[2]
-    assert 0.0 < sampling_distance(peaks, "recess") < 1.0
-    assert max(peaks.doubt.values()) < CONVERGED
-    assert conclusions.FLAT > 1.0
+def test_the_price_of_the_rest_rule_is_told_at_equal_tolerance() -> None:
+    none = points(f"rest threshold {FINE_REST_TILT:g}", "reduced", [(1e-6, 2.0, 1e-7)], "tolerance")
+    usual = points(BASE_LINE, "reduced", [(1e-6, 1.0, 0.2), (1e-4, 1.0, 0.2)], "tolerance")
+    price = rest_tilt_price(pd.concat([none, usual]))
+    assert price[["value", "speed_up", "error", "error_without"]].to_numpy().tolist() == [
+        [1e-6, 2.0, 0.2, 1e-7]
+    ]

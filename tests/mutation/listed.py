@@ -91,10 +91,10 @@ def _constants() -> list[Mutation]:
     # through the whole cylinder every term keeps its place: only scales of time and length tell
     size = _around(
         "problem.py",
-        "make_problem(model, cylinder, *arguments, **options)",
-        "size = 1.01 * cylinder.semidiagonal\n"
-        "other = Cylinder(semidiagonal=size, tan_alpha=cylinder.tan_alpha)\n"
-        "return without_fault(model, other, *arguments, **options)",
+        "make_problem(case, **options)",
+        "size = 1.01 * case.cylinder.semidiagonal\n"
+        "other = Cylinder(semidiagonal=size, tan_alpha=case.cylinder.tan_alpha)\n"
+        "return without_fault(dataclasses.replace(case, cylinder=other), **options)",
     )
     return [
         *found,

@@ -22,7 +22,7 @@ FILE = "compare/metrics/tilt.py"
 def checkout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """A checkout of one file with faults, whose names begin as said."""
     root = tmp_path / "checkout"
-    (root / "compare").mkdir(parents=True)
+    (root / FILE).parent.mkdir(parents=True)
     (root / FILE).write_text(SOURCE)
     (root / "reduced").mkdir()
     (root / "reduced/kernels.py").write_text("@kernel\ndef f(): ...\n")

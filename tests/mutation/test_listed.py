@@ -102,7 +102,7 @@ def test_a_fault_that_nothing_finds_is_said(
 ) -> None:
     harmless = Mutation(
         name="nothing wrong",
-        faults=(Fault(file="taylor.py", change=appended("_SAFETY = 0.8")),),
+        faults=(Fault(file="integration/taylor.py", change=appended("_SAFETY = 0.8")),),
         layer="invariance",
         named=("",),
     )

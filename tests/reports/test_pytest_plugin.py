@@ -18,7 +18,7 @@ def modules_of_inner_runs() -> None:
 
     import rockwobble.compare.check
     from rockwobble import reduced
-    from rockwobble.models import Cylinder, InitialState
+    from rockwobble.models import Case, Cylinder, InitialState
     from rockwobble.reports.console import budget_of_run  # noqa: F401
 
     assert rockwobble.compare.check.LAYERS
@@ -72,7 +72,7 @@ def test_engines_that_follow_the_models_pass(suite) -> None:
 
 def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite) -> None:
     # open ground moves by another model, which shows on a squat cylinder at once
-    pytester = suite(bounded('tilt_rms = 1e-5\nagreement_horizon = 0.8\nreference = "recess"'))
+    pytester = suite(bounded('tilt_rms = 1e-5\nagreement_time = 0.8\nreference = "recess"'))
     result = pytester.runpytest("-k", "alpha and not 0.2", "-W", "error")
     result.assert_outcomes(passed=1, failed=1)
     result.stdout.fnmatch_lines(
@@ -80,7 +80,7 @@ def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite) -> 
             "*pier.suite.toml: release: tan_alpha 1, mujoco flat*",
             "release: tan_alpha 1, mujoco flat against recess: tilt_rms: measured *, at most 1e-5 *",
             "What the difference is made of (RMS in alpha until *",
-            "  whole *engine minus recess",
+            "  whole *engine minus the recess model",
             "  model form *",
             "  numerics *",
             "  unexplained *",
@@ -91,7 +91,7 @@ def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite) -> 
 
 def test_the_budget_can_be_left_out(suite) -> None:
     pytester = suite(bounded("tilt_rms = 1e-12"))
-    result = pytester.runpytest("-k", "0.2 and guided", "--no-rockwobble-budget")
+    result = pytester.runpytest("-k", "0.2 and recess", "--no-rockwobble-budget")
     result.assert_outcomes(failed=1)
     assert "What the difference" not in result.stdout.str()
     result.stdout.fnmatch_lines(["*tilt_rms: measured *at most 1e-12*"])

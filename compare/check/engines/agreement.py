@@ -1,124 +1,105 @@
-"""Layer: whether the engines still follow the reduced models on a suite.
+"""Layer agreement, second part: whether the engines still follow the reduced models on a suite.
 
-Guided engines are held against the recess model, those on open ground against the flat-ground model. A ring
-of walls has no model of its own: until the first touch of a wall it is open ground, and after it only
+An engine in a recess is held against the recess model, one on flat ground against the flat-ground model. A
+ring of walls has no model of its own: until the first touch of a wall it is flat ground, and after it only
 what every motion in a recess must show is asked for.
+
+What a run may be off comes from its suite where that states bounds; from what was measured once for the
+suite "quick"; and for any other suite from the run itself, see `own_bounds`.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
-from rockwobble.models import Case, Run
+from rockwobble.models import Bounds, Case, Run, Trace
 
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale, verdict
+from ...comparison.summary import SUMMARY_COLUMNS, summary_row
 from ...metrics.agreement import agreement_time
+from ...metrics.energy import energy_loss
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import own_model
+from ...runs.execution import Job
 from ...traces.pair import make_pair
-from ..bench import Bench, crashed, why
-from ..finding import Finding, at_most, not_run
-from . import engine_settings, stated_bounds
+from ..bench import Bench, why
+from ..finding import Bound, Finding, at_most, not_run
+from . import own_bounds
 
-LAYER = "agreement"
 # RMS of the tilt difference [alpha] at a step of 1e-4 s (R = 6 m), from release: 2e-6 tan^2(alpha) was
 # measured with both engines on the slender, and from rest 6e-5 to 1.4e-4, which near passes magnify
 RELEASED, RELEASED_LEAST = 1e-5, 1e-7
 FROM_REST = 5e-4
-# a ring gives back what it takes up in wobble, but for what friction at the walls takes: 9 % was measured
-RING_LOSS = 0.3
-RING_PLACE = 0.05  # of b; the wall stands back by a thousandth, and leans
+ENDS = Bound(0.0, "the run must reach its end", "alpha")
+LOSS = Bound(0.3, "walls that only hold the cylinder in place; 0.09 was measured")
+# the wall stands back by a thousandth, and leans
+PLACE = Bound(0.05, "clearance of the walls, and 1 - cos of the tilt at the end", "b")
 
 
 def check(bench: Bench) -> Iterator[Finding]:
-    """Yield the findings of this layer."""
-    if bench.shipped:
-        yield from engine_settings.check(bench)
-    responses: dict[tuple[str, str], Any] = {}
-    for case, run, label, trajectory in bench.rows():
-        model = model_of(bench, run)
-        key = case.name, model
-        if key not in responses:
-            responses[key] = bench.response(case, model)
-        yield from check_run(bench, case, run, label, trajectory, responses[key])
+    """Yield the findings of this part."""
+    jobs = bench.jobs()
+    traces = bench.traces(jobs)
+    if not bench.shipped and bench.suite.bounds is None:
+        own_bounds.prepare(bench, jobs, traces)
+    for job, trace in zip(jobs, traces, strict=True):
+        yield from check_run(bench, job, trace)
 
 
-def model_of(bench: Bench, run: Run) -> str:
+def reference_of(bench: Bench, run: Run) -> Run:
     """Return the reduced model that a run is held against."""
-    if bench.suite.bounds is not None:
-        return stated_bounds.reference_of(bench.suite.bounds, run)
-    return own_model(run).support
+    bounds = bench.suite.bounds
+    return own_model(run) if bounds is None or bounds.reference == "own" else Run(None, bounds.reference)
 
 
-def check_run(
-    bench: Bench, case: Case, run: Run, label: str, trajectory: Any, response: Any
-) -> Iterator[Finding]:
-    """Yield the findings on one engine run; `response` is that of `model_of`."""
-    model = model_of(bench, run)
-    name = f"{case.name}, {label} against {model}"
-    if crashed(trajectory):
-        yield at_most(
-            LAYER,
-            name,
-            math.nan,
-            tilt_bound(case, None),
-            unit="alpha",
-            reason="the run must reach its end",
-            part=f"contact of {run.engine} ({run.support}): the run failed",
-            note=why(trajectory),
-        )
+def check_run(bench: Bench, job: Job, trace: Trace) -> Iterator[Finding]:
+    """Yield the findings on one run of an engine."""
+    reference = reference_of(bench, job.run)
+    name = f"{job.case.name}, {job.label} against {reference.support}"
+    if trace.outcome == "failed":
+        part = f"contact of {job.run.engine} ({job.run.support}): the run failed"
+        yield at_most(name, math.nan, ENDS, part, why(trace))
+        return
+    model = bench.solve(job.case, reference.support)
+    if job.run.support == "ring":
+        yield from _ring(job, trace)
+    if bench.suite.bounds is None and not bench.shipped:
+        yield from own_bounds.held(bench, job, name, model, trace)
         return
     prediction = predict(
-        case,
-        reference=response,
-        own=response,
-        contact_resolution=trajectory.contact_resolution,
-        error=estimated_error(case, run.engine, trajectory.time_step),
-        simulate=lambda other, run: bench.response(other, run.support),
+        job.case,
+        reference=model,
+        own=model,
+        contact_resolution=trace.contact_resolution,
+        error=estimated_error(job.case, job.run.engine, trace.time_step),
+        simulate=lambda case, run: bench.solve(case, run.support),
     )
-    if bench.suite.bounds is not None:
-        yield from stated_bounds.check(bench.suite.bounds, case, run, label, trajectory, response, prediction)
-        return
-    until = None
-    if run.support == "ring":
-        yield from _ring(case, label, trajectory)
-        if math.isfinite(trajectory.first("wall_contact")):
-            until = trajectory.first("wall_contact")
-    yield _by_rule(case, run, name, response, trajectory, prediction, until)
+    if bench.suite.bounds is None:
+        yield _as_measured_once(job, name, model, trace, prediction)
+    else:
+        yield from _stated(bench.suite.bounds, job, name, model, trace, prediction)
 
 
-def _by_rule(
-    case: Case,
-    run: Run,
-    name: str,
-    response: Any,
-    trajectory: Any,
-    prediction: Prediction,
-    until: float | None,
-) -> Finding:
-    """Return the finding where the suite states no bounds."""
-    pair = make_pair(case.cylinder, response, trajectory, until=case.length if until is None else until)
-    horizon = agreement_time(pair)
+def _as_measured_once(job: Job, name: str, model: Trace, trace: Trace, prediction: Prediction) -> Finding:
+    case, run = job.case, job.run
+    until = min(case.length, trace.first("wall_contact"))
+    pair = make_pair(case.cylinder, model, trace, until=until)
     # what near passes have magnified says nothing: half of the way to where the traces have to part
     end = min(pair.end, pair.start + 0.5 * prediction.length) if prediction.reason else pair.end
     part = f"{run.engine} ({run.support}), its contact and step, or the reduced model"
-    lifted = [math.isfinite(trace.uplift_time) for trace in (response, trajectory)]
-    if not any(lifted) or end <= pair.start:
-        reason = "neither uplifts" if not any(lifted) else "traces have to part at once"
-        return not_run(LAYER, name, part=part, note=f"{reason}: there is nothing to compare")
+    if not any(math.isfinite(each.uplift_time) for each in (model, trace)):
+        return not_run(name, part, "neither uplifts: there is nothing to compare")
+    if end <= pair.start:
+        return not_run(name, part, "traces have to part at once: there is nothing to compare")
+    apart = tilt_rms(make_pair(case.cylinder, model, trace, until=end))
+    horizon = agreement_time(pair)
     words = verdict(horizon.length, horizon.diverged, prediction.length, prediction.reason)
-    return at_most(
-        LAYER,
-        name,
-        tilt_rms(make_pair(case.cylinder, response, trajectory, until=end)),
-        tilt_bound(case, trajectory.time_step),
-        unit="alpha",
-        reason="error of contact at this step, first order in it",
-        part=part,
-        note=f"to {end:.3g} s" + (f"; they part {words}" if horizon.diverged else ""),
+    note = f"to {end:.3g} s" + (f"; they part {words}" if horizon.diverged else "")
+    bound = Bound(
+        tilt_bound(case, trace.time_step), "error of contact at this step, first order in it", "alpha"
     )
+    return at_most(name, apart, bound, part, note)
 
 
 def tilt_bound(case: Case, time_step: float | None) -> float:
@@ -129,27 +110,33 @@ def tilt_bound(case: Case, time_step: float | None) -> float:
     return step * FROM_REST
 
 
-def _ring(case: Case, label: str, trajectory: Any) -> Iterator[Finding]:
-    from ...metrics.energy import energy_loss
-
-    touched = trajectory.first("wall_contact")
+def _ring(job: Job, trace: Trace) -> Iterator[Finding]:
+    touched = trace.first("wall_contact")
     note = f"first touch at {touched:.3g} s" if math.isfinite(touched) else "no wall was touched"
-    yield at_most(
-        LAYER,
-        f"{case.name}, {label}: share of the energy lost",
-        abs(energy_loss(trajectory, case.motion)),
-        RING_LOSS,
-        reason="walls that only hold the cylinder in place; 0.09 was measured",
-        part="ring: inclination, friction or clearance of its walls",
-        note=note,
-    )
-    yield at_most(
-        LAYER,
-        f"{case.name}, {label}: base centre away from its place",
-        trajectory.residual_displacement / case.cylinder.base_radius,
-        RING_PLACE,
-        unit="b",
-        reason="clearance of the walls, and 1 - cos of the tilt at the end",
-        part="ring: its walls let the cylinder out",
-        note=note,
-    )
+    name = f"{job.case.name}, {job.label}"
+    loss = abs(energy_loss(trace, job.case.motion))
+    part = "ring: inclination, friction or clearance of its walls"
+    yield at_most(f"{name}: share of the energy lost", loss, LOSS, part, note)
+    moved = trace.residual_displacement / job.case.cylinder.base_radius
+    part = "ring: its walls let the cylinder out"
+    yield at_most(f"{name}: base centre away from its place", moved, PLACE, part, note)
+
+
+def _stated(
+    bounds: Bounds, job: Job, name: str, model: Trace, trace: Trace, prediction: Prediction
+) -> Iterator[Finding]:
+    """One finding for each bound that the suite states."""
+    row = summary_row(job.case, str(model.run), model, job.label, trace, prediction=prediction)
+    part = f"{job.run.engine} ({job.run.support}) or the {model.run}"
+    for column, most in bounds.given().items():
+        unit, meaning = SUMMARY_COLUMNS[column]
+        value = abs(float(row[column]))
+        if column == "agreement_time":
+            # the shorter the worse: what is missing may be nothing
+            missing = max(0.0, most - value) if row["diverged"] else 0.0
+            bound = Bound(0.0, f"the suite asks for {most:g} s", unit)
+            note = f"they agree for {value:.3g} s"
+            yield at_most(f"{name}: agreement_time missing", missing, bound, part, note)
+        else:
+            bound = Bound(most, f"stated by the suite: {meaning}", unit)
+            yield at_most(f"{name}: {column}", value, bound, part, str(row["diagnostics"]))

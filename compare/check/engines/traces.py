@@ -1,4 +1,4 @@
-"""Layer: every field of an engine's trace, where the reduced model of its support knows it, too.
+"""Layer traces: every field of an engine's trace, where the reduced model of its support knows it, too.
 
 Two short runs of each engine have all that a trace tells in them: a squat body with inertias of its own
 on ground that accelerates evenly in three components, and a standing pier on a ramp. Samples fall between
@@ -9,25 +9,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace
 
 from ...runs.choice import own_model
-from ...runs.execution import simulate_run
-from ..bench import Bench, crashed, engines_here, not_here, why
-from ..finding import Finding, at_most
-from ..polyline import steady
+from ...runs.execution import Job, simulate_run
+from ..bench import Array, Bench, engines_here, largest, not_here, why
+from ..finding import Bound, Finding, at_most
+from ..problems import GRAVITY, PIER, THRESHOLD, released, steady
 
-LAYER = "traces"
-GRAVITY = 9.81
+
+def _contact(most: float, unit: str) -> Bound:
+    return Bound(most, "error of contact at this step; a fifth of it was measured", unit)
+
+
 SQUAT = Cylinder(semidiagonal=3.0, tan_alpha=1.0, height=5.0, transverse_inertia=3.0, axial_inertia=1.6)
-PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-THRESHOLD = GRAVITY * PIER.tan_alpha
 GROUND = np.array([0.10, -0.06, 0.30]) * GRAVITY
 SHAKEN = Case(
     SQUAT,
@@ -38,174 +36,137 @@ SHAKEN = Case(
     name="even acceleration in three components",
 )
 SAMPLE = 0.00437  # [s] no multiple of a step
-# errors of contact at steps of 7e-5 s, five times what was measured; a sample off by half a step would be
-# off by 4e-5 rad
-FIELDS: Mapping[str, tuple[str, float]] = {
-    "tilt": ("rad", 5e-6),
-    "tilt_rate": ("rad/s", 1.5e-5),
-    "rolling_angle": ("rad", 5e-6),
-    "twist": ("rad", 1e-5),
-    "contact_point": ("m", 1e-5),
-    "centre_of_mass": ("m", 1e-5),
-    "energy": ("m^2/s^2", 7e-5),
+# at steps of 7e-5 s; a sample off by half a step would be off by 4e-5 rad
+FIELDS: Mapping[str, Bound] = {
+    "tilt": _contact(5e-6, "rad"),
+    "tilt_rate": _contact(1.5e-5, "rad/s"),
+    "rolling_angle": _contact(5e-6, "rad"),
+    "twist": _contact(1e-5, "rad"),
+    "contact_point": _contact(1e-5, "m"),
+    "centre_of_mass": _contact(1e-5, "m"),
+    "energy": _contact(7e-5, "m^2/s^2"),
 }
-# rate [rad/s] and force [weights] as a mean over 65 steps, without the half window at either end; in the
-# recess the guide, which starts without twist, lets both swing about their mean
-SWINGS: Mapping[str, tuple[float, float]] = {"recess": (1.5e-3, 0.03), "flat": (2e-5, 2e-5)}
-OFFSET, SLIP = 1e-5, 1e-5  # [m]
-BALANCE = 8e-5  # [m^2/s^2] of 20; 4e-5 was measured: work step by step, and samples between steps
-RAMP = GroundMotion(np.array([[0.0, 0.0, 0.0], [-1.6, 1.2, -2.5]]) * THRESHOLD, 0.8)
-RISE = 5e-5  # [rad]; 1e-5 was measured with PyBullet
-UPLIFT, AZIMUTH = 1e-6, 1e-9  # [s], [rad]; 1e-8 and 3e-15 were measured
-SLIDE = 0.05
-RELEASE = Case(
-    PIER, initial=InitialState(0.3 * PIER.alpha, rolling_rate=0.4), duration=1.9, name="release"
-)  # one pass, at 0.1 alpha
-PEAK, PASS = 1e-7, 1e-6  # [rad]; [s, rad]
+# rate, and force as a mean over 65 steps, without the half window at either end; in the recess the guide,
+# which starts without twist, lets both swing about their mean
+SWINGS: Mapping[str, tuple[Bound, Bound]] = {
+    "recess": (_contact(1.5e-3, "rad/s"), _contact(0.03, "weights")),
+    "flat": (_contact(2e-5, "rad/s"), _contact(2e-5, "weights")),
+}
+PLACE, RESIDUAL = _contact(1e-5, "m"), _contact(1e-5, "m, rad")
+BALANCE = _contact(8e-5, "m^2/s^2")  # of 20; 4e-5 was measured: work step by step, and samples between steps
+# |a| rises and the weight falls: 2 t/0.8 = 1 - 0.5 t/0.8 at the uplift, in units of the threshold
+RAMP = Case(
+    PIER,
+    GroundMotion(np.array([[0.0, 0.0, 0.0], [-1.6, 1.2, -2.5]]) * THRESHOLD, 0.8),
+    duration=0.6,
+    friction=2.0,
+    name="ramp",
+)
+RISE = _contact(5e-5, "rad")  # 1e-5 was measured with PyBullet
+UPLIFT, AZIMUTH = _contact(1e-6, "s"), _contact(1e-9, "rad")  # 1e-8 and 3e-15 were measured
+AT_REST = _contact(1e-6, "weights")
+RELEASE = released(0.3, 0.4, 1.9, name="release")  # one pass, at 0.1 alpha
+PEAK, PASS = _contact(1e-7, "rad"), _contact(1e-6, "s, rad")
+ENDS = _contact(0.0, "")
+SLIDE = Bound(0.05, "closed form; contact chatters as it slides: 0.01 and 0.03 were measured")
 
 
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this layer."""
-    yield from not_here(LAYER, "fields of a trace")
+    yield from not_here("fields of a trace")
     for engine in engines_here():
         for support in ("recess", "flat"):
-            yield from _shaken(bench, engine, support)
+            yield from _shaken(bench, bench.adjust(Run(engine, support)))
         yield from _uplift(bench, engine)
         yield from _passes(bench, engine)
         yield _slides(bench, engine)
 
 
-def _shaken(bench: Bench, engine: str, support: str) -> Iterator[Finding]:
-    label = f"{engine} {support}"
-    trace = simulate_run(SHAKEN, bench.adjust(Run(engine, support)), sample_step=SAMPLE)
-    if crashed(trace):
-        yield _failed(label, engine, trace)
+def _shaken(bench: Bench, run: Run) -> Iterator[Finding]:
+    trace = simulate_run(SHAKEN, run, sample_step=SAMPLE)
+    if trace.outcome == "failed":
+        yield _failed(str(run), trace)
         return
-    model = bench.response(SHAKEN, own_model(Run(engine, support)).support, rtol=1e-11, sample_step=SAMPLE)
+    model = bench.solve(SHAKEN, own_model(run).support, rtol=1e-11, sample_step=SAMPLE)
     whole = len(trace.time) == len(model.time)
-    for name, (unit, bound) in FIELDS.items():
-        apart = np.abs(getattr(trace, name) - getattr(model, name)).max() if whole else math.nan
-        yield _finding(f"{name}, {label}", apart, bound, unit, f"{name} of a trace of {engine}")
-    rate, force = SWINGS[support]
-    yield _finding(
-        f"rolling_rate, {label}",
-        np.abs(trace.rolling_rate - model.rolling_rate).max() if whole else math.nan,
-        rate,
-        "rad/s",
-        f"rolling_rate of a trace of {engine}",
-    )
-    inner = slice(2, -2)
-    yield _finding(
-        f"contact force, {label}",
-        np.abs(trace.contact_force[inner] - model.contact_force[inner]).max() if whole else math.nan,
-        force,
-        "weights",
-        f"contact force of a trace of {engine}, or its vertical component",
-    )
-    b = SQUAT.base_radius
-    outside = np.hypot(*model.contact_point.T) - b
-    yield _finding(
-        f"contact offset, {label}",
-        np.abs(trace.contact_offset - outside).max() if whole else math.nan,
-        OFFSET,
-        "m",
-        f"contact offset of a trace of {engine}",
-    )
-    yield _finding(
-        f"slip, {label}", abs(trace.slip[-1]), SLIP, "m", f"slip of a trace of {engine}, or its friction"
-    )
+
+    def same(name: str, own: Array, other: Array, bound: Bound, more: str = "") -> Finding:
+        part = f"{name} of a trace of {run.engine}{more}"
+        return at_most(f"{name}, {run}", largest(own - other) if whole else math.nan, bound, part)
+
+    for name, bound in FIELDS.items():
+        yield same(name, getattr(trace, name), getattr(model, name), bound)
+    rate, force = SWINGS[run.support]
+    yield same("rolling_rate", trace.rolling_rate, model.rolling_rate, rate)
+    forces = trace.contact_force[2:-2], model.contact_force[2:-2]
+    yield same("contact force", *forces, force, ", or its vertical component")
+    outside = np.hypot(*model.contact_point.T) - SQUAT.base_radius
+    yield same("contact offset", trace.contact_offset, outside, PLACE)
+    part = f"slip of a trace of {run.engine}, or its friction"
+    yield at_most(f"slip, {run}", abs(trace.slip[-1]), PLACE, part)
     # the base centre is b sin(theta) above the ground on the rim, and the mass centre h along the axis
     s, c = math.sin(model.tilt[-1]), math.cos(model.tilt[-1])
     ahead = np.array([math.cos(model.rolling_angle[-1]), math.sin(model.rolling_angle[-1])])
-    base = model.centre_of_mass[-1, :2] - SQUAT.mass_centre_height * s * ahead
-    yield _finding(
-        f"residual displacement and twist, {label}",
-        max(
-            abs(trace.residual_displacement - math.hypot(*base)), abs(trace.residual_twist - model.twist[-1])
-        ),
-        1e-5,
-        "m, rad",
-        f"residual displacement or twist of a trace of {engine}",
-        note=f"base centre {math.hypot(*base):.3g} m off, contact at cos {c:.2g}",
+    moved = math.hypot(*(model.centre_of_mass[-1, :2] - SQUAT.mass_centre_height * s * ahead))
+    yield at_most(
+        f"residual displacement and twist, {run}",
+        max(abs(trace.residual_displacement - moved), abs(trace.residual_twist - model.twist[-1])),
+        RESIDUAL,
+        f"residual displacement or twist of a trace of {run.engine}",
+        f"base centre {moved:.3g} m off, contact at cos {c:.2g}",
     )
     # what the ground's constant acceleration did on the way, from the positions of the trace itself
     work = -(trace.centre_of_mass - trace.centre_of_mass[0]) @ GROUND
-    yield _finding(
-        f"energy error against energy and work, {label}",
-        np.abs(trace.energy - trace.energy[0] - work - trace.energy_error).max(),
+    yield at_most(
+        f"energy error against energy and work, {run}",
+        largest(trace.energy - trace.energy[0] - work - trace.energy_error),
         BALANCE,
-        "m^2/s^2",
-        f"energy error of a trace of {engine}, or how the acceleration reaches it",
+        f"energy error of a trace of {run.engine}, or how the acceleration reaches it",
     )
 
 
 def _uplift(bench: Bench, engine: str) -> Iterator[Finding]:
-    """|a| rises and the weight falls: 2 t/0.8 = 1 - 0.5 t/0.8 at the uplift, in units of the threshold."""
     run = bench.adjust(Run(engine, "recess"))
     if engine == "pybullet":
         # its base rocks on four contacts before: what is checked is where the uplift is found
         run = Run(engine, run.support, run.time_step, **{**run.settings, "held_standing": True})
-    case = Case(PIER, RAMP, duration=0.6, friction=2.0, name="ramp")
-    trace = simulate_run(case, run, sample_step=0.05)
-    if crashed(trace):
-        yield _failed(f"{engine}, ramp", engine, trace)
+    trace = simulate_run(RAMP, run, sample_step=0.05)
+    if trace.outcome == "failed":
+        yield _failed(f"{engine}, ramp", trace)
         return
-    yield _finding(
-        f"instant of uplift, {engine}",
-        abs(trace.uplift_time - 0.8 / 2.5),
-        UPLIFT,
-        "s",
-        f"uplift of a trace of {engine}, or its vertical component",
-    )
-    yield _finding(
-        f"azimuth of uplift, {engine}",
-        abs(math.remainder(trace.uplift_direction - math.atan2(-1.2, 1.6), 2.0 * math.pi)),
-        AZIMUTH,
-        "rad",
-        f"azimuth of uplift of a trace of {engine}",
-    )
-    model = bench.response(case, "recess", rtol=1e-11, sample_step=0.05)
-    yield _finding(
-        f"tilt after an uplift under a falling weight, {engine}",
-        np.abs(trace.tilt - model.tilt).max() if len(trace.tilt) == len(model.tilt) else math.nan,
-        RISE,
-        "rad",
-        f"uplift of {engine}, or its vertical component",
-    )
+    vertical = ", or its vertical component"
+    late = abs(trace.uplift_time - 0.8 / 2.5)
+    yield at_most(f"instant of uplift, {engine}", late, UPLIFT, f"uplift of a trace of {engine}{vertical}")
+    off = abs(math.remainder(trace.uplift_direction - math.atan2(-1.2, 1.6), 2.0 * math.pi))
+    yield at_most(f"azimuth of uplift, {engine}", off, AZIMUTH, f"azimuth of uplift of a trace of {engine}")
+    model = bench.solve(RAMP, rtol=1e-11, sample_step=0.05)
+    apart = largest(trace.tilt - model.tilt) if len(trace.tilt) == len(model.tilt) else math.nan
+    name = f"tilt after an uplift under a falling weight, {engine}"
+    yield at_most(name, apart, RISE, f"uplift of {engine}{vertical}")
     at = np.flatnonzero((trace.time > 0.04) & (trace.time < 0.31))
     ground = np.outer(trace.time[at] / 0.8, [-1.6, 1.2, -2.5]) * PIER.tan_alpha
-    yield _finding(
-        f"contact force at rest, {engine}",
-        np.abs(trace.contact_force[at] - ground - [0.0, 0.0, 1.0]).max(),
-        1e-6,
-        "weights",
-        f"contact force of a trace of {engine}, or its vertical component",
-    )
+    apart = largest(trace.contact_force[at] - ground - [0.0, 0.0, 1.0])
+    part = f"contact force of a trace of {engine}{vertical}"
+    yield at_most(f"contact force at rest, {engine}", apart, AT_REST, part)
 
 
 def _passes(bench: Bench, engine: str) -> Iterator[Finding]:
     """A release that passes the upright position once, and rises again to its peak."""
-    (trace,) = bench.engine_runs([(RELEASE, bench.adjust(Run(engine, "recess")), f"{engine} guided")])
-    if crashed(trace):
-        yield _failed(f"{engine}, release", engine, trace)
+    (trace,) = bench.traces([Job(case=RELEASE, run=bench.adjust(Run(engine, "recess")))])
+    if trace.outcome == "failed":
+        yield _failed(f"{engine}, release", trace)
         return
-    model = bench.response(RELEASE, "recess", rtol=1e-11)
-    yield _finding(
-        f"peak, {engine}",
-        abs(trace.peak_tilt - model.peak_tilt),
-        PEAK,
-        "rad",
-        f"peak tilt of a trace of {engine}",
-    )
+    model = bench.solve(RELEASE, rtol=1e-11)
+    apart = abs(trace.peak_tilt - model.peak_tilt)
+    yield at_most(f"peak, {engine}", apart, PEAK, f"peak tilt of a trace of {engine}")
     columns = ["time", "minimum_tilt", "angle_of_turn"]
     own, other = (found.passes[columns].to_numpy(dtype=float) for found in (trace, model))
-    yield _finding(
+    yield at_most(
         f"passes, {engine}",
-        _largest(own - other) if own.shape == other.shape and len(own) else math.nan,
+        largest(own - other) if own.shape == other.shape else math.nan,
         PASS,
-        "s, rad",
         f"turning points of a trace of {engine}",
-        note=f"{len(own)} passes, {len(other)} of the model",
+        f"{len(own)} passes, {len(other)} of the model",
     )
 
 
@@ -213,39 +174,17 @@ def _slides(bench: Bench, engine: str) -> Finding:
     """A standing cylinder on ground that moves away under it: half of what friction does not hold, t^2."""
     friction, time = 0.1, 0.5
     # not of the size at which the engines run every scene, so that lengths and times differ from it
-    small = replace(PIER, semidiagonal=1.5)
+    small = Cylinder(semidiagonal=1.5, tan_alpha=0.2)
     case = Case(small, steady([0.12 * GRAVITY, -0.09 * GRAVITY], time), friction=friction, name="slide")
     trace = simulate_run(case, bench.adjust(Run(engine, "flat")))
-    if crashed(trace):
-        return _failed(f"{engine}, slide", engine, trace)
+    if trace.outcome == "failed":
+        return _failed(f"{engine}, slide", trace)
     distance = 0.5 * (0.15 - friction) * GRAVITY * time**2
-    return at_most(
-        LAYER,
-        f"slip and displacement of a cylinder that slides, {engine}",
-        max(abs(trace.slip[-1] / distance - 1.0), abs(trace.residual_displacement / distance - 1.0)),
-        SLIDE,
-        reason="closed form; contact chatters as it slides: 0.01 and 0.03 were measured",
-        part=f"slip or residual displacement of a trace of {engine}, or its friction",
-    )
+    off = (abs(trace.slip[-1] / distance - 1.0), abs(trace.residual_displacement / distance - 1.0))
+    part = f"slip or residual displacement of a trace of {engine}, or its friction"
+    return at_most(f"slip and displacement of a cylinder that slides, {engine}", max(off), SLIDE, part)
 
 
-def _largest(values: NDArray[np.float64]) -> float:
-    return float(np.abs(values).max())
-
-
-def _finding(name: str, value: float, bound: float, unit: str, part: str, note: str = "") -> Finding:
-    return at_most(
-        LAYER,
-        name,
-        value,
-        bound,
-        unit=unit,
-        reason="error of contact at this step; a fifth of it was measured",
-        part=part,
-        note=note,
-    )
-
-
-def _failed(name: str, engine: str, trace: Any) -> Finding:
-    finding = _finding(f"{name} reaches its end", math.nan, 0.0, "", f"contact of {engine}: the run failed")
-    return replace(finding, note=why(trace))
+def _failed(name: str, trace: Trace) -> Finding:
+    part = f"contact of {trace.run.engine}: the run failed"
+    return at_most(f"{name} reaches its end", math.nan, ENDS, part, why(trace))

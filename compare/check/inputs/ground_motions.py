@@ -7,17 +7,19 @@ from collections.abc import Iterator
 from importlib.resources import files
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble.models import GroundMotion, el_centro_1940, p695_far_field, pulse
 
-from ..bench import Bench
-from ..finding import Finding, at_most, not_run
+from ..bench import Array, Bench, largest
+from ..finding import Bound, Finding, at_most, not_run
+from ..problems import GRAVITY as G
 
-LAYER = "records"
-Array = NDArray[np.float64]
-G = 9.81
-ROUNDING = 1e-14
+EL_CENTRO = "record of El Centro: its files, their components or unit"
+FILES = Bound(1e-14, "x is component 270, y 180, z up; 0.01 s", "g")
+PUBLISHED = Bound(5.1e-5, "four digits are published", "g, s")
+PRINTED = Bound(0.006, "tables A-4A and A-4D of FEMA P-695, two digits", "g, -")
+PULSES = Bound(1e-12, "sine and cosine of the time since their start", "m/s^2, s")
+CHANGES = Bound(1e-14, "a product of complex numbers; rounding", "m/s^2, s")
 # peaks of components 270, 180 and UP of PEER RSN6 in g, and where they are in the record [s]
 PEAKS, INSTANTS = (0.2107, 0.2808, 0.1781), (11.51, 2.18, 3.37)
 # FEMA P-695, tables A-4A (larger peak of the two components [g]) and A-4D (factor of normalisation)
@@ -29,7 +31,6 @@ FAR_FIELD = (
 )  # fmt: skip
 # time steps of the first records that have another one: pair, step [s]
 STEPS = {1: 0.01, 6: 0.005, 11: 0.02, 12: 0.0025}
-PRINTED = 0.006  # two digits are printed
 
 
 def check(bench: Bench) -> Iterator[Finding]:
@@ -46,29 +47,13 @@ def _el_centro() -> Iterator[Finding]:
     columns = [_shipped(mark) for mark in (", 270", ", 180", ", UP")]
     count = min(map(len, columns))
     expected = G * np.column_stack([column[:count] for column in columns])
-    part = "record of El Centro: its files, their components or unit"
     same = motion.acceleration.shape == expected.shape and motion.time_step == 0.01
-    yield at_most(
-        LAYER,
-        "El Centro against the numbers of its files",
-        np.abs(motion.acceleration - expected).max() / G if same else math.nan,
-        ROUNDING,
-        unit="g",
-        reason="x is component 270, y 180, z up; 0.01 s",
-        part=part,
-    )
+    apart = largest(motion.acceleration - expected) / G if same else math.nan
+    yield at_most("El Centro against the numbers of its files", apart, FILES, EL_CENTRO)
     at = np.abs(motion.acceleration).argmax(axis=0)
-    apart = np.abs(np.abs(motion.acceleration).max(axis=0) / G - PEAKS)
-    early = np.abs(at * motion.time_step - INSTANTS)
-    yield at_most(
-        LAYER,
-        "peaks of El Centro against those published",
-        max(apart.max(), early.max()),
-        5.1e-5,
-        unit="g, s",
-        reason="four digits are published",
-        part=part,
-    )
+    apart = largest(np.abs(motion.acceleration).max(axis=0) / G - PEAKS)
+    early = largest(at * motion.time_step - INSTANTS)
+    yield at_most("peaks of El Centro against those published", max(apart, early), PUBLISHED, EL_CENTRO)
 
 
 def _shipped(mark: str) -> Array:
@@ -89,7 +74,7 @@ def _far_field() -> Finding:
     try:
         p695_far_field(1)
     except ValueError as error:
-        return not_run(LAYER, name, part=part, note=str(error))
+        return not_run(name, part, str(error))
     apart = []
     for pair, (peak, factor) in enumerate(FAR_FIELD, start=1):
         recorded, normalised = (p695_far_field(pair, normalised=either) for either in (False, True))
@@ -98,15 +83,7 @@ def _far_field() -> Finding:
             abs(normalised.peak / recorded.peak - factor),
             0.0 if STEPS.get(pair, recorded.time_step) == recorded.time_step else math.inf,
         ]
-    return at_most(
-        LAYER,
-        name,
-        max(apart),
-        PRINTED,
-        unit="g, -",
-        reason="tables A-4A and A-4D of FEMA P-695, two digits",
-        part=part,
-    )
+    return at_most(name, max(apart), PRINTED, part)
 
 
 def _pulses() -> Finding:
@@ -122,16 +99,9 @@ def _pulses() -> Finding:
         # the last sample may round to either side of the start
         along = np.where(at > 0.5 - 0.5 * motion.time_step, 3.0 * shape(math.pi * (at - 0.5)), 0.0)
         expected = np.column_stack([along * math.cos(0.7), along * math.sin(0.7)])
-        apart += [np.abs(motion.acceleration - expected).max(), abs(motion.duration - 0.5 - length)]
-    return at_most(
-        LAYER,
-        "pulses at their samples",
-        max(apart),
-        100.0 * ROUNDING,
-        unit="m/s^2, s",
-        reason="sine and cosine of the time since their start",
-        part="pulses: shape, start, period or direction",
-    )
+        apart += [largest(motion.acceleration - expected), abs(motion.duration - 0.5 - length)]
+    part = "pulses: shape, start, period or direction"
+    return at_most("pulses at their samples", max(apart), PULSES, part)
 
 
 def _changes() -> Finding:
@@ -140,18 +110,11 @@ def _changes() -> Finding:
     level = samples[:, 0] + 1j * samples[:, 1]
     turned = motion.rotated(0.9).acceleration
     apart = [
-        np.abs(turned[:, 0] + 1j * turned[:, 1] - level * np.exp(0.9j)).max(),
-        np.abs(turned[:, 2] - samples[:, 2]).max(),
-        np.abs(motion.scaled(-1.7).acceleration + 1.7 * samples).max(),
+        largest(np.abs(turned[:, 0] + 1j * turned[:, 1] - level * np.exp(0.9j))),
+        largest(turned[:, 2] - samples[:, 2]),
+        largest(motion.scaled(-1.7).acceleration + 1.7 * samples),
         abs(motion.peak - np.abs(level).max()),
         abs(motion.duration - 39 * 0.02),
     ]
-    return at_most(
-        LAYER,
-        "motions rotated and scaled, their peak and length",
-        max(apart),
-        ROUNDING,
-        unit="m/s^2, s",
-        reason="a product of complex numbers; rounding",
-        part="ground motion: rotation, scale, peak or duration",
-    )
+    part = "ground motion: rotation, scale, peak or duration"
+    return at_most("motions rotated and scaled, their peak and length", max(apart), CHANGES, part)

@@ -1,4 +1,4 @@
-"""Layer: record files, from made-up ones whose numbers are known, in every form that is read.
+"""Layer records: record files, from made-up ones whose numbers are known, in every form that is read.
 
 The numbers have as many digits as the files print, so that what is read is the same to the last bit but
 for one product with the unit.
@@ -9,24 +9,23 @@ from __future__ import annotations
 import math
 import tempfile
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble.models import GroundMotion, read_record
 
-from ..bench import Bench
-from ..finding import Finding, at_most
+from ..bench import Array, Bench, largest
+from ..finding import Bound, Finding, at_most, none_wrong, worst_of
 
-LAYER = "records"
-Array = NDArray[np.float64]
 # m/s^2 of a unit; 1 g is 9.81 m/s^2, as everywhere in the package
 UNITS = {"g": 9.81, "m/s2": 1.0, "cm/s2": 0.01}
-ROUNDING = 1e-15  # relative, of one product
-# a step of a fraction, printed with four digits: the mean over the record is nearer
-STEP = 1e-6
+SAMPLES = Bound(1e-15, "the numbers of the file times its unit")
+STEP = Bound(1e-6, "DT of the header, or the mean of printed times")
+COMPONENTS = Bound(1e-15, "each in its column, in its unit, cut to the shortest", "m/s^2")
 _COUNT = 23  # no multiple of the five numbers of a line
+_HEAD = "NPTS= {n}, DT= .0100 SEC"
 
 
 def check(bench: Bench) -> Iterator[Finding]:
@@ -41,94 +40,58 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 def _forms(folder: Path) -> Iterator[Finding]:
     values = _numbers(1)
-    worst, worst_step = ("", 0.0), ("", 0.0)
-    forms = dict(_written(values))
-    for name, (text, unit, given, step) in forms.items():
+    samples, steps = {}, {}
+    for name, (text, unit, given, step) in _written(values).items():
         motion = _read(folder, [text, text], given)
         expected = UNITS[unit] * values
-        apart = math.inf
-        if motion.acceleration.shape == (_COUNT, 2):
-            apart = float(np.abs(motion.acceleration - expected[:, None]).max() / np.abs(expected).max())
-        worst = max(worst, (name, apart), key=lambda each: each[1])
-        worst_step = max(worst_step, (name, abs(motion.time_step / step - 1.0)), key=lambda each: each[1])
-    part = "record files: header, numbers or units"
-    yield at_most(
-        LAYER,
-        f"samples of one record in {len(forms)} forms of file",
-        worst[1],
-        ROUNDING,
-        reason="the numbers of the file times its unit",
-        part=part,
-        note=f"worst: {worst[0]}" if worst[1] else "",
-    )
-    yield at_most(
-        LAYER,
-        "time steps of these files",
-        worst_step[1],
-        STEP,
-        reason="DT of the header, or the mean of printed times",
-        part="record files: time step",
-        note=f"worst: {worst_step[0]}" if worst_step[1] else "",
-    )
+        same = motion.acceleration.shape == (_COUNT, 2)
+        apart = largest(motion.acceleration - expected[:, None]) if same else math.inf
+        samples[name] = apart / largest(expected)
+        steps[name] = motion.time_step / step - 1.0
+    name = f"samples of one record in {len(samples)} forms of file"
+    yield worst_of(name, samples, SAMPLES, "record files: header, numbers or units")
+    yield worst_of("time steps of these files", steps, STEP, "record files: time step")
 
 
 def _components(folder: Path) -> Finding:
     """Three files of different length and unit: each in its column, cut to the shortest."""
     x, y, z = (_numbers(seed)[: _COUNT - 3 * seed] for seed in (0, 1, 2))
-    texts = [_at2(x, "NPTS= {n}, DT= .0100 SEC"), _csv(y, 0.01, "cm/s^2", ","), _csv(z, 0.01, "m/s^2", ";")]
-    motion = _read(folder, texts, None)
+    motion = _read(folder, [_at2(x, _HEAD), _csv(y, 0.01, "cm/s^2", ","), _csv(z, 0.01, "m/s^2", ";")], None)
     count = len(z)
     expected = np.column_stack([9.81 * x[:count], 0.01 * y[:count], z])
-    apart = math.inf
-    if motion.acceleration.shape == expected.shape:
-        apart = float(np.abs(motion.acceleration - expected).max())
-    return at_most(
-        LAYER,
-        "components of three files with three units",
-        apart,
-        ROUNDING,
-        unit="m/s^2",
-        reason="each in its column, in its unit, cut to the shortest",
-        part="record files: components, their units or their common length",
-    )
+    same = motion.acceleration.shape == expected.shape
+    apart = largest(motion.acceleration - expected) if same else math.inf
+    part = "record files: components, their units or their common length"
+    return at_most("components of three files with three units", apart, COMPONENTS, part)
 
 
 def _damaged(folder: Path) -> Finding:
     """Files that must be refused, because any reading of them would be a guess."""
     values = _numbers(1)
-    good = _at2(values, "NPTS= {n}, DT= .0100 SEC")
-    even, csv = _csv(values, 0.01, "g", ","), _csv
+    good, even = _at2(values, _HEAD), _csv(values, 0.01, "g", ",")
     lines = even.splitlines()
+    counts = f"NPTS= {_COUNT}"
     damaged: dict[str, tuple[list[str], str | None]] = {
-        "fewer samples than announced": ([good.replace(f"NPTS= {_COUNT}", f"NPTS= {_COUNT + 2}")] * 2, None),
-        "more samples than announced": ([good.replace(f"NPTS= {_COUNT}", f"NPTS= {_COUNT - 2}")] * 2, None),
+        "fewer samples than announced": ([good.replace(counts, f"NPTS= {_COUNT + 2}")] * 2, None),
+        "more samples than announced": ([good.replace(counts, f"NPTS= {_COUNT - 2}")] * 2, None),
         "two time steps": ([good, good.replace(".0100", ".0050")], None),
         "another unit than given": ([good] * 2, "m/s2"),
         "no unit at all": ([good.replace("IN UNITS OF G", "")] * 2, None),
         "a velocity": ([good.replace("ACCELERATION TIME SERIES IN UNITS OF G", "VELOCITY")] * 2, "g"),
-        "a unit that is unknown": ([csv(values, 0.01, "mm/s^2", ",")] * 2, None),
+        "a unit that is unknown": ([_csv(values, 0.01, "mm/s^2", ",")] * 2, None),
         "a sample left out": (["\n".join([*lines[:9], *lines[10:]])] * 2, None),
         "times that fall": (["\n".join([lines[0], *lines[:0:-1]])] * 2, None),
-        "two starts": ([even, csv(values, 0.01, "g", ",", start=0.5)], None),
+        "two starts": ([even, _csv(values, 0.01, "g", ",", start=0.5)], None),
         "a sample that is no number": (["\n".join([*lines[:9], "0.08,nan", *lines[10:]])] * 2, None),
         "one sample": (["\n".join(lines[:2])] * 2, None),
     }
     accepted = []
     for name, (texts, given) in damaged.items():
-        try:
+        with suppress(ValueError):
             _read(folder, texts, given)
-        except ValueError:
-            continue
-        accepted.append(name)
-    return at_most(
-        LAYER,
-        f"damaged record files that are read, of {len(damaged)}",
-        len(accepted),
-        0.0,
-        reason="each is refused with a message",
-        part="record files: what must be refused",
-        note="; ".join(accepted),
-    )
+            accepted.append(name)
+    name = f"damaged record files that are read, of {len(damaged)}"
+    return none_wrong(name, accepted, "each is refused with a message", "record files: what must be refused")
 
 
 def _numbers(seed: int) -> Array:
@@ -137,28 +100,26 @@ def _numbers(seed: int) -> Array:
     return np.array([float(f"{value:.6e}") for value in drawn])
 
 
-def _written(values: Array) -> Iterator[tuple[str, tuple[str, str, str | None, float]]]:
-    """Yield name, and text, unit, units given and time step of each form."""
-    named, bare = "NPTS= {n}, DT= .0050 SEC,", "{n:5d}    .0050   NPTS, DT"
-    yield "AT2", (_at2(values, named), "g", None, 0.005)
-    yield "AT2, numbers before names", (_at2(values, bare), "g", "g", 0.005)
-    yield "AT2, colons", (_at2(values, "NPTS: {n}, DT: 0.02"), "g", None, 0.02)
-    yield "AT2, columns that touch", (_at2(values, named, "{:13.6E}"), "g", None, 0.005)
-    yield (
-        "AT2, exponents with D",
-        (_at2(values, named).replace("E+", "D+").replace("E-", "D-"), "g", None, 0.005),
-    )
-    yield "AT2, last line filled up", (_at2(values, named) + "  0.0  0.0\n", "g", None, 0.005)
-    yield "AT2, cm/s^2", (_at2(values, named).replace("OF G", "OF CM/SEC2"), "cm/s2", None, 0.005)
-    yield "columns, unit given", (_columns(values, 0.01), "m/s2", "m/s2", 0.01)
-    yield (
-        "columns, unit in a comment",
-        ("# acceleration in gal\n" + _columns(values, 0.01), "cm/s2", None, 0.01),
-    )
-    yield "columns, times of four digits", (_columns(values, 1.0 / 60.0), "g", "g", 0.3667 / 22.0)
-    yield "CSV", (_csv(values, 0.004, "g", ","), "g", None, 0.004)
-    yield "CSV, semicolons", (_csv(values, 0.01, "m/s^2", ";"), "m/s2", None, 0.01)
-    yield "CSV, a start that is not zero", (_csv(values, 0.01, "cm/s/s", ",", start=7.3), "cm/s2", None, 0.01)
+def _written(values: Array) -> dict[str, tuple[str, str, str | None, float]]:
+    """Return text, unit, unit given and time step of each form, by name."""
+    named = _at2(values, "NPTS= {n}, DT= .0050 SEC,")
+    touching = _at2(values, "NPTS= {n}, DT= .0050 SEC,", "{:13.6E}")
+    columns = _columns(values, 0.01)
+    return {
+        "AT2": (named, "g", None, 0.005),
+        "AT2, numbers before names": (_at2(values, "{n:5d}    .0050   NPTS, DT"), "g", "g", 0.005),
+        "AT2, colons": (_at2(values, "NPTS: {n}, DT: 0.02"), "g", None, 0.02),
+        "AT2, columns that touch": (touching, "g", None, 0.005),
+        "AT2, exponents with D": (named.replace("E+", "D+").replace("E-", "D-"), "g", None, 0.005),
+        "AT2, last line filled up": (named + "  0.0  0.0\n", "g", None, 0.005),
+        "AT2, cm/s^2": (named.replace("OF G", "OF CM/SEC2"), "cm/s2", None, 0.005),
+        "columns, unit given": (columns, "m/s2", "m/s2", 0.01),
+        "columns, unit in a comment": ("# acceleration in gal\n" + columns, "cm/s2", None, 0.01),
+        "columns, times of four digits": (_columns(values, 1.0 / 60.0), "g", "g", 0.3667 / 22.0),
+        "CSV": (_csv(values, 0.004, "g", ","), "g", None, 0.004),
+        "CSV, semicolons": (_csv(values, 0.01, "m/s^2", ";"), "m/s2", None, 0.01),
+        "CSV, a start that is not zero": (_csv(values, 0.01, "cm/s/s", ",", start=7.3), "cm/s2", None, 0.01),
+    }
 
 
 def _at2(values: Array, counts: str, cell: str = "{:15.6E}") -> str:

@@ -8,63 +8,47 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, InitialState, Trace
+from rockwobble.models import Trace
 
 from ...traces.trajectory import External, read_trajectory
-from ..bench import Bench
-from ..finding import Finding, worst_of
+from ..bench import Array, Bench, largest
+from ..finding import Bound, Finding, worst_of
 from ..models import lagrange
-from .made_traces import Array
+from ..problems import PIER, released
 
-LAYER = "metrics"
-CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-B, H, ALPHA = CYLINDER.base_radius, CYLINDER.mass_centre_height, CYLINDER.alpha
+B, H, ALPHA = PIER.base_radius, PIER.mass_centre_height, PIER.alpha
 LENGTH = 5.0
-CASE = Case(CYLINDER, initial=InitialState(0.5 * ALPHA), duration=LENGTH, name="made")
+CASE = released(0.5, 0.0, LENGTH, name="made")
 LATE = 0.6  # [rad] phase of the tilt at the start
 DRIFT = np.array([0.1, -0.05, 0.0])  # of b, in the whole run
-ROUNDING = 1e-9  # of the twelve digits that are printed, in m and rad
-# of samples 0.02 s apart: the local cubic leaves (0.02 w)^3 of a wobble of w = 4 rad/s; 3e-5 was measured
-COARSE = 2e-4
-TURNING = 1e-5  # of a parabola through three samples
+KNOWN, UNIT = "a motion that is written down", "s, rad, m"
+PRINTED = Bound(1e-9, f"{KNOWN}; twelve digits are printed", UNIT)
+# (0.02 w)^3 of a wobble of w = 4 rad/s; 3e-5 was measured
+COARSE = Bound(2e-4, f"{KNOWN}; local cubic between samples 0.02 s apart", UNIT)
+TURNING = Bound(1e-5, f"{KNOWN}; parabola through three samples", UNIT)
+PART = "external trajectories: units, quaternions, places or turning points"
 
 
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part."""
     del bench
-    with tempfile.TemporaryDirectory() as place:
-        path = Path(place) / "made.csv"
-        fine, coarse = (step * np.arange(round(LENGTH / step) + 1, dtype=np.float64) for step in (0.01, 0.02))
-        forms = {
-            "angles in degrees, ms": (_angles(fine), 0.0),
-            "quaternions": (_quaternions(fine, placed=False), 0.0),
-            "quaternions and places in mm, another clock": (
-                _quaternions(fine - 2.5, placed=True, shift=2.5),
-                2.5,
-            ),
-        }
-        for name, (text, offset) in forms.items():
-            found = _read(path, text, offset)
-            yield _finding(f"external trajectory, {name}", _errors(found, name), ROUNDING, "digits printed")
-        found = _read(path, _quaternions(coarse, placed=True), 0.0)
-        yield _finding(
-            "external trajectory, samples twice as far apart",
-            _errors(found, "places"),
-            COARSE,
-            "local cubic between samples 0.02 s apart",
-        )
-        found = _read(path, _quaternions(fine, placed=True), 0.0)
-        yield _finding(
-            "turning points of an external trajectory",
-            _turning(found),
-            TURNING,
-            "parabola through three samples",
-        )
+    fine, coarse = (step * np.arange(round(LENGTH / step) + 1, dtype=np.float64) for step in (0.01, 0.02))
+    late = _quaternions(fine - 2.5, placed=True, shift=2.5)
+    forms = {
+        "angles in degrees, ms": (_angles(fine), 0.0, PRINTED),
+        "quaternions": (_quaternions(fine, placed=False), 0.0, PRINTED),
+        "quaternions and places in mm, another clock": (late, 2.5, PRINTED),
+        "samples twice as far apart, places": (_quaternions(coarse, placed=True), 0.0, COARSE),
+    }
+    for name, (text, offset, bound) in forms.items():
+        yield worst_of(f"external trajectory, {name}", _errors(_read(text, offset), name), bound, PART)
+    turning = _turning(_read(_quaternions(fine, placed=True), 0.0))
+    yield worst_of("turning points of an external trajectory", turning, TURNING, PART)
 
 
 def _motion(time: Array) -> tuple[Array, Array, Array, Array]:
@@ -75,7 +59,7 @@ def _motion(time: Array) -> tuple[Array, Array, Array, Array]:
 
 def _centre(time: Array) -> Array:
     tilt, azimuth, _, drift = _motion(time)
-    return lagrange.mass_centre(lagrange.shape_of(CYLINDER), tilt, azimuth) + drift
+    return lagrange.mass_centre(lagrange.shape_of(PIER), tilt, azimuth) + drift
 
 
 def _errors(found: Trace, form: str) -> dict[str, float]:
@@ -85,13 +69,11 @@ def _errors(found: Trace, form: str) -> dict[str, float]:
     at = drift if placed else 0.0 * drift
     whole = round(float(found.rolling_angle[0] - azimuth[0]) / (2.0 * math.pi)) * 2.0 * math.pi
     errors = {
-        "times": float(np.abs(found.time - 0.01 * np.arange(501)).max())
-        if len(found.time) == 501
-        else math.inf,
-        "tilt": float(np.abs(found.tilt - tilt).max()),
-        "rolling angle": float(np.abs(found.rolling_angle - azimuth - whole).max()),
-        "contact point": float(np.abs(found.contact_point - B * outward - at[:, :2]).max()),
-        "mass centre": float(np.abs(found.centre_of_mass - _centre(found.time) + drift - at).max()),
+        "times": largest(found.time - 0.01 * np.arange(501)) if len(found.time) == 501 else math.inf,
+        "tilt": largest(found.tilt - tilt),
+        "rolling angle": largest(found.rolling_angle - azimuth - whole),
+        "contact point": largest(found.contact_point - B * outward - at[:, :2]),
+        "mass centre": largest(found.centre_of_mass - _centre(found.time) + drift - at),
         "time of uplift": found.uplift_time,
         "direction of uplift": math.remainder(found.uplift_direction - 0.4, 2.0 * math.pi),
     }
@@ -99,7 +81,7 @@ def _errors(found: Trace, form: str) -> dict[str, float]:
         unknown = np.isnan(found.twist).all() and math.isnan(found.residual_displacement)
         return errors | {"what is not known": 0.0 if unknown else math.inf}
     errors |= {
-        "twist": float(np.abs(found.twist - twist).max()),
+        "twist": largest(found.twist - twist),
         "residual twist": found.residual_twist - twist[-1],
     }
     if placed:
@@ -142,9 +124,8 @@ def _quaternions(time: Array, *, placed: bool, shift: float = 0.0) -> str:
     columns = [time, *(np.where(w < 0.0, -1.0, 1.0) * part for part in (w, x, y, z))]
     head = "time, qw, qx, qy, qz"
     if placed:
-        return _csv(
-            f"{head}, x [mm], y [mm], z [mm]", np.column_stack([*columns, 1e3 * _centre(time + shift)])
-        )
+        rows = np.column_stack([*columns, 1e3 * _centre(time + shift)])
+        return _csv(f"{head}, x [mm], y [mm], z [mm]", rows)
     return _csv(head, np.column_stack(columns))
 
 
@@ -152,18 +133,8 @@ def _csv(head: str, rows: Array) -> str:
     return "\n".join([head, *(", ".join(f"{value:.12g}" for value in row) for row in rows.tolist())]) + "\n"
 
 
-def _read(path: Path, text: str, offset: float) -> Trace:
-    path.write_text(text, encoding="utf-8")
-    return read_trajectory(External(path=path, time_offset=offset), CASE)
-
-
-def _finding(name: str, errors: Mapping[str, float], bound: float, why: str) -> Finding:
-    return worst_of(
-        LAYER,
-        name,
-        errors,
-        bound,
-        unit="s, rad, m",
-        reason=f"a motion that is written down; {why}",
-        part="external trajectories: units, quaternions, places or turning points",
-    )
+def _read(text: str, offset: float) -> Trace:
+    with tempfile.TemporaryDirectory() as place:
+        path = Path(place) / "made.csv"
+        path.write_text(text, encoding="utf-8")
+        return read_trajectory(External(path=path, time_offset=offset), CASE)

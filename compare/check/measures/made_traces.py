@@ -6,17 +6,18 @@ import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rockwobble.models import Case, Cylinder, Run, Trace
+from rockwobble.models import Case, Run, Trace
 from rockwobble.models.trace import Known
+
+from ..bench import Array
+from ..problems import PIER
 
 if TYPE_CHECKING:
     import pandas as pd
 
-Array = NDArray[np.float64]
 RECESS = Run(None, "recess")
-CASE = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=20.0, name="made")
+CASE = Case(PIER, duration=20.0, name="made")
 
 
 def made(time: Array, tilt: Array, *, energy: Array | None = None, **fields: Any) -> Trace:

@@ -1,4 +1,4 @@
-"""Layer: the metrics of a comparison, on traces that are made up so that their values are known.
+"""Layer metrics: the metrics of a comparison, on traces that are made up so that their values are known.
 
 Expected values are integrals and counts done by hand: the sum of many samples of a sine is known, and a
 ramp crosses 1 % of alpha where it is drawn to.
@@ -12,57 +12,60 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, GroundMotion, Trace
+from rockwobble.models import Case, GroundMotion, Trace
 
 from ...comparison.prediction import Prediction
 from ...comparison.summary import summary_row
-from ...metrics.agreement import agreed_passes, agreement_time, closest_pass
+from ...metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
 from ...metrics.contact import contact_rms
 from ...metrics.energy import energy_loss
 from ...metrics.tilt import tilt_rms, tilt_rms_relative
 from ...metrics.turning import direction_difference, first_unresolved_pass, turn_difference
-from ...traces.pair import make_pair
-from ..bench import Bench
-from ..finding import Finding, worst_of
-from .made_traces import Array, made, passes
+from ...traces.pair import Pair, make_pair
+from ..bench import Array, Bench
+from ..finding import Bound, Finding, worst_of
+from ..problems import PIER
+from .made_traces import made, passes
 
-LAYER = "metrics"
-CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-ALPHA, B = CYLINDER.alpha, CYLINDER.base_radius
+ALPHA, B = PIER.alpha, PIER.base_radius
 TIME: Array = 0.01 * np.arange(1001, dtype=np.float64)
-ROUNDING = 1e-12
-# of a work: the slope of the velocity within a sample comes from its neighbours; 3e-9 was measured
-WORK = 1e-7
+LEAN: Array = np.full(len(TIME), 0.1)
+ROUNDING = Bound(1e-12, "made up so that each value is known; rounding")
+# the slope of the velocity within a sample comes from its neighbours; 3e-9 was measured
+WORK = Bound(1e-7, "made up so that each value is known; samples 0.01 s apart")
 
 
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part."""
     del bench
-    yield _finding("differences of tilt", _tilts(), "RMS of the tilt (compare/metrics/tilt.py)")
-    yield _finding(
-        "one time axis for two traces", _axes(), "interpolation or window of a pair (compare/traces/pair.py)"
-    )
-    yield _finding("distance of the contact points", _contacts(), "contact RMS (compare/metrics/contact.py)")
-    yield _finding("differences of turn and direction", _turns(), "turning (compare/metrics/turning.py)")
-    yield _finding("agreement time and passes", _agreement(), "agreement (compare/metrics/agreement.py)")
-    yield _finding("energy lost", _energies(), "energy lost (compare/metrics/energy.py)", WORK)
-    yield _finding("a row of the summary", _row(), "columns of the summary (compare/comparison/summary.py)")
+    for name, errors, part in (
+        ("differences of tilt", _tilts(), "RMS of the tilt (compare/metrics/tilt.py)"),
+        ("one time axis for two traces", _axes(), "interpolation or window (compare/traces/pair.py)"),
+        ("distance of the contact points", _contacts(), "contact RMS (compare/metrics/contact.py)"),
+        ("differences of turn and direction", _turns(), "turning (compare/metrics/turning.py)"),
+        ("agreement time and passes", _agreement(), "agreement time (compare/metrics/agreement.py)"),
+        ("a row of the summary", _row(), "columns of the summary (compare/comparison/summary.py)"),
+    ):
+        yield worst_of(name, errors, ROUNDING, part)
+    yield worst_of("energy lost", _energies(), WORK, "energy lost (compare/metrics/energy.py)")
+
+
+def _pair(reference: Trace, trial: Trace, until: float | None = None) -> Pair:
+    return make_pair(PIER, reference, trial, until=until)
 
 
 def _tilts() -> dict[str, float]:
     wave = np.sin(2.0 * math.pi * TIME[:-1])  # ten whole periods
     reference = made(TIME[:-1], 0.5 * ALPHA + 0.2 * ALPHA * wave)
     trial = made(TIME[:-1], 0.5 * ALPHA + 0.23 * ALPHA * wave - 0.02 * ALPHA)
-    pair = make_pair(CYLINDER, reference, trial)
+    pair = _pair(reference, trial)
     rms = math.sqrt(0.03**2 / 2.0 + 0.02**2)
     scale = math.sqrt(0.5**2 + 0.2**2 / 2.0)
     return {
         "RMS": tilt_rms(pair) - rms,
         "relative RMS": tilt_rms_relative(pair) - rms / scale,
         "sign of the difference": pair.tilt_difference[0] + 0.02,
-        "RMS of what never tilts": _none(
-            tilt_rms_relative(make_pair(CYLINDER, made(TIME, 0.0 * TIME), trial))
-        ),
+        "RMS of what never tilts": _none(tilt_rms_relative(_pair(made(TIME, 0.0 * TIME), trial))),
     }
 
 
@@ -76,11 +79,11 @@ def _axes() -> dict[str, float]:
         contact_point=np.column_stack([own, -2.0 * own]),
         rolling_angle=3.0 * own,
     )
-    pair, window = make_pair(CYLINDER, reference, trial), make_pair(CYLINDER, reference, trial, until=2.0)
+    pair, window = _pair(reference, trial), _pair(reference, trial, until=2.0)
     tilts = reference.tilt.copy()
     tilts[300:] = math.nan
-    broken = make_pair(CYLINDER, reference, made(TIME, tilts))
-    whole = make_pair(CYLINDER, reference, made(TIME + 1e-11, reference.tilt))
+    broken = _pair(reference, made(TIME, tilts))
+    whole = _pair(reference, made(TIME + 1e-11, reference.tilt))
     return {
         "interpolated tilt": float(np.abs(pair.tilt_difference).max()),
         "interpolated contact": float(np.abs(pair.contact_point - np.outer(pair.time, [1.0, -2.0])).max()),
@@ -100,37 +103,27 @@ def _contacts() -> dict[str, float]:
     tilt = np.where(low, 0.04, 1.0) * 0.5 * ALPHA
     at = np.column_stack([np.cos(TIME), np.sin(TIME)]) * B
     off = np.where(low[:, None], [[3.0, 3.0]], [[0.03, -0.04]]) * B
-    pair = make_pair(CYLINDER, made(TIME, tilt, contact_point=at), made(TIME, tilt, contact_point=at + off))
-    one_low = make_pair(
-        CYLINDER, made(TIME, tilt + 0.01, contact_point=at), made(TIME, tilt, contact_point=at + off)
-    )
     gap = at.copy()
     gap[::4] = math.nan
-    rests = make_pair(CYLINDER, made(TIME, tilt, contact_point=gap), made(TIME, tilt, contact_point=at + off))
-    return {
-        "RMS": contact_rms(pair) - 0.05,
-        "RMS where one of two tilts": contact_rms(one_low) - 0.05,
-        "RMS with a reference that rests now and then": contact_rms(rests) - 0.05,
+    references = {
+        "RMS": made(TIME, tilt, contact_point=at),
+        "RMS where one of two tilts": made(TIME, tilt + 0.01, contact_point=at),
+        "RMS with a reference that rests now and then": made(TIME, tilt, contact_point=gap),
     }
+    trial = made(TIME, tilt, contact_point=at + off)
+    return {name: contact_rms(_pair(one, trial)) - 0.05 for name, one in references.items()}
 
 
 def _turns() -> dict[str, float]:
-    one = _rolling(2.0, 0.3)
-    fast = _rolling(3.0, 0.3)
-    turned = _rolling(2.0, 0.5 + 4.0 * math.pi)
-    across = (
-        made(TIME, 0.1 + 0.0 * TIME, uplift_direction=math.pi - 0.1),
-        made(TIME, 0.1 + 0.0 * TIME, uplift_direction=0.1 - math.pi),
-    )
-    pair = make_pair(CYLINDER, one, fast)
+    one, fast, turned = _rolling(2.0, 0.3), _rolling(3.0, 0.3), _rolling(2.0, 0.5 + 4.0 * math.pi)
+    across = (made(TIME, LEAN, uplift_direction=sign * (math.pi - 0.1)) for sign in (1.0, -1.0))
+    pair, named_apart = _pair(one, fast), direction_difference(one, turned)
     engine = made(TIME, one.tilt, passes=passes([1.0, 2.5, 4.0], [0.1, 0.1, 0.1], [False, True, False]))
     return {
         "more than a turn": turn_difference(pair, until=10.0) - 10.0,
         "until the end of the agreement": turn_difference(pair, until=2.5) - 2.5,
         "a direction that is named two turns apart": turn_difference(
-            make_pair(CYLINDER, one, turned),
-            until=10.0,
-            direction_difference=direction_difference(one, turned),
+            _pair(one, turned), until=10.0, direction_difference=named_apart
         )
         - 0.2,
         "direction across the cut": direction_difference(*across) - 0.2,
@@ -144,17 +137,17 @@ def _agreement() -> dict[str, float]:
     """The trial leaves the reference on a ramp that is at 1 % of alpha at 6.005 s; uplift was at 1 s."""
     table = passes([2.0, 5.0, 6.01, 6.02, 8.0], [0.03, 0.01, 0.02, 0.001, 0.002])
     reference = made(TIME, np.full(len(TIME), 0.4 * ALPHA), uplift_time=1.0, passes=table)
-    for sign in (1.0, -1.0):
-        ramp = sign * 0.01 * ALPHA * np.maximum(0.0, TIME - 5.005)
-        pair = make_pair(CYLINDER, reference, made(TIME, reference.tilt + ramp))
-        horizon = agreement_time(pair)
-        if not (horizon.diverged and horizon.end == TIME[601]):
-            return {f"a ramp of sign {sign:g}": math.nan}
-    same = agreement_time(make_pair(CYLINDER, reference, made(TIME, reference.tilt + 0.0099 * ALPHA)))
-    cut = make_pair(CYLINDER, reference, made(TIME[:501], reference.tilt[:501]))
+    ramp = np.maximum(0.0, TIME - 5.005)
+
+    def parts(off: Array | float) -> Agreement:
+        return agreement_time(_pair(reference, made(TIME, reference.tilt + off * ALPHA)))
+
+    up, horizon, same, early = parts(0.01 * ramp), parts(-0.01 * ramp), parts(0.0099), parts(0.02)
+    cut = _pair(reference, made(TIME[:501], reference.tilt[:501]))
     broken = agreement_time(cut, broken=True)
-    early = agreement_time(make_pair(CYLINDER, reference, made(TIME, reference.tilt + 0.02 * ALPHA)))
     return {
+        "a ramp upwards": 0.0 if up == horizon and horizon.diverged else math.nan,
+        "end of the agreement": horizon.end - TIME[601],
         "length from the uplift": horizon.length - 5.01,
         "passes within it": agreed_passes(reference, horizon) - 3.0,
         "closest of them": closest_pass(reference, horizon) - 0.01,
@@ -166,41 +159,33 @@ def _agreement() -> dict[str, float]:
 
 def _energies() -> dict[str, float]:
     """Work of a known acceleration on a known path, in three components; and a loss that is put in."""
-    samples = np.column_stack(
-        [np.linspace(0.0, 3.0, 6), np.linspace(-1.0, 1.0, 6), np.linspace(0.5, -0.5, 6)]
-    )
-    motion = GroundMotion(samples, 2.0)
     # a = a0 + c t along each axis, r = sin(w t): the work of -a is -[a sin(w t) + c cos(w t)/w]
-    rates, start = np.array([0.3, 0.2, -0.1]), samples[0]
-    speeds = np.array([1.1, 0.7, 1.9])
+    start, rates, speeds = np.array([[0.0, -1.0, 0.5], [0.3, 0.2, -0.1], [1.1, 0.7, 1.9]])
+    motion = GroundMotion(start + np.outer(2.0 * np.arange(6.0), rates), 2.0)
     place = np.sin(np.outer(TIME, speeds))
     ground = start + np.outer(TIME, rates)
     swept = ground * place + rates * np.cos(np.outer(TIME, speeds)) / speeds
     work = -(swept - swept[0]).sum(axis=1)
     energy = work - work.min() + 1.0
-    lossy = energy - 0.02 * TIME
-    largest = float(lossy.max())
-    tilt = 0.1 + 0.0 * TIME
+    lossy, even = energy - 0.02 * TIME, np.ones(len(TIME))
+    late = np.maximum(0.0, TIME - 4.0)[:, None] ** 3 * [0.01, 0.0, 0.0]
+
+    def lost(energy: Array, place: Array, motion: GroundMotion | None) -> float:
+        return energy_loss(made(TIME, LEAN, energy=energy, centre_of_mass=place), motion)
+
+    still = 0.0 * place
     return {
-        "none": energy_loss(made(TIME, tilt, energy=energy, centre_of_mass=place), motion),
-        "some": energy_loss(made(TIME, tilt, energy=lossy, centre_of_mass=place), motion) - 0.2 / largest,
-        "over still ground": energy_loss(made(TIME, tilt, energy=2.0 - 0.05 * TIME), None) - 0.25,
-        "of what never moves": energy_loss(made(TIME, tilt), None),
-        "after the end of the record": energy_loss(
-            made(
-                TIME,
-                tilt,
-                energy=1.0 + 0.0 * TIME,
-                centre_of_mass=np.maximum(0.0, TIME - 4.0)[:, None] ** 3 * [0.01, 0.0, 0.0],
-            ),
-            GroundMotion([[1.0, 0.0], [1.0, 0.0]], 4.0),
-        ),
+        "none": lost(energy, place, motion),
+        "some": lost(lossy, place, motion) - 0.2 / float(lossy.max()),
+        "over still ground": lost(2.0 - 0.05 * TIME, still, None) - 0.25,
+        "of what never moves": lost(0.0 * even, still, None),
+        "after the end of the record": lost(even, late, GroundMotion([[1.0, 0.0], [1.0, 0.0]], 4.0)),
     }
 
 
 def _row() -> dict[str, float]:
     """What the columns of a summary must be where two rolling cylinders differ in everything."""
-    case = Case(CYLINDER, duration=10.0, name="made")
+    case = Case(PIER, duration=10.0, name="made")
     reference = _rolling(2.0, 0.3, peak_tilt=0.7 * ALPHA, wall_time=0.5, uplift_time=1.0)
     trial = _rolling(
         2.0,
@@ -248,9 +233,3 @@ def _rolling(rate: float, start: float, **fields: Any) -> Trace:
 
 def _none(value: float) -> float:
     return 0.0 if math.isnan(value) else math.inf
-
-
-def _finding(name: str, errors: Mapping[str, float], part: str, bound: float = ROUNDING) -> Finding:
-    why = "rounding" if bound == ROUNDING else "samples 0.01 s apart"
-    reason = f"made up so that each value is known; {why}"
-    return worst_of(LAYER, name, errors, bound, reason=reason, part=part)

@@ -5,60 +5,42 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
+from rockwobble.models import Case, Cylinder, Run, Trace
 
 from ...comparison.prediction import Prediction, close_pass, estimated_error, predict, verdict
 from ...metrics.distributions import contrast
-from ..bench import Bench
-from ..finding import Finding, worst_of
-from .made_traces import RECESS, Array, made, passes
+from ..bench import Array, Bench
+from ..finding import Bound, Finding, worst_of
+from ..problems import PIER, released
+from .made_traces import RECESS, made, passes
 
-LAYER = "metrics"
-CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-ALPHA = CYLINDER.alpha
+ALPHA = PIER.alpha
 STEP = 0.01
 TIME: Array = STEP * np.arange(2001, dtype=np.float64)
 LENGTH = 20.0
-ROUNDING = 1e-12
 GROWTH, ERROR = 0.8, 1e-5  # of a perturbed copy [1/s], of an engine in its first second [alpha]
+EXPONENTIAL = "a difference that grows as an exponential reaches 1 % where it must; samples 0.01 s apart"
+TIMES = Bound(STEP * (1.0 + 1e-9), EXPONENTIAL, "s")
+VERDICTS = Bound(1e-12, "within a factor of two; in proportion to the step, at any size")
+COUNTED = Bound(1e-12, "counted value by value")
 
 
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part."""
     del bench
     part = "predicted agreement time (compare/comparison/prediction.py)"
-    yield worst_of(
-        LAYER,
-        "predicted agreement times",
-        _predictions(),
-        STEP * (1.0 + 1e-9),
-        reason="a difference that grows as an exponential reaches 1 % where it must; samples 0.01 s apart",
-        part=part,
-        unit="s",
-    )
-    yield worst_of(
-        LAYER,
-        "words on a prediction, and scale of an estimated error",
-        _verdicts(),
-        ROUNDING,
-        reason="within a factor of two; in proportion to the step, at any size",
-        part=part,
-    )
-    yield worst_of(
-        LAYER,
-        "distances of distributions of peaks",
-        _distances(),
-        ROUNDING,
-        reason="counted value by value",
-        part="distributions (compare/metrics/distributions.py)",
-    )
+    yield worst_of("predicted agreement times", _predictions(), TIMES, part)
+    yield worst_of("words on a prediction, and scale of an estimated error", _verdicts(), VERDICTS, part)
+    part = "distributions (compare/metrics/distributions.py)"
+    yield worst_of("distances of distributions of peaks", _distances(), COUNTED, part)
 
 
 def _predictions() -> dict[str, float]:
-    case = Case(CYLINDER, initial=InitialState(0.5 * ALPHA, rolling_rate=0.1), duration=LENGTH, name="made")
+    case = released(0.5, 0.1, LENGTH, name="made")
     table = passes([3.0, 7.0, 11.0], [2e-3, 3e-4, 1e-5])
     reference = _trace(0.0, passes=table)
     landed = 1.0 + np.where(TIME >= 5.0, math.pi, 0.0)
@@ -71,12 +53,7 @@ def _predictions() -> dict[str, float]:
 
     def predicted(own: Trace, resolution: float, error: float = ERROR) -> Prediction:
         return predict(
-            case,
-            reference=reference,
-            own=own,
-            contact_resolution=resolution,
-            error=error,
-            simulate=perturbed,
+            case, reference=reference, own=own, contact_resolution=resolution, error=error, simulate=perturbed
         )
 
     # RMS of 7 d exp(k t) over the first second, sample by sample; d such that it is the error
@@ -98,10 +75,10 @@ def _predictions() -> dict[str, float]:
     }
 
 
-def _trace(strength: float, **fields: object) -> Trace:
+def _trace(strength: float, **fields: Any) -> Trace:
     """A standing lean of alpha/2 and 7 times `strength` alpha that grows."""
     tilt = 0.5 * ALPHA + 7.0 * strength * ALPHA * np.exp(GROWTH * TIME)
-    return made(TIME, tilt, **fields)  # type: ignore[arg-type]
+    return made(TIME, tilt, **fields)
 
 
 def _verdicts() -> dict[str, float]:
@@ -114,20 +91,15 @@ def _verdicts() -> dict[str, float]:
         (4.0, True, 20.0, ""): "earlier",
     }
     errors = {f"{given}": _unlike(verdict(*given), word) for given, word in words.items()}
-    small = Cylinder(semidiagonal=0.06, tan_alpha=0.2)
-    shaken = Case(CYLINDER, duration=1.0, name="made"), Case(small, duration=1.0, name="made")
-    leaning = InitialState(0.1)
-    released = [
-        Case(Cylinder(semidiagonal=6.0, tan_alpha=a), initial=leaning, duration=1.0, name="made")
-        for a in (0.2, 0.6)
-    ]
-    error = estimated_error(shaken[0], "mujoco", 1e-4)
+    shaken = Case(PIER, duration=1.0)
+    small = Case(Cylinder(semidiagonal=0.06, tan_alpha=0.2), duration=1.0)
+    error = estimated_error(shaken, "mujoco", 1e-4)
+    leaning = (released(0.5, 0.0, 1.0, Cylinder(semidiagonal=6.0, tan_alpha=a)) for a in (0.2, 0.6))
+    slender, squat = (estimated_error(case, "pybullet", 1e-4) for case in leaning)
     return errors | {
-        "twice the step": estimated_error(shaken[0], "mujoco", 2e-4) / error - 2.0,
-        "a hundredth of the size": estimated_error(shaken[1], "mujoco", 1e-5) / error - 1.0,
-        "three times as squat, released": estimated_error(released[1], "pybullet", 1e-4)
-        / estimated_error(released[0], "pybullet", 1e-4)
-        - 9.0,
+        "twice the step": estimated_error(shaken, "mujoco", 2e-4) / error - 2.0,
+        "a hundredth of the size": estimated_error(small, "mujoco", 1e-5) / error - 1.0,
+        "three times as squat, released": squat / slender - 9.0,
     }
 
 

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from math import factorial
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-Array = NDArray[np.float64]
+from ..bench import Array
 
 REACH = 6  # samples on either side: order 12, so what is left out is (step/time scale)^12
 
@@ -16,21 +14,18 @@ REACH = 6  # samples on either side: order 12, so what is left out is (step/time
 def first(values: Array, step: float) -> Array:
     """Return the rate (n - 2 REACH, ...) of samples (n, ...) that are `step` [s] apart."""
     weights = [_weight(k) / k for k in range(1, REACH + 1)]
-    found: Any = 0.0
-    for k, weight in enumerate(weights, start=1):
-        found = found + weight * (_shifted(values, k) - _shifted(values, -k))
-    return np.asarray(found / step)
+    pairs = (weight * (_shifted(values, k) - _shifted(values, -k)) for k, weight in enumerate(weights, 1))
+    return np.asarray(sum(pairs) / step)
 
 
 def second(values: Array, step: float) -> Array:
     """Return the second derivative (n - 2 REACH, ...) of samples (n, ...)."""
     centre = _shifted(values, 0)
-    found: Any = 0.0
-    for k in range(1, REACH + 1):
-        found = found + 2.0 * _weight(k) / k**2 * (
-            (_shifted(values, k) - centre) + (_shifted(values, -k) - centre)
-        )
-    return np.asarray(found / step**2)
+    pairs = (
+        2.0 * _weight(k) / k**2 * ((_shifted(values, k) - centre) + (_shifted(values, -k) - centre))
+        for k in range(1, REACH + 1)
+    )
+    return np.asarray(sum(pairs) / step**2)
 
 
 def _weight(k: int) -> float:

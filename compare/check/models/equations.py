@@ -1,4 +1,4 @@
-"""Layer: whether the motion that the reduced model computes solves the equations of the paper.
+"""Layer equations: whether the motion that the reduced model computes solves the equations of the paper.
 
 Nothing that the model says of itself is used but positions at samples; their differences go into
 Lagrange's equations (`lagrange`), and into (18) and (19) term by term. There every coefficient is fitted
@@ -11,38 +11,32 @@ import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..bench import Bench
-from ..finding import Finding, at_most
+from ..bench import Array, Bench, largest
+from ..finding import Bound, Finding, at_most, worst_of
 from . import lagrange
 from .lagrange import Shape
 from .short_motions import CYLINDERS, FailedMotionError, Sampled, sample
 
-Array = NDArray[np.float64]
 Terms = Mapping[str, tuple[Array, float]]
 
-LAYER = "equations"
-# differences of positions that are known to rounding: 1e-16/0.02^2 of the angles, 1e-11 of p^2 at the
-# worst, and what rtol 1e-13 leaves in a dozen steps
-RESIDUAL = 1e-9
-COEFFICIENT = 1e-7  # the same through the fit, whose condition number is up to a hundred
+REST_OF = "differences of positions known to rounding"
+# 1e-16/0.02^2 of the angles, 1e-11 of p^2 at the worst, and what rtol 1e-13 leaves in a dozen steps
+RESIDUAL = Bound(1e-9, REST_OF, "of g (b + h)")
+RATE = Bound(1e-9, REST_OF, "of p")
+FORCE = Bound(1e-9, "second differences of the mass centre", "weights")
+# the same through the fit, whose condition number is up to a hundred
+COEFFICIENT = Bound(1e-7, "each coefficient fitted to differences of computed positions")
+ENDS = Bound(0.0, "a third of a swing, far from upright")
 
 
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this layer, each the worst over all cylinders."""
     try:
-        motions = {name: sample(bench.reduced, cylinder) for name, cylinder in CYLINDERS.items()}
+        motions = {name: sample(bench, cylinder) for name, cylinder in CYLINDERS.items()}
     except FailedMotionError as error:
-        yield at_most(
-            LAYER,
-            "short motions reach their end",
-            math.nan,
-            0.0,
-            reason="a third of a swing, far from upright",
-            part="equation of motion (18) or (19), or step control",
-            note=str(error),
-        )
+        part = "equation of motion (18) or (19), or step control"
+        yield at_most("short motions reach their end", math.nan, ENDS, part, str(error))
         return
     coefficients = [
         *_coefficients("(18)", {name: _terms_18(motion) for name, motion in motions.items()}),
@@ -52,46 +46,19 @@ def check(bench: Bench) -> Iterator[Finding]:
         # one that is wrong makes others look a little wrong: the worst comes first
         coefficients.sort(key=lambda finding: -finding.value if math.isfinite(finding.value) else -math.inf)
     yield from coefficients
+    left = {name: _lagrange(motion) for name, motion in motions.items()}
     for angle, part in enumerate(("tilt", "rolling angle")):
-        yield _worst(
+        yield worst_of(
             f"Lagrange's equation for the {part}",
-            {name: _lagrange(motion)[angle] for name, motion in motions.items()},
+            {name: each[angle] for name, each in left.items()},
             RESIDUAL,
-            unit="of g (b + h)",
-            reason="differences of positions known to rounding",
-            part=f"equation of motion of the {part}, or how the record reaches it",
+            f"equation of motion of the {part}, or how the record reaches it",
         )
-    yield _worst(
-        "tilt rate against the change of tilt",
-        {
-            name: _largest(motion.theta_rate - motion.stated_rate) / motion.p
-            for name, motion in motions.items()
-        },
-        RESIDUAL,
-        unit="of p",
-        reason="differences of positions known to rounding",
-        part="tilt rate",
-    )
-    yield _worst(
-        "contact force against Newton's law",
-        {name: _newton(motion) for name, motion in motions.items()},
-        RESIDUAL,
-        unit="weights",
-        reason="second differences of the mass centre",
-        part="contact force (reduced/forces.py), or positions of the mass centre",
-    )
-
-
-def _worst(name: str, found: Mapping[str, float], bound: float, **words: str) -> Finding:
-    """Return the finding on the largest of the values found on several cylinders, and say on which."""
-    # a value that is no number is the worst there is
-    place = max(found, key=lambda key: abs(found[key]) if math.isfinite(found[key]) else math.inf)
-    note = f"on {place}" + (f"; {words.pop('note')}" if "note" in words else "")
-    return at_most(LAYER, name, abs(found[place]), bound, note=note, **words)
-
-
-def _largest(values: Array) -> float:
-    return float(np.abs(values).max())
+    rates = {name: largest(m.theta_rate - m.stated_rate) / m.p for name, m in motions.items()}
+    yield worst_of("tilt rate against the change of tilt", rates, RATE, "tilt rate")
+    newton = {name: _newton(motion) for name, motion in motions.items()}
+    part = "contact force (reduced/forces.py), or positions of the mass centre"
+    yield worst_of("contact force against Newton's law", newton, FORCE, part)
 
 
 def _lagrange(motion: Sampled) -> tuple[float, float]:
@@ -99,30 +66,23 @@ def _lagrange(motion: Sampled) -> tuple[float, float]:
     curves = (motion.theta_curve, motion.phi_curve)
     by_tilt, by_turn = lagrange.residuals(motion.shape, place, rates, curves, motion.ground)
     scale = motion.shape.g * (motion.shape.b + motion.shape.h)
-    return _largest(by_tilt) / scale, _largest(by_turn) / scale
+    return largest(by_tilt) / scale, largest(by_turn) / scale
 
 
 def _newton(motion: Sampled) -> float:
     weight = np.array([0.0, 0.0, motion.shape.g])
     force = (motion.centre_curve + motion.ground + weight) / motion.shape.g
-    return _largest(force - motion.stated_force)
+    return largest(force - motion.stated_force)
 
 
 def _coefficients(equation: str, terms: Mapping[str, Terms]) -> Iterator[Finding]:
     errors = {name: _errors(of_one) for name, of_one in terms.items()}
     for term in next(iter(errors.values())):
         found = {name: of_one[term] for name, of_one in errors.items()}
-        percents = ", ".join(
-            f"{100.0 * error:+.2g} %" for error in found.values() if abs(error) > COEFFICIENT
-        )
-        yield _worst(
-            f"{equation}: {term}",
-            found,
-            COEFFICIENT,
-            reason="each coefficient fitted to differences of computed positions",
-            part=f"coefficient of {equation}: {term}",
-            **({"note": f"off by {percents}"} if percents else {}),
-        )
+        off = [f"{100.0 * error:+.2g} %" for error in found.values() if abs(error) > COEFFICIENT.most]
+        note = f"off by {', '.join(off)}" if off else ""
+        part = f"coefficient of {equation}: {term}"
+        yield worst_of(f"{equation}: {term}", found, COEFFICIENT, part, note)
 
 
 def _errors(terms: Terms) -> dict[str, float]:

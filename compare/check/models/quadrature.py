@@ -14,11 +14,9 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..bench import Array
 from .lagrange import Shape, kinetic, potential
-
-Array = NDArray[np.float64]
 
 _NODES = 64  # more of them come nearer to the ends, where rounding of the energies counts
 _BISECTIONS = 200

@@ -10,20 +10,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
-from ..bench import why
+from ..bench import Array, Bench, why
+from ..problems import GRAVITY
 from . import differences
 from .lagrange import Shape, shape_of
 
-Array = NDArray[np.float64]
-
-GRAVITY = 9.81
 # a slender pier, a drum as wide as high, and a squat body with mass and inertias of its own
 CYLINDERS = {
     "R = 6 m, tan alpha = 0.2": Cylinder(semidiagonal=6.0, tan_alpha=0.2),
@@ -46,55 +42,32 @@ class FailedMotionError(RuntimeError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sampled:
-    """States of computed motions, n in all.
-
-    Parameters
-    ----------
-    shape : Shape
-    p : float
-        Frequency parameter of the cylinder [1/s], the scale of rates.
-    theta, phi : ndarray, shape (n,)
-        [rad]
-    theta_rate, phi_rate, theta_curve, phi_curve : ndarray, shape (n,)
-        First and second derivatives, by differences of the angles.
-    ground : ndarray, shape (n, 3)
-        Acceleration of the ground [m/s^2].
-    stated_rate : ndarray, shape (n,)
-        theta' as the response states it [rad/s].
-    stated_force : ndarray, shape (n, 3)
-        Contact force as the response states it, in weights.
-    centre_curve : ndarray, shape (n, 3)
-        Acceleration of the mass centre relative to O, by differences [m/s^2].
-    """
+    """States of computed motions, n in all: angles (n,), and vectors (n, 3)."""
 
     shape: Shape
-    p: float
-    theta: Array
+    p: float  # [1/s] frequency parameter of the cylinder, the scale of rates
+    theta: Array  # [rad]
     phi: Array
-    theta_rate: Array
+    theta_rate: Array  # derivatives, by differences of the angles
     phi_rate: Array
     theta_curve: Array
     phi_curve: Array
-    ground: Array
-    stated_rate: Array
-    stated_force: Array
-    centre_curve: Array
+    ground: Array  # its acceleration [m/s^2]
+    stated_rate: Array  # theta' as the trace states it [rad/s]
+    stated_force: Array  # and the contact force [weights]
+    centre_curve: Array  # acceleration of the mass centre relative to O, by differences [m/s^2]
 
 
-def sample(reduced: Any, cylinder: Cylinder) -> Sampled:
+def sample(bench: Bench, cylinder: Cylinder) -> Sampled:
     """Run the recess model from many states, and return what its motions were."""
-    shape = shape_of(cylinder, GRAVITY)
+    shape = shape_of(cylinder)
     p = math.sqrt(GRAVITY * cylinder.semidiagonal / (shape.I1 + shape.h**2 + shape.b**2))
     step = _SAMPLE / p
     reach = differences.REACH
     rows: dict[str, list[Array]] = {}
     for initial, motion in _starts(p, step):
-        found = reduced.simulate(
-            Case(cylinder, motion, initial=initial, gravity=GRAVITY),
-            sample_step=step,
-            rtol=1e-13,
-            rest_tilt=0.0,
-        )
+        case = Case(cylinder, motion, initial=initial)
+        found = bench.solve(case, sample_step=step, rtol=1e-13, rest_tilt=0.0)
         if found.outcome == "failed":
             raise FailedMotionError(why(found))
         # one that fell down ends between two samples, and may go on falling when the motion is over

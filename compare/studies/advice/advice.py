@@ -1,36 +1,37 @@
-"""What was run for one case, and what it says."""
+"""What was run for one case, and the numbers that it comes to."""
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rockwobble.models import Case, Run, Trace
 
 from ...comparison.prediction import Prediction
-from .demands import Demands
-from .grades import (
-    Trust,
-    grade_contact,
-    grade_engine,
-    grade_friction,
-    grade_overturning,
-    grade_trust,
-    overall,
-)
-from .planar import PlanarView
-from .scales import ScaleScan
-from .spread import HIGH, LOW, Spread
-from .verification import Verification
+from ...metrics.distributions import Contrast
+from ...metrics.tilt import overturned
+from ..spectrum.series import SPATIAL, uplift_factor
+from .grades import Grade, grade_engine, grade_intensity, grade_overturning, grade_share, overall
+from .members import COPIES, answers, fall_of
+from .scales import BESIDE, Lowest, planar_chances
+from .trust import Trust, Verification
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+KIND = "advice"
+OTHER = "other support"  # group of the copies on the other support
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class Advice:
-    """What was run for one case, and what it says.
+    """What was run for one case.
 
     Attributes
     ----------
@@ -39,187 +40,219 @@ class Advice:
         ground.
     support : str
         What holds the cylinder in place.
-    model, other : Run
-        Reduced model of that support, and the other one: recess and flat.
-    response, other_response : Trace
-        Their runs.
-    uplift_factor : float
-        On the ground motion, at which a cylinder at rest uplifts; inf without a ground motion.
-    peak_time : float
-        Of the largest tilt [s]; NaN where nothing moves or the run failed.
-    demands : Demands
-        Until the fall, if it overturns.
+    friction_given : bool
+        Whether the friction of the case is known, not a default.
+    trace, other_trace, engine_trace : Trace
+        By the reduced model of the support, by the other one, and by the engine (None without one).
+    members : DataFrame
+        A row for each run of the groups, see `member_rows`.
+    band : DataFrame
+        Of the copies, see `band_of`.
+    scales, planar : DataFrame
+        See `scan_scales` and `planar_runs`.
+    lowest : mapping
+        Of each series of `scales`.
     prediction : Prediction
         When reduced model and engine have to part.
     verification : Verification or None
-        None where no engine was asked for, or nothing moves.
-    spread : Spread or None
-        None where nothing moves or the run failed.
-    scan : ScaleScan or None
-        None without a ground motion.
-    planar : PlanarView or None
-        None without a ground motion and for a release.
     trust : Trust
-    versions : mapping
-        Of the packages and engines.
+    form : Contrast or None
+        Largest tilts of the copies on the other support over those on this one.
+    vertical : mapping or None
+        See `vertical_effect`.
+    records : {"p695", "synthetic", ""}
+        What the other records are.
+    perturbation : float
+        Of the copies, relative.
+    seed : int
     """
 
     case: Case
     support: str
-    model: Run
-    other: Run
-    response: Trace
-    other_response: Trace
-    uplift_factor: float
-    peak_time: float
-    demands: Demands
+    friction_given: bool
+    trace: Trace
+    other_trace: Trace
+    engine_trace: Trace | None
+    members: pd.DataFrame
+    band: pd.DataFrame
+    scales: pd.DataFrame
+    planar: pd.DataFrame
+    lowest: Mapping[str, Lowest]
     prediction: Prediction
     verification: Verification | None
-    spread: Spread | None
-    scan: ScaleScan | None
-    planar: PlanarView | None
     trust: Trust
-    versions: Mapping[str, str]
+    form: Contrast | None
+    vertical: Mapping[str, Any] | None
+    records: str
+    perturbation: float
+    seed: int
+
+    @property
+    def model(self) -> Run:
+        """The reduced model of the support."""
+        return self.trace.run
 
     @property
     def moves(self) -> bool:
         """Whether the cylinder ever tilts."""
-        return math.isfinite(self.response.uplift_time) and self.response.outcome != "failed"
-
-    @property
-    def in_one_plane(self) -> bool:
-        """Whether the motion goes straight through upright, as none out of its plane does."""
-        return self.moves and not np.any(self.response.rolling_rate)
+        return math.isfinite(self.trace.uplift_time) and self.trace.outcome != "failed"
 
     @property
     def overturned(self) -> bool:
-        """Whether it overturns."""
-        return bool(self.response.outcome == "overturned")
+        """Whether it overturns as given."""
+        return self.trace.outcome == "overturned"
+
+    @cached_property
+    def answers(self) -> pd.DataFrame:
+        """The groups of members, one row each, see `members.answers`; without the other support."""
+        return answers(self.members[self.members["group"] != OTHER])
 
     @property
     def peak(self) -> float:
-        """Largest tilt [alpha]."""
-        return float(self.response.peak_tilt / self.case.cylinder.alpha)
+        """Largest tilt of the case as given [alpha]."""
+        return self.trace.peak_tilt / self.case.cylinder.alpha
 
     @property
-    def overturned_peak(self) -> float:
-        """What stands for the largest tilt of a run that overturned [alpha]."""
-        return 0.5 * math.pi / self.case.cylinder.alpha
+    def beside(self) -> tuple[float, float]:
+        """Least and largest peak tilt [alpha] for up to 12 % more or less shaking; infinite: overturned."""
+        space = self.scales[self.scales["series"] == SPATIAL]
+        if not len(space):
+            return math.nan, math.nan
+        here = int((space["factor"] - 1.0).abs().argmin())
+        tilts = space["peak_tilt"].to_numpy()[here - BESIDE : here + BESIDE + 1]
+        tilts = np.where(overturned(tilts), math.inf, tilts / self.case.cylinder.alpha)
+        return float(np.nanmin(tilts)), float(np.nanmax(tilts))
 
     @property
-    def lowest_overturning(self) -> float:
-        """Lowest factor on the ground motion that was found to overturn; NaN if none was."""
-        return math.nan if self.scan is None else self.scan.lowest["3d"]
-
-    @property
-    def overturning_share(self) -> float:
-        """Share of the perturbed members that overturn; NaN if none was run."""
-        return math.nan if self.spread is None else self.spread.overturning_share()
-
-    @property
-    def data_error(self) -> float:
-        """Relative distance of the 5 % or 95 % quantile of the members from the peak.
-
-        NaN if unknown, inf where more than 5 % of them overturn and the case does not.
-        """
-        if self.spread is None or self.overturned or not self.peak > 0.0:
-            return math.nan
-        low, high = (self.spread.quantile(share) for share in (LOW, HIGH))
-        if high >= self.overturned_peak:
-            return math.inf
-        return max(abs(low / self.peak - 1.0), abs(high / self.peak - 1.0))
-
-    @property
-    def form_error(self) -> float:
-        """Relative difference in peak tilt that the other support makes; NaN if unknown.
-
-        Of the single runs where the trace can be trusted, else of the medians of the members: single runs
-        differ by chance then.
-        """
-        if self.spread is None or self.overturned or not self.peak > 0.0:
-            return math.nan
-        if self.trust.kind != "statistics":
-            if self.other_response.outcome in ("failed", "overturned"):
-                return math.nan
-            return float(self.other_response.peak_tilt / self.case.cylinder.alpha / self.peak - 1.0)
-        medians = [self.spread.quantile(0.5, other=other) for other in (True, False)]
-        return medians[0] / medians[1] - 1.0 if max(medians) < self.overturned_peak else math.nan
-
-    @property
-    def grades(self) -> dict[str, str]:
-        """Grade of each topic that there is something to say about."""
-        if self.response.outcome == "failed":
-            return {"response": "bad"}
+    def grades(self) -> dict[str, Grade]:
+        """Grade of each topic that there is something to say about; the criteria are in `grades.CRITERIA`."""
+        if self.trace.outcome == "failed":
+            return {"trace": "bad"}
         if not self.moves:
             return {}
-        found = {
-            "friction": grade_friction(self.demands),
-            "contact": grade_contact(self.demands),
-            "trust": grade_trust(self.trust),
-            "overturning": grade_overturning(
-                self.overturned, self.lowest_overturning, self.overturning_share
+        worst, low_high = self.answers.max(numeric_only=True), self.beside
+        lowest = self.lowest[SPATIAL].factor if self.lowest else math.nan
+        slides = self.friction_given and self.case.friction < self.case.cylinder.tan_alpha
+        found: dict[str, Grade] = {
+            "overturning": grade_overturning(self.overturned, lowest, self.answers["chance"]),
+            "friction": grade_share(
+                worst["slip_95"] if self.friction_given else 0.0,
+                asked=self.friction_given,
+                slides=slides and self.trace.uplift_time > 0.0,
             ),
+            "contact": grade_share(worst["lost_95"]),
+            "trace": "care" if self.trust.kind == "statistics" else "good",
         }
+        if not (self.overturned or math.isnan(low_high[0])):
+            found["intensity"] = grade_intensity(low_high[0], self.peak, low_high[1])
         if self.verification is not None:
-            differ = (self.verification.outcome == "overturned") != self.overturned
-            found["engine"] = (
-                "care"
-                if self.verification.outcome == "failed"
-                else grade_engine(self.verification.divergence, differ)
-            )
+            engine = self.verification
+            differs = (engine.outcome == "overturned") != self.overturned
+            found["engine"] = grade_engine(engine.outcome, engine.divergence, differs=differs)
         return found
 
-    @property
-    def model_grade(self) -> str:
-        """Whether the reduced model may be used here, whatever becomes of the cylinder."""
-        return overall(grade for topic, grade in self.grades.items() if topic != "overturning")
+    def recess(self) -> dict[str, float] | None:
+        """Return what a recess must be built for, by the worst 95th percentiles of groups that stand.
 
-    def numbers(self) -> dict[str, Any]:
-        """Return every number behind the advice, as plain values; SI units, tilts in alpha where so named."""
-        spread, verification = self.spread, self.verification
+        None on flat ground, and where no group stands.
+
+        Returns
+        -------
+        dict
+            tilt [alpha]; force [weights] on the wall, the least that the restraining moment asks of it: the
+            moment about the vertical through the contact point over the lever arm b; height of the wall, at
+            which the rim stands out farthest, and clearance, by which a vertical wall of this height must
+            stand back [m].
+        """
+        rows = self.answers[np.isfinite(self.answers["peak_tilt_95"])]
+        if self.support == "flat" or not len(rows):
+            return None
+        cylinder, tilt = self.case.cylinder, float(rows["peak_tilt_95"].max())
+        theta, b = tilt * cylinder.alpha, cylinder.base_radius
+        cosine = math.cos(theta)
+        overhang = b * (math.sqrt(1.0 + (1.0 - cosine) * ((1.0 - cosine) + cosine**2 / (1.0 + cosine))) - 1.0)
+        height = b * math.tan(0.5 * theta)
         return {
-            "model": self.model,
+            "tilt": tilt,
+            "force": (1.0 + cosine) * float(rows["moment_95"].max()),
+            "height": height,
+            "clearance": max(overhang, height * math.tan(theta)),
+        }
+
+    def facts(self) -> dict[str, Any]:
+        """Return every number behind the advice, as plain values; SI units, tilts in alpha."""
+        case, trace, cylinder = self.case, self.trace, self.case.cylinder
+        copies = self.members[self.members["group"] == COPIES]
+        known = copies.loc[copies["outcome"] != "failed", "peak_tilt"]
+        moved = case.motion is not None and not (case.initial is not None and case.initial.tilt > 0.0)
+        held = trace.assumptions_until(fall_of(trace)) if self.moves else None
+        return {
+            "name": case.name,
             "support": self.support,
-            "outcome": self.response.outcome,
-            "uplift_time": self.response.uplift_time,
-            "uplift_factor": self.uplift_factor,
-            "peak_tilt_in_alpha": self.peak,
-            "peak_time": self.peak_time,
-            "other_model": self.other,
-            "other_outcome": self.other_response.outcome,
-            "other_peak_tilt_in_alpha": self.other_response.peak_tilt / self.case.cylinder.alpha,
-            "demands": self.demands,
-            "trust": self.trust,
-            "prediction": self.prediction,
-            "engine": None
-            if verification is None
-            else {
-                name: getattr(verification, name)
-                for name in verification.__dataclass_fields__
-                if name != "trajectory"
-            },
-            "starts": None
-            if spread is None
-            else {
-                "count": spread.count,
-                "perturbation": spread.perturbation,
-                "seed": spread.seed,
-                "failed": int((~np.isfinite(spread.peaks)).sum()),
-                "quantiles_in_alpha": {f"{share:g}": spread.quantile(share) for share in (LOW, 0.5, HIGH)},
-                "other_quantiles_in_alpha": {
-                    f"{share:g}": spread.quantile(share, other=True) for share in (LOW, 0.5, HIGH)
-                },
-                "overturning_share": spread.overturning_share(),
-                "other_overturning_share": spread.overturning_share(other=True),
-                "followed_until": spread.followed_until,
-                "models_agree_until": spread.agreed_until,
-                "contrast": spread.contrast(),
-            },
-            "data_error": self.data_error,
-            "form_error": self.form_error,
-            "in_one_plane": self.in_one_plane,
+            "model": str(self.model),
+            "other": str(self.other_trace.run),
+            "friction": case.friction if self.friction_given else None,
+            "outcome": trace.outcome,
+            "failure": [fact.code for fact in trace.facts],
+            "moves": self.moves,
+            "overturned": self.overturned,
+            "end": float(trace.time[-1]),
+            "length": case.length,
+            "uplift_time": trace.uplift_time,
+            "uplift_factor": uplift_factor(case.motion, cylinder.tan_alpha, case.gravity, until=case.length)
+            if moved and case.motion is not None
+            else math.nan,
+            "peak": self.peak,
+            "peak_deg": math.degrees(trace.peak_tilt),
+            "peak_time": float(trace.time[int(trace.tilt.argmax())]),
+            "peak_rank": float((known < self.peak).mean()) if len(known) else math.nan,
+            "in_one_plane": self.moves and not np.any(trace.rolling_rate),
+            "released": case.initial is not None and case.initial.tilt > 0.0,
+            "alpha": cylinder.alpha,
+            "b": cylinder.base_radius,
+            "h": cylinder.half_height,
+            "tan_alpha": cylinder.tan_alpha,
+            "grades": self.grades,
+            "grade": overall(self.grades.values()),
+            "answers": self.answers.to_dict("records"),
+            "largest": dataclasses.asdict(held) if held else None,
+            "recess": self.recess(),
+            "beside": self.beside,
+            "lowest": {name: dataclasses.asdict(each) for name, each in self.lowest.items()},
+            "highest": float(self.scales["factor"].max()) if len(self.scales) else math.nan,
+            "planar": planar_chances(self.planar) if len(self.planar) else [],
+            "prediction": dataclasses.asdict(self.prediction),
+            "engine": None if self.verification is None else dataclasses.asdict(self.verification),
+            "trust": dataclasses.asdict(self.trust),
+            "form": None if self.form is None else dataclasses.asdict(self.form.ratio),
+            "vertical": self.vertical,
+            "records": self.records,
+            "perturbation": self.perturbation,
+            "seed": self.seed,
+            "rtol": trace.settings["rtol"],
+        }
+
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """Return the tables by name; tilts of the traces in alpha."""
+        import pandas as pd
+
+        alpha = self.case.cylinder.alpha
+        engine = self.engine_trace
+        return {
+            "members": self.members,
+            "band": self.band,
+            "scales": self.scales,
             "planar": self.planar,
-            "planar_kind": None if self.planar is None else self.planar.kind,
-            "lowest_overturning": self.lowest_overturning,
-            "scales": self.scan,
+            "trace": pd.DataFrame(
+                {
+                    "time": self.trace.time,
+                    "tilt": self.trace.tilt / alpha,
+                    "friction_needed": self.trace.friction_needed,
+                }
+            ),
+            "engine": pd.DataFrame(
+                {"time": np.empty(0), "tilt": np.empty(0)}
+                if engine is None
+                else {"time": engine.time, "tilt": engine.tilt / alpha}
+            ),
         }

@@ -4,32 +4,29 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
-from rockwobble import reduced
-from rockwobble.models import Case, GroundMotion, Run, Trace
+from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940
 
-from ...comparison.prediction import Prediction
+from ...metrics.distributions import Contrast, contrast
 from ...runs.choice import require_runnable
-from ...runs.execution import SAMPLE_STEP, simulate_run
-from ...runs.progress import Clock, ProgressCallback
-from ...storage.provenance import package_versions
-from ..spectrum.lowest_overturning import uplift_factor
-from .advice import Advice
-from .demands import Demands, demands_of
-from .grades import Trust, trust_of
-from .planar import planar_view
-from .scales import scan_scales
-from .spread import COUNT, PERTURBATION, SEED, Spread, spread_of_starts
-from .verification import Verification, predicted, verified
+from ...runs.execution import SAMPLE_STEP
+from ...runs.progress import ProgressCallback, Stages
+from ..ensemble.members import perturbed_starts
+from .advice import OTHER, Advice
+from .members import COPIES, VELOCITY, member_rows, other_records, simulate
+from .scales import planar_runs, scan_scales
+from .trust import BAND_STEP, Trust, band_of, predicted, spread_from, trust_of, verified
 
 SUPPORTS = ("recess", "flat", "ring")
-FEWEST, MOST = 20, 10_000  # members: one run stands for 5 % of them, and ten thousand take a minute
-_SAMPLES = 200_000  # of a run until its fall: closer than a near pass lasts, and computed in a second
-_OTHER = {"recess": Run(None, "flat"), "flat": Run(None, "recess")}
+COUNT = 100  # copies: quantiles of 5 % then rest on five runs
+FEWEST, MOST = 20, 10_000  # one run stands for 5 % of them, and ten thousand take minutes
+PERTURBATION = 0.01  # nobody knows a record or a release better than to a percent
+SEED = 1
+_VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
 
 
 def advise(
@@ -37,6 +34,7 @@ def advise(
     run: Run | None = None,
     *,
     support: str = "recess",
+    friction_given: bool = True,
     count: int = COUNT,
     perturbation: float = PERTURBATION,
     seed: int = SEED,
@@ -50,10 +48,12 @@ def advise(
     run : Run, optional
         Engine that verifies the prediction; without one it stays unverified.
     support : str, optional
-        What holds the cylinder in place; that of `run` where it is given. "flat" asks for the rolling
-        model, any other for the recess.
+        What holds the cylinder in place; that of `run` where it is given. "flat" asks for the flat-ground
+        model, any other for the recess model.
+    friction_given : bool, optional
+        Whether the friction of the case is what there is, not a default.
     count, perturbation, seed
-        Members, their relative standard deviation, and the seed of both draws: see `perturbed_starts`.
+        Copies, their relative standard deviation, and the seed of both draws: see `perturbed_starts`.
     progress : callable, optional
         Called with a `Progress` at the start and at the end of each stage.
 
@@ -71,9 +71,11 @@ def advise(
     >>> from rockwobble.models import Cylinder, el_centro_1940
     >>> pier = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
     >>> found = advise(pier, count=20)
-    >>> found.trust.kind, found.planar.kind
-    ('statistics', 'unconservative')
+    >>> found.trust.kind, found.grades["overturning"]
+    ('statistics', 'care')
     """
+    import pandas as pd
+
     if run is not None:
         support = run.support
         require_runnable(case, run)
@@ -81,75 +83,123 @@ def advise(
         raise ValueError(f"support must be one of {', '.join(SUPPORTS)}, got {support!r}")
     if not FEWEST <= count <= MOST:
         raise ValueError(f"count must be from {FEWEST} to {MOST}, got {count!r}")
-    model = Run(None, "flat" if support == "flat" else "recess")
-    other = _OTHER[model.support]
-    stages = _Stages(case.name, progress, total=3 if run is None else 4)
-    with stages.one("recess and flat models (compiled on their first run)"):
-        response = simulate_run(case, model)
-        if response.time[-1] > case.length:
-            case = _to_the_fall(case, float(response.time[-1]))
-            response = simulate_run(case, model)
-        other_response = simulate_run(case, other)
-        demands = _demands(case, response, model)
-    moves = math.isfinite(response.uplift_time) and response.outcome != "failed"
-    spread = None
-    with stages.one(f"{count} perturbed starts"):
+    model, other = Run(None, "recess"), Run(None, "flat")
+    if support == "flat":
+        model, other = other, model
+    stage = Stages(progress, 4 if run is None else 5).stage
+    with stage("both reduced models (compiled on their first run)"):
+        trace = simulate(case, model)
+        if trace.time[-1] > case.length:
+            case = _to_the_fall(case, float(trace.time[-1]))
+            trace = simulate(case, model)
+        other_trace = simulate(case, other)
+    moves = math.isfinite(trace.uplift_time) and trace.outcome != "failed"
+    copies: list[Trace] = []
+    others: list[Trace] = []
+    with stage(f"{count} perturbed copies"):
         if moves:
-            spread = spread_of_starts(
-                case,
-                response,
-                other_response,
-                models=(model, other),
-                count=count,
-                perturbation=perturbation,
-                seed=seed,
-            )
-    with stages.one("other scales of the ground motion, and planar analysis"):
-        scan = scan_scales(case, model.support) if response.outcome != "failed" else None
-    prediction = predicted(case, response, run)
-    verification = None
+            cases = perturbed_starts(case, count, perturbation=perturbation, seed=seed)
+            copies = [simulate(each, model) for each in cases]
+            others = [simulate(each, other, sample_step=BAND_STEP) for each in cases]
+        rows = [*member_rows(COPIES, copies), *member_rows(OTHER, others)]
+    with stage("other records as strong, and planar analysis"):
+        records, source = other_records(case) if trace.outcome != "failed" else ({}, "")
+        for name, cases in records.items():
+            rows += member_rows(name, (simulate(each, model) for each in cases))
+        planar = planar_runs(records[VELOCITY], model.support) if records else pd.DataFrame()
+    with stage("other scales of the ground motion"):
+        scales, lowest = scan_scales(case, model.support)
+        vertical = vertical_effect(case, model, perturbation=perturbation, seed=seed) if records else None
+    prediction, verification, engine_trace = predicted(case, trace, run), None, None
     if run is not None:
-        with stages.one(f"{run.engine} {run.support}"):
+        with stage(str(run)):
             if moves:
-                verification, prediction = verified(case, run, model)
-    peak_time = _peak_time(response) if moves else math.nan
+                verification, prediction, engine_trace = verified(case, run, model)
+    band = band_of(case, copies)
+    trust = Trust(kind="trace", until=case.length, because="")
+    if moves:
+        methods = trace.uplift_time + prediction.length if prediction.reason else math.inf
+        if verification is not None and verification.outcome != "failed":
+            methods = verification.agreed_until if verification.diverged else math.inf
+        data = spread_from(band, trace.peak_tilt / case.cylinder.alpha)
+        trust = trust_of(methods, data, float(trace.time[int(trace.tilt.argmax())]), float(trace.time[-1]))
     return Advice(
         case=case,
         support=support,
-        model=model,
-        other=other,
-        response=response,
-        other_response=other_response,
-        uplift_factor=_uplift_factor(case),
-        peak_time=peak_time,
-        demands=demands,
+        friction_given=friction_given,
+        trace=trace,
+        other_trace=other_trace,
+        engine_trace=engine_trace,
+        members=pd.DataFrame(rows, columns=None if rows else ["group", "outcome", "peak_tilt", "member"]),
+        band=band,
+        scales=scales,
+        planar=planar,
+        lowest=lowest,
         prediction=prediction,
         verification=verification,
-        spread=spread,
-        scan=scan,
-        planar=planar_view(scan),
-        trust=_trust(case, response, prediction, verification, spread, peak_time),
-        versions=package_versions(),
+        trust=trust,
+        form=_contrast(others, copies) if moves else None,
+        vertical=vertical,
+        records=source,
+        perturbation=perturbation,
+        seed=seed,
     )
 
 
-class _Stages:
-    """Tells a callback of one stage after the other."""
+def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -> dict[str, Any] | None:
+    """Return what the vertical component of ground motion changes in the largest tilt, copy by copy.
 
-    def __init__(self, name: str, progress: ProgressCallback | None, total: int) -> None:
-        self._name, self._clock = name, Clock(progress, [1.0] * total)
+    Of the record itself or, where it has none, of El Centro 1940 as strong: what it usually changes.
 
-    @contextmanager
-    def one(self, label: str) -> Iterator[None]:
-        self._clock("started", f"{self._name}, {label}")
-        yield
-        self._clock("finished", f"{self._name}, {label}", 0)
+    Returns
+    -------
+    dict
+        given, record, count of the copies that move, and of the ratios of their largest tilts, with over
+        without it, the median ratio with its interval (low, high) and 5 to 95 % (ratio_05, ratio_95).
+    """
+    motion = case.motion
+    assert motion is not None
+    record = motion
+    if not motion.has_vertical:
+        record = el_centro_1940(vertical=True)
+        record = record.scaled(motion.peak / record.peak)
+    shaken = dataclasses.replace(case, motion=record, duration=case.duration if motion.has_vertical else None)
+    cases = perturbed_starts(shaken, _VERTICAL_COUNT, perturbation=perturbation, seed=seed)
+    flat = [dataclasses.replace(each, motion=_horizontal(each.motion)) for each in cases]
+    found = _contrast(*([simulate(each, model, sample_step=1.0) for each in part] for part in (cases, flat)))
+    if found is None or not found.compared:
+        return None
+    return {
+        "given": motion.has_vertical,
+        "record": record.name,
+        "count": found.compared,
+        "ratio": found.ratio.value,
+        "low": found.ratio.low,
+        "high": found.ratio.high,
+        "ratio_05": found.ratio_05.value,
+        "ratio_95": found.ratio_95.value,
+    }
+
+
+def _horizontal(motion: GroundMotion | None) -> GroundMotion:
+    assert motion is not None
+    return GroundMotion(motion.acceleration[:, :2], motion.time_step, motion.name)
+
+
+def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | None:
+    peaks, others = (np.array([trace.peak_tilt for trace in part]) for part in (traces, against))
+    fell, fell_there = (
+        np.array([trace.outcome == "overturned" for trace in part]) for part in (traces, against)
+    )
+    if np.count_nonzero(np.isfinite(peaks) & np.isfinite(others)) < 2:
+        return None
+    return contrast(peaks, others, fell, fell_there)
 
 
 def _to_the_fall(case: Case, end: float) -> Case:
     """Return a case that takes until its fall at `end` [s], after what was asked for, over still ground.
 
-    All that is run for it then sees the fall: the engine, the members, and when two methods part.
+    All that is run for it then sees the fall: the engine, the copies, and when two methods part.
     """
     motion = case.motion
     if motion is not None and case.length < motion.duration:
@@ -157,57 +207,3 @@ def _to_the_fall(case: Case, end: float) -> Case:
         motion = GroundMotion(motion.acceleration[: max(kept, 2)], motion.time_step, motion.name)
     duration = math.ceil(end / SAMPLE_STEP) * SAMPLE_STEP
     return dataclasses.replace(case, motion=motion, duration=duration)
-
-
-def _uplift_factor(case: Case) -> float:
-    if case.motion is None:
-        return math.inf
-    return uplift_factor(case.motion, case.cylinder.tan_alpha, case.gravity, until=case.length)
-
-
-def _demands(case: Case, response: Trace, model: Run) -> Demands:
-    """Demands until the run last passes alpha, if it overturns: what a falling cylinder asks is none."""
-    if response.outcome != "overturned":
-        return demands_of(response)
-    below = np.flatnonzero(response.tilt <= case.cylinder.alpha)
-    fall = float(response.time[below[-1]]) if len(below) else 0.0
-    if not fall > 0.0:
-        return demands_of(response)
-    # a run that ended here would be followed to the ground, too: the samples of the whole have to tell
-    fine = reduced.simulate(
-        Case(
-            case.cylinder,
-            case.motion,
-            initial=case.initial,
-            duration=case.duration,
-            gravity=case.gravity,
-            friction=case.friction,
-        ),
-        sample_step=min(SAMPLE_STEP, fall / _SAMPLES),
-        support=model.support,
-    )
-    return demands_of(fine, until=fall)
-
-
-def _peak_time(response: Trace) -> float:
-    """Time of the largest tilt [s]; to a sample."""
-    return float(response.time[int(response.tilt.argmax())])
-
-
-def _trust(
-    case: Case,
-    response: Trace,
-    prediction: Prediction,
-    verification: Verification | None,
-    spread: Spread | None,
-    peak_time: float,
-) -> Trust:
-    if spread is None:
-        return Trust(kind="trace", until=case.length, because="")
-    end = float(response.time[-1])
-    if verification is not None and verification.outcome != "failed":
-        methods = verification.agreed_until if verification.diverged else math.inf
-    else:
-        methods = response.uplift_time + prediction.length if prediction.reason else math.inf
-    data = spread.followed_until if spread.followed_until < case.length else math.inf
-    return trust_of(methods, data, peak_time, end)

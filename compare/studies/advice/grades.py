@@ -1,86 +1,76 @@
-"""From numbers to a verdict: what is sound, what wants care, and what rules the reduced model out.
-
-A grade is "good", "care" or "bad".
-"""
+"""Grades of an advice, each by a written criterion: "good", "care" or "bad"."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from typing import Literal
 
-from .demands import Demands
-
-GRADES = ("good", "care", "bad")
+Grade = Literal["good", "care", "bad"]
+GRADES: tuple[Grade, ...] = ("good", "care", "bad")
 # share of the moving time for which contact or friction may be missing before the motion is another one:
 # below it stand the spikes of single passes, milliseconds each
 BROKEN = 0.01
 # a lowest overturning scale below this is near: records of one site differ by as much
 NEAR = 1.5
-# share of perturbed members that overturn from which on a run that stands proves little
-CHANCE = 0.05
+# share of a group that overturns from which on a cylinder is not safe
+UNSAFE = 0.1
+# ratio by which the largest tilt may change with the shaking a little stronger or weaker
+SENSITIVE = 1.5
+
+# what stands on the page beside the grades, made from the same numbers
+CRITERIA: Mapping[str, tuple[str, str, str]] = {
+    "overturning": (
+        f"no run overturns, and no scale up to {NEAR:g} times this shaking was found to",
+        f"some run overturns, at most {100 * UNSAFE:g} % of any group; or a scale below {NEAR:g} does",
+        f"the case as given overturns, or more than {100 * UNSAFE:g} % of a group",
+    ),
+    "friction": (
+        "the friction given suffices in 95 % of all runs",
+        f"it is not given; or it is short for at most {100 * BROKEN:g} % of the time in motion",
+        "it is short for longer, or below b/h: the cylinder slides before it uplifts",
+    ),
+    "contact": (
+        "contact is never lost in 95 % of all runs",
+        f"it is lost for at most {100 * BROKEN:g} % of the time in motion",
+        "it is lost for longer: the models do not know flight",
+    ),
+    "trace": (
+        "the largest tilt comes before two methods, or copies 1 % off, part",
+        "it comes after: only statistics can be trusted",
+        "never: statistics remain",
+    ),
+    "intensity": (
+        f"12 % more or less shaking changes the largest tilt by less than {SENSITIVE:g} times",
+        "it changes it by more, or overturns the cylinder",
+        "never: the percentiles say it",
+    ),
+    "engine": (
+        "it parts from the model when predicted, or later, and comes to the same end",
+        "it comes to another end, or failed",
+        "it parts earlier than half of what is predicted: neither may be trusted",
+    ),
+}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Trust:
-    """How far a trace can be trusted.
-
-    Attributes
-    ----------
-    kind : {"trace", "peak", "statistics"}
-        The whole trace; the trace until `until`, the largest tilt included; or only statistics, because
-        the largest tilt comes after `until`.
-    until : float
-        [s] in the time of the run.
-    because : {"", "methods", "data"}
-        What ends it: two sound methods part there, or the same method on data known to a percent.
-    """
-
-    kind: str
-    until: float
-    because: str
-
-
-def trust_of(methods_until: float, data_until: float, peak_time: float, end: float) -> Trust:
-    """Return how far a trace can be trusted.
+def grade_share(missing: float, *, asked: bool = True, slides: bool = False) -> Grade:
+    """Return the grade of friction or contact.
 
     Parameters
     ----------
-    methods_until : float
-        Until when the reduced model and an engine agree, or have to [s].
-    data_until : float
-        Until when perturbed starts stay together [s].
-    peak_time : float
-        Time of the largest tilt [s].
-    end : float
-        End of the motion [s]: of the run, or the fall.
+    missing : float
+        Share of the moving time in which it is missing, that 95 % of the runs do not exceed.
+    asked : bool, optional
+        Whether what there is was given.
+    slides : bool, optional
+        Whether the cylinder slides where it would have uplifted.
     """
-    until = min(methods_until, data_until)
-    if until >= end:
-        return Trust(kind="trace", until=end, because="")
-    because = "methods" if methods_until <= data_until else "data"
-    return Trust(kind="peak" if peak_time <= until else "statistics", until=until, because=because)
-
-
-def grade_friction(demands: Demands) -> str:
-    """Return the grade of the friction that is available."""
-    if demands.slides:
+    if slides or missing > BROKEN:
         return "bad"
-    return _grade_time(demands.slip_time, demands.moving_time)
+    return "care" if missing > 0.0 or not asked else "good"
 
 
-def grade_contact(demands: Demands) -> str:
-    """Return the grade of the contact."""
-    return _grade_time(demands.lost_time, demands.moving_time)
-
-
-def grade_trust(trust: Trust) -> str:
-    """Return the grade of a trace: statistics want care."""
-    return "care" if trust.kind == "statistics" else "good"
-
-
-def grade_overturning(overturned: bool, lowest: float, chance: float) -> str:
-    """Return the grade of the stability of the cylinder itself.
+def grade_overturning(overturned: bool, lowest: float, chances: Iterable[float]) -> Grade:
+    """Return the grade of the stability of the cylinder.
 
     Parameters
     ----------
@@ -88,32 +78,27 @@ def grade_overturning(overturned: bool, lowest: float, chance: float) -> str:
         In the run as it is given.
     lowest : float
         Lowest overturning factor on the ground motion; NaN if none does.
-    chance : float
-        Share of the perturbed members that overturn; NaN if none was run.
+    chances : iterable of float
+        Share of each group of members that overturns.
     """
-    if overturned:
+    worst = max(chances, default=0.0)
+    if overturned or worst > UNSAFE:
         return "bad"
-    return "care" if lowest < NEAR or chance >= CHANCE else "good"
+    return "care" if worst > 0.0 or lowest < NEAR else "good"
 
 
-def grade_engine(divergence: str, outcomes_differ: bool) -> str:
+def grade_intensity(low: float, peak: float, high: float) -> Grade:
+    """Return the grade of a largest tilt that is `low` to `high` for shaking a little off."""
+    return "care" if high > SENSITIVE * peak or low * SENSITIVE < peak else "good"
+
+
+def grade_engine(outcome: str, divergence: str, *, differs: bool) -> Grade:
     """Return the grade of a run of an engine: `divergence` is that of the summary of a comparison."""
-    if divergence == "earlier":
+    if divergence == "earlier" and outcome != "failed":
         return "bad"
-    return "care" if outcomes_differ else "good"
+    return "care" if differs or outcome == "failed" else "good"
 
 
-def overall(grades: Iterable[str]) -> str:
+def overall(grades: Iterable[Grade]) -> Grade:
     """Return the worst of some grades; "good" of none."""
     return max(grades, key=GRADES.index, default="good")
-
-
-def _grade_time(missing: float, moving: float) -> str:
-    if missing <= 0.0:
-        return "good"
-    return "bad" if not moving > 0.0 or missing / moving > BROKEN else "care"
-
-
-def relative(value: float, nominal: float) -> float:
-    """Return value/nominal - 1; NaN where the nominal value is zero or unknown."""
-    return value / nominal - 1.0 if nominal > 0.0 and math.isfinite(nominal) else math.nan

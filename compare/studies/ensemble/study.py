@@ -1,8 +1,8 @@
-"""Ensembles: what can be compared beyond the horizon, where single traces say nothing."""
+"""Ensembles: what can be compared beyond the agreement of traces, where single runs say nothing."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,21 +14,15 @@ from ...runs.choice import default_runs, own_model, require_runnable, run_labels
 from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
 from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint
-from ...storage.origin import read_table
-from ...storage.parquet_file import read_about
-from ...storage.provenance import about_results
+from ...storage.manifest import Results
 from .members import perturbed_starts
 from .tables import contrast_table, method_table
 
 if TYPE_CHECKING:
     import pandas as pd
 
-KIND = "rockwobble ensemble"
-TABLE = "members.parquet"
+KIND = "ensemble"
 MODELS = (Run(None, "recess"), Run(None, "flat"))
-# without which the members cannot be held against each other or described
-_NEEDED = ("methods", "members", "semidiagonal", "tan_alpha", "seeds", "versions")
-_COLUMNS = ("member", "method", "peak_tilt", "outcome")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -49,15 +43,15 @@ class Ensemble:
         One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high, its
         verdict, masked (members that failed by one of them), and both probabilities corrected for the number
         of pairs (Holm) in columns _adjusted.
-    about : dict
-        As `about_results`, with what the members are, the range of their sizes and slendernesses, and the
-        model of the support of each method.
+    about : mapping
+        What the tables do not hold: what the members are, the range of their sizes and slendernesses, the
+        model of the support of each method, the seed, and the hash of all inputs.
     """
 
     members: pd.DataFrame
     methods: pd.DataFrame
     contrasts: pd.DataFrame
-    about: dict[str, Any]
+    about: Mapping[str, Any]
 
 
 def ensemble(
@@ -114,7 +108,7 @@ def ensemble(
     >>> found.methods[["method", "runs", "failed"]].values.tolist()
     [['recess model', 5, 0], ['flat-ground model', 5, 0]]
     """
-    about: dict[str, Any] = {}
+    about: dict[str, Any] = {"seed": seed}
     if isinstance(case_or_members, Case):
         members = perturbed_starts(case_or_members, size, perturbation=perturbation, seed=seed)
         about |= {"members": f"starts of {case_or_members.name}, perturbed by {100.0 * perturbation:g} %"}
@@ -133,13 +127,13 @@ def ensemble(
     with nullcontext() if resume is None else open_trace_cache(resume, "ensemble", samples=False) as cache:
         results = simulate_all(jobs, workers=workers, progress=progress, cache=cache)
     table = _members(jobs, results)
-    inputs = fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
     about |= {"methods": {label: str(own_model(run)) if run.engine else "" for label, run in methods.items()}}
-    return ensemble_of(table, about_results(KIND, inputs, seeds={"ensemble": seed}) | about)
+    about |= {"inputs": fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])}
+    return ensemble_of(table, about)
 
 
-def ensemble_of(members: pd.DataFrame, about: dict[str, Any]) -> Ensemble:
+def ensemble_of(members: pd.DataFrame, about: Mapping[str, Any]) -> Ensemble:
     """Return the ensemble of a table of members, and of what `Ensemble.about` says of them."""
     return Ensemble(
         members=members,
@@ -149,23 +143,9 @@ def ensemble_of(members: pd.DataFrame, about: dict[str, Any]) -> Ensemble:
     )
 
 
-def read_ensemble(folder: str | Path) -> Ensemble:
-    """Return an ensemble whose members were stored as `members.parquet`.
-
-    Raises
-    ------
-    ValueError
-        If the file is missing, is not what was stored, or is too old to say what is needed.
-    """
-    file = Path(folder) / TABLE
-    members, about = read_table(file), read_about(file)
-    if about.get("kind") != KIND:
-        raise ValueError(f"{file} does not hold the members of an ensemble")
-    missing = [name for name in _NEEDED if name not in about]
-    missing += [name for name in _COLUMNS if name not in members]
-    if missing:
-        raise ValueError(f"{file} is too old: it does not hold {', '.join(missing)}; run the ensemble again")
-    return ensemble_of(members, about)
+def stored_ensemble(results: Results) -> Ensemble:
+    """Return the ensemble that is stored in a folder."""
+    return ensemble_of(results.table("members"), results.manifest.about)
 
 
 def _range(members: Sequence[Case], name: str) -> dict[str, float]:

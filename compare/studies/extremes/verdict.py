@@ -205,4 +205,3 @@ def _tilt_error(reference: Trace, trial: Trace, until: float = math.inf) -> tupl
         if apart > error:
             error, begins = apart, min(begins, case.length if apart > FINE else math.inf)
     return error, begins
-

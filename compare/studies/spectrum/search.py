@@ -108,7 +108,6 @@ def run_searches(
     peak_tilts: Callable[[list[int], float], Array],
     *,
     workers: int | None = None,
-    progress: Callable[[float], None] | None = None,
 ) -> list[T]:
     """Run searches side by side; return what each found.
 
@@ -119,8 +118,6 @@ def run_searches(
         Runs some of them, by index, at one intensity, in one thread, for their peak tilts [rad].
     workers : int, optional
         Number of threads.
-    progress : callable, optional
-        Called with how often the searches have been sent tilts so far, a part of the next time included.
     """
     found: dict[int, T] = {}
     wanted: dict[int, Array] = {}
@@ -133,7 +130,6 @@ def run_searches(
 
     for i, search in enumerate(searches):
         go_on(i, search.__next__)
-    times = 0
     while wanted:
         groups: dict[float, list[int]] = {}
         for i, levels in wanted.items():
@@ -141,11 +137,8 @@ def run_searches(
                 groups.setdefault(level, []).append(i)
         tilts: dict[tuple[int, float], float] = {}
         results = in_threads(peak_tilts, groups.values(), groups, workers=workers)
-        for done, ((level, group), result) in enumerate(zip(groups.items(), results, strict=True)):
+        for (level, group), result in zip(groups.items(), results, strict=True):
             tilts |= {(i, level): tilt for i, tilt in zip(group, result.tolist(), strict=True)}
-            if progress is not None:
-                progress(times + (done + 1) / len(groups))
-        times += 1
         asked, wanted = wanted, {}
         for i, levels in asked.items():
             go_on(i, partial(searches[i].send, np.array([tilts[i, level] for level in levels.tolist()])))

@@ -15,6 +15,11 @@ from rockwobble.models import GroundMotion
 
 SPATIAL, PLANAR_X, PLANAR_Y = "3d", "planar_x", "planar_y"
 SERIES = (SPATIAL, PLANAR_X, PLANAR_Y)
+TITLES = {
+    SPATIAL: "3D, both components",
+    PLANAR_X: "planar, east-west alone",
+    PLANAR_Y: "planar, north-south alone",
+}
 _AZIMUTH = {PLANAR_X: 0.0, PLANAR_Y: 0.5 * math.pi}  # of the plane [rad]
 
 

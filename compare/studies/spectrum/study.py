@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -12,17 +12,15 @@ from numpy.typing import ArrayLike
 from rockwobble import reduced
 from rockwobble.models import GroundMotion
 
+from ...runs.progress import ProgressCallback, Stages
 from .result import Array, OverturningSpectrum
-from .search import STEP, Search, probe_below, run_searches, search_lowest
-from .series import SERIES, intensity_unit, series_options, uplift_of_series
-
-ProgressCallback = Callable[[str, float], None]
+from .search import STEP, probe_below, run_searches, search_lowest
+from .series import SERIES, TITLES, intensity_unit, series_options, uplift_of_series
 
 # Steps end at each sample of the record, so a tenth of the tolerance of `reduced.peak_tilts` costs only
 # 4 % of the time, and the cells that it moves by 2 % of their tilt fall from 2 in 1000 to none.
 RTOL = 1e-8
 SUPPORTS = ("recess", "flat")
-_GRID = 0.3  # share of the time of a series with 100 intensities, of which a search runs some 200
 
 
 def overturning_spectrum(
@@ -59,7 +57,7 @@ def overturning_spectrum(
     workers : int, optional
         Number of threads. It does not influence the result.
     progress : callable, optional
-        Called with the series at work and the fraction of it that is done.
+        Told of the start and the end of each series.
 
     Returns
     -------
@@ -86,26 +84,28 @@ def overturning_spectrum(
         raise ValueError(f"search_step must be positive and finite, got {search_step!r}")
     unit = intensity_unit(tan_alpha, motion, gravity)
     peaks, lowest, below, start = {}, {}, {}, {}
+    stages = Stages(progress, len(SERIES))
     for index, name in enumerate(SERIES):
         start[name] = uplift_of_series(name, motion, tan_alpha, gravity) / unit
-        peaks[name], lowest[name], below[name] = _series(
-            partial(
-                reduced.peak_tilts,
-                tan_alpha=tan_alpha,
-                motion=motion.scaled(unit),
-                rtol=rtol,
-                rest_tilt=rest_tilt,
-                gravity=gravity,
-                **series_options(name, support),
-            ),
-            sizes,
-            levels,
-            partial(search_lowest, levels, start=start[name], step=search_step, alpha=math.atan(tan_alpha)),
-            partial(probe_below, start[name], float(levels[-1])),
-            index,
-            workers,
-            partial(progress, name) if progress is not None else _silent,
+        run = partial(
+            reduced.peak_tilts,
+            tan_alpha=tan_alpha,
+            motion=motion.scaled(unit),
+            rtol=rtol,
+            rest_tilt=rest_tilt,
+            gravity=gravity,
+            **series_options(name, support),
         )
+        search = partial(
+            search_lowest, levels, start=start[name], step=search_step, alpha=math.atan(tan_alpha)
+        )
+        with stages.stage(TITLES[name]):
+            peaks[name] = run(sizes, scales=levels, workers=workers)
+            at = partial(_at_level, run, sizes)
+            found = run_searches([search(known) for known in peaks[name]], at, workers=workers)
+            probes = [probe_below(start[name], levels[-1], each, (index, i)) for i, each in enumerate(found)]
+            probed = np.array(run_searches(probes, at, workers=workers))
+        lowest[name], below[name] = np.fmin(found, probed[:, 0]), probed[:, 1]
     return OverturningSpectrum(
         tan_alpha=tan_alpha,
         motion=motion,
@@ -122,34 +122,8 @@ def overturning_spectrum(
     )
 
 
-def _series(
-    run: Callable[..., Array],
-    sizes: Array,
-    levels: Array,
-    search: Callable[[Array], Search[float]],
-    probe: Callable[[float, Sequence[int]], Search[tuple[float, int]]],
-    seed: int,
-    workers: int | None,
-    tell: Callable[[float], None],
-) -> tuple[Array, Array, Array]:
-    """Return the peak tilts on the grid, the lowest that overturns each size, and how many probes did."""
-
-    def at(group: list[int], level: float) -> Array:
-        return run(sizes[group], scales=[level], workers=1)[:, 0]
-
-    def searched(times: float) -> None:
-        tell(1.0 - (1.0 - _GRID) * 0.5**times)  # each time there is less to run
-
-    peaks = run(sizes, scales=levels, workers=workers, progress=lambda done: tell(_GRID * done))
-    found = run_searches([search(known) for known in peaks], at, workers=workers, progress=searched)
-    probes = [probe(lowest, (seed, i)) for i, lowest in enumerate(found)]
-    probed = np.array(run_searches(probes, at, workers=workers))
-    tell(1.0)
-    return peaks, np.fmin(found, probed[:, 0]), probed[:, 1]
-
-
-def _silent(fraction: float) -> None:
-    """Tell nobody."""
+def _at_level(run: Callable[..., Array], sizes: Array, group: list[int], level: float) -> Array:
+    return run(sizes[group], scales=[level], workers=1)[:, 0]
 
 
 def _axis(name: str, values: ArrayLike) -> Array:

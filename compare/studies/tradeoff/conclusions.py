@@ -1,58 +1,22 @@
-"""What follows from the points: computed from them, never typed in."""
+"""What follows from the points of a trade-off: computed from them, never typed in."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .methods import BASE_LINE
 from .problem import FINE_REST_TILT
 
 if TYPE_CHECKING:
     import pandas as pd
 
-# a line has ended on its plateau if its last halvings change the error by less than this factor
-FLAT = 2.0
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Fastest:
-    """The cheapest point of a family below an error; ratio NaN where none reaches it."""
-
-    problem: str
-    model: str
-    target: float
-    family: str
-    line: str
-    knob: str
-    value: float
-    ratio: float
-    milliseconds: float
-    error: float
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Plateau:
-    """Where the error of a line stops falling with its knob.
-
-    Attributes
-    ----------
-    begins : float
-        Largest value of the knob from which on the error stays within a factor `FLAT` of its level; NaN if
-        it still falls at the smallest.
-    level : float
-        Median error from there on; the smallest error where it still falls.
-    """
-
-    problem: str
-    model: str
-    line: str
-    knob: str
-    begins: float
-    level: float
-    smallest: float
+# in the unit of each problem: errors that are asked for
+TARGETS = {"turn": (0.1, 0.01, 1e-3), "shaken": (1e-2, 1e-3, 1e-4), "peaks": (0.05, 1e-2, 1e-3)}
+# an error that falls with a lower power of the step than this has stopped falling; engines are of first order
+FLAT = 0.5
 
 
 def reaches(line: pd.DataFrame, target: float) -> pd.DataFrame:
@@ -66,91 +30,89 @@ def reaches(line: pd.DataFrame, target: float) -> pd.DataFrame:
     return ordered[good & held]
 
 
-def fastest(points: pd.DataFrame, problem: str, model: str, target: float) -> list[Fastest]:
-    """Return the fastest point of each family below an error, the fastest family first."""
-    chosen = points[(points["problem"] == problem) & (points["model"] == model)]
-    found = []
-    for family, members in chosen.groupby("family", sort=False):
-        held = [reaches(line, target) for _, line in members.groupby("line", sort=False)]
-        rows = [row for part in held for row in part.to_dict("records")]
-        if not rows:
-            continue
-        best = min(rows, key=lambda row: row["ratio"])
-        found.append(
-            Fastest(
-                problem=problem,
-                model=model,
-                target=target,
-                family=str(family),
-                line=best["line"],
-                knob=best["knob"],
-                value=best["value"],
-                ratio=best["ratio"],
-                milliseconds=best["milliseconds"],
-                error=best["error"],
-            )
-        )
-    return sorted(found, key=lambda each: each.ratio)
+def costs(points: pd.DataFrame) -> pd.DataFrame:
+    """Return the cheapest point of each family for each problem, support and error asked for.
 
-
-def plateaus(points: pd.DataFrame) -> list[Plateau]:
-    """Return where each line of an engine stops gaining from smaller steps; lines of three points or more."""
-    found = []
-    engines = points[points["knob"] == "time step"]
-    for (problem, model, line), rows in engines.groupby(["problem", "model", "line"], sort=False):
-        ordered = rows.dropna(subset=["error"]).sort_values("value", ascending=False)
-        if len(ordered) < 3:
-            continue
-        errors, values = ordered["error"].to_numpy(float), ordered["value"].to_numpy(float)
-        begins, level = math.nan, float(errors.min())
-        for first in range(len(errors) - 1):
-            tail = errors[first:]
-            if tail.max() <= FLAT * tail.min():
-                begins, level = float(values[first]), float(np.median(tail))
-                break
-        # errors that rise again are a plateau, too: smaller steps gain nothing
-        if math.isnan(begins) and errors[-1] > errors.min():
-            first = int(errors.argmin())
-            begins = float(values[first])
-        found.append(
-            Plateau(
-                problem=str(problem),
-                model=str(model),
-                line=str(line),
-                knob="time step",
-                begins=begins,
-                level=level,
-                smallest=float(values[-1]),
-            )
-        )
-    return found
-
-
-def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
-    """Return what the rest rule saves and costs: problem, line, tolerance, speed-up and both errors.
-
-    Each line is held against the one with next to no rule at the same tolerance.
+    Returns
+    -------
+    DataFrame
+        The columns of the points, and target; families that do not reach it have no row. Cheapest first.
     """
     import pandas as pd
 
-    reduced = points[(points["family"] == "reduced") & (points["model"] == "recess")]
-    almost_none = f"reduced, rest threshold {FINE_REST_TILT:g}"
-    without = reduced[reduced["line"] == almost_none].set_index(["problem", "value"])
     rows = []
-    for row in reduced[reduced["line"] != almost_none].to_dict("records"):
-        key = row["problem"], row["value"]
-        if key not in without.index:
+    for (problem, _), chosen in points.groupby(["problem", "support"], sort=False):
+        for target in TARGETS[str(problem)]:
+            for _, members in chosen.groupby("family", sort=False):
+                held = pd.concat([reaches(line, target) for _, line in members.groupby("line", sort=False)])
+                rows.append(held.nsmallest(1, "ratio").assign(target=target))
+    found = pd.concat(rows, ignore_index=True)
+    keys = {name: pd.factorize(found[name])[0] for name in ("problem", "support")}
+    return found.assign(**{f"_{name}": codes for name, codes in keys.items()}).sort_values(
+        ["_problem", "_support", "target", "ratio"], ascending=[True, True, False, True], ignore_index=True
+    )[[*points.columns, "target"]]
+
+
+def plateaus(points: pd.DataFrame) -> pd.DataFrame:
+    """Return how the error of each line of an engine goes with its time step; lines of three points or more.
+
+    Returns
+    -------
+    DataFrame
+        problem, support, panel, line; verdict: "falls" where the last halving still gains, "flat" where the
+        error from `begins` on changes with a power of the step below `FLAT`, "grows" where it grows by more
+        than that power; begins [s], the step from which on nothing is gained, NaN where it falls; level,
+        the median error from there on, or the smallest; best, the step of the smallest error [s].
+    """
+    import pandas as pd
+
+    rows = []
+    engines = points[(points["knob"] == "time step") & points["error"].notna()]
+    names = ["problem", "support", "panel", "line"]
+    for key, line in engines.groupby(names, sort=False):
+        ordered = line.sort_values("value", ascending=False)
+        errors, steps = ordered["error"].to_numpy(float), ordered["value"].to_numpy(float)
+        if len(ordered) < 3:
             continue
-        other = without.loc[key]
+        with np.errstate(divide="ignore"):
+            orders = np.diff(np.log(errors)) / np.diff(np.log(steps))
+        falling = np.flatnonzero(orders >= FLAT)
+        first = int(falling[-1]) + 1 if len(falling) else 0
+        falls = first == len(errors) - 1
+        grows = not falls and errors[-1] >= errors[first] * (steps[first] / steps[-1]) ** FLAT
         rows.append(
-            {
-                "problem": row["problem"],
-                "line": row["line"],
-                "tolerance": row["value"],
-                "speed_up": float(other["ratio"]) / row["ratio"],
-                "error": row["error"],
-                "error_without": float(other["error"]),
+            dict(zip(names, key, strict=True))
+            | {
+                "verdict": "falls" if falls else "grows" if grows else "flat",
+                "begins": math.nan if falls else float(steps[first]),
+                "level": float(errors.min() if falls else np.median(errors[first:])),
+                "best": float(steps[errors.argmin()]),
             }
         )
-    columns = ["problem", "line", "tolerance", "speed_up", "error", "error_without"]
-    return pd.DataFrame(rows, columns=columns)
+    return pd.DataFrame(rows, columns=[*names, "verdict", "begins", "level", "best"])
+
+
+def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
+    """Return what the rest rule saves and costs: problem, line, value, speed_up, error, error_without.
+
+    Each line is held against the one with next to no rule at the same tolerance.
+    """
+    reduced = points[(points["family"] == "reduced") & (points["support"] == "recess")]
+    none = reduced["line"] == f"rest threshold {FINE_REST_TILT:g}"
+    kept = [BASE_LINE, *(line for line in reduced["line"].unique() if line.startswith("rest threshold"))]
+    columns = ["problem", "line", "value", "ratio", "error"]
+    pairs = reduced.loc[~none & reduced["line"].isin(kept), columns].merge(
+        reduced.loc[none, columns[:1] + columns[2:]], on=["problem", "value"], suffixes=("", "_without")
+    )
+    pairs["speed_up"] = pairs["ratio_without"] / pairs["ratio"]
+    return pairs[["problem", "line", "value", "speed_up", "error", "error_without"]]
+
+
+def engine_factors(points: pd.DataFrame) -> tuple[float, float]:
+    """Return the least and the largest cost of an engine at an error asked for; NaN where none reaches one.
+
+    In computing times of the recess model at its default tolerance, as everywhere.
+    """
+    found = costs(points)
+    ratios = found.loc[~found["family"].isin(("reduced", "scipy")), "ratio"]
+    return float(ratios.min()), float(ratios.max())

@@ -3,218 +3,196 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Run, Trace
+from rockwobble.multibody.engines.registry import find_engine
 
-from ...runs.choice import own_model
 from ...runs.execution import simulate_run
-from .problem import FINE_REST_TILT, Answer, Problem
-from .scipy_equations import SOLVERS
-from .scipy_methods import Rates, compiled, plain, scipy_answer
+from .problem import FINE_REST_TILT, Array, Problem
+from .scipy_solver import SOLVERS, Rates, SolverName, solve, start_of
 
-Array = NDArray[np.float64]
-
-# of the kernel as it comes: computing times are told as multiples of its own
+# of the recess model as it comes: every computing time is told as a multiple of its own
 BASE_TOLERANCE = 1e-8
+BASE_LINE = "recess model"
 _TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
-_STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5)
-_QUICK_STEPS = (1e-3, 5e-4, 2e-4)
 # what a held contact time constant is: that of the default settings at a step of 1e-3 s [s]
 _HELD = 2e-3
+_SUPPORTS = ("recess", "flat", "ring")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Answer:
+    """What a method says of one case: the quantity, empty where it failed, and codes or its refusal."""
+
+    quantity: Array
+    said: str = ""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Method:
     """One point of one line.
 
-    Parameters
+    Attributes
     ----------
     line : str
-        The line: what is the same at all its points.
+        What is the same at all its points.
     family : str
         "reduced", "scipy" or the name of an engine.
-    model : {"recess", "flat"}
+    support : {"recess", "flat", "ring"}
         Whose answer is the reference.
+    panel : {"methods", "rest threshold", "scipy", "integrator", "contact"}
+        What the line is compared with: all kinds of methods, or the variants of one.
     knob : {"tolerance", "time step"}
     value : float
         Of the knob; the smaller the more accurate.
     solve : callable
         (case) -> Answer. This is what is timed.
-    support, settings :
-        Of an engine, for the table.
     """
 
     line: str
     family: str
-    model: str
+    support: str
+    panel: str
     knob: str
     value: float
     solve: Callable[[Case], Answer]
-    support: str = ""
-    settings: dict[str, Any] = field(default_factory=dict)
 
     @property
     def base(self) -> bool:
-        """Whether times are told as multiples of this one's."""
-        return self.line == _BASE_LINE and self.value == BASE_TOLERANCE
-
-
-_BASE_LINE = "reduced, recess"
+        """Whether all times are multiples of this one's."""
+        return self.line == BASE_LINE and self.value == BASE_TOLERANCE
 
 
 def methods_for(problem: Problem, *, quick: bool = False) -> list[Method]:
     """Return all methods that can answer a problem with what is installed here."""
-    return [
-        *_reduced(problem, quick),
-        *_scipy(problem, quick),
-        *(method for line in _engine_lines(problem, quick) for method in line),
-    ]
+    return [*_reduced(problem, quick), *_scipy(problem, quick), *_engines(problem, quick)]
 
 
-def _reduced(problem: Problem, quick: bool) -> list[Method]:
-    chosen = _TOLERANCES[1::2] if quick else _TOLERANCES
-    tolerances = sorted({*chosen, BASE_TOLERANCE}, reverse=True)
-    lines: list[tuple[str, str, float | None]] = [
-        (_BASE_LINE, "recess", None),
-        ("reduced, rolling", "flat", None),
-    ]
-    if problem.name != "turn":  # still ground seats nobody
-        lines[1:1] = [
-            (f"reduced, rest threshold {FINE_REST_TILT:g}", "recess", FINE_REST_TILT),
-            ("reduced, rest threshold 1e-5", "recess", 1e-5),
-            ("reduced, rest threshold 0.1", "recess", 1e-1),
-        ]
-
-    def solver(model: str, rtol: float, rest_tilt: float | None) -> Callable[[Case], Answer]:
-        def solve(case: Case) -> Answer:
-            trace = reduced.simulate(
-                case,
-                support=model,
-                rtol=rtol,
-                rest_tilt=reduced.REST_TILT if rest_tilt is None else rest_tilt,
-                sample_step=problem.sample_step,
-            )
-            return _answer(problem, trace)
-
-        return solve
-
-    return [
-        Method(
-            line=line,
-            family="reduced",
-            model=model,
-            knob="tolerance",
-            value=rtol,
-            solve=solver(model, rtol, rest_tilt),
-            settings={} if rest_tilt is None else {"rest_tilt": rest_tilt},
-        )
-        for line, model, rest_tilt in lines
-        for rtol in tolerances
-    ]
-
-
-def _scipy(problem: Problem, quick: bool) -> list[Method]:
-    tolerances: tuple[float, ...] = (
-        (1e-3, 1e-5, 1e-7, 1e-9) if problem.name != "peaks" else (1e-3, 1e-5, 1e-7)
-    )
-    languages: list[tuple[str, Callable[[Case], Rates]]] = [("Python", plain)]
-    if quick:
-        tolerances = tolerances[:2]
-    elif problem.name != "peaks":  # a compilation for every member would be all that is measured
-        languages.append(("numba", compiled))
-    found = []
-    for language, make in languages:
-        rates = {case.name: make(case) for case in problem.cases}
-        found += [
-            Method(
-                line=f"scipy {name}, {language}",
-                family="scipy",
-                model="recess",
+def _reduced(problem: Problem, quick: bool) -> Iterator[Method]:
+    tolerances = sorted({*(_TOLERANCES[1::2] if quick else _TOLERANCES), BASE_TOLERANCE}, reverse=True)
+    lines = [("methods", Run(None, "recess")), ("methods", Run(None, "flat"))]
+    if problem.name != "turn":  # on still ground nothing comes to rest
+        lines += [("rest threshold", Run(None, "recess", rest_tilt=at)) for at in (FINE_REST_TILT, 1e-5, 0.1)]
+    for panel, run in lines:
+        rest_tilt = run.settings.get("rest_tilt", reduced.REST_TILT)
+        for rtol in tolerances:
+            yield Method(
+                line=str(run) if panel == "methods" else f"rest threshold {rest_tilt:g}",
+                family="reduced",
+                support=run.support,
+                panel=panel,
                 knob="tolerance",
                 value=rtol,
-                solve=scipy_answer(problem, name, rates, rtol),
-            )
-            for name in SOLVERS
-            for rtol in tolerances
-        ]
-    return found
-
-
-def _engine_lines(problem: Problem, quick: bool) -> list[list[Method]]:
-    steps: tuple[float, ...] = _QUICK_STEPS if quick else _STEPS
-    few = steps[:2] if quick else steps[:5]
-    if problem.name == "peaks":
-        steps = few = steps[:2] if quick else steps[:4]
-    lines: list[list[Method]] = []
-
-    def line(
-        name: str, engine: str, support: str, steps: Sequence[float], given: dict[str, Any] | None = None,
-        contact: float = math.nan,
-    ) -> None:  # fmt: skip
-        if engine in multibody.available_engines():
-            lines.append(
-                [_engine(problem, name, engine, support, step, given or {}, contact) for step in steps]
+                solve=_by_model(problem, run.support, rtol, rest_tilt),
             )
 
-    line("MuJoCo recess", "mujoco", "recess", steps)
-    line("MuJoCo flat", "mujoco", "flat", steps)
-    line("MuJoCo ring", "mujoco", "ring", few)
-    line("PyBullet recess", "pybullet", "recess", few)
-    line("PyBullet flat", "pybullet", "flat", few)
-    if problem.name == "turn":  # its ideal rim cannot uplift
-        line("Exudyn flat", "exudyn", "flat", few)
-    if problem.name != "peaks":
-        for integrator in ("RK4",) if quick else ("implicitfast", "implicit", "RK4", "discrete"):
-            line(f"MuJoCo {integrator}", "mujoco", "recess", few, {"integrator": integrator})
-        for contact in (20.0,) if quick else (4.0, 20.0):
-            line(f"MuJoCo contact {contact:g} steps", "mujoco", "recess", few, contact=contact)
-        held = {"contact_time_constant": _HELD}
-        line(f"MuJoCo contact {1e3 * _HELD:g} ms", "mujoco", "recess", few, held)
-    return lines
 
-
-def _engine(
-    problem: Problem,
-    name: str,
-    engine: str,
-    support: str,
-    step: float,
-    given: dict[str, Any],
-    contact: float,
-) -> Method:
-    settings = dict(given)
-    if math.isfinite(contact):
-        settings["contact_time_constant"] = contact * step
-
-    def solve(case: Case) -> Answer:
-        try:
-            run = Run(engine, support, step, **settings)
-            trace = simulate_run(case, run, sample_step=problem.sample_step)
-        except ValueError as refusal:
-            return Answer(quantity=np.empty(0), message=f"refused: {refusal}")
+def _by_model(problem: Problem, support: str, rtol: float, rest_tilt: float) -> Callable[[Case], Answer]:
+    def answer(case: Case) -> Answer:
+        # not by a `Run`, which has forces computed that nobody asks for here
+        trace = reduced.simulate(
+            case, support=support, rtol=rtol, rest_tilt=rest_tilt, sample_step=problem.sample_step
+        )
         return _answer(problem, trace)
 
-    return Method(
-        line=name,
-        family=engine,
-        model=own_model(Run(engine, support)).support,
-        knob="time step",
-        value=step,
-        solve=solve,
-        support=support,
-        settings=settings,
-    )
+    return answer
+
+
+def _scipy(problem: Problem, quick: bool) -> Iterator[Method]:
+    tolerances: tuple[float, ...] = (1e-3, 1e-5, 1e-7, 1e-9)
+    languages = {"Python": False, "numba": True}
+    if problem.name == "peaks":  # a compilation for every member would be all that is measured
+        tolerances, languages = tolerances[:3], {"Python": False}
+    if quick:
+        tolerances, languages = tolerances[:2], {"Python": False}
+    for language, compiled in languages.items():
+        rates = {case.name: start_of(case, compiled=compiled) for case in problem.cases}
+        for name in SOLVERS:
+            for rtol in tolerances:
+                yield Method(
+                    line=f"{name}, {language}",
+                    family="scipy",
+                    support="recess",
+                    panel="scipy",
+                    knob="tolerance",
+                    value=rtol,
+                    solve=_by_scipy(problem, name, rates, rtol),
+                )
+
+
+def _by_scipy(
+    problem: Problem, name: SolverName, rates: Mapping[str, Rates], rtol: float
+) -> Callable[[Case], Answer]:
+    def answer(case: Case) -> Answer:
+        quantity = solve(problem, case, name, rates[case.name], rtol)
+        return Answer(quantity=quantity, said="" if quantity.size else "gave up, or jumped over upright")
+
+    return answer
+
+
+def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
+    for engine in multibody.available_engines():
+        known = find_engine(engine)
+        if problem.name != "turn" and not known.uplifts:
+            continue
+        for support in (each for each in _SUPPORTS if each in known.supports and each in problem.references):
+            all_steps = engine == "mujoco" and support != "ring"
+            steps = problem.steps if all_steps else problem.few_steps
+            yield from _line(problem, f"{engine} {support}", "methods", engine, support, steps, {})
+    if "mujoco" not in multibody.available_engines() or problem.name == "peaks":
+        return
+    integrators = ("RK4",) if quick else ("implicitfast", "implicit", "RK4", "discrete")
+    for name in integrators:
+        yield from _line(
+            problem, name, "integrator", "mujoco", "recess", problem.few_steps, {"integrator": name}
+        )
+    held = {"contact_time_constant": _HELD}
+    yield from _line(problem, f"in {_HELD:g} s", "contact", "mujoco", "recess", problem.few_steps, held)
+    for count in (20.0,) if quick else (4.0, 20.0):
+        yield from _line(
+            problem, f"in {count:g} steps", "contact", "mujoco", "recess", problem.few_steps, {}, count
+        )
+
+
+def _line(
+    problem: Problem,
+    line: str,
+    panel: str,
+    engine: str,
+    support: str,
+    steps: Sequence[float],
+    settings: Mapping[str, Any],
+    contact_steps: float = math.nan,
+) -> Iterator[Method]:
+    for step in steps:
+        contact = {"contact_time_constant": contact_steps * step} if math.isfinite(contact_steps) else {}
+        yield Method(
+            line=line,
+            family=engine,
+            support=support,
+            panel=panel,
+            knob="time step",
+            value=step,
+            solve=_by_engine(problem, Run(engine, support, step, **settings, **contact)),
+        )
+
+
+def _by_engine(problem: Problem, run: Run) -> Callable[[Case], Answer]:
+    def answer(case: Case) -> Answer:
+        try:
+            return _answer(problem, simulate_run(case, run, sample_step=problem.sample_step))
+        except ValueError as refusal:
+            return Answer(quantity=np.empty(0), said=str(refusal))
+
+    return answer
 
 
 def _answer(problem: Problem, trace: Trace) -> Answer:
     said = ", ".join(fact.code for fact in trace.facts)
-    if trace.outcome == "failed":
-        return Answer(quantity=np.empty(0), message=f"failed: {said}")
-    return Answer(quantity=problem.quantity(trace), message=said)
+    return Answer(quantity=np.empty(0) if trace.outcome == "failed" else problem.quantity(trace), said=said)

@@ -2,37 +2,39 @@
 
 One cylinder in all of them, R = 6 m and tan(alpha) = 0.2, so that computing times may be compared:
 
-* turn: free response from alpha/2; error of the angle of turn, exact by quadrature in a recess and
-  converged on open ground, where no quadrature is known;
+* turn: free response from alpha/2; error of the angle of turn;
 * shaken: twice El Centro until ten seconds after uplift; largest error of the tilt. The factor takes its
   passes away from upright: as recorded they come so close that the trace is a matter of chance;
 * peaks: many synthetic ground motions; distance of the distributions of peak tilt.
+
+A method is held against the answer for its own support: that of a reduced model, or of a ring of walls, which
+no reduced model knows, the same engine at half of the finest step of its line.
 """
 
 from __future__ import annotations
 
-import dataclasses
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
+from rockwobble import multibody, reduced
+from rockwobble.models import Case, Cylinder, InitialState, Run, Trace, el_centro_1940
 
+from ...runs.execution import simulate_run
 from ..ensemble.members import synthetic_motions, with_motions
 
 Array = NDArray[np.float64]
 
-MODELS = ("recess", "flat")
 # of the tight solutions, and a rest rule a hundred times finer than the default: without any a cylinder
 # that just uplifts chatters at upright without end, and there is no solution to hold a method against
 TIGHT = 1e-12
 FINE_REST_TILT = 1e-10
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
+_STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5)  # [s] of the engines
 _TURN_LENGTH = 2.6  # [s] a period of the tilt is 2.39 s
 _AFTER_UPLIFT = 10.0  # [s]
 _FACTOR = 2.0  # on El Centro
@@ -42,163 +44,168 @@ _MEMBER_LENGTH = 10.0  # [s]
 _MEMBER_PEAK = 0.45 * 9.81  # [m/s^2]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Problem:
-    """Cases, what is asked of a run of each, and the answer.
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Reference:
+    """The answer for one support.
 
-    Parameters
+    Attributes
     ----------
-    name, title, error_title : str
-        For the table, for a heading, and for an axis, with the unit.
+    quantities : sequence of ndarray
+        Of all cases.
+    doubt : float
+        Its own error, from an answer ten times less tight or of twice the step; 0 where it is exact.
+    source : {"exact", "tight", "half_step"}
+    """
+
+    quantities: Sequence[Array]
+    doubt: float
+    source: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Problem:
+    """Cases, what is asked of a run of each, and the answers.
+
+    Attributes
+    ----------
+    name : {"turn", "shaken", "peaks"}
     cases : sequence of Case
         More than one are an ensemble.
     sample_step : float
         At which a run is sampled [s].
+    steps, few_steps : sequence of float
+        Time steps of the engines [s], all and those of what costs more.
     quantity : callable
-        (trace) -> what is asked of a run, shape (k,).
+        Returns what is asked of a trace, (k,); nothing where it has no such thing.
     distance : callable
-        (quantities of all cases, those of the reference) -> error.
-    references : dict
-        Quantities of all cases by model.
-    doubt : dict
-        Error of the reference itself by model, against one ten times less tight (0: exact).
-    source : dict
-        What the reference is, by model.
+        (quantities of all cases, those of the reference) -> error, [deg] in "turn", else [alpha].
+    references : mapping
+        By support: "recess", "flat", and "ring" where MuJoCo is installed.
     """
 
     name: str
-    title: str
-    error_title: str
     cases: Sequence[Case]
     sample_step: float
+    steps: Sequence[float]
+    few_steps: Sequence[float]
     quantity: Callable[[Trace], Array]
     distance: Callable[[Sequence[Array], Sequence[Array]], float]
-    references: dict[str, list[Array]]
-    doubt: dict[str, float]
-    source: dict[str, str]
+    references: Mapping[str, Reference]
 
-    def error(self, model: str, quantities: Sequence[Array]) -> float:
-        """Return the error of an answer against that of a model; NaN without an answer for each case."""
+    def error(self, support: str, quantities: Sequence[Array]) -> float:
+        """Return the error of an answer; NaN without one for each case."""
         if any(value.size == 0 or not np.isfinite(value).all() for value in quantities):
             return math.nan
-        return self.distance(quantities, self.references[model])
+        return self.distance(quantities, self.references[support].quantities)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Answer:
-    """What a method says of one case: the quantity, empty where it failed, and its message."""
-
-    quantity: Array
-    message: str = ""
-
-
-def problems(*, quick: bool = False) -> list[Problem]:
-    """Return the three problems; `quick` has fewer members of the ensemble."""
-    return [_turn(), _shaken(), _peaks(4 if quick else 12)]
+def problems(*, quick: bool = False) -> Iterator[Problem]:
+    """Yield the three problems; `quick` has fewer steps and fewer members of the ensemble."""
+    yield turn(quick=quick)
+    yield shaken(quick=quick)
+    yield peaks(quick=quick)
 
 
-def reference_run(case: Case, model: str, sample_step: float, rtol: float = TIGHT) -> Trace:
-    """Return the tight solution of a case: the model with next to no rest rule.
-
-    Raises
-    ------
-    RuntimeError
-        If the solution fails: there is nothing to hold a method against.
-    """
-    trace = reduced.simulate(
-        case, support=model, rtol=rtol, rest_tilt=FINE_REST_TILT, sample_step=sample_step
-    )
-    if trace.outcome == "failed":
-        raise RuntimeError(f"the reference of {case.name} failed: {trace.facts}")
-    return trace
-
-
-def _make(problem: Problem) -> Problem:
-    """Fill in the references that are converged, and how far they have converged."""
-    references, doubt, source = dict(problem.references), dict(problem.doubt), dict(problem.source)
-    for model in MODELS:
-        if model in references:
-            continue
-        tight, less = (
-            [
-                problem.quantity(reference_run(case, model, problem.sample_step, rtol))
-                for case in problem.cases
-            ]
-            for rtol in (TIGHT, 10.0 * TIGHT)
-        )
-        references[model], doubt[model] = tight, problem.distance(less, tight)
-        source[model] = f"{model} model, tolerance {TIGHT:g} and rest threshold {FINE_REST_TILT:g}"
-    return dataclasses.replace(problem, references=references, doubt=doubt, source=source)
-
-
-def _turn() -> Problem:
+def turn(*, quick: bool = False) -> Problem:
+    """Return the problem of the angle of turn, whose answer in a recess is exact, by quadrature."""
     release = InitialState(0.5 * PIER.alpha, rolling_rate=0.1)
     exact = math.degrees(reduced.angle_of_turn(PIER, release))
-    return _make(
+    return _answered(
         Problem(
             name="turn",
-            title="Angle of turn in free response",
-            error_title="error of the angle of turn [deg]",
             cases=[Case(PIER, initial=release, duration=_TURN_LENGTH, name="release at alpha/2")],
             sample_step=_TURN_LENGTH,
+            steps=_STEPS[:3] if quick else _STEPS,
+            few_steps=_STEPS[:2] if quick else _STEPS[:5],
             quantity=_angle_of_turn,
             distance=_largest,
-            references={"recess": [np.array([exact])]},
-            doubt={"recess": 0.0},
-            source={"recess": "exact, by quadrature"},
+            references={"recess": Reference(quantities=[np.array([exact])], doubt=0.0, source="exact")},
         )
     )
 
 
-def _angle_of_turn(trace: Trace) -> Array:
-    turns = trace.passes["angle_of_turn"]
-    return np.asarray(np.degrees(turns.to_numpy(float)[:1]), dtype=np.float64)
-
-
-def _shaken() -> Problem:
+def shaken(*, quick: bool = False) -> Problem:
+    """Return the problem of the tilt under El Centro."""
     motion = el_centro_1940().scaled(_FACTOR)
     uplift = reduced.simulate(Case(PIER, motion), rtol=TIGHT).uplift_time
     end = _SAMPLE * round((uplift + _AFTER_UPLIFT) / _SAMPLE)
-    case = Case(PIER, motion, duration=end, name=f"{_FACTOR:g} × El Centro")
-    return _make(
+    return _answered(
         Problem(
             name="shaken",
-            title=f"{_FACTOR:g} × El Centro until {_AFTER_UPLIFT:g} s after uplift",
-            error_title="largest error of the tilt [α]",
-            cases=[case],
+            cases=[Case(PIER, motion, duration=end, name=f"{_FACTOR:g} × El Centro")],
             sample_step=_SAMPLE,
+            steps=_STEPS[:3] if quick else _STEPS,
+            few_steps=_STEPS[:2] if quick else _STEPS[:5],
             quantity=_whole_tilt,
             distance=_largest,
             references={},
-            doubt={},
-            source={},
         )
     )
+
+
+def peaks(*, quick: bool = False) -> Problem:
+    """Return the problem of the peak tilts of many motions."""
+    standing = Case(PIER, synthetic_motions(2, peak=1.0, seed=0)[0], name="synthetic")
+    motions = synthetic_motions(4 if quick else 12, peak=_MEMBER_PEAK, seed=1940, duration=_MEMBER_LENGTH)
+    steps = _STEPS[:2] if quick else _STEPS[:4]
+    return _answered(
+        Problem(
+            name="peaks",
+            cases=with_motions(standing, motions),
+            sample_step=_MEMBER_LENGTH,
+            steps=steps,
+            few_steps=steps,
+            quantity=_peak,
+            distance=_wasserstein,
+            references={},
+        )
+    )
+
+
+def sampling_distance(problem: Problem, support: str, *, draws: int = 500, seed: int = 0) -> float:
+    """Return how far apart two ensembles as large as this one are by chance: median of a bootstrap [alpha].
+
+    No method needs to be better than that, because another earthquake changes more.
+    """
+    found = np.concatenate(problem.references[support].quantities)
+    random = np.random.default_rng(seed)
+    samples = np.sort(random.choice(found, (2, draws, len(found))), axis=2)
+    return float(np.median(np.abs(samples[0] - samples[1]).mean(axis=1)))
+
+
+def _answered(problem: Problem) -> Problem:
+    """Fill in the answers that have to be computed, and how far they have converged."""
+    pairs = {
+        support: [Run(None, support, rtol=rtol, rest_tilt=FINE_REST_TILT) for rtol in (TIGHT, 10.0 * TIGHT)]
+        for support in ("recess", "flat")
+    }
+    if "mujoco" in multibody.available_engines():
+        finest = min(problem.few_steps)
+        pairs["ring"] = [Run("mujoco", "ring", step) for step in (0.5 * finest, finest)]
+    found = dict(problem.references)
+    for support, runs in pairs.items():
+        if support not in found:
+            best, other = ([_answer(problem, case, run) for case in problem.cases] for run in runs)
+            source = "half_step" if support == "ring" else "tight"
+            found[support] = Reference(quantities=best, doubt=problem.distance(other, best), source=source)
+    return replace(problem, references=found)
+
+
+def _answer(problem: Problem, case: Case, run: Run) -> Array:
+    trace = simulate_run(case, run, sample_step=problem.sample_step)
+    if trace.outcome == "failed":
+        raise RuntimeError(f"the reference of {case.name} failed: {trace.facts}")
+    return problem.quantity(trace)
+
+
+def _angle_of_turn(trace: Trace) -> Array:
+    return np.asarray(np.degrees(trace.passes["angle_of_turn"].to_numpy(float)[:1]))
 
 
 def _whole_tilt(trace: Trace) -> Array:
     """Tilt of all samples [alpha]; empty where the run ended before the case."""
-    tilt = trace.tilt / trace.case.cylinder.alpha
-    return tilt if abs(trace.time[-1] - trace.case.length) < 1e-6 else np.empty(0)
-
-
-def _peaks(count: int) -> Problem:
-    standing = Case(PIER, synthetic_motions(2, peak=1.0, seed=0)[0], name="synthetic")
-    motions = synthetic_motions(count, peak=_MEMBER_PEAK, seed=1940, duration=_MEMBER_LENGTH)
-    return _make(
-        Problem(
-            name="peaks",
-            title=f"Distribution of peak tilt over {count} synthetic motions",
-            error_title="distance of distributions [α]",
-            cases=with_motions(standing, motions),
-            sample_step=_MEMBER_LENGTH,
-            quantity=_peak,
-            distance=_wasserstein,
-            references={},
-            doubt={},
-            source={},
-        )
-    )
+    whole = abs(trace.time[-1] - trace.case.length) < 1e-6
+    return trace.tilt / trace.case.cylinder.alpha if whole else np.empty(0)
 
 
 def _peak(trace: Trace) -> Array:
@@ -216,14 +223,3 @@ def _largest(found: Sequence[Array], reference: Sequence[Array]) -> float:
 def _wasserstein(found: Sequence[Array], reference: Sequence[Array]) -> float:
     ours, theirs = (np.sort(np.concatenate(list(values))) for values in (found, reference))
     return float(np.abs(ours - theirs).mean())
-
-
-def sampling_distance(problem: Problem, model: str, *, draws: int = 500, seed: int = 0) -> float:
-    """Return how far apart two ensembles as large as this one are by chance: median of a bootstrap.
-
-    No method needs to be better than that, because another earthquake changes more.
-    """
-    peaks = np.concatenate(problem.references[model])
-    random = np.random.default_rng(seed)
-    samples = np.sort(random.choice(peaks, (2, draws, len(peaks))), axis=2)
-    return float(np.median(np.abs(samples[0] - samples[1]).mean(axis=1)))

@@ -107,7 +107,7 @@ def scene_costs(
     *,
     rounds: int = ROUNDS,
     steps: int = STEPS,
-    say: Callable[[str], None] | None = None,
+    tell: Callable[[], None] | None = None,
 ) -> pd.DataFrame:
     """Measure the cost of a step in every scene.
 
@@ -117,8 +117,8 @@ def scene_costs(
         Default: those of "mujoco" and "pybullet" that are installed.
     rounds, steps : int
         Times that each scene is measured, and steps each time.
-    say : callable, optional
-        Told what happens, line by line.
+    tell : callable, optional
+        Called after each round.
 
     Returns
     -------
@@ -140,12 +140,12 @@ def scene_costs(
     times = np.empty((rounds, len(scenes)))
     counts: list[SceneCounts] = []
     for number in range(rounds):
-        if say is not None:
-            say(f"round {number + 1} of {rounds}, {len(scenes)} scenes of {steps} steps")
         for place, variant in enumerate(scenes):
             times[number, place], count = step_cost(variant, steps)
             if not number:
                 counts.append(count)
+        if tell is not None:
+            tell()
     ratio = np.empty(len(scenes))
     for name in names:
         ours = np.array([variant.engine == name for variant in scenes])

@@ -1,23 +1,20 @@
 """Where the two-degree-of-freedom model may be trusted: measured maps, and limits drawn from them."""
 
-from .campaign import CampaignProgress, measure_all
-from .extent import FULL, QUICK, Extent
-from .limits import Limit, limits_of
+from .extent import FULL, QUICK, Extent, Ring
+from .limits import limits_of
 from .parts import PARTS
-from .store import Validity, planned, read_validity, validity_now, validity_tables
+from .study import KIND, Validity, measure_all, read_validity, validity_of
 
 __all__ = [
     "FULL",
+    "KIND",
     "PARTS",
     "QUICK",
-    "CampaignProgress",
     "Extent",
-    "Limit",
+    "Ring",
     "Validity",
     "limits_of",
     "measure_all",
-    "planned",
     "read_validity",
-    "validity_now",
-    "validity_tables",
+    "validity_of",
 ]

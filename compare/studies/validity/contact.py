@@ -2,74 +2,54 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Iterable
 
 from rockwobble import reduced
-from rockwobble.models import Case, Run, Trace
+from rockwobble.models import Run
+from rockwobble.reduced.body import body_of
 
 from ...runs.execution import simulate_run
 from .extent import Extent
-from .motions import EL_CENTRO, shaken_case
-from .part import Inputs, Part, Row
-from .releases import released
-from .verification import ENGINE
+from .motions import EL_CENTRO, REFERENCE_SIZE, release_case, shaken_case
+from .part import ENGINE, Inputs, Part, Row
 
 _RELEASE, _SPIN, _PASSES = 0.5, 0.1, 4
-_SIZE, _INTENSITY, _LENGTH = 6.0, 2.0, 10.0
-_FRICTION = 3.0
+_INTENSITY, _LENGTH = 2.0, 10.0
 
 
-def _tasks(extent: Extent) -> Sequence[Inputs]:
-    return [
-        {"tan_alpha": tan_alpha, "time_constant": time_constant, "damping": damping}
-        for tan_alpha in extent.contact_tan_alphas
-        for time_constant, damping in extent.contacts
-    ]
+def _tasks(extent: Extent) -> Iterable[Inputs]:
+    for tan_alpha in extent.contact_tan_alphas:
+        for time_constant in extent.time_constants:
+            for damping in extent.dampings:
+                yield {"tan_alpha": tan_alpha, "time_constant": time_constant, "damping": damping}
 
 
-def measure(inputs: Inputs) -> list[Row]:
-    """Return a row: what guided free response loses, and the peak tilt under El Centro.
+def measure(tan_alpha: float, time_constant: float, damping: float) -> list[Row]:
+    """Return a row: what free response in a recess loses, and the peak tilt under El Centro.
 
     The columns: tan_alpha, time_constant [s] in which contact removes a normal velocity, damping ratio,
     softness, the time constant times the frequency parameter p; loss of energy per pass over the energy of
     the release, passes, peak and recess_peak under El Centro over alpha, free_outcome, outcome.
     """
-    settings: dict[str, Any] = {
-        "contact_time_constant": inputs["time_constant"],
-        "contact_damping_ratio": inputs["damping"],
-    }
-    cylinder, initial = released(inputs["tan_alpha"], _RELEASE, _SPIN)
-    duration = _PASSES * reduced.free_response(cylinder, initial).period
-    still = Case(cylinder, initial=initial, duration=duration, friction=_FRICTION, name="free response")
-    free = _engine(still, settings)
-    shaken = shaken_case(EL_CENTRO, inputs["tan_alpha"], _SIZE, _INTENSITY, duration=_LENGTH)
-    run = _engine(shaken, settings)
-    recess = reduced.simulate(shaken)
+    run = Run(ENGINE, "recess", contact_time_constant=time_constant, contact_damping_ratio=damping)
+    free = simulate_run(release_case(tan_alpha, _RELEASE, _SPIN, _PASSES), run)
+    case = shaken_case(EL_CENTRO, tan_alpha, REFERENCE_SIZE, _INTENSITY, duration=_LENGTH)
+    shaken, recess = simulate_run(case, run), reduced.simulate(case)
     lost = -float(free.energy_error[-1]) / float(free.energy[0])
     return [
         {
-            **inputs,
-            "softness": inputs["time_constant"] * _frequency(inputs["tan_alpha"]),
+            "tan_alpha": tan_alpha,
+            "time_constant": time_constant,
+            "damping": damping,
+            "softness": time_constant * body_of(case.cylinder, case.gravity).p,
             "loss": lost / max(len(free.passes), 1),
             "passes": len(free.passes),
-            "peak": run.peak_tilt / shaken.cylinder.alpha,
-            "recess_peak": recess.peak_tilt / shaken.cylinder.alpha,
+            "peak": shaken.peak_tilt / case.cylinder.alpha,
+            "recess_peak": recess.peak_tilt / case.cylinder.alpha,
             "free_outcome": free.outcome,
-            "outcome": run.outcome,
+            "outcome": shaken.outcome,
         }
     ]
-
-
-def _engine(case: Case, settings: dict[str, Any]) -> Trace:
-    return simulate_run(case, Run(ENGINE, "recess", **settings))
-
-
-def _frequency(tan_alpha: float) -> float:
-    """Frequency parameter p of the homogeneous cylinder of the reference size [1/s]: equation (23)."""
-    cos_squared = 1.0 / (1.0 + tan_alpha**2)
-    return math.sqrt(12.0 * 9.81 / (_SIZE * (15.0 + cos_squared)))
 
 
 PART = Part(
@@ -78,6 +58,5 @@ PART = Part(
     tasks=_tasks,
     measure=measure,
     cost=lambda inputs: 4.0,
-    module=__name__,
     engine=ENGINE,
 )

@@ -4,6 +4,29 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from rockwobble.multibody.scene.ring_settings import RingSettings
+
+_RING = RingSettings(ring_inclination=0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ring:
+    """Walls of a ring; see `RingSettings`.
+
+    Attributes
+    ----------
+    clearance : float
+        [b]
+    inclination : float
+        [rad]; 0 stands for alpha.
+    friction : float
+        [-]
+    """
+
+    clearance: float = _RING.ring_clearance
+    inclination: float = 0.0
+    friction: float = _RING.ring_friction
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Extent:
@@ -15,85 +38,78 @@ class Extent:
     tan_alphas, releases, spins : tuple of float
         Of the maps of free response: slenderness, tilt over alpha, and rolling rate over that of steady
         wobble at the tilt.
-    sizes, intensities : tuple of float
-        Of the maps under shaking: semidiagonal [m], and peak resultant over g tan(alpha).
-    shaken_tan_alphas : tuple of float
-    motions : tuple of str
-        Of the maps under shaking, by name; the first has a vertical component.
+    members : int
+        Records.
+    shaken_tan_alphas, sizes, intensities : tuple of float
+        Of the maps under these records: slenderness, semidiagonal [m], and peak resultant over g tan(alpha),
+        as far as an earthquake reaches it: see `LARGEST_PEAK`.
     engine_points : tuple
         (tan(alpha), release, spin) at which engines verify the maps of free response.
-    slip_points : tuple
-        The same, where friction is lowered until the engine slips.
-    slip_shares : tuple of float
-        Friction over that which the recess model needs.
-    trace_points : tuple
-        (tan(alpha), semidiagonal, intensity) at which traces are followed.
-    trace_length : float
-        [s]
-    ring_tan_alphas, ring_clearances, ring_inclinations, ring_turns : tuple of float
-        Clearance [b]; inclination [rad], 0 for alpha; azimuth by which the problem is turned [rad].
-    ring_length : float
-        [s]
-    contacts : tuple
-        (time constant of contact at R = 6 m [s], damping ratio).
-    contact_tan_alphas : tuple of float
-    members : int
-        Records of the ensemble.
-    levels : tuple of float
-        Their peak resultant over g tan(alpha).
-    member_step : float
-        Time step of the engine there [s]; distributions need less than traces.
+    record_points : tuple
+        (tan(alpha), semidiagonal, intensity) at which the engine runs under all records in every support.
+    record_step : float
+        Time step of the engine there [s]; peaks need less than traces.
+    slip_points, slip_shares : tuple
+        (tan(alpha), release, spin), where friction is lowered until the engine slips; friction over that
+        which the recess model needs.
+    trace_points, trace_length : tuple, float
+        (tan(alpha), semidiagonal, intensity) at which traces are followed, for so long [s].
+    ring_tan_alphas, rings, ring_turns, ring_length : tuple of float, tuple of Ring, tuple of float, float
+        Slenderness; walls; azimuth by which the problem is turned [rad]; [s].
+    contact_tan_alphas, time_constants, dampings : tuple of float
+        Of soft contact: slenderness, time constant at R = 6 m [s], damping ratio.
     """
 
     name: str
     tan_alphas: tuple[float, ...]
     releases: tuple[float, ...]
     spins: tuple[float, ...]
+    members: int
+    shaken_tan_alphas: tuple[float, ...]
     sizes: tuple[float, ...]
     intensities: tuple[float, ...]
-    shaken_tan_alphas: tuple[float, ...]
-    motions: tuple[str, ...]
     engine_points: tuple[tuple[float, float, float], ...]
+    record_points: tuple[tuple[float, float, float], ...]
+    record_step: float
     slip_points: tuple[tuple[float, float, float], ...]
     slip_shares: tuple[float, ...]
     trace_points: tuple[tuple[float, float, float], ...]
     trace_length: float
     ring_tan_alphas: tuple[float, ...]
-    ring_clearances: tuple[float, ...]
-    ring_inclinations: tuple[float, ...]
+    rings: tuple[Ring, ...]
     ring_turns: tuple[float, ...]
     ring_length: float
-    contacts: tuple[tuple[float, float], ...]
     contact_tan_alphas: tuple[float, ...]
-    members: int
-    levels: tuple[float, ...]
-    member_step: float
+    time_constants: tuple[float, ...]
+    dampings: tuple[float, ...]
 
+
+# of a record: hardly any was ever measured above it [g]
+LARGEST_PEAK = 1.5
 
 QUICK = Extent(
     name="quick",
     tan_alphas=(0.1, 0.2, 0.4, 0.7, 1.0),
     releases=(0.1, 0.3, 0.5, 0.7, 0.9),
     spins=(0.01, 0.05, 0.1, 0.25, 0.5, 0.9),
-    sizes=(1.0, 2.0, 4.0, 8.0, 16.0, 32.0),
-    intensities=(1.2, 1.5, 2.0, 3.0, 4.0, 6.0),
-    shaken_tan_alphas=(0.1, 0.2, 0.4, 0.7),
-    motions=("El Centro 1940",),
+    members=6,
+    shaken_tan_alphas=(0.1, 0.2, 0.4),
+    sizes=(2.0, 8.0, 32.0),
+    intensities=(1.2, 2.0, 3.0),
     engine_points=((0.1, 0.5, 0.1), (0.2, 0.5, 0.1), (0.4, 0.5, 0.25), (1.0, 0.3, 0.5)),
+    record_points=((0.2, 6.0, 2.0),),
+    record_step=4e-4,
     slip_points=((0.2, 0.5, 0.25), (0.7, 0.5, 0.25)),
     slip_shares=(0.6, 0.8, 0.9, 0.95, 1.05, 1.2),
-    trace_points=((0.1, 10.0, 3.0), (0.2, 6.0, 2.0), (0.4, 6.0, 1.5)),
-    trace_length=15.0,
-    ring_tan_alphas=(0.2, 0.7),
-    ring_clearances=(1e-3, 1e-2),
-    ring_inclinations=(0.0,),
+    trace_points=((0.1, 10.0, 3.0), (0.2, 6.0, 2.0)),
+    trace_length=12.0,
+    ring_tan_alphas=(0.2,),
+    rings=(Ring(), Ring(clearance=1e-2)),
     ring_turns=(0.0,),
-    ring_length=8.0,
-    contacts=((2e-4, 1.0), (2e-3, 1.0), (2e-2, 1.0), (2e-2, 0.1)),
+    ring_length=6.0,
     contact_tan_alphas=(0.2,),
-    members=8,
-    levels=(2.0,),
-    member_step=2e-4,
+    time_constants=(2e-4, 2e-2),
+    dampings=(0.1, 1.0),
 )
 
 FULL = Extent(
@@ -101,15 +117,17 @@ FULL = Extent(
     tan_alphas=(0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.25),
     releases=(0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95),
     spins=(0.001, 0.003, 0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9),
-    sizes=(0.5, 0.75, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0),
-    intensities=(1.05, 1.2, 1.4, 1.6, 1.8, 2.0, 2.5, 3.0, 3.5, 4.0, 5.0, 6.0),
-    shaken_tan_alphas=(0.1, 0.2, 0.3, 0.4, 0.7, 1.0),
-    motions=("El Centro 1940", "record 1", "record 2", "record 3"),
+    members=22,
+    shaken_tan_alphas=(0.1, 0.2, 0.4),
+    sizes=(1.0, 2.0, 4.0, 8.0, 16.0, 32.0),
+    intensities=(1.1, 1.5, 2.0, 2.5, 3.0, 3.75, 5.0, 7.5),
     engine_points=tuple(
         (tan_alpha, release, spin)
         for tan_alpha in (0.1, 0.2, 0.4, 0.7, 1.0)
         for release, spin in ((0.3, 0.5), (0.5, 0.1), (0.7, 0.25), (0.5, 0.01))
     ),
+    record_points=((0.1, 6.0, 2.0), (0.2, 6.0, 2.0), (0.2, 6.0, 3.5), (0.4, 6.0, 2.0)),
+    record_step=2e-4,
     slip_points=tuple((tan_alpha, 0.5, 0.25) for tan_alpha in (0.1, 0.2, 0.4, 0.7, 1.0)),
     slip_shares=(0.4, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 0.99, 1.01, 1.05, 1.2),
     trace_points=tuple(
@@ -119,24 +137,15 @@ FULL = Extent(
         for intensity in intensities
     ),
     trace_length=25.0,
-    ring_tan_alphas=(0.1, 0.2, 0.4, 0.7, 1.0),
-    ring_clearances=(1e-4, 1e-3, 1e-2, 5e-2),
-    ring_inclinations=(0.0, 0.8),
-    ring_turns=(0.0, 0.1),
-    ring_length=12.0,
-    contacts=(
-        (2e-4, 1.0),
-        (1e-3, 1.0),
-        (2e-3, 1.0),
-        (1e-2, 1.0),
-        (2e-2, 1.0),
-        (5e-2, 1.0),
-        (2e-2, 0.3),
-        (2e-2, 0.1),
-        (5e-2, 0.1),
+    ring_tan_alphas=(0.1, 0.2, 0.4, 1.0),
+    rings=(
+        *(Ring(clearance=clearance) for clearance in (1e-4, 1e-3, 1e-2, 5e-2)),
+        *(Ring(inclination=inclination) for inclination in (0.3, 0.8)),
+        *(Ring(friction=friction) for friction in (0.0, 1.0)),
     ),
+    ring_turns=(0.0, 0.1),
+    ring_length=10.0,
     contact_tan_alphas=(0.1, 0.2, 0.4),
-    members=22,
-    levels=(2.0, 3.5),
-    member_step=2e-4,
+    time_constants=(2e-4, 2e-3, 1e-2, 2e-2, 5e-2),
+    dampings=(0.1, 0.3, 1.0),
 )

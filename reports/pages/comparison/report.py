@@ -41,7 +41,7 @@ _NAMED = 10  # runs that diverge, by name
 
 def comparison_files(comparison: Comparison, command: str = "") -> dict[str, bytes]:
     """Return name and content of what a person opens: page, document and the main pictures."""
-    page = comparison_page(comparison, command)
+    page = comparison_page(comparison, command or comparison.command)
     return {
         "report.html": page.html().encode(),
         "report.md": page.markdown().encode(),

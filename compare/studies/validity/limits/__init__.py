@@ -1,58 +1,40 @@
-"""The limits of the model, one a module, each a function of the measured tables alone."""
+"""The limits of the model as numbers, each a function of the measured tables alone."""
 
-from collections.abc import Callable
+from __future__ import annotations
 
-from .agreement_limit import horizon
-from .distribution_limit import contrasts, distribution
-from .friction_limit import friction
-from .limit import Limit, Tables
-from .loss_of_contact_limit import loss_of_contact
-from .model_form_limit import model_form
-from .peak_tilt_limit import peak_tilt
-from .real_recess_limit import real_recess
-from .restraining_moment_limit import couple
-from .soft_contact_limit import soft_contact
-from .vertical_limit import vertical
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
 
-LIMITS: tuple[Callable[[Tables], Limit], ...] = (
-    peak_tilt,
-    distribution,
-    horizon,
-    model_form,
-    friction,
-    loss_of_contact,
-    couple,
-    real_recess,
-    soft_contact,
-    vertical,
+from .distributions import records, single_peaks, vertical
+from .engine import free_response, rings, soft_contact, traces
+from .needs import contact, friction, restraining_moment
+from .numbers import Numbers, Tables
+
+LIMITS: Mapping[str, Callable[[Tables], Numbers]] = MappingProxyType(
+    {
+        "records": records,
+        "single_peaks": single_peaks,
+        "traces": traces,
+        "free_response": free_response,
+        "friction": friction,
+        "contact": contact,
+        "restraining_moment": restraining_moment,
+        "rings": rings,
+        "soft_contact": soft_contact,
+        "vertical": vertical,
+    }
 )
 
 
-def limits_of(tables: Tables) -> list[Limit]:
-    """Return all limits, those that matter most first.
+def limits_of(tables: Tables) -> dict[str, Numbers]:
+    """Return the numbers of all limits by name.
 
     Parameters
     ----------
     tables : mapping of DataFrame
         Of each part by its name, as `measure_all` returns them.
     """
-    return [limit(tables) for limit in LIMITS]
+    return {name: limit(tables) for name, limit in LIMITS.items()}
 
 
-__all__ = [
-    "LIMITS",
-    "Limit",
-    "Tables",
-    "contrasts",
-    "couple",
-    "distribution",
-    "friction",
-    "horizon",
-    "limits_of",
-    "loss_of_contact",
-    "model_form",
-    "peak_tilt",
-    "real_recess",
-    "soft_contact",
-    "vertical",
-]
+__all__ = ["LIMITS", "Numbers", "Tables", "limits_of"]

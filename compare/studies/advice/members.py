@@ -1,0 +1,150 @@
+"""Many runs of one problem: copies of it, each a little different, and other records as strong as its own."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterable, Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble import reduced
+from rockwobble.models import Case, GroundMotion, Run, Trace
+
+from ...metrics.order_statistics import quantile_interval, share_interval
+from ..ensemble.members import FAR_FIELD_PAIRS, far_field_motions, synthetic_motions
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+COPIES, ACCELERATION, VELOCITY = "copies", "acceleration", "velocity"
+_SEED = 1  # of motions that are made up where the records are not installed
+# what is not exceeded in 99 % of the moving time leaves out the spikes of the nearest passes
+SPIKES = 0.01
+_QUANTILES = {"05": 0.05, "50": 0.5, "95": 0.95}
+# what each run asks, and of which it has a percentile over the members
+DEMANDS = ("friction", "moment", "force", "slip", "lost")
+
+
+def simulate(case: Case, run: Run, *, sample_step: float = 0.01) -> Trace:
+    """Run a reduced model on a case."""
+    return reduced.simulate(case, support=run.support, sample_step=sample_step, **run.settings)
+
+
+def fall_of(trace: Trace) -> float:
+    """Return when a run that overturns last passes alpha [s], inf where it does not: a fall asks nothing."""
+    if trace.outcome != "overturned":
+        return math.inf
+    below = trace.time[trace.tilt <= trace.case.cylinder.alpha]
+    return float(below[-1]) if len(below) else 0.0
+
+
+def demands_of(trace: Trace) -> dict[str, float]:
+    """Return what a run asks of ground and recess, by its samples, until it last passes alpha if it falls.
+
+    Returns
+    -------
+    dict
+        friction [-], moment of the recess [weights times b] and normal force [weights], each not exceeded in
+        99 % of the moving time; slip and lost, shares of that time in which the friction of the case does not
+        suffice and in which contact is lost. All zero, and a force of one weight, where nothing moves.
+    """
+    moving = (trace.tilt > 0.0) & (trace.time <= fall_of(trace))
+    if not moving.any():
+        return dict(zip(DEMANDS, (0.0, 0.0, 1.0, 0.0, 0.0), strict=True))
+    lengths = np.diff(trace.time, append=trace.time[-1])[moving]
+    needed, force = trace.friction_needed[moving], trace.contact_force[moving, 2]
+    lost = force <= 0.0
+    values = (needed, np.abs(trace.restraining_moment[moving]) / trace.case.cylinder.base_radius, force)
+    # a value of the sample, because a mean with infinity is none
+    usual = [float(np.quantile(each, 1.0 - SPIKES, method="inverted_cdf")) for each in values]
+    time = max(float(lengths.sum()), 1e-300)
+    slip = (needed > trace.case.friction) & ~lost
+    return dict(zip(DEMANDS, (*usual, lengths[slip].sum() / time, lengths[lost].sum() / time), strict=True))
+
+
+def peak_velocity(motion: GroundMotion) -> float:
+    """Return the peak horizontal resultant of the ground velocity [m/s], of the record without its mean."""
+    horizontal = motion.acceleration[:, :2] - motion.acceleration[:, :2].mean(axis=0)
+    steps = 0.5 * motion.time_step * (horizontal[1:] + horizontal[:-1])
+    return float(np.hypot(*np.cumsum(steps, axis=0).T).max())
+
+
+def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
+    """Return the case under other records, as strong as its own by peak acceleration and by peak velocity.
+
+    Those of FEMA P-695 where they are installed, else made-up ones; and "p695" or "synthetic". None for a
+    release and without a ground motion.
+    """
+    motion = case.motion
+    if motion is None or motion.peak == 0.0 or (case.initial is not None and case.initial.tilt > 0.0):
+        return {}, ""
+    try:
+        motions, source = far_field_motions(peak=motion.peak), "p695"
+    except ValueError:  # not installed
+        motions = synthetic_motions(FAR_FIELD_PAIRS, peak=motion.peak, seed=_SEED)
+        source = "synthetic"
+    velocity = peak_velocity(motion)
+    scaled = {
+        ACCELERATION: motions,
+        VELOCITY: [each.scaled(velocity / peak_velocity(each)) for each in motions],
+    }
+    return {
+        name: [dataclasses.replace(case, motion=each, duration=None, name=each.name) for each in found]
+        for name, found in scaled.items()
+    }, source
+
+
+def member_rows(group: str, traces: Iterable[Trace]) -> list[dict[str, float | str]]:
+    """Return a row for each run: group, member, model, outcome, peak_tilt [alpha], and what it asks."""
+    return [
+        {
+            "group": group,
+            "member": trace.case.name,
+            "model": str(trace.run),
+            "outcome": trace.outcome,
+            "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
+            **(demands_of(trace) if trace.outcome != "failed" else {}),
+        }
+        for trace in traces
+    ]
+
+
+def answers(members: pd.DataFrame) -> pd.DataFrame:
+    """Return one row for each group of members: how many overturn, and percentiles of the rest.
+
+    Columns: group, runs, failed, overturned, chance with chance_low and chance_high, and for peak_tilt
+    [alpha], infinite where it overturns, and each of `DEMANDS` the percentiles _05, _50 and _95.
+    """
+    import pandas as pd
+
+    rows = []
+    for group, runs in members.groupby("group", sort=False):
+        known = runs[runs["outcome"] != "failed"]
+        fell = known["outcome"] == "overturned"
+        chance = share_interval(int(fell.sum()), len(known))
+        numbers: Mapping[str, Array] = {
+            "peak_tilt": known["peak_tilt"].mask(fell, math.inf).to_numpy(float),
+            **{name: known[name].to_numpy(float) for name in DEMANDS},
+        }
+        rows.append(
+            {
+                "group": group,
+                "runs": len(runs),
+                "failed": len(runs) - len(known),
+                "overturned": int(fell.sum()),
+                "chance": chance.value,
+                "chance_low": chance.low,
+                "chance_high": chance.high,
+                **{
+                    f"{name}_{label}": quantile_interval(values, share).value
+                    for name, values in numbers.items()
+                    for label, share in _QUANTILES.items()
+                },
+            }
+        )
+    return pd.DataFrame(rows)

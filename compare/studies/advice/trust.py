@@ -1,0 +1,159 @@
+"""How far a trace can be trusted: until two methods part, or the same method on data known to a percent."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+
+from rockwobble.models import Case, Run, Trace
+
+from ...comparison.driver import compare
+from ...comparison.prediction import Prediction, estimated_error, predict, time_scale
+from ...metrics.agreement import agreement_time
+from ...runs.execution import simulate_run
+from ...traces.pair import make_pair
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# A trace is lost where the copies are spread over half of the peak tilt. A percent of alpha, the limit of
+# agreement between methods, would be exceeded by the percent that the copies differ by itself.
+LOST = 0.5
+BAND_STEP = 0.05  # [s] enough to draw a swing of a second
+_STEP = 1e-4  # [s] the default step of the engines at 6 m and 9.81 m/s^2, for a prediction without an engine
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Trust:
+    """How far a trace can be trusted.
+
+    Attributes
+    ----------
+    kind : {"trace", "peak", "statistics"}
+        The whole trace; the trace until `until`, the largest tilt included; or only statistics, because the
+        largest tilt comes after `until`.
+    until : float
+        [s] in the time of the run.
+    because : {"", "methods", "data"}
+        What ends it: two sound methods part there, or the copies do.
+    """
+
+    kind: Literal["trace", "peak", "statistics"]
+    until: float
+    because: Literal["", "methods", "data"]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Verification:
+    """One run of an engine, held against the reduced model of its support.
+
+    Attributes
+    ----------
+    label, version : str
+    time_step : float
+        [s]
+    outcome, diagnostics : str
+        Codes of what ended or limits it.
+    peak_tilt : float
+        [alpha]; NaN where failed.
+    agreement, agreed_until : float
+        From uplift or release to the first tilt difference above 1 % of alpha, and when that is [s].
+    diverged : bool
+    divergence : str
+        Whether that was "in time", "later" or "earlier" than predicted, or "never, as predicted".
+    """
+
+    label: str
+    version: str
+    time_step: float
+    outcome: str
+    diagnostics: str
+    peak_tilt: float
+    agreement: float
+    agreed_until: float
+    diverged: bool
+    divergence: str
+
+
+def trust_of(methods_until: float, data_until: float, peak_time: float, end: float) -> Trust:
+    """Return how far a trace can be trusted.
+
+    Parameters
+    ----------
+    methods_until, data_until : float
+        Until when reduced model and engine agree, or have to, and until when the copies stay together [s].
+    peak_time, end : float
+        Time of the largest tilt, and the end of the motion: of the run, or the fall [s].
+    """
+    until = min(methods_until, data_until)
+    if until >= end:
+        return Trust(kind="trace", until=end, because="")
+    because: Literal["methods", "data"] = "methods" if methods_until <= data_until else "data"
+    return Trust(kind="peak" if peak_time <= until else "statistics", until=until, because=because)
+
+
+def band_of(case: Case, traces: Sequence[Trace]) -> pd.DataFrame:
+    """Return the tilts [alpha] that 5 % and 95 % of the copies do not exceed at each time [s]: low, high."""
+    import pandas as pd
+
+    time = np.arange(0.0, case.length, BAND_STEP)
+    known = [trace for trace in traces if trace.outcome != "failed"]
+    # one that fell stays on its side
+    tilts = [np.interp(time, trace.time, trace.tilt / case.cylinder.alpha) for trace in known]
+    low, high = np.quantile(tilts, [0.05, 0.95], axis=0) if known else np.full((2, len(time)), math.nan)
+    return pd.DataFrame({"time": time, "low": low, "high": high})
+
+
+def spread_from(band: pd.DataFrame, peak: float) -> float:
+    """Return when the copies are spread over half of the peak tilt [s]; inf where they never are."""
+    wide = np.flatnonzero(band["high"] - band["low"] > LOST * min(peak, 1.0))
+    return float(band["time"].iloc[wide[0]]) if len(wide) else math.inf
+
+
+def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
+    """When an engine at its default step would have to part, from the reduced models alone."""
+    if trace.outcome == "failed" or not math.isfinite(trace.uplift_time):
+        return Prediction(length=case.length, reason="")
+    step = _STEP * time_scale(case)
+    if run is not None and isinstance(run.time_step, float):
+        step = run.time_step
+    return predict(
+        case,
+        reference=trace,
+        own=trace,
+        # the tilt that the fastest fall crosses in one step; the penetration counts for less than it
+        contact_resolution=float(np.abs(trace.tilt_rate).max()) * step,
+        error=estimated_error(case, "mujoco" if run is None else run.engine, step),
+        simulate=simulate_run,
+    )
+
+
+def verified(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction, Trace | None]:
+    """Run the engine; what it resolved makes the prediction sharper."""
+    found = compare(case, runs=[run], reference=model)
+    row = found.summary.iloc[0]
+    trace = found.traces.get((case.name, str(run)))
+    agreed_until = 0.0
+    if trace is not None:
+        pair = make_pair(case.cylinder, found.traces[case.name, str(model)], trace)
+        agreed_until = agreement_time(pair, broken=row["outcome"] == "failed").end
+    verification = Verification(
+        label=str(run),
+        version=str(row["engine_version"]),
+        time_step=float(row["time_step"]),
+        outcome=str(row["outcome"]),
+        diagnostics=str(row["diagnostics"]),
+        peak_tilt=float(row["peak_tilt"]),
+        agreement=float(row["agreement_time"]),
+        agreed_until=agreed_until,
+        diverged=bool(row["diverged"]),
+        divergence=str(row["divergence"]),
+    )
+    length = float(row["predicted_agreement_time"])
+    if not math.isfinite(length):  # a run that was lost left none
+        return verification, Prediction(length=case.length, reason=""), trace
+    return verification, Prediction(length=length, reason=str(row["predicted_by"])), trace

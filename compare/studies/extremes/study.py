@@ -1,0 +1,143 @@
+"""Every extreme by every method: one row each."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections import Counter
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rockwobble import multibody
+from rockwobble.models import Run
+
+from ...runs.cache import open_table_cache
+from ...runs.progress import ProgressCallback
+from ...runs.scheduler import run_tasks
+from ...runs.task import Lost
+from ...storage.fingerprint import fingerprint
+from ...storage.manifest import Manifest, made_now, read_results
+from ...storage.provenance import code_digests, package_versions
+from .conditions import Condition, conditions
+from .verdict import Verdict, judge
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+KIND = "extremes"
+METHODS = (
+    Run(None, "flat", plane=0.0),
+    Run(None, "recess"),
+    Run(None, "flat"),
+    Run("mujoco", "recess"),
+    Run("mujoco", "flat"),
+    Run("mujoco", "ring"),
+    Run("pybullet", "recess"),
+    Run("pybullet", "flat"),
+    Run("exudyn", "flat"),
+)
+Task = tuple[str, str, int]  # extreme and value of a condition, and the place of a method
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Extremes:
+    """What a scan found.
+
+    Attributes
+    ----------
+    table : DataFrame
+        One row for each condition and method: extreme, value, method, and the attributes of `Verdict`.
+    made : Manifest
+    """
+
+    table: pd.DataFrame
+    made: Manifest
+
+
+def measure_extremes(
+    folder: str | Path,
+    *,
+    quick: bool = False,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+    command: str = "",
+) -> Extremes:
+    """Run every condition by every method that is installed.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Keeps each finished run: a second call, after whatever ended the first, repeats none that is there.
+    quick : bool, optional
+        Only the first and the last condition of each extreme.
+    workers : int, optional
+        Processes; default one for each processor.
+    progress : callable, optional
+        Called with a `Progress` at the start and the end of each run.
+    command : str, optional
+        That asked for it.
+    """
+    import pandas as pd
+
+    known = multibody.available_engines()
+    tasks = [
+        (condition.extreme, condition.value, place)
+        for condition in conditions(quick=quick)
+        for place, run in enumerate(METHODS)
+        if run.engine is None or run.engine in known
+    ]
+    # an engine may read whatever of the package, and what is looked at takes minutes: any change repeats all
+    inputs = {"code": code_digests(), "versions": package_versions()}
+    with open_table_cache(folder, KIND, partial(_name, fingerprint(inputs))) as cache:
+        found = run_tasks(
+            measure_task,
+            tasks,
+            workers=workers,
+            label=lambda task: f"{task[0]} {task[1]}, {METHODS[task[2]]}",
+            progress=progress,
+            cache=cache,
+        )
+    table = pd.concat(
+        [
+            row(task, Verdict(verdict="silent", limit="died")) if isinstance(result, Lost) else result
+            for task, result in zip(tasks, found, strict=True)
+        ],
+        ignore_index=True,
+    )
+    headline = dict(Counter(str(verdict) for verdict in table["verdict"]))
+    return Extremes(table=table, made=made_now(KIND, command=command, headline=headline))
+
+
+def read_extremes(folder: str | Path) -> Extremes:
+    """Return a scan that was stored.
+
+    Raises
+    ------
+    ValueError
+        If it is not there, or a file is missing or damaged.
+    """
+    results = read_results(folder, KIND)
+    return Extremes(table=results.table(KIND), made=results.manifest)
+
+
+def measure_task(task: Task) -> pd.DataFrame:
+    """Return the row of one condition and method."""
+    return row(task, judge(_condition(task), METHODS[task[2]]))
+
+
+def row(task: Task, found: Verdict) -> pd.DataFrame:
+    """Return a verdict as a table of one row."""
+    import pandas as pd
+
+    extreme, value, place = task
+    named = {"extreme": extreme, "value": value, "method": str(METHODS[place])}
+    return pd.DataFrame([named | dataclasses.asdict(found)])
+
+
+def _condition(task: Task) -> Condition:
+    return next(each for each in conditions() if (each.extreme, each.value) == task[:2])
+
+
+def _name(made_with: str, task: Task) -> str:
+    return fingerprint({"task": list(task), "made with": made_with})

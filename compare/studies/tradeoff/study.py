@@ -1,0 +1,207 @@
+"""Errors and computing times of all methods on all problems, in turn: in this process, one after another."""
+
+from __future__ import annotations
+
+import math
+import os
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble.models import Case
+
+from ...runs.progress import Clock, ProgressCallback
+from ...storage.manifest import Manifest, made_now, read_results
+from .conclusions import engine_factors
+from .methods import Answer, Method, methods_for
+from .problem import Problem, problems, sampling_distance
+from .scene_cost import scene_costs
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+KIND = "tradeoff"
+# a run shorter than this is repeated, so that a tick of the clock does not show [s]
+_SHORT = 2e-3
+_REPEATS = 5
+ROUNDS = 3  # of a single case; an ensemble has as many as members
+# rough computing time of a round, in any unit
+_COSTS = {"turn": 1.0, "shaken": 4.0, "peaks": 3.0, "scenes": 0.5}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Tradeoff:
+    """What was measured.
+
+    Attributes
+    ----------
+    points : DataFrame
+        One row for each problem, line and value of its knob: problem, support, panel, family, line, knob,
+        value, ratio, ratio_low, ratio_high (of computing times, to the recess model at its default tolerance
+        on the same problem: median and quartiles over the rounds), milliseconds (of processor time of one
+        run, median), error (in the unit of the problem; NaN where a run failed), said.
+    scenes : DataFrame
+        What each part of a scene costs, see `scene_costs`.
+    problems : DataFrame
+        One row for each problem and support: problem, support, source and doubt of the reference, members,
+        chance (what two ensembles of as many members differ by chance [alpha]; NaN for a single case).
+    load : tuple of float
+        Of the machine before and after: how many processes wanted to run, ours included, over a minute;
+        NaN where the system does not tell.
+    made : Manifest
+    """
+
+    points: pd.DataFrame
+    scenes: pd.DataFrame
+    problems: pd.DataFrame
+    load: tuple[float, float]
+    made: Manifest
+
+
+def measure_tradeoff(
+    *, quick: bool = False, progress: ProgressCallback | None = None, command: str = ""
+) -> Tradeoff:
+    """Measure all methods on all problems.
+
+    Parameters
+    ----------
+    quick : bool, optional
+        Fewer points and fewer members.
+    progress : callable, optional
+        Called with a `Progress` at the start and the end of each round.
+    command : str, optional
+        That asked for it.
+    """
+    import pandas as pd
+
+    before = _load()
+    scene_rounds = 3 if quick else 9
+    asked = list(problems(quick=quick))
+    rounds = [(each.name, max(len(each.cases), ROUNDS)) for each in asked] + [("scenes", scene_rounds)]
+    labels = [(name, f"{name}, round {n + 1} of {count}") for name, count in rounds for n in range(count)]
+    clock = Clock(progress, [_COSTS[name] for name, _ in labels])
+    done = iter(range(len(labels)))
+
+    def told() -> None:
+        place = next(done)
+        clock("finished", labels[place][1], place)
+        if place + 1 < len(labels):
+            clock("started", labels[place + 1][1])
+
+    clock("started", labels[0][1])
+    points = [_points(each, methods_for(each, quick=quick), told) for each in asked]
+    scenes = scene_costs(rounds=scene_rounds, steps=500 if quick else 2000, tell=told)
+    table = pd.concat(points, ignore_index=True)
+    low, high = engine_factors(table)
+    load = (before, _load())
+    return Tradeoff(
+        points=table,
+        scenes=scenes,
+        problems=pd.concat([_described(each) for each in asked], ignore_index=True),
+        load=load,
+        made=made_now(
+            KIND,
+            command=command,
+            headline={"engine over recess model, least": low, "engine over recess model, largest": high},
+            about={"load": list(load)},
+        ),
+    )
+
+
+def read_tradeoff(folder: str | Path) -> Tradeoff:
+    """Return a measurement that was stored.
+
+    Raises
+    ------
+    ValueError
+        If it is not there, or a file is missing or damaged.
+    """
+    results = read_results(folder, KIND)
+    before, after = results.manifest.about["load"]
+    return Tradeoff(
+        points=results.table("points"),
+        scenes=results.table("scenes"),
+        problems=results.table("problems"),
+        load=(before, after),
+        made=results.manifest,
+    )
+
+
+def _described(problem: Problem) -> pd.DataFrame:
+    import pandas as pd
+
+    many = len(problem.cases) > 1
+    return pd.DataFrame(
+        {
+            "problem": problem.name,
+            "support": support,
+            "source": reference.source,
+            "doubt": reference.doubt,
+            "members": len(problem.cases),
+            "chance": sampling_distance(problem, support) if many else math.nan,
+        }
+        for support, reference in problem.references.items()
+    )
+
+
+def _points(problem: Problem, methods: list[Method], tell: Callable[[], None]) -> pd.DataFrame:
+    import pandas as pd
+
+    visits = list(problem.cases) if len(problem.cases) > 1 else list(problem.cases) * ROUNDS
+    answers: list[list[Answer]] = [[] for _ in methods]
+    seconds = np.full((len(visits), len(methods)), np.nan)
+    # compiled, imported, fetched: by the first point of each line, the coarsest
+    for place, method in enumerate(methods):
+        if not place or method.line != methods[place - 1].line:
+            method.solve(problem.cases[0])
+    for number, case in enumerate(visits):
+        for place, method in enumerate(methods):
+            seconds[number, place], answer = _timed(method, case)
+            if len(answers[place]) < len(problem.cases):
+                answers[place].append(answer)
+        tell()
+    base = next(place for place, method in enumerate(methods) if method.base)
+    ratios = seconds / seconds[:, [base]]
+    low, middle, high = np.quantile(ratios, (0.25, 0.5, 0.75), axis=0)
+    return pd.DataFrame(
+        {
+            "problem": problem.name,
+            "support": method.support,
+            "panel": method.panel,
+            "family": method.family,
+            "line": method.line,
+            "knob": method.knob,
+            "value": method.value,
+            "ratio": middle[place],
+            "ratio_low": low[place],
+            "ratio_high": high[place],
+            "milliseconds": 1e3 * float(np.median(seconds[:, place])),
+            "error": problem.error(method.support, [answer.quantity for answer in answers[place]]),
+            "said": next((answer.said for answer in answers[place] if answer.said), ""),
+        }
+        for place, method in enumerate(methods)
+    )
+
+
+def _timed(method: Method, case: Case) -> tuple[float, Answer]:
+    """Processor time of this process in one run [s], and what it answered."""
+    begin = time.process_time()
+    answer = method.solve(case)
+    first = time.process_time() - begin
+    if first >= _SHORT:
+        return first, answer
+    again = []
+    for _ in range(_REPEATS):
+        begin = time.perf_counter()
+        method.solve(case)
+        again.append(time.perf_counter() - begin)
+    # a finer clock, and the least of several: what another process took is not in it
+    return min(again), answer
+
+
+def _load() -> float:
+    return os.getloadavg()[0] if hasattr(os, "getloadavg") else math.nan

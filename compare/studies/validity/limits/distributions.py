@@ -1,0 +1,199 @@
+"""Peak tilts over records: paired ratios of the methods, and maps of the reduced models."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ....metrics.distributions import log_ratios
+from ....metrics.order_statistics import quantile_interval
+from ...ensemble.tables import pairs
+from ..motions import EL_CENTRO
+from ..records import FLAT, HALVED, PERTURBED, RECESS
+from .numbers import Array, Numbers, Tables, column, largest, quantile, reached
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+POINT = ["tan_alpha", "semidiagonal", "intensity"]
+# what is held against what; the last says how far a ring has converged
+CONTRASTS = (
+    *((method, RECESS) for method in ("recess", "ring", "flat", FLAT, PERTURBED)),
+    ("ring", HALVED),
+)
+# by these names in the numbers of a limit
+_NAMES = {"recess": "recess", "ring": "ring", "flat": "flat", FLAT: "model", PERTURBED: "copy"}
+_SHARE = 0.9
+
+
+def contrasts(tables: Tables) -> pd.DataFrame:
+    """Return how each method differs from another at each point, member by member.
+
+    Returns
+    -------
+    DataFrame
+        tan_alpha, semidiagonal, intensity, method, against, members; the median ratio of the two peaks of a
+        record and its 95 % interval (ratio, low, high), what 5 % and 95 % of the records do not exceed
+        (ratio_05, ratio_95, and the outer ends of their intervals, low_05 and high_95); p of Wilcoxon's
+        signed ranks; verdict on the margin of the median and the ratio within_reach; overturned,
+        against_overturned and both. 0 and infinity: it overturns by one of the two alone.
+    """
+    import pandas as pd
+
+    rows = []
+    for point, runs in tables["records"].groupby(POINT, sort=False):
+        for method, against in CONTRASTS:
+            found = pairs(runs, method, against, member="motion", peak="peak").contrast()
+            if found is None:
+                continue
+            rows.append(
+                dict(zip(POINT, point, strict=True))
+                | {
+                    "method": method,
+                    "against": against,
+                    "members": found.count,
+                    "ratio": found.ratio.value,
+                    "low": found.ratio.low,
+                    "high": found.ratio.high,
+                    "ratio_05": found.ratio_05.value,
+                    "low_05": found.ratio_05.low,
+                    "ratio_95": found.ratio_95.value,
+                    "high_95": found.ratio_95.high,
+                    "p": found.ratio_p,
+                    "verdict": found.verdict,
+                    "within_reach": found.within_reach,
+                    "overturned": found.overturned,
+                    "against_overturned": found.against_overturned,
+                    "both": found.both_overturned,
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def ratios(runs: pd.DataFrame, method: str, against: str) -> Array:
+    """Return the ratios of the peaks of two methods, a record each; 0 and infinite where one overturns."""
+    return np.exp(pairs(runs, method, against, member="motion", peak="peak").log_ratios())
+
+
+def records(tables: Tables) -> Numbers:
+    """Return what holds of each method at every point: the widest of each, and the largest differences."""
+    table, runs = contrasts(tables), tables["records"]
+    numbers: Numbers = {
+        "members": float(table["members"].max()),
+        "points": float(len(table[POINT].drop_duplicates())),
+    }
+    for method, name in _NAMES.items():
+        own = table[(table["method"] == method) & (table["against"] == RECESS)]
+        numbers |= {
+            f"{name}_low": float(own["low"].min()),
+            f"{name}_high": float(own["high"].max()),
+            f"{name}_05": float(own["ratio_05"].min()),
+            f"{name}_95": float(own["ratio_95"].max()),
+            f"{name}_within": float((own["verdict"] == "within").all()),
+            f"{name}_beyond": float((own["verdict"] == "beyond").any()),
+        }
+    halved = table[table["against"] == HALVED]
+    touched = runs[(runs["method"] == "ring") & (runs["contact_time"] > 0.0)]
+    return numbers | {
+        "halved_low": float(halved["low"].min()),
+        "halved_high": float(halved["high"].max()),
+        "halved_05": float(halved["ratio_05"].min()),
+        "halved_95": float(halved["ratio_95"].max()),
+        "touched": float(len(touched)),
+        "ring_loss_half": quantile(column(touched, "loss"), 0.5),
+        "ring_loss_worst": largest(column(touched, "loss")),
+        "failed": float((runs["outcome"] == "failed").sum()),
+        "runs": float(len(runs)),
+    }
+
+
+def cells(tables: Tables) -> pd.DataFrame:
+    """Return the maps of the reduced models: one row for each slenderness, size and intensity.
+
+    Returns
+    -------
+    DataFrame
+        tan_alpha, semidiagonal, intensity; members, records of the cell; rocked, those that uplift; for flat
+        (the flat-ground model) and copy (the perturbed copy) against the recess model the median ratio of the
+        peaks (NAME_ratio, low, high) and the factor that nine in ten records do not exceed to either side
+        (NAME_90); overturned and flat_overturned, shares of the records; of those that rock without
+        overturning: friction_90 over tan(alpha), normal_10 [weights] and moment_90, which nine in ten do not
+        exceed, or keep, and lost, the share that loses contact.
+    """
+    import pandas as pd
+
+    rows = []
+    table = tables["peaks"]
+    for point, members in table[table["motion"] != EL_CENTRO].groupby(POINT, sort=False):
+        tan_alpha = float(str(point[0]))
+        recess = column(members, "recess")
+        fell = _fell(recess, tan_alpha)
+        row = dict(zip(POINT, point, strict=True)) | {
+            "members": len(members),
+            "rocked": int((recess > 0.0).sum()),
+            "overturned": float(fell.mean()),
+        }
+        for name in ("flat", "copy"):
+            other = column(members, name)
+            logarithms = log_ratios(other, recess, _fell(other, tan_alpha), fell)
+            logarithms = logarithms[~np.isnan(logarithms)]
+            median = quantile_interval(logarithms, 0.5)
+            row |= {
+                f"{name}_ratio": math.exp(median.value),
+                f"{name}_low": math.exp(median.low),
+                f"{name}_high": math.exp(median.high),
+                f"{name}_90": math.exp(reached(np.abs(logarithms), _SHARE)),
+                f"{name}_overturned": float(_fell(other, tan_alpha).mean()),
+            }
+        normal = column(members, "least_normal")
+        known = normal[~np.isnan(normal)]
+        row |= {
+            "friction_90": reached(column(members, "friction"), _SHARE) / tan_alpha,
+            "normal_10": -reached(-normal, _SHARE),
+            "moment_90": reached(column(members, "moment"), _SHARE),
+            "lost": float((known <= 0.0).mean()) if len(known) else math.nan,
+        }
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def single_peaks(tables: Tables) -> Numbers:
+    """Return how far flat ground and a perturbed copy move the peak of one record, over all cells."""
+    table = cells(tables)
+    return {
+        "cells": float(len(table)),
+        "members": float(table["members"].max()),
+        "flat_least": float(table["flat_ratio"].min()),
+        "flat_largest": float(table["flat_ratio"].max()),
+        "flat_90_half": quantile(column(table, "flat_90"), 0.5),
+        "copy_90_half": quantile(column(table, "copy_90"), 0.5),
+    }
+
+
+def vertical(tables: Tables) -> Numbers:
+    """Return how far the vertical component of El Centro moves the peak, beside a record 1 % stronger."""
+    table = tables["peaks"]
+    table = table[table["vertical"].notna()]
+    tan_alpha, recess = column(table, "tan_alpha"), column(table, "recess")
+    fell = _fell(recess, tan_alpha)
+    numbers: Numbers = {"cells": float(len(table)), "fell": float(fell.sum())}
+    for name in ("vertical", "copy"):
+        other = column(table, name)
+        theirs = _fell(other, tan_alpha)
+        logarithms = log_ratios(other, recess, theirs, fell)
+        finite = logarithms[np.isfinite(logarithms)]
+        numbers |= {
+            f"{name}_05": math.exp(quantile(finite, 0.05)),
+            f"{name}_half": math.exp(quantile(finite, 0.5)),
+            f"{name}_95": math.exp(quantile(finite, 0.95)),
+            f"{name}_fell": float(theirs.sum()),
+            f"{name}_other": float((theirs != fell).sum()),
+        }
+    return numbers
+
+
+def _fell(peaks: Array, tan_alpha: Array | float) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    """Whether peaks over alpha are those of overturned runs, which end at pi/2."""
+    return np.asarray(peaks * np.arctan(tan_alpha) >= 0.5 * math.pi * (1.0 - 1e-9))

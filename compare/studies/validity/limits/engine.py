@@ -1,0 +1,160 @@
+"""Where the engine confirms the reduced models, follows them, and leaves them."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ....comparison.prediction import IN_TIME
+from ..rings import FREE
+from .numbers import Numbers, Tables, column, first_failing, largest, quantile, up_to
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+ALIKE = 0.01  # of period or angle of turn: below what a test on a shake table would see
+SMALL = 0.05  # of the peak tilt: less cannot be told from chance
+# an engine confirms a model if it is nearer to it than this share of the difference of the models
+_TEETH = 0.5
+# and contradicts it where turn or period is off by more than this; the step of an engine errs by less
+_CONTRADICTS = 1e-3
+
+
+def free_response(tables: Tables) -> Numbers:
+    """Return how far recess and flat ground differ in a pass, and at how many releases an engine decides."""
+    table = tables["free_response"]
+    tan_alpha, turn, flat = (column(table, name) for name in ("tan_alpha", "turn", "flat_turn"))
+    turns = np.abs(flat / turn - 1.0)
+    periods = np.abs(column(table, "flat_period") / column(table, "period") - 1.0)
+    holds = (turns <= ALIKE) & (periods <= ALIKE)
+    worst = table.iloc[int(np.nanargmax(np.abs(flat - turn)))]
+    confirmed, contradicted, points = _decided(tables["verification"])
+    return {
+        "alike_up_to": up_to(tan_alpha, holds),
+        "apart_from": first_failing(tan_alpha, holds),
+        "turn_half": quantile(turns, 0.5),
+        "turn_largest": largest(turns),
+        "turn_largest_deg": math.degrees(largest(np.abs(flat - turn))),
+        **{f"worst_{name}": float(worst[name]) for name in ("tan_alpha", "release", "spin")},
+        "period_largest": largest(periods),
+        "peak_gain": max(largest(column(table, "flat_peak")) - 1.0, 0.0),
+        "confirmed": confirmed,
+        "contradicted": contradicted,
+        "points": points,
+    }
+
+
+def _decided(table: pd.DataFrame) -> tuple[float, float, float]:
+    """Count the runs that confirm their model, those that contradict it, and all whose pass is resolved."""
+    keys = ["tan_alpha", "release", "spin"]
+    models = table.pivot_table("turn", keys, "support", dropna=False)
+    apart = (models["recess"] - models["flat"]).abs()
+    resolved = table[table["resolved"].astype(bool)]
+    error = np.abs(column(resolved, "engine_turn") - column(resolved, "turn"))
+    limits = apart.reindex(resolved.set_index(keys).index).to_numpy(dtype=np.float64)
+    turn_off = error / np.abs(column(resolved, "turn"))
+    period_off = np.abs(column(resolved, "engine_half_period") / column(resolved, "half_period") - 1.0)
+    contradicts = ~((turn_off <= _CONTRADICTS) & (period_off <= _CONTRADICTS))
+    confirms = ~contradicts & (error < _TEETH * limits)
+    return float(confirms.sum()), float(contradicts.sum()), float(len(resolved))
+
+
+def traces(tables: Tables) -> Numbers:
+    """Return for how long [s] engine and model agree, and how often they part earlier than predicted."""
+    table = tables["following"]
+    numbers: Numbers = {"duration": largest(column(table, "duration")), "comparisons": float(len(table))}
+    for name, support, reference in (
+        ("recess", "recess", "recess"),
+        ("flat", "flat", "recess"),
+        ("own", "flat", "flat"),
+    ):
+        own = table[(table["support"] == support) & (table["reference_support"] == reference)]
+        peaks = column(own, "peak_tilt") / column(own, "reference_peak_tilt")
+        numbers |= {
+            name: quantile(column(own, "agreement_time"), 0.5),
+            f"{name}_passes": quantile(column(own, "agreed_passes"), 0.5),
+            f"{name}_runs": float(len(own)),
+            f"{name}_whole": float((~own["diverged"].to_numpy(dtype=bool)).sum()),
+            f"{name}_peak_half": quantile(np.abs(peaks - 1.0), 0.5),
+            f"{name}_peak_worst": largest(np.abs(peaks - 1.0)),
+        }
+    agreed, predicted = column(table, "agreement_time"), column(table, "predicted_agreement_time")
+    early = table["diverged"].to_numpy(dtype=bool) & (agreed * IN_TIME < predicted)
+    return numbers | {"early": float(early.sum())}
+
+
+def rings(tables: Tables) -> Numbers:
+    """Return what a ring changes: peaks as ratios, place [b], twist [rad], and energy where it is touched."""
+    table = tables["rings"]
+    ring, shaken = table["support"] == "ring", table["motion"] != FREE
+    touched = table[ring & (table["contact_time"] > 0.0)]
+    numbers: Numbers = {
+        "touched": float(len(touched)),
+        "runs": float(ring.sum()),
+        "failed": float((table["outcome"] == "failed").sum()),
+        "loss_half": quantile(column(touched, "loss"), 0.5),
+        "loss_worst": largest(column(touched, "loss")),
+        "rolled": largest(column(table[ring & shaken], "rolled_out")),
+        "flat_rolled": largest(column(table[(table["support"] == "flat") & shaken], "rolled_out")),
+        "twist": largest(np.abs(column(table[ring & shaken], "twist"))),
+    }
+    for support in ("recess", "ring", "flat"):
+        own = table[(table["support"] == support) & shaken]
+        ratio = column(own, "peak") / column(own, "recess_peak")
+        numbers |= {
+            f"{support}_least": -largest(-ratio),
+            f"{support}_half": quantile(ratio, 0.5),
+            f"{support}_largest": largest(ratio),
+        }
+    own = table[ring & shaken]
+    halved = np.abs(column(own, "halved_peak") / column(own, "peak") - 1.0)
+    best = own.groupby("clearance")["at_end"].max()
+    return numbers | {
+        "halved_half": quantile(halved, 0.5),
+        "halved_worst": largest(halved),
+        "tightest": float(str(best.idxmin())) if len(best) else math.nan,
+        "tightest_at_end": float(best.min()) if len(best) else math.nan,
+    }
+
+
+def soft_contact(tables: Tables) -> Numbers:
+    """Return up to which softness, its time constant times p, contact leaves the peak as it is."""
+    table = tables["contact"]
+    failed = (table["free_outcome"] == "failed") | (table["outcome"] == "failed")
+    known = table[~failed]
+    softness = column(known, "softness")
+    off = np.abs(column(known, "peak") / column(known, "recess_peak") - 1.0)
+    held = up_to(softness, off <= SMALL)
+    within = softness <= held if math.isfinite(held) else np.zeros(len(softness), dtype=bool)
+    return {
+        "held_up_to": held,
+        "left_from": first_failing(softness, off <= SMALL),
+        "held_peak": largest(off[within]),
+        "held_loss": max(largest(column(known, "loss")[within]), 0.0),
+        "failed": float(failed.sum()),
+        "points": float(len(table)),
+    }
+
+
+def damping(tables: Tables) -> pd.DataFrame:
+    """Return the least and largest ratio of the peak, and the largest loss, by the damping of contact."""
+    import pandas as pd
+
+    rows = []
+    for ratio, own in tables["contact"].groupby("damping"):
+        failed = (own["free_outcome"] == "failed") | (own["outcome"] == "failed")
+        known = own[~failed]
+        peaks = column(known, "peak") / column(known, "recess_peak")
+        rows.append(
+            {
+                "damping": ratio,
+                "points": len(own),
+                "failed": int(failed.sum()),
+                "least": -largest(-peaks),
+                "largest": largest(peaks),
+                "loss": largest(column(known, "loss")),
+            }
+        )
+    return pd.DataFrame(rows)

@@ -1,0 +1,164 @@
+"""The measurements of all parts: side by side, kept as they are finished, and never repeated."""
+
+from __future__ import annotations
+
+import hashlib
+import inspect
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ...runs.cache import open_table_cache
+from ...runs.progress import ProgressCallback
+from ...runs.scheduler import run_tasks
+from ...runs.task import Lost
+from ...storage.fingerprint import fingerprint
+from ...storage.manifest import Manifest, made_now, read_results
+from ...storage.provenance import engine_makers, reduced_makers
+from . import motions
+from .extent import Extent
+from .limits import limits_of
+from .part import Inputs, Part
+from .parts import PARTS, part_named
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+KIND = "validity"
+Task = tuple[str, Inputs]  # name of a part, and what is measured
+_ENDS = {"low": "median, low end", "high": "median, high end", "05": "5 %", "95": "95 %"}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Validity:
+    """What was measured.
+
+    Attributes
+    ----------
+    tables : mapping
+        Of all parts, by name.
+    records : str
+        What the motions of the ensemble are.
+    made : Manifest
+    """
+
+    tables: Mapping[str, pd.DataFrame]
+    records: str
+    made: Manifest
+
+
+def measure_all(
+    extent: Extent,
+    folder: str | Path,
+    *,
+    parts: Sequence[Part] = PARTS,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+) -> dict[str, pd.DataFrame]:
+    """Measure every part, and return its table by its name.
+
+    Parameters
+    ----------
+    extent : Extent
+    folder : str or Path
+        Keeps each finished task, named by a hash of its inputs, the versions and the code: a second call,
+        after whatever ended the first, repeats none that is there.
+    parts : sequence of Part, optional
+    workers : int, optional
+        Processes; 1 measures in this one. Default: one for each processor.
+    progress : callable, optional
+        Called with a `Progress` at the start and the end of each task.
+
+    Raises
+    ------
+    ValueError
+        If nothing can be written there, or another process does.
+    RuntimeError
+        If a process ended in a task; what was finished is kept.
+    """
+    import pandas as pd
+
+    tasks: list[Task] = [(part.name, dict(inputs)) for part in parts for inputs in part.tasks(extent)]
+    with open_table_cache(folder, KIND, name=task_name) as cache:
+        found = run_tasks(
+            measure_task,
+            tasks,
+            workers=workers,
+            cost=lambda task: part_named(task[0]).cost(task[1]),
+            label=lambda task: part_named(task[0]).title,
+            progress=progress,
+            cache=cache,
+        )
+        lost = [
+            f"{name}: {result.why}"
+            for (name, _), result in zip(tasks, found, strict=True)
+            if isinstance(result, Lost)
+        ]
+        if lost:
+            raise RuntimeError(f"processes ended in {len(lost)} tasks, the first in {lost[0]}")
+    kept = [
+        (name, table) for (name, _), table in zip(tasks, found, strict=True) if not isinstance(table, Lost)
+    ]
+    return {
+        part.name: pd.concat([table for name, table in kept if name == part.name], ignore_index=True)
+        for part in parts
+    }
+
+
+def measure_task(task: Task) -> pd.DataFrame:
+    """Return the rows of one task."""
+    import pandas as pd
+
+    name, inputs = task
+    return pd.DataFrame(part_named(name).measure(**inputs))
+
+
+def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent, command: str = "") -> Validity:
+    """Return what has just been measured here, with what made it."""
+    numbers = limits_of(tables)["records"]
+    headline = {
+        f"peak {where} over that of the model, {what}": numbers[f"{name}_{end}"]
+        for name, where in (
+            ("recess", "in an ideal recess"),
+            ("ring", "in a ring"),
+            ("flat", "on flat ground"),
+        )
+        for end, what in _ENDS.items()
+    }
+    records = motions.source_of(motions.record_names(extent.members))
+    about = {"extent": extent.name, "records": records}
+    made = made_now(KIND, command=command, headline=headline, about=about)
+    return Validity(tables=tables, records=records, made=made)
+
+
+def read_validity(folder: str | Path) -> Validity:
+    """Return a measurement that was stored; what is installed here has no part in it.
+
+    Raises
+    ------
+    ValueError
+        If it is not there, or a file is missing or damaged.
+    """
+    results = read_results(folder, KIND)
+    tables = {part.name: results.table(part.name) for part in PARTS}
+    return Validity(tables=tables, records=results.manifest.about["records"], made=results.manifest)
+
+
+def task_name(task: Task) -> str:
+    """Return the hash of all that the result of a task depends on."""
+    part = part_named(task[0])
+    return fingerprint({"part": part.name, "inputs": task[1], "made with": _makers(part)})
+
+
+def _makers(part: Part) -> dict[str, str]:
+    """Versions and code on which a part depends."""
+    modules = [inspect.getsourcefile(part.measure), motions.__file__]
+    own = b"".join(Path(str(module)).read_bytes() for module in modules)
+    engine = engine_makers(part.engine) if part.engine else {}
+    return {
+        **reduced_makers(),
+        **engine,
+        f"code of {part.name}": hashlib.sha256(own).hexdigest()[:16],
+        "records": motions.source_of(motions.record_names(1)),
+    }

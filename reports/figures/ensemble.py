@@ -1,0 +1,170 @@
+"""Peak tilts of an ensemble: distributions over each other, and each member against itself."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from rockwobble.compare.metrics.distributions import MARGIN
+from rockwobble.compare.studies.ensemble.tables import pairs
+
+from .palette import DARK, ORDER, SHADED, Style, label_styles
+from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf
+
+if TYPE_CHECKING:
+    from rockwobble.compare import Ensemble
+
+# beyond the largest ratio, and at least beyond the margin
+_ROOM = 1.25
+_DECADES = tuple(digit * 10.0**power for power in range(-6, 7) for digit in (1.0, 2.0, 5.0))
+_STEPS = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5)
+_MOST_TICKS = 7
+_DOTS, _BEYOND = Style(colour=ORDER[0], dash="none", symbol="circle"), ORDER[1]
+_MEDIAN = Style(colour=DARK, dash="none", symbol="diamond")
+_LINE = 0.5  # inch for a pair of methods
+
+
+def main_pairs(found: Ensemble) -> list[dict[str, Any]]:
+    """Return the rows of the contrasts that are asked for first: engines by their own model, then models."""
+    rows = found.contrasts.to_dict("records")
+    own = dict(zip(found.methods["method"], found.methods["own_model"], strict=True))
+    engines = [row for row in rows if own[row["method"]] and own[row["method"]] == row["against"]]
+    models = [row for row in rows if not own[row["method"]] and not own[row["against"]]]
+    return [{str(name): value for name, value in row.items()} for row in engines + models or rows]
+
+
+def ensemble_picture(found: Ensemble) -> Picture:
+    """Return the distribution of each method, and the ratios of the members of the main pairs."""
+    rows = [row for row in main_pairs(found) if row["compared"]]
+    panels = [_distributions(found), *([_ratios(found, rows)] if rows else [])]
+    return Picture(
+        name="ensemble",
+        title="Distributions of peak tilt by method, and ratios of the peaks of each member",
+        caption="Above: share of the members whose peak tilt is at most that of the axis; what a curve lacks "
+        "to 1 at the triangle overturns. Below: ratio of the two peaks of each member (dots; triangles at the "
+        "edges count those that overturn by one method alone), the median with its 95 % interval (diamond, "
+        f"thick bar), 5 to 95 % of the members (thin bar), and the margin of {100.0 * MARGIN:g} % (shaded).",
+        panels=panels,
+        legend="panels",
+    )
+
+
+def _distributions(found: Ensemble) -> Panel:
+    standing = found.members.loc[found.members["outcome"] != "overturned", "peak_tilt"]
+    largest = float(standing.max(skipna=True)) if standing.notna().any() else 0.0
+    end = 1.05 * largest or 1.0
+    styles = label_styles(list(found.methods["method"]))
+    layers = []
+    for method, style in styles.items():
+        runs = found.members[(found.members["method"] == method) & (found.members["outcome"] != "failed")]
+        stands = runs[runs["outcome"] != "overturned"].sort_values("peak_tilt")
+        fallen = len(runs) - len(stands)
+        if not len(runs):
+            continue
+        x, y = ecdf(stands["peak_tilt"].to_numpy(float), total=len(runs), end=end)
+        label = f"{method} ({fallen} of {len(runs)} overturn)"
+        names = ["", *map(str, stands["member"]), ""]
+        layers.append(Line(x=x, y=y, name=label, style=style, width=1.6, steps=True, notes=names))
+        if fallen:
+            mark = Style(colour=style.colour, dash="none", symbol="triangle-right")
+            layers.append(Line(x=x[-1:], y=y[-1:], style=mark, size=7.0, clip=False))
+    return Panel(
+        x=Axis(label="peak tilt / α", unit="-", low=0.0, high=end),
+        y=Axis(label="share of the members", unit="-", low=0.0, high=1.03),
+        layers=layers,
+        title="Peak tilt",
+        height=3.4,
+    )
+
+
+def _ratios(found: Ensemble, rows: list[dict[str, Any]]) -> Panel:
+    both = [pairs(found.members, row["method"], row["against"]) for row in rows]
+    logarithms = [each.log_ratios() for each in both]
+    low, high = ratio_span(np.concatenate(logarithms))
+    layers: list[Line | Rule | Text] = [
+        Rule(at=1.0 / (1.0 + MARGIN), until=1.0 + MARGIN, axis="x", colour=SHADED),
+        Rule(at=1.0, axis="x"),
+    ]
+    ticks = []
+    for place, (row, each, logs) in enumerate(zip(rows, both, logarithms, strict=True)):
+        has = ~np.isnan(logs)
+        ratios, members = np.exp(logs[has]), each.members[has]
+        inside = (ratios > 0.0) & np.isfinite(ratios)
+        layers += [
+            Line(
+                x=ratios[inside],
+                y=np.full(inside.sum(), place - 0.2),
+                name="members",
+                style=_DOTS,
+                opacity=0.6,
+                notes=list(map(str, members[inside])),
+            ),
+            _bar(row, "05 95", place, (low, high), "5 to 95 % of the members", 1.0),
+            _bar(row, "low high", place, (low, high), "95 % interval of the median", 3.5),
+            *_beyond(ratios, place, low, high),
+        ]
+        if low <= row["ratio"] <= high:
+            at = np.array([row["ratio"]]), np.array([place + 0.2])
+            layers.append(Line(x=at[0], y=at[1], name="median", style=_MEDIAN))
+        ticks.append((float(place), f"{row['method']}\n/ {row['against']}, n = {has.sum()}"))
+    return Panel(
+        x=Axis(
+            label="ratio of peak tilts of the same member",
+            unit="-",
+            log=True,
+            low=low,
+            high=high,
+            ticks=[(tick, f"{tick:g}") for tick in ratio_ticks(low, high)],
+        ),
+        y=Axis(label="method / against", unit="", low=-0.6, high=len(rows) - 0.4, ticks=ticks, reverse=True),
+        layers=layers,
+        title="Ratio of the peaks of each member",
+        height=_LINE * len(rows) + 1.4,
+    )
+
+
+def _bar(
+    row: Mapping[str, Any],
+    names: tuple[str, str],
+    place: int,
+    span: tuple[float, float],
+    name: str,
+    width: float,
+) -> Line:
+    ends = np.clip([row[each] for each in names], *span)
+    return Line(x=ends, y=np.full(2, place + 0.2), name=name, style=Style(colour=DARK), width=width)
+
+
+def _beyond(ratios: Array, place: int, low: float, high: float) -> list[Line | Text]:
+    """Return a triangle at each edge for the members that overturn by one method alone, and their number."""
+    found: list[Line | Text] = []
+    for edge, side, which in ((low, "left", ratios == 0.0), (high, "right", np.isinf(ratios))):
+        if which.any():
+            mark = Style(colour=_BEYOND, dash="none", symbol=f"triangle-{side}")
+            inside = edge * (high / low) ** (0.02 if side == "left" else -0.02)
+            anchor: Literal["left", "right"] = "left" if side == "left" else "right"
+            found += [
+                Line(x=np.array([edge]), y=np.array([place - 0.2]), style=mark, size=7.0, clip=False),
+                Text(x=inside, y=place - 0.2, text=str(which.sum()), colour=_BEYOND, anchor=anchor),
+            ]
+    return found
+
+
+def ratio_span(logarithms: Array) -> tuple[float, float]:
+    """Return the ends of the axis of ratios, as far from 1 on both sides; what is beyond is at its edges."""
+    known = np.abs(logarithms[np.isfinite(logarithms)])
+    reach = _ROOM * max(float(known.max(initial=0.0)), 2.0 * math.log1p(MARGIN))
+    return math.exp(-reach), math.exp(reach)
+
+
+def ratio_ticks(low: float, high: float) -> list[float]:
+    """Return where an axis of ratios has its numbers."""
+    if high / low > 4.0:
+        found = [tick for tick in _DECADES if low <= tick <= high]
+        return found if len(found) <= _MOST_TICKS else [t for t in found if math.log10(t).is_integer()]
+    step = next((s for s in _STEPS if (high - low) / s <= _MOST_TICKS), _STEPS[-1])
+    first = math.ceil(low / step)
+    return [round(index * step, 6) for index in range(first, math.floor(high / step) + 1)]

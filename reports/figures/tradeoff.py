@@ -1,0 +1,123 @@
+"""Error against computing time: a picture for each problem, a panel for each question asked of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from .palette import DARK, GREY, ORDER, SYMBOLS, Style
+from .picture import Axis, Line, Panel, Picture, Rule
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockwobble.compare.studies.tradeoff import Tradeoff
+
+TITLES = {
+    "turn": "Angle of turn in free response",
+    "shaken": "Tilt under 2 × El Centro",
+    "peaks": "Distribution of peak tilt",
+}
+ERRORS = {
+    "turn": ("error of the angle of turn", "deg"),
+    "shaken": ("largest error of the tilt", "α"),
+    "peaks": ("distance of the distributions", "α"),
+}
+# support and panel, in the order of the picture
+_PANELS = {
+    ("recess", "methods"): "recess",
+    ("flat", "methods"): "flat ground",
+    ("ring", "methods"): "ring, against itself at half its finest step",
+    ("recess", "scipy"): "scipy's solvers, recess",
+    ("recess", "rest threshold"): "rest threshold, recess",
+    ("recess", "integrator"): "integrators of MuJoCo, recess",
+    ("recess", "contact"): "time constant of MuJoCo's contact, recess",
+}
+_BASE = "recess model"
+# what the variants of a panel are variants of
+_HELD_AGAINST = {
+    "scipy": _BASE,
+    "rest threshold": _BASE,
+    "integrator": "mujoco recess",
+    "contact": "mujoco recess",
+}
+
+
+def tradeoff_pictures(found: Tradeoff) -> list[Picture]:
+    """Return a picture for each problem; its panels share their axes, and no line has a family of its own."""
+    return [_picture(found, name) for name in TITLES if (found.points["problem"] == name).any()]
+
+
+def _picture(found: Tradeoff, problem: str) -> Picture:
+    import pandas as pd
+
+    points = found.points[(found.points["problem"] == problem) & (found.points["error"] > 0.0)]
+    time = _axis("time / that of the recess model", "-", points["ratio"])
+    error = _axis(*ERRORS[problem], points["error"])
+    panels = []
+    for (support, name), title in _PANELS.items():
+        chosen = points[(points["support"] == support) & (points["panel"] == name)]
+        if chosen.empty:
+            continue
+        if name in _HELD_AGAINST:
+            chosen = pd.concat([points[points["line"] == _HELD_AGAINST[name]], chosen])
+        described = found.problems[
+            (found.problems["problem"] == problem) & (found.problems["support"] == support)
+        ].iloc[0]
+        layers: list[Line | Rule] = list(_lines(chosen))
+        if np.isfinite(described["chance"]):
+            layers.append(
+                Rule(at=float(described["chance"]), axis="y", dash="dot", colour=GREY, name="chance")
+            )
+        panels.append(Panel(x=time, y=error, layers=layers, title=title))
+    return Picture(
+        name=f"tradeoff-{problem}",
+        title=TITLES[problem],
+        caption="Lower left is better. Along a line only the tolerance or the time step changes, from coarse "
+        "on the left to fine on the right; bars are quartiles of the times."
+        + (
+            " Below “chance” another set of motions changes more than the method."
+            if problem == "peaks"
+            else ""
+        ),
+        panels=panels,
+        columns=2,
+        legend="panels",
+    )
+
+
+def _lines(points: pd.DataFrame) -> list[Line]:
+    layers = []
+    symbols = list(SYMBOLS)
+    for index, (name, line) in enumerate(points.groupby("line", sort=False)):
+        ordered = line.sort_values("value", ascending=False)
+        colour = DARK if name == _BASE else ORDER[index % len(ORDER)]
+        x, y = ordered["ratio"].to_numpy(float), ordered["error"].to_numpy(float)
+        notes = [
+            f"{row['knob']} {row['value']:g}: {row['milliseconds']:.3g} ms {row['said']}".strip()
+            for _, row in ordered.iterrows()
+        ]
+        layers.append(
+            Line(x=x, y=y, name=str(name), style=Style(colour=colour, symbol=symbols[index]), notes=notes)
+        )
+        ends = ordered[["ratio_low", "ratio_high"]].to_numpy(float)
+        gap = np.full((len(y), 1), np.nan)  # parts the bars
+        layers.append(
+            Line(
+                x=np.hstack([ends, gap]).ravel(),
+                y=np.repeat(y, 3),
+                style=Style(colour=colour),
+                width=0.8,
+            )
+        )
+    return layers
+
+
+def _axis(label: str, unit: str, values: pd.Series[float]) -> Axis:
+    """The decades in which values are, so that all panels have the same."""
+    if values.empty:
+        return Axis(label=label, unit=unit, log=True)
+    low, high = np.log10(values.min()) - 0.05, np.log10(values.max()) + 0.05
+    ends = float(10.0 ** np.floor(low)), float(10.0 ** np.ceil(high))
+    return Axis(label=label, unit=unit, log=True, low=ends[0], high=ends[1])

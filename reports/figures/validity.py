@@ -1,0 +1,279 @@
+"""The figures of the report on the limits: what the engine did, and its maps in `validity_maps`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble.compare.studies.validity.limits.distributions import CONTRASTS, POINT, ratios
+from rockwobble.compare.studies.validity.limits.numbers import Array, column
+from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
+from rockwobble.compare.studies.validity.rings import FREE
+
+from .palette import DARK, GREY, ORDER, Style, mark_styles
+from .picture import Axis, Line, Panel, Picture, Rule, ecdf
+from .validity_maps import map_pictures
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockwobble.compare.studies.validity.limits import Tables
+
+# of a method, in words
+METHODS = {
+    RECESS: "recess model",
+    "recess": "engine, ideal recess",
+    "ring": "engine, ring of walls",
+    "flat": "engine, flat ground",
+    FLAT: "flat-ground model",
+    PERTURBED: "recess model, record 1 % stronger",
+}
+_STYLES = {
+    "recess": Style(colour=ORDER[0]),
+    "ring": Style(colour=ORDER[1], dash="dashdot"),
+    "flat": Style(colour=ORDER[4], dash="dash"),
+    FLAT: Style(colour=GREY, dash="dash"),
+    PERTURBED: Style(colour=DARK, dash="dot"),
+}
+_RATIO_ENDS = (0.2, 5.0)  # a ratio beyond is drawn at the end
+_LEAST = 1e-9  # what a logarithmic axis shows of nothing
+_ONE = Rule(at=1.0, axis="y", colour=GREY, dash="solid")
+
+
+def validity_pictures(tables: Tables) -> list[Picture]:
+    """Return all figures of the report, in its order."""
+    return [
+        _records(tables["records"]),
+        *map_pictures(tables),
+        _agreement(tables["following"]),
+        _verification(tables["verification"]),
+        _slip(tables["slip"]),
+        _rings(tables["rings"]),
+        _contact(tables["contact"]),
+    ]
+
+
+def _records(table: pd.DataFrame) -> Picture:
+    ticks = [(value, f"{value:g}") for value in (0.2, 0.5, 1.0, 2.0, 5.0)]
+    low, high = _RATIO_ENDS
+    ratio = Axis(label="peak / peak of the recess model", unit="-", log=True, low=low, high=high, ticks=ticks)
+    share = Axis(label="share of the records", unit="-", low=0.0, high=1.0)
+    panels = []
+    for point, runs in table.groupby(POINT, sort=False):
+        tan_alpha, size, intensity = (float(str(each)) for each in point)
+        layers: list[Line | Rule] = [Rule(at=1.0, axis="x", colour=GREY, dash="solid")]
+        for method, against in CONTRASTS:
+            if against != RECESS:
+                continue
+            values = ratios(runs, method, RECESS)
+            x, y = ecdf(np.clip(values[~np.isnan(values)], *_RATIO_ENDS), end=_RATIO_ENDS[1])
+            layers.append(
+                Line(
+                    x=np.maximum(x, _RATIO_ENDS[0]),
+                    y=y,
+                    name=METHODS[method],
+                    style=_STYLES[method],
+                    steps=True,
+                )
+            )
+        count = runs["motion"].nunique()
+        title = f"tan α = {tan_alpha:g}, R = {size:g} m, {intensity:g} g tan α, n = {count}"
+        panels.append(Panel(x=ratio, y=share, layers=layers, title=title))
+    return Picture(
+        name="records",
+        title="Peak tilt over records, against the recess model",
+        caption="Each curve: the share of the records whose ratio of the two peaks is at most that of the "
+        "axis; what overturns by one of the two alone is at an end. The dotted curve is the recess model "
+        "itself under a record 1 % stronger: a scatter no wider is sensitivity, and no error of a method.",
+        panels=panels,
+        columns=min(2, len(panels)),
+    )
+
+
+def _agreement(table: pd.DataFrame) -> Picture:
+    end = float(table["duration"].max())
+    predicted = Axis(label="predicted", unit="s", low=0.0, high=1.03 * end)
+    measured = Axis(label="measured", unit="s", low=0.0, high=1.03 * end)
+    groups = {
+        f"{support}, against the {reference} model": rows
+        for (support, reference), rows in table.groupby(["support", "reference_support"], sort=False)
+    }
+    styles = mark_styles(list(groups), lines=False)
+    layers = [Line(x=np.array([0.0, end]), y=np.array([0.0, end]), name="as predicted", width=0.8)]
+    layers += [
+        Line(
+            x=column(rows, "predicted_agreement_time"),
+            y=column(rows, "agreement_time"),
+            name=name,
+            style=styles[name],
+            filled=rows["diverged"].to_numpy(dtype=bool),
+        )
+        for name, rows in groups.items()
+    ]
+    return Picture(
+        name="agreement",
+        title="How long traces agree",
+        caption="Time from uplift until the tilts of engine and model differ by more than 1 % of α, against "
+        "the time that the reduced models predict. Open marks: runs that agree to their end.",
+        panels=[Panel(x=predicted, y=measured, layers=layers, height=3.2)],
+    )
+
+
+def _verification(table: pd.DataFrame) -> Picture:
+    keys = ["tan_alpha", "release", "spin"]
+    models = table.pivot_table("turn", keys, "support", dropna=False)
+    apart = (models["recess"] - models["flat"]).abs()
+    styles = mark_styles(["recess", "flat"], lines=False)
+    layers = []
+    for support, rows in table.groupby("support", sort=False):
+        x = np.degrees(apart.reindex(rows.set_index(keys).index).to_numpy(dtype=np.float64))
+        off = np.degrees(np.abs(column(rows, "engine_turn") - column(rows, "turn")))
+        name = str(support)
+        layers.append(
+            Line(
+                x=x,
+                y=np.maximum(off, _LEAST),
+                name=f"engine, {name}",
+                style=styles[name],
+                filled=rows["resolved"].to_numpy(dtype=bool),
+            )
+        )
+    ends = np.array([float(np.degrees(apart.min())), float(np.degrees(apart.max()))])
+    layers.append(Line(x=ends, y=ends, name="no telling apart", width=0.8))
+    return Picture(
+        name="verification",
+        title="The engine tells the models apart",
+        caption="Each mark is a release: how far the engine's angle of turn is off that of its own model, "
+        "over how far the two models are apart. Below the line it decides between them. Open marks: passes "
+        "that its contact does not resolve.",
+        panels=[
+            Panel(
+                x=Axis(label="recess model − flat-ground model", unit="deg", log=True),
+                y=Axis(label="engine − its model", unit="deg", log=True),
+                layers=layers,
+                height=3.2,
+            )
+        ],
+    )
+
+
+def _slip(table: pd.DataFrame) -> Picture:
+    groups = {
+        f"tan α = {tan_alpha:g}, needs {rows['needed'].iloc[0] / rows['tan_alpha'].iloc[0]:.2f} tan α": rows
+        for tan_alpha, rows in table.sort_values("share").groupby("tan_alpha")
+    }
+    styles = mark_styles(list(groups))
+    layers: list[Line | Rule] = [Rule(at=1.0, axis="x", colour=GREY, dash="solid")]
+    layers += [
+        Line(
+            x=column(rows, "share"), y=np.maximum(column(rows, "slip"), _LEAST), name=name, style=styles[name]
+        )
+        for name, rows in groups.items()
+    ]
+    return Picture(
+        name="slip",
+        title="Slip of the engine where friction is short",
+        caption="Distance over which the contact slips in one period of free response, over the friction as "
+        "a share of what the recess model says is needed.",
+        panels=[
+            Panel(
+                x=Axis(label="friction / friction needed", unit="-"),
+                y=Axis(label="slip / b", unit="-", log=True),
+                layers=layers,
+            )
+        ],
+    )
+
+
+def _rings(table: pd.DataFrame) -> Picture:
+    # walls of another inclination or friction are in the table, and would be too many lines here
+    plain = table[(table["support"] == "ring") & (table["inclination"] == 0.0)]
+    default = plain["friction"].mode().iloc[0] if len(plain) else 0.0
+    plain = plain[plain["friction"] == default]
+    plain = plain.assign(ratio=plain["peak"] / plain["recess_peak"])
+    styles = mark_styles([f"tan α = {tan_alpha:g}" for tan_alpha in sorted(plain["tan_alpha"].unique())])
+
+    def lines(column_name: str, chosen: pd.DataFrame, least: float) -> Iterator[Line]:
+        for tan_alpha, rows in chosen.groupby("tan_alpha"):
+            name = f"tan α = {tan_alpha:g}"
+            over = rows.groupby("clearance")[column_name]
+            x, low, high = (
+                over.min().index.to_numpy(float),
+                over.min().to_numpy(float),
+                over.max().to_numpy(float),
+            )
+            y = np.sqrt(np.maximum(low, least) * np.maximum(high, least))
+            yield Line(x=x, y=y, name=name, style=styles[name])
+            bars = np.column_stack([np.maximum(low, least), np.maximum(high, least), np.full(len(x), np.nan)])
+            yield Line(x=np.repeat(x, 3), y=bars.ravel(), style=Style(colour=styles[name].colour), width=0.8)
+
+    clearance = Axis(label="clearance / b", unit="-", log=True)
+    shaken, touched = plain[plain["motion"] != FREE], plain[plain["contact_time"] > 0.0]
+    return Picture(
+        name="rings",
+        title="A real recess against the ideal one",
+        caption="Rings whose walls lean by α, under El Centro at 1.5 g tan α and in free response; bars: "
+        "over the azimuths by which the problem is turned. Energy: where the walls are touched.",
+        panels=[
+            Panel(
+                x=clearance,
+                y=Axis(label="peak / that of the recess model", unit="-"),
+                layers=[_ONE, *lines("ratio", shaken, 1e-3)],
+                title="peak tilt",
+            ),
+            Panel(
+                x=clearance,
+                y=Axis(label="rolled out / b", unit="-", log=True),
+                layers=list(lines("rolled_out", shaken, 1e-6)),
+                title="leaving its place",
+            ),
+            Panel(
+                x=clearance,
+                y=Axis(label="energy lost / largest", unit="-", log=True),
+                layers=list(lines("loss", touched, 1e-6)),
+                title="energy that walls take",
+            ),
+        ],
+        columns=2,
+    )
+
+
+def _contact(table: pd.DataFrame) -> Picture:
+    failed = (table["free_outcome"] == "failed") | (table["outcome"] == "failed")
+    known = table[~failed].sort_values("softness")
+    known = known.assign(ratio=known["peak"] / known["recess_peak"], lost=np.maximum(known["loss"], 1e-6))
+    names = [f"damping ratio {damping:g}" for damping in sorted(table["damping"].unique())]
+    styles = mark_styles(names, lines=False)
+    softness = Axis(label="contact time constant × p", unit="-", log=True)
+
+    def marks(name: str) -> list[Line]:
+        return [
+            Line(x=column(rows, "softness"), y=column(rows, name), name=f"damping ratio {damping:g}",
+                 style=styles[f"damping ratio {damping:g}"])
+            for damping, rows in known.groupby("damping")
+        ]  # fmt: skip
+
+    lost: Array = column(table[failed], "softness")
+    crosses = Line(
+        x=lost,
+        y=np.full(len(lost), float(known["ratio"].min()) if len(known) else 1.0),
+        name="failed" if len(lost) else "",
+        style=Style(colour=DARK, dash="none", symbol="x"),
+    )
+    return Picture(
+        name="contact",
+        title="Contact that gives",
+        caption="Peak tilt under El Centro at 2 g tan α, and energy lost in a pass of free response over "
+        "that of the release, by the softness of contact and its damping ratio.",
+        panels=[
+            Panel(
+                x=softness,
+                y=Axis(label="peak / that of the recess model", unit="-"),
+                layers=[_ONE, *marks("ratio"), crosses],
+            ),
+            Panel(x=softness, y=Axis(label="lost in a pass", unit="-", log=True), layers=marks("lost")),
+        ],
+        columns=2,
+    )

@@ -1,0 +1,90 @@
+"""What the page of an advice is given: its words are in the template advice.md.j2."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockwobble.compare.storage.manifest import Manifest, read_results
+from rockwobble.compare.studies.advice.advice import KIND
+from rockwobble.compare.studies.advice.grades import CRITERIA
+from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y
+from rockwobble.compare.studies.spectrum.verification import CHECK_RTOL, NUDGE
+from rockwobble.models.diagnostic import CODES
+
+from ..figures.advice import GROUPS, SHORT, advice_picture
+from .page import Page
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# a ring against the recess model in the largest tilt: median of the size of the relative difference, and its
+# range, of published/validity/points.parquet
+RING = {"median": 0.38, "low": -0.76, "high": 0.68}
+GRADE_WORDS = {"good": "sound", "care": "care", "bad": "fails"}
+
+
+def advice_page(tables: Mapping[str, pd.DataFrame], manifest: Manifest) -> Page:
+    """Return the page of an advice, from its tables and its manifest alone."""
+    facts = manifest.about
+    picture = advice_picture(facts, tables)
+    return Page(
+        name="advice",
+        template="advice",
+        values={**advice_values(facts), "about": manifest, "drawn": picture is not None},
+        pictures=[] if picture is None else [picture],
+    )
+
+
+def stored_page(folder: Path) -> Page:
+    """Return the page of the advice that is stored in a folder."""
+    results = read_results(folder, KIND)
+    names = ("members", "band", "scales", "trace", "engine")
+    return advice_page({name: results.table(name) for name in names}, results.manifest)
+
+
+def advice_values(facts: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what the template says of an advice, from `Advice.facts`."""
+    b, h, alpha = facts["b"], facts["h"], facts["alpha"]
+
+    def moved(tilt: float) -> dict[str, float]:
+        """Displacement of the centre of the top and uplift of the rim [m]; infinite where it overturns."""
+        if not math.isfinite(tilt):
+            return {"top": tilt, "rim": tilt}
+        theta = tilt * alpha
+        return {
+            "top": b * (1.0 - math.cos(theta)) + 2.0 * h * math.sin(theta),
+            "rim": 2.0 * b * math.sin(theta),
+        }
+
+    groups = []
+    for row in facts["answers"]:
+        group = {**row, "name": GROUPS[row["group"]], "short": SHORT[row["group"]]}
+        for share in ("05", "50", "95"):
+            group |= {f"{name}_{share}": value for name, value in moved(row[f"peak_tilt_{share}"]).items()}
+        groups.append(group)
+    planar = [each["factor"] for name, each in facts["lowest"].items() if name in (PLANAR_X, PLANAR_Y)]
+    known = [factor for factor in planar if math.isfinite(factor)]
+    return {
+        **facts,
+        "given": moved(facts["peak"]) if facts["moves"] and not facts["overturned"] else None,
+        "groups": groups,
+        "here": next((row for row in facts["planar"] if row["scale"] == 1.0), None),
+        "planar_lowest": min(known) if known else math.nan,
+        "space": facts["lowest"].get("3d"),
+        "meanings": [CODES[code][1] for code in facts["failure"]],
+        "criteria": [
+            {
+                "topic": topic,
+                "grade": GRADE_WORDS[facts["grades"][topic]],
+                **dict(zip(("sound", "care", "fails"), CRITERIA[topic], strict=True)),
+            }
+            for topic in facts["grades"]
+            if topic in CRITERIA
+        ],
+        "ring": RING,
+        "tolerance": CHECK_RTOL,
+        "nudge": NUDGE,
+    }

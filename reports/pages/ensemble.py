@@ -1,0 +1,72 @@
+"""What the page of an ensemble is given: its words are in the template ensemble.md.j2."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from rockwobble.compare.metrics.distributions import (
+    MARGIN,
+    POWER,
+    SIGNIFICANCE,
+    fewest_to_tell,
+    largest_share_unseen,
+)
+from rockwobble.compare.storage.manifest import Manifest, read_results
+from rockwobble.compare.studies.ensemble.study import KIND, stored_ensemble
+
+from ..figures.ensemble import ensemble_picture, main_pairs
+from .page import Page
+
+if TYPE_CHECKING:
+    from rockwobble.compare import Ensemble
+
+
+def ensemble_page(found: Ensemble, manifest: Manifest) -> Page:
+    """Return the page of an ensemble."""
+    return Page(
+        name="ensemble",
+        template="ensemble",
+        values={**ensemble_values(found), "about": manifest},
+        pictures=[ensemble_picture(found)],
+    )
+
+
+def stored_page(folder: Path) -> Page:
+    """Return the page of the ensemble that is stored in a folder."""
+    results = read_results(folder, KIND)
+    return ensemble_page(stored_ensemble(results), results.manifest)
+
+
+def ensemble_values(found: Ensemble) -> dict[str, object]:
+    """Return what the template says of an ensemble."""
+    contrasts, methods = found.contrasts, found.methods.to_dict("records")
+    rows = contrasts.to_dict("records")
+    main = main_pairs(found)
+    # those that matter first, then the others by their probability
+    ordered = main + (contrasts.sort_values("ratio_p").to_dict("records") if rows else [])
+    every = {(row["method"], row["against"]): row for row in ordered}
+    for row in rows:
+        both = row["both_overturned"]
+        row["only"], row["only_there"] = row["overturned"] - both, row["against_overturned"] - both
+        row["neither"] = row["count"] - both - row["only"] - row["only_there"]
+    return {
+        "facts": found.about,
+        "count": found.members["member"].nunique(),
+        "methods": methods,
+        "contrasts": rows,
+        "main": main,
+        "verdicts": {
+            verdict: [row for row in main if row["verdict"] == verdict]
+            for verdict in ("within", "beyond", "undecided")
+        },
+        "apart": [row for row in every.values() if row["ratio_p_adjusted"] < SIGNIFICANCE],
+        "apart_by_falls": [row for row in rows if row["overturned_p_adjusted"] < SIGNIFICANCE],
+        "any_falls": bool(found.methods["overturned"].any()),
+        "failed": [row for row in methods if row["failed"]],
+        "margin": MARGIN,
+        "power": POWER,
+        "significance": SIGNIFICANCE,
+        "fewest": fewest_to_tell(),
+        "unseen": largest_share_unseen(int(contrasts["count"].min())) if rows else 1.0,
+    }

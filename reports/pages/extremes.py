@@ -1,0 +1,100 @@
+"""The report on the extremes: counts, and the runs that are not fine with what limits each."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from rockwobble.compare.studies.extremes import FINE
+from rockwobble.models.diagnostic import CODES
+
+from .page import Page
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockwobble.compare.studies.extremes import Extremes
+
+# verdict: the word in a table
+WORDS = {
+    "fine": "fine",
+    "flagged": "flagged",
+    "no reference": "no reference",
+    "refused": "refused",
+    "caught": "caught",
+    "silent": "WRONG",
+}
+_REFERENCES = {
+    "exact_turn": "exact angle of turn",
+    "energy": "energy kept",
+    "tight": "tolerance of 1e-12",
+    "model": "model of its support",
+    "half_step": "same ring, half the step",
+}
+
+
+def extremes_page(found: Extremes) -> Page:
+    """Return the report."""
+    runs = found.table[found.table["verdict"] != "n/a"]
+    counts = {name: int((runs["verdict"] == name).sum()) for name in WORDS}
+    values: dict[str, object] = {
+        "fine": FINE,
+        "counts": counts,
+        "total": len(runs),
+        "methods": _by_method(runs),
+        "verdicts": [[name, word, "d"] for name, word in WORDS.items()],
+        "not_fine": _not_fine(runs),
+        "all": [
+            {
+                "extreme": f"{row['extreme']}: {row['value']}",
+                "method": row["method"],
+                "verdict": WORDS[row["verdict"]],
+                "error": row["error"],
+                "reference": ", ".join(
+                    _REFERENCES[each] for each in str(row["reference"]).split(", ") if each
+                ),
+            }
+            for row in runs.to_dict("records")
+        ],
+        "about": found.made,
+    }
+    return Page(name="extremes", template="extremes", values=values)
+
+
+def extremes_pages(found: Extremes) -> dict[str, bytes]:
+    """Return name and content of each file of the report."""
+    return extremes_page(found).files()
+
+
+def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:
+    """How many runs of each method have each verdict, and the largest error of those that are fine."""
+    rows: list[dict[str, object]] = []
+    for method, own in runs.groupby("method", sort=False):
+        counts = {name: int((own["verdict"] == name).sum()) for name in WORDS}
+        rows.append({"method": method, **counts, "worst": own.loc[own["verdict"] == "fine", "error"].max()})
+    return rows
+
+
+def _not_fine(runs: pd.DataFrame) -> list[dict[str, object]]:
+    """The runs that are not fine, one row for those that the same thing limits."""
+    keys = ["extreme", "value", "verdict", "limit", "refusal"]
+    rows: list[dict[str, object]] = []
+    for key, alike in runs[runs["verdict"] != "fine"].groupby(keys, sort=False):
+        extreme, value, verdict, limit, refusal = key
+        rows.append(
+            {
+                "extreme": extreme,
+                "value": value,
+                "methods": ", ".join(alike["method"]),
+                "verdict": WORDS[str(verdict)],
+                "error": alike["error"].max(),
+                **{name: _finite(alike[name].min()) for name in ("begins", "until")},
+                "limit": refusal or "; ".join(CODES[code][1] for code in str(limit).split(", ") if code),
+            }
+        )
+    return rows
+
+
+def _finite(time: float) -> float:
+    """A time, NaN where it never comes."""
+    return time if math.isfinite(time) else math.nan

@@ -1,1 +1,0 @@
-"""The page on extremes: one table of verdicts, and what backs them."""

@@ -1,0 +1,91 @@
+"""The report on speed against accuracy."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rockwobble.compare.studies.tradeoff import (
+    ROUNDS,
+    costs,
+    engine_factors,
+    plateaus,
+    rest_tilt_price,
+)
+
+from ..figures.tradeoff import ERRORS, TITLES, tradeoff_pictures
+from .page import Page
+from .table import NONE, number
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockwobble.compare.studies.tradeoff import Tradeoff
+
+_NOT_ENGINES = ("reduced", "scipy")
+
+
+def tradeoff_page(found: Tradeoff) -> Page:
+    """Return the report."""
+    points, cheapest = found.points, costs(found.points)
+    scipy = cheapest.loc[cheapest["family"] == "scipy", "ratio"]
+    price = rest_tilt_price(points)
+    tightest = price.loc[price.groupby(["problem", "line"], sort=False)["value"].idxmin()]
+    values: dict[str, object] = {
+        "factors": engine_factors(points),
+        "scipy": (scipy.min(), scipy.max()),
+        "ways": [[family, family, "words"] for family in points["family"].unique()],
+        "costs": _rows(_ways(cheapest)),
+        "plateaus": _rows(plateaus(points)),
+        "rest": _rows(tightest),
+        "scenes": found.scenes.sort_values(["engine", "ratio"]).to_dict("records"),
+        "problems": _rows(found.problems),
+        "chance": _within_chance(found),
+        "failed": _rows(points[points["error"].isna()]),
+        "rounds": ROUNDS,
+        "load": found.load,
+        "about": found.made,
+    }
+    pictures = tradeoff_pictures(found)
+    values["drawn"] = [picture.name for picture in pictures]
+    return Page(name="tradeoff", template="tradeoff", values=values, pictures=pictures)
+
+
+def tradeoff_pages(found: Tradeoff) -> dict[str, bytes]:
+    """Return name and content of each file of the report."""
+    return tradeoff_page(found).files()
+
+
+def _rows(table: pd.DataFrame) -> list[dict[str, object]]:
+    """The rows of a table, with the title of their problem and the unit of its errors."""
+    titles = {name: f"{title} [{ERRORS[name][1]}]" for name, title in TITLES.items()}
+    return [
+        {str(name): value for name, value in row.items()}
+        for row in table.assign(problem=table["problem"].map(titles)).to_dict("records")
+    ]
+
+
+def _ways(cheapest: pd.DataFrame) -> pd.DataFrame:
+    """The cheapest way of each family in words, a row for each problem, support and error asked for."""
+    said = [
+        f"{number(row['ratio'], '.2g' if row['ratio'] < 10.0 else ',.0f')}: {row['line']}, {row['value']:g}"
+        for row in cheapest.to_dict("records")
+    ]
+    keys = ["problem", "support", "target"]
+    wide = cheapest.assign(said=said).pivot_table("said", keys, "family", aggfunc="first")
+    order = cheapest[keys].drop_duplicates()
+    return order.merge(wide.fillna(NONE).reset_index(), on=keys)
+
+
+def _within_chance(found: Tradeoff) -> list[dict[str, object]]:
+    """How many points of the engines are nearer to their reference than another ensemble, by support."""
+    points = found.points[(found.points["problem"] == "peaks") & ~found.points["family"].isin(_NOT_ENGINES)]
+    rows: list[dict[str, object]] = []
+    for row in found.problems[found.problems["chance"].notna()].to_dict("records"):
+        own = points[points["support"] == row["support"]]
+        good = own[own["error"] <= row["chance"]]
+        least = good.nsmallest(1, "ratio").to_dict("records")
+        cheapest = [f"{each['line']}, {each['value']:g} s" for each in least]
+        rows.append(
+            {"support": row["support"], "points": len(own), "good": len(good), "cheapest": "".join(cheapest)}
+        )
+    return rows

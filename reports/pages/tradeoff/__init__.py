@@ -1,1 +1,0 @@
-"""The page on speed against accuracy: figures, conclusions, tables."""

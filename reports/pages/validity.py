@@ -1,0 +1,124 @@
+"""The report on the limits of the reduced model."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+from rockwobble.compare.metrics.distributions import MARGIN
+from rockwobble.compare.studies.validity import limits_of
+from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
+from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
+from rockwobble.compare.studies.validity.limits.engine import damping
+from rockwobble.compare.studies.validity.rings import FREE
+
+from ..figures.validity import METHODS, validity_pictures
+from .page import Page
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from rockwobble.compare.studies.validity import Validity
+
+
+def validity_page(found: Validity) -> Page:
+    """Return the report."""
+    tables = found.tables
+    values: dict[str, object] = {
+        "limits": limits_of(tables),
+        "margin": MARGIN,
+        "contrasts": _contrasts(contrasts(tables)),
+        "summary": _summary(cells(tables)),
+        "rings": _rings(tables["rings"]),
+        "damping": damping(tables).to_dict("records"),
+        "ranges": {
+            name: (float(tables[part][column].min()), float(tables[part][column].max()))
+            for name, part, column in (
+                ("slender", "free_response", "tan_alpha"),
+                ("shaken", "peaks", "tan_alpha"),
+                ("sizes", "peaks", "semidiagonal"),
+                ("intensities", "peaks", "intensity"),
+            )
+        },
+        "largest_peak": LARGEST_PEAK,
+        "records": found.records,
+        "about": found.made,
+    }
+    return Page(name="validity", template="validity", values=values, pictures=validity_pictures(tables))
+
+
+def validity_pages(found: Validity) -> dict[str, bytes]:
+    """Return name and content of each file of the report."""
+    return validity_page(found).files()
+
+
+def limits_table(found: Validity) -> pd.DataFrame:
+    """Return every number of every limit: limit, number, value."""
+    import pandas as pd
+
+    rows = [
+        {"limit": limit, "number": number, "value": value}
+        for limit, numbers in limits_of(found.tables).items()
+        for number, value in numbers.items()
+    ]
+    return pd.DataFrame(rows)
+
+
+def _contrasts(table: pd.DataFrame) -> list[dict[str, object]]:
+    """The rows of paired ratios with their point in words; a ring against itself is told in the text."""
+    rows = []
+    for row in table.to_dict("records"):
+        if row["against"] not in METHODS:
+            continue
+        point = f"tan α = {row['tan_alpha']:g}, R = {row['semidiagonal']:g} m, {row['intensity']:g} g tan α"
+        rows.append({str(k): v for k, v in row.items()} | {"point": point, "method": METHODS[row["method"]]})
+    return rows
+
+
+def _summary(table: pd.DataFrame) -> list[dict[str, object]]:
+    """The maps in one table: by slenderness and intensity the least and the largest over the sizes."""
+    rows: list[dict[str, object]] = []
+    for (tan_alpha, intensity), own in table.groupby(["tan_alpha", "intensity"]):
+        rows.append(
+            {
+                "slenderness": f"tan α = {float(str(tan_alpha)):g}",
+                "intensity": intensity,
+                "peak": float(str(tan_alpha)) * float(str(intensity)),
+                **{
+                    f"{name}_{end}": float(getattr(own[name], end)())
+                    for name in ("flat_ratio", "flat_90", "copy_90", "overturned", "flat_overturned")
+                    for end in ("min", "max")
+                },
+                "friction": own["friction_90"].max(),
+                "moment": own["moment_90"].max(),
+                "normal": own["normal_10"].min(),
+            }
+        )
+    return rows
+
+
+def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
+    """What each ring does over its slendernesses and turns, the worst named by its number."""
+    rows: list[dict[str, object]] = []
+    walls = ["support", "clearance", "inclination", "friction"]
+    for key, own in table.groupby(walls, sort=False, dropna=False):
+        support, clearance, inclination, friction = key
+        shaken = own[own["motion"] != FREE]
+        touched = own[own["contact_time"] > 0.0]
+        ratio = shaken["peak"] / shaken["recess_peak"]
+        rows.append(
+            {
+                "support": support,
+                "clearance": clearance,
+                "inclination": "α" if inclination == 0.0 else inclination,
+                "friction": friction,
+                "least": ratio.min(),
+                "half": ratio.median(),
+                "largest": ratio.max(),
+                "rolled": shaken["rolled_out"].max(),
+                "at_end": shaken["at_end"].max(),
+                "loss": touched["loss"].median() if len(touched) else math.nan,
+                "halved": (shaken["halved_peak"] / shaken["peak"] - 1.0).abs().max(),
+            }
+        )
+    return rows

@@ -1,1 +1,0 @@
-"""The report on the limits of the two-degree-of-freedom model."""

@@ -1,0 +1,153 @@
+"""Suites without bounds: no false alarm, a wrong model or engine found, and the right one blamed."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Sequence
+from functools import partial
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from benchmarks.false_alarms import LargerModels
+
+from rockwobble import reduced
+from rockwobble.compare.check import Bench, Finding, bench
+from rockwobble.compare.check.engines import agreement, own_bounds, suspects
+from rockwobble.compare.check.measures.made_traces import made
+from rockwobble.compare.check.problems import PIER, released
+from rockwobble.compare.runs.choice import installed_engines
+from rockwobble.compare.runs.execution import Job
+from rockwobble.models import Case, Cylinder, InitialState, Run, Suite, Trace, el_centro_1940
+
+KEPT: dict[str, Trace] = {}
+SHORT = Case(PIER, el_centro_1940().scaled(2.0), duration=4.0, name="El Centro doubled")
+BOTH = pytest.mark.skipif("pybullet" not in installed_engines(), reason="pybullet has no wheel here")
+
+
+def found(case: Case, *runs: Run, models: Any = reduced) -> list[Finding]:
+    suite = Suite([case], runs)
+    checked = Bench(reduced=models, suite=suite, shipped=False, workers=1, kept=KEPT)
+    return list(agreement.check(checked))
+
+
+def test_engines_that_follow_the_models_pass() -> None:
+    findings = found(SHORT, Run("mujoco", "recess"), Run("mujoco", "flat"))
+    assert [f.outcome for f in findings] == ["passed"] * 4
+    as_it_is, met = findings[:2]
+    assert met.name == f"{as_it_is.name}, met rocking"
+    # what was measured is far below, so that the check says no more than it knows
+    assert met.value < 1e-6 < 1e-5 < met.bound < 2e-5
+
+
+@BOTH
+@pytest.mark.parametrize("support", ["recess", "flat"])
+def test_a_model_that_is_off_is_found_and_blamed(support: str) -> None:
+    failed = [f for f in found(SHORT, Run("mujoco", support), models=LargerModels) if f.failed]
+    assert {f.part for f in failed} == {f"the {Run(None, support)}"}
+    assert failed[-1].name.endswith("met rocking")
+    assert failed[-1].value > 50.0 * failed[-1].bound
+    assert failed[-1].note.startswith("mujoco and pybullet agree to ")
+
+
+@BOTH
+def test_an_engine_that_is_off_is_found_and_blamed() -> None:
+    failed = [f for f in found(SHORT, Run("pybullet", "recess", collision_margin=0.04)) if f.failed]
+    assert failed[-1].name.endswith("met rocking")
+    assert failed[-1].part == "pybullet (recess): its settings"
+    assert failed[-1].note.startswith("mujoco follows the model to ")
+
+
+def test_without_a_second_engine_both_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(bench, "ENGINES", ("mujoco",))
+    *_, failed = (f for f in found(SHORT, Run("mujoco", "recess"), models=LargerModels) if f.failed)
+    assert failed.part == "mujoco (recess) or the recess model"
+    assert "add one to the runs" in failed.note
+
+
+def test_a_step_that_is_too_large_is_named_with_one_that_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(own_bounds, "_by_step", lambda _, __, trace: np.full(len(trace.time) - 1, 0.01))
+    findings = found(SHORT, Run("mujoco", "recess"), models=Slower)
+    assert findings[-1].part == "time step of mujoco"
+    assert findings[-1].note == "the trace changes by 1.0e-02 alpha with its step: try a time step of 2e-05 s"
+
+
+class Slower:
+    """Models that are off by more than 1 % of alpha."""
+
+    @staticmethod
+    def simulate(case: Case, **options: Any) -> Trace:
+        return reduced.simulate(dataclasses.replace(case, gravity=1.1 * case.gravity), **options)
+
+
+def test_a_motion_is_met_where_it_is_strongest() -> None:
+    met = own_bounds.met_rocking(SHORT)
+    assert met is not None
+    assert met.motion is not None
+    assert met.length == 2.0
+    assert met.motion.peak == pytest.approx(0.5 * 9.81 * PIER.tan_alpha, rel=1e-12)
+    shape = SHORT.motion.acceleration if SHORT.motion else np.empty(0)
+    strongest = int(np.argmax(np.hypot(*shape.T)))
+    part = met.motion.acceleration[:-1]
+    expected = shape[strongest - 100 : strongest + 101]
+    assert part == pytest.approx(expected * (met.motion.peak / np.hypot(*expected.T).max()), rel=1e-12)
+
+
+def test_sizes_meet_the_same_motion() -> None:
+    motion = el_centro_1940()
+    four = dataclasses.replace(motion, time_step=2.0 * motion.time_step)
+    large = Cylinder(semidiagonal=24.0, tan_alpha=0.2)
+    small, big = (own_bounds.met_rocking(Case(*each)) for each in ((PIER, motion), (large, four)))
+    assert small is not None
+    assert big is not None
+    tilts = [reduced.simulate(c, sample_step=c.length).peak_tilt for c in (small, big)]
+    assert tilts[0] == pytest.approx(tilts[1], rel=1e-12)
+
+
+def test_what_already_moves_or_never_does_is_not_met() -> None:
+    assert own_bounds.met_rocking(released(0.5, 0.5, 2.0)) is None
+    assert own_bounds.met_rocking(Case(PIER, duration=1.0)) is None
+    leaning = Case(PIER, el_centro_1940(), initial=InitialState(0.1), duration=1.0)
+    assert own_bounds.met_rocking(leaning) is None
+
+
+def test_twice_the_step_or_half_of_it() -> None:
+    job = Job(case=SHORT, run=Run("mujoco", "recess"))
+    for step, times, factor in ((1e-4, 2.0, 1.0), (1e-3, 0.5, 2.0)):
+        other, given = own_bounds.other_step(job, made(np.zeros(2), np.zeros(2), time_step=step))
+        assert (other.run.time_step, given) == (times * step, factor)
+
+
+TIME = 0.01 * np.arange(101)
+RAMP = TIME * PIER.alpha
+
+
+@pytest.mark.parametrize(
+    ("engine", "referee", "part", "note"),
+    [
+        (0.02, 0.001, "mujoco (recess): its contact", "pybullet follows the model"),
+        (0.02, 0.021, "the recess model", "agree to"),
+        (0.02, -0.02, "mujoco (recess) or the recess model", "stands with neither"),
+        (0.02, math.nan, "mujoco (recess) or the recess model", "fails on this case"),
+    ],
+)
+def test_the_referee_decides(
+    monkeypatch: pytest.MonkeyPatch, engine: float, referee: float, part: str, note: str
+) -> None:
+    monkeypatch.setattr(suspects, "engines_here", lambda: ("mujoco", "pybullet"))
+    trace_of: Callable[[float, str], Trace] = lambda off, outcome: made(  # noqa: E731
+        TIME, (1.0 + off) * RAMP, outcome=outcome, run=Run("pybullet", "recess")
+    )
+
+    def traces(_: Bench, jobs: Sequence[Job]) -> list[Trace]:
+        lost = math.isnan(referee)
+        return [trace_of(0.0 if lost else referee, "failed" if lost else "completed") for _ in jobs]
+
+    asked = SimpleNamespace(adjust=lambda run: run)
+    asked.traces = partial(traces, asked)
+    job = Job(case=released(0.5, 0.5, 1.0), run=Run("mujoco", "recess"))
+    found = suspects.suspect(asked, job, made(TIME, RAMP), trace_of(engine, "completed"))  # type: ignore[arg-type]
+    assert found[0] == part
+    assert note in found[1]
