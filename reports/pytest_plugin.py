@@ -12,9 +12,9 @@ its model of a structure, its records and its suites may look like this:
 
 with a suite (what it may hold is said in the docstring of `rockwobble.models.suites.file`):
 
-    [bounds]                     # without this table: what contact at this time step explains
+    [bounds]                     # without this table: what the time step leaves, measured on each run
     tilt_rms = 2e-3              # alpha
-    agreement_time = 10       # s, at least
+    agreement_time = 10          # s, at least
 
     [[runs]]
     engine = ["mujoco", "pybullet"]
@@ -26,8 +26,9 @@ with a suite (what it may hold is said in the docstring of `rockwobble.models.su
     duration = 20
 
 `pytest tests/pier.suite.toml -k "scale 1.5"` runs a part. An item fails where a bound is exceeded, and then
-says what the difference is made of: model form, numerics, and what stays unexplained. That repeats the run
-at finer steps; `--no-rockwobble-budget` leaves it out. An engine that is not installed is skipped.
+says which of engine, time step and model is to blame, and what the difference is made of: model form,
+numerics, and what stays unexplained. That repeats the run at finer steps; `--no-rockwobble-budget` leaves it
+out. An engine that is not installed is skipped.
 """
 
 from __future__ import annotations

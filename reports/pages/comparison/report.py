@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -136,7 +135,11 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
 def _thinned(pictures: Sequence[Picture]) -> list[Picture]:
     """Return the pictures with as many points as the page can hold, the same for every line."""
     curves = [
-        layer for picture in pictures for panel in picture.panels for layer in panel.layers if _is_curve(layer)
+        layer
+        for picture in pictures
+        for panel in picture.panels
+        for layer in panel.layers
+        if _is_curve(layer)
     ]
     points = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // max(1, len(curves))))
 
