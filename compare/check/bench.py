@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Run, Suite, Trace
 
 from ..runs.choice import installed_engines, run_labels
-from ..runs.execution import Job, ProgressCallback, simulate_all
+from ..runs.execution import Job, simulate_all
+from ..runs.progress import ProgressCallback
 from ..storage.fingerprint import fingerprint
 from .finding import Finding, not_run
 

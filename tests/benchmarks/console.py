@@ -7,7 +7,7 @@ import sys
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.compare.runs.execution import Progress
+from rockwobble.compare.runs.progress import Progress
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -21,7 +21,7 @@ def options_of(name: str, description: str) -> argparse.ArgumentParser:
 def tell(event: Progress) -> None:
     """Say on standard error which run has finished."""
     if event.state == "finished":
-        print(f"{event.done}/{event.total} {event.case}, {event.label}", file=sys.stderr, flush=True)
+        print(f"{event.done}/{event.total} {event.label}", file=sys.stderr, flush=True)
 
 
 def show(table: pd.DataFrame, title: str, formats: Mapping[str, str], note: str = "") -> None:
