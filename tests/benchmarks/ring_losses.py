@@ -33,7 +33,7 @@ TURNS = (0.0, 2.0, 5.0, 9.0)
 
 
 def ring_runs() -> tuple[Run, ...]:
-    """Return the runs of each case: recess, flat ground, rings that differ from the default in one setting."""
+    """Return the runs of each case: recess, flat ground, rings that differ from the default in one thing."""
     varied: dict[str, Sequence[Any]] = {
         "ring_clearance": CLEARANCES,
         "ring_inclination": INCLINATIONS,
