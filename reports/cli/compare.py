@@ -18,9 +18,8 @@ from .inputs.suite_choice import chosen_runs, describe_suite, refuse_problem_opt
 
 if TYPE_CHECKING:
     from rockwobble.compare import Comparison, External
+    from rockwobble.compare.runs.progress import ProgressCallback
     from rockwobble.models import Case, Run
-
-    from ..console.progress import Tell
 
 
 @states_problem
@@ -104,7 +103,7 @@ def compare(
 def run_comparison(
     cases: Sequence[Case],
     runs: list[Run],
-    progress: Tell,
+    progress: ProgressCallback,
     external: Sequence[External] = (),
     resume: Path | None = None,
     budget: bool = False,

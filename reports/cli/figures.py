@@ -31,16 +31,11 @@ def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-out")) -> None
             if not _LEAST_GRID <= grid <= _MOST_GRID:
                 raise ValueError(f"--grid must be from {_LEAST_GRID} to {_MOST_GRID}, got {grid}")
             require_writable(out)
-        from rockwobble.compare.storage.manifest import write_results
-
         from ..console.progress import shown_progress
+        from ..console.results import show_and_write
         from ..pages.provenance import command_line
         from ..paper.page import compute, paper_page
 
         with shown_progress("figures") as tell:
             manifest, tables, spectrum = compute(grid, command_line(), tell)
-        page = paper_page(tables, manifest, spectrum)
-        page.show()
-        with user_input():
-            write_results(out, manifest, tables, pages=page.files())
-    print(f"\nWritten to {out}: manifest.json, {', '.join(page.files())} and the tables")
+        show_and_write(out, paper_page(tables, manifest, spectrum), manifest, tables)

@@ -94,7 +94,19 @@ def figure(picture: Picture) -> Figure:
         if picture.legend == "below" and picture.entries():
             _legend(drawn, list(places.flat[: len(picture.panels)]))
         drawn.align_ylabels()
+        _settle(drawn)
     return drawn
+
+
+def _settle(drawn: Figure) -> None:
+    """Place the axes where the layout has them, rounded: in its last digits it differs from call to call."""
+    layout = drawn.get_layout_engine()
+    assert layout is not None
+    for _ in range(2):  # what is placed decides how much room its labels take
+        layout.execute(drawn)
+    drawn.set_layout_engine("none")
+    for axes in drawn.axes:
+        axes.set_position([round(number, 3) for number in axes.get_position(original=True).bounds])
 
 
 def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:

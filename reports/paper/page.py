@@ -66,7 +66,7 @@ def compute(
 def paper_page(tables: dict[str, pd.DataFrame], manifest: Manifest, spectrum: OverturningSpectrum) -> Page:
     """Return the page of computed or stored tables."""
     found = {each.name: each for each in from_frame(tables["statements"])}
-    shaken = found["abrupt"].numbers | {"time_step": spectrum.motion.time_step}
+    shaken = {**found["abrupt"].numbers, "time_step": spectrum.motion.time_step}
     return Page(
         name="paper",
         template="paper",

@@ -29,7 +29,7 @@ _LINE = Style(colour=ORDER[0])
 _SHADES = ("#00224e", "#2b406d", "#595e6e", "#7e7d78", "#a99f73", "#d6c35d")
 _ROCKING = (1.0, period.DISC)  # the curves of slender bodies lie under Housner's
 _HISTORIES = (("θ / α", "-"), ("θ'", "rad/s"), ("φ / π", "-"), ("φ'", "rad/s"))
-_DECADES = 4.0  # of a rate of both signs, on an axis that is linear below 1 rad/s
+_FROM_0 = replace(TIME, low=0.0)
 
 
 def period_picture(table: pd.DataFrame) -> Picture:
@@ -64,81 +64,75 @@ def period_picture(table: pd.DataFrame) -> Picture:
 
 def free_picture(table: pd.DataFrame) -> Picture:
     """Return figure 4: one column for each mode, the path of the centre of mass above its time histories."""
-    modes = dict(iter(table.groupby("mode", sort=False)))
-    orbits = []
-    for mode, rows in modes.items():
-        x, y = rows["centre_x"].to_numpy(), rows["centre_y"].to_numpy()
-        reach = 1.12 * float(np.abs([x, y]).max())
-        start = Style(colour=DARK, dash="none", symbol="circle")
-        orbits.append(
-            Panel(
-                x=Axis(label="x", unit="m", low=-reach, high=reach),
-                y=Axis(label="y of the centre of mass", unit="m", low=-reach, high=reach),
-                layers=[
-                    Line(x=x, y=y, style=_LINE, width=0.9),
-                    Line(x=x[:1], y=y[:1], style=start, size=4.0),
-                ],
-                title=f"{mode}\nφ'(0) = {rows['rolling_rate'].iloc[0]:.3g} rad/s",
-                equal=True,
-                height=2.9,
-            )
-        )
-    rates = table["tilt_rate"].abs().max() * 1.1
-    histories = []
-    for place, (label, unit) in enumerate(_HISTORIES):
-        for rows in modes.values():
-            values = _histories(rows, free.CYLINDER.alpha)[place]
-            ends = {0: (0.0, 1.1 * free.RELEASE), 1: (-rates, rates)}.get(place, (None, None))
+    modes = {str(mode): rows for mode, rows in table.groupby("mode", sort=False)}
+    orbits = [_orbit(mode, rows) for mode, rows in modes.items()]
+    histories = [_histories(rows, free.CYLINDER.alpha) for rows in modes.values()]
+    rate = 1.1 * max(float(np.abs(each[1]).max()) for each in histories)
+    # the same scale across, so that the modes compare; the rates of rolling need their own
+    ends = ((0.0, 1.1 * free.RELEASE), (-rate, rate), (None, None), (None, None))
+    panels = []
+    for place, ((label, unit), (low, high)) in enumerate(zip(_HISTORIES, ends, strict=True)):
+        for rows, values in zip(modes.values(), (each[place] for each in histories), strict=True):
             # of hardly any spin the rate spans decades
             log = place == 3 and bool(values.max() > 100.0 * values.min())
-            y = Axis(
-                label=label, unit=unit, low=0.0 if place == 3 and not log else ends[0], high=ends[1], log=log
-            )
-            x = replace(TIME, low=0.0)
-            histories.append(
-                Panel(x=x, y=y, layers=[Line(x=rows["time"].to_numpy(), y=values, style=_LINE)], height=1.5)
-            )
+            room = (0.0, 1.15 * float(values.max())) if place == 3 and not log else (low, high)
+            y = Axis(label=label, unit=unit, low=room[0], high=room[1], log=log)
+            line = Line(x=_column(rows, "time"), y=values, style=_LINE)
+            panels.append(Panel(x=_FROM_0, y=y, layers=[line], height=1.5))
     return Picture(
         name="figure-4",
         title="Figure 4: three modes of free response",
         caption="Above, the path of the centre of mass seen from above, from the dot on.",
-        panels=[*orbits, *histories],
+        panels=[*orbits, *panels],
         columns=len(modes),
     )
 
 
-def _histories(rows: pd.DataFrame, alpha: float) -> tuple[Array, ...]:
-    tilt, rate, angle, rolling = (
-        rows[name].to_numpy() for name in ("tilt", "tilt_rate", "rolling_angle", "rolling_rate")
+def _orbit(mode: str, rows: pd.DataFrame) -> Panel:
+    x, y = _column(rows, "centre_x"), _column(rows, "centre_y")
+    reach = 1.12 * float(np.abs([x, y]).max())
+    start = Line(x=x[:1], y=y[:1], style=Style(colour=DARK, dash="none", symbol="circle"), size=4.0)
+    return Panel(
+        x=Axis(label="x", unit="m", low=-reach, high=reach),
+        y=Axis(label="y of the centre of mass", unit="m", low=-reach, high=reach),
+        layers=[Line(x=x, y=y, style=_LINE, width=0.9), start],
+        title=f"{mode}\nφ'(0) = {_column(rows, 'rolling_rate')[0]:.3g} rad/s",
+        equal=True,
+        height=2.9,
     )
+
+
+def _histories(rows: pd.DataFrame, alpha: float) -> tuple[Array, ...]:
+    names = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate")
+    tilt, rate, angle, rolling = (_column(rows, name) for name in names)
     return tilt / alpha, rate, angle / math.pi, rolling
+
+
+def _column(rows: pd.DataFrame, name: str) -> Array:
+    return rows[name].to_numpy(dtype=np.float64)
 
 
 def earthquake_picture(table: pd.DataFrame, record: pd.DataFrame, numbers: Mapping[str, float]) -> Picture:
     """Return figure 5: response above, record below, the strong part shaded."""
     cylinder, gravity = earthquake.CYLINDER, 9.81
-    time, at = table["time"].to_numpy(), np.arange(len(record)) * numbers["time_step"]
-    values = _histories(table, cylinder.alpha)
     marks: list[Layer] = [Rule(at=numbers["from"], until=numbers["until"], axis="x", colour=SHADED)]
     if math.isfinite(numbers["agreement"]):
         marks.append(Rule(at=numbers["agreement"], axis="x", colour="#777777"))
-    ticks = [(float(_signed_log(np.array(v))), f"{v:g}") for v in (-1000.0, -10.0, 0.0, 10.0, 1000.0)]
-    panels = []
-    for (label, unit), shown, height in zip(_HISTORIES, values, (1.9, 1.5, 1.9, 1.6), strict=True):
-        rolling = label == "φ'"
-        line = Line(x=time, y=_signed_log(shown) if rolling else shown, style=_LINE, width=0.8)
-        y = Axis(
-            label=label,
-            unit=unit,
-            low=0.0 if label.startswith("θ /") else None,
-            ticks=ticks if rolling else (),
-        )
-        panels.append(Panel(x=replace(TIME, low=0.0), y=y, layers=[*marks, line], height=height))
+    tilt, rate, angle, rolling = _histories(table, cylinder.alpha)
+    shown = [(tilt, 1.9), (rate, 1.5), (angle, 1.9), (_signed_log(rolling), 1.6)]
+    ticks = [(float(_signed_log(np.array([v]))[0]), f"{v:g}") for v in (-1000.0, -10.0, 0.0, 10.0, 1000.0)]
+    axes = [Axis(label=label, unit=unit) for label, unit in _HISTORIES]
+    axes = [replace(axes[0], low=0.0), *axes[1:3], replace(axes[3], ticks=ticks)]
+    panels = [
+        _over_time(_column(table, "time"), values, y, marks, _LINE, height)
+        for (values, height), y in zip(shown, axes, strict=True)
+    ]
+    at = np.arange(len(record), dtype=np.float64) * numbers["time_step"]
     largest = 1.1 * float(record[["x", "y"]].abs().to_numpy().max()) / gravity
     for name, label in (("x", "east-west"), ("y", "north-south")):
-        line = Line(x=at, y=record[name].to_numpy() / gravity, style=Style(colour="#444444"), width=0.8)
         y = Axis(label=label, unit="g", low=-largest, high=largest)
-        panels.append(Panel(x=replace(TIME, low=0.0), y=y, layers=[*marks, line], height=1.4))
+        ground = _column(record, name) / gravity
+        panels.append(_over_time(at, ground, y, marks, Style(colour="#444444"), 1.4))
     return Picture(
         name="figure-5",
         title="Figure 5: response to the 1940 El Centro record",
@@ -148,6 +142,11 @@ def earthquake_picture(table: pd.DataFrame, record: pd.DataFrame, numbers: Mappi
         panels=panels,
         link_x=True,
     )
+
+
+def _over_time(x: Array, y: Array, axis: Axis, marks: list[Layer], style: Style, height: float) -> Panel:
+    line = Line(x=x, y=y, style=style, width=0.8)
+    return Panel(x=_FROM_0, y=axis, layers=[*marks, line], height=height)
 
 
 def _signed_log(values: Array) -> Array:

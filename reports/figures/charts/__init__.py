@@ -1,1 +1,0 @@
-"""What interactive figures have in common."""
