@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..console.terminal import FAILED, INTERRUPTED, complain, user_input
+from ..console.terminal import FAILED, complain, interruptible, user_input
 from .inputs import options
 
 if TYPE_CHECKING:
@@ -17,6 +18,11 @@ if TYPE_CHECKING:
 
 _GRID, _WORK = "Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT", "Work"
 _MOST_VALUES = 100_000
+_MODELS: Mapping[str, Mapping[str, Any]] = {
+    "recess": {"support": "recess"},
+    "flat": {"support": "flat"},
+    "planar": {"support": "recess", "plane": 0.0},
+}
 
 SuiteFile = Annotated[
     str | None,
@@ -97,8 +103,7 @@ def sweep(
 
     Whatever ends the sweep, the same command goes on where it stopped.
 
-    Writes sweep.json and the Parquet dataset chunks; rockwobble show prints
-    what they hold.
+    Writes the table sweep.parquet; rockwobble show prints what it holds.
     """
     with user_input():
         from rockwobble.compare import require_writable
@@ -114,34 +119,33 @@ def sweep(
         require_writable(out)
     for line in _echo(plan):
         print(line)
-    _run(plan, out, scheduler, workers, chunk)
-    from rockwobble.compare.describe.folder import describe_store
-
-    from .show import print_description
-
-    print()
-    for found in describe_store(out):
-        if found["kind"] == "a sweep":
-            print_description(out, found)
-
-
-def _run(
-    plan: Grid | CaseSweep, out: Path, scheduler: str | None, workers: int | None, chunk: int | None
-) -> None:
     from rockwobble.compare import SweepIncompleteError
     from rockwobble.compare import sweep as run
 
-    from ..console.sweep_progress import shown_sweep
+    from ..console.progress import shown_progress
+    from ..pages.provenance import command_line
+    from .show import show
 
     try:
-        with user_input(), shown_sweep() as tell:
-            run(plan, out=out, scheduler=scheduler, workers=workers, chunk_size=chunk, progress=tell)
+        with (
+            interruptible(f"the finished chunks are kept in {out}, and the same command goes on"),
+            user_input(),
+            shown_progress("chunks") as tell,
+        ):
+            run(
+                plan,
+                out=out,
+                scheduler=scheduler,
+                workers=workers,
+                chunk_size=chunk,
+                progress=tell,
+                command=command_line(),
+            )
     except SweepIncompleteError as error:
         complain(str(error))
         raise typer.Exit(FAILED) from None
-    except KeyboardInterrupt:
-        complain(f"interrupted; the finished chunks are kept in {out}, and the same command goes on")
-        raise typer.Exit(INTERRUPTED) from None
+    print()
+    show(out)
 
 
 def _grid(
@@ -160,10 +164,15 @@ def _grid(
 
 def _suite(name: str, models: list[str] | None) -> CaseSweep:
     from rockwobble.compare import CaseSweep, default_runs
-    from rockwobble.models import read_suite
+    from rockwobble.models import Run, read_suite
+
+    unknown = [model for model in models or () if model not in _MODELS]
+    if unknown:
+        raise ValueError(f"--model must be one of {', '.join(_MODELS)}, got {unknown[0]!r}")
 
     suite = read_suite(name)
-    return CaseSweep(suite.cases, (*(models or ()), *(suite.runs or (() if models else default_runs()))))
+    reduced = [Run(None, **_MODELS[model]) for model in models or ()]
+    return CaseSweep(suite.cases, (*reduced, *(suite.runs or (() if models else default_runs()))))
 
 
 def values(option: str, text: str) -> list[float]:
@@ -227,7 +236,7 @@ def _echo(plan: Grid | CaseSweep) -> list[str]:
         )
     else:
         ends = [case.cylinder for case in plan.cases]
-        what = f"{len(plan.cases)} cases, {len(plan.methods)} methods"
+        what = f"{len(plan.cases)} cases, {len(plan.runs)} runs of each"
     return [
         "Cylinders: "
         + ", ".join(

@@ -85,8 +85,8 @@ def _records(table: pd.DataFrame) -> Picture:
         name="records",
         title="Peak tilt over records, against the recess model",
         caption="Each curve: the share of the records whose ratio of the two peaks is at most that of the "
-        "axis; what overturns by one of the two alone is at an end. The dotted curve is the recess model itself "
-        "under a record 1 % stronger: a scatter no wider is sensitivity, and no error of a method.",
+        "axis; what overturns by one of the two alone is at an end. The dotted curve is the recess model "
+        "itself under a record 1 % stronger: a scatter no wider is sensitivity, and no error of a method.",
         panels=panels,
         columns=min(2, len(panels)),
     )
@@ -146,12 +146,12 @@ def _verification(table: pd.DataFrame) -> Picture:
         name="verification",
         title="The engine tells the models apart",
         caption="Each mark is a release: how far the engine's angle of turn is off that of its own model, "
-        "over how far the two models are apart. Below the line it decides between them. Open marks: passes that "
-        "its contact does not resolve.",
+        "over how far the two models are apart. Below the line it decides between them. Open marks: passes "
+        "that its contact does not resolve.",
         panels=[
             Panel(
-                x=Axis(label="recess model − flat-ground model", unit="deg", log=True),  # noqa: RUF001
-                y=Axis(label="engine − its model", unit="deg", log=True),  # noqa: RUF001
+                x=Axis(label="recess model − flat-ground model", unit="deg", log=True),
+                y=Axis(label="engine − its model", unit="deg", log=True),
                 layers=layers,
                 height=3.2,
             )
@@ -214,8 +214,8 @@ def _rings(table: pd.DataFrame) -> Picture:
     return Picture(
         name="rings",
         title="A real recess against the ideal one",
-        caption="Rings whose walls lean by α, under El Centro at 1.5 g tan α and in free response; bars: over "
-        "the azimuths by which the problem is turned. Energy: where the walls are touched.",
+        caption="Rings whose walls lean by α, under El Centro at 1.5 g tan α and in free response; bars: "
+        "over the azimuths by which the problem is turned. Energy: where the walls are touched.",
         panels=[
             Panel(
                 x=clearance,
@@ -260,13 +260,13 @@ def _contact(table: pd.DataFrame) -> Picture:
         x=lost,
         y=np.full(len(lost), float(known["ratio"].min()) if len(known) else 1.0),
         name="failed" if len(lost) else "",
-        style=Style(colour="#D55E00", dash="none", symbol="x"),
+        style=Style(colour=DARK, dash="none", symbol="x"),
     )
     return Picture(
         name="contact",
         title="Contact that gives",
-        caption="Peak tilt under El Centro at 2 g tan α, and energy lost in a pass of free response over that "
-        "of the release, by the softness of contact and its damping ratio.",
+        caption="Peak tilt under El Centro at 2 g tan α, and energy lost in a pass of free response over "
+        "that of the release, by the softness of contact and its damping ratio.",
         panels=[
             Panel(
                 x=softness,

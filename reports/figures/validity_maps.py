@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +10,7 @@ from rockwobble.compare.studies.validity.limits.distributions import cells
 from rockwobble.compare.studies.validity.limits.needs import MODERATE
 
 from .heat import Gap, Heat, Shades, contour, names
-from .palette import DARK, GREY, ORDER, Style
+from .palette import DARK, GREY, ORDER, PALE, Style
 from .picture import Array, Axis, Line, Panel, Picture
 
 if TYPE_CHECKING:
@@ -20,7 +19,8 @@ if TYPE_CHECKING:
     from rockwobble.compare.studies.validity.limits import Tables
 
 _FREE_PANELS = 4
-_STILL = "no record uplifts it"
+_FAR = 1e3  # what infinite is drawn as: beyond every scale
+_STILL, _NONE = "no record uplifts it", "no record rocks it and leaves it standing"
 # column of the cells, level, name of the line where it is reached, style
 _LINES = (
     ("overturned", 0.1, "1 in 10 records overturns", Style(colour=DARK, dash="dash")),
@@ -35,91 +35,82 @@ _LINES = (
 )
 
 
+# name, title, caption, column of the cells, shades
+_MAPS = (
+    (
+        "bias",
+        "Where rolling out changes the peak: bias",
+        "Median over the records of the peak on flat ground over that in an ideal recess, both of the reduced "
+        "models: red, higher on flat ground; blue, lower.",
+        "flat_percent",
+        Shades(label="flat over recess, median", unit="%", low=-50.0, high=50.0, centre=0.0),
+    ),
+    (
+        "spread",
+        "Where rolling out changes the peak: spread",
+        "The factor by which nine in ten records differ at most, to either side, on flat ground; darkest: 10 "
+        "and more, or it overturns in one of the two alone.",
+        "flat_90",
+        Shades(label="factor of nine in ten", unit="-", low=1.0, high=10.0, log=True),
+    ),
+    (
+        "sensitivity",
+        "What sensitivity alone does",
+        "The same of the recess model against itself under a record 1 % stronger: where it is no less, neither "
+        "model can be asked for the peak of one record.",
+        "copy_90",
+        Shades(label="factor of nine in ten", unit="-", low=1.0, high=10.0, log=True),
+    ),
+    (
+        "need-friction",
+        "Friction that the recess model needs",
+        "Friction that nine in ten of the records that rock without overturning need at most.",
+        "friction_90",
+        Shades(label="friction / tan α", unit="-", low=1.0, high=10.0, log=True),
+    ),
+    (
+        "need-contact",
+        "Least normal force",
+        "Normal force that nine in ten of the records that rock without overturning keep at least; below zero "
+        "the ground would have to pull.",
+        "normal_10",
+        Shades(label="normal force / weight", unit="-", low=-1.0, high=1.0, centre=0.0),
+    ),
+    (
+        "need-moment",
+        "Moment that the recess must supply",
+        "Restraining moment that nine in ten of the records that rock without overturning need at most.",
+        "moment_90",
+        Shades(label="moment / (weight × b)", unit="-", low=0.01, high=1.0, log=True),
+    ),
+)
+
+
 def map_pictures(tables: Tables) -> list[Picture]:
     """Return the maps: of peaks over records, of what a recess must supply, and of free response."""
-    table = cells(tables)
-    found = [
-        _shaken(
-            "bias",
-            "Where rolling out changes the peak: bias",
-            "Median over the records of the peak on flat ground over that in an ideal recess, both of the reduced "
-            "models: red, higher on flat ground; blue, lower.",
-            Shades(label="flat over recess, median", unit="%", low=-50.0, high=50.0, centre=0.0),
-            table,
-            lambda own: 100.0 * (own["flat_ratio"] - 1.0),
-        ),
-        _shaken(
-            "spread",
-            "Where rolling out changes the peak: spread",
-            "The factor by which nine in ten records differ at most, to either side, on flat ground.",
-            Shades(label="factor of nine in ten", unit="-", low=1.0, high=10.0, log=True),
-            table,
-            lambda own: own["flat_90"].replace(np.inf, 1e9),
-        ),
-        _shaken(
-            "sensitivity",
-            "What sensitivity alone does",
-            "The same of the recess model against itself under a record 1 % stronger: where it is no less, "
-            "neither model can be asked for the peak of one record.",
-            Shades(label="factor of nine in ten", unit="-", low=1.0, high=10.0, log=True),
-            table,
-            lambda own: own["copy_90"].replace(np.inf, 1e9),
-        ),
-        _shaken(
-            "need-friction",
-            "Friction that the recess model needs",
-            "Friction that nine in ten of the records that rock without overturning need at most.",
-            Shades(label="friction / tan α", unit="-", low=1.0, high=10.0, log=True),
-            table,
-            lambda own: own["friction_90"].replace(np.inf, 1e9),
-        ),
-        _shaken(
-            "need-contact",
-            "Least normal force",
-            "Normal force that nine in ten of the records that rock without overturning keep at least; below "
-            "zero the ground would have to pull.",
-            Shades(label="normal force / weight", unit="-", low=-1.0, high=1.0, centre=0.0),
-            table,
-            lambda own: own["normal_10"],
-        ),
-        _shaken(
-            "need-moment",
-            "Moment that the recess must supply",
-            "Restraining moment that nine in ten of the records that rock without overturning need at most.",
-            Shades(label="moment / (weight × b)", unit="-", low=0.01, high=1.0, log=True),
-            table,
-            lambda own: own["moment_90"],
-        ),
-    ]
-    free = tables["free_response"]
+    table, free = cells(tables), tables["free_response"]
+    table = table.assign(flat_percent=100.0 * (table["flat_ratio"] - 1.0))
+    found = [_shaken(table, *given) for given in _MAPS]
     for name, what in (("turn", "Angle of turn"), ("period", "Period")):
-        found.append(
-            _free(f"free-{name}", what, free.assign(off=100.0 * (free[f"flat_{name}"] / free[name] - 1.0)))
-        )
+        off = 100.0 * (free[f"flat_{name}"] / free[name] - 1.0)
+        found.append(_free(f"free-{name}", what, free.assign(off=off)))
     return found
 
 
-def _shaken(
-    name: str,
-    title: str,
-    caption: str,
-    shades: Shades,
-    table: pd.DataFrame,
-    value: Callable[[pd.DataFrame], pd.Series[float]],
-) -> Picture:
+def _shaken(table: pd.DataFrame, name: str, title: str, caption: str, column: str, shades: Shades) -> Picture:
     panels = []
     for tan_alpha, own in table.groupby("tan_alpha"):
-        shown = own.assign(shown=value(own))
         (x, x_ticks), (y, y_ticks) = (
             names(sorted(own[axis].unique())) for axis in ("semidiagonal", "intensity")
         )
-        values = _grid(shown, "shown")
-        still = _grid(own, "rocked") == 0.0
-        layers: list[Heat | Line] = [
-            Heat(x=x, y=y, values=values, gaps=[Gap(name=_STILL, colour="#d9d9d9", cells=still)])
+        values, still = _grid(own, column), _grid(own, "rocked") == 0.0
+        gaps = [
+            Gap(name=_NONE, colour=GREY, cells=np.isnan(values) & ~still),
+            Gap(name=_STILL, colour=PALE, cells=still),
         ]
-        for column, level, words, style in _LINES:
-            line = _contour(x, y, _grid(own, column), level)
+        layers: list[Heat | Line] = [Heat(x=x, y=y, values=values, gaps=gaps)]
+        for other, level, words, style in _LINES:
+            line = _contour(x, y, _grid(own, other), level)
             if len(line[0]):
                 layers.append(Line(x=line[0], y=line[1], name=words, style=style))
         panels.append(
@@ -143,14 +134,15 @@ def _shaken(
 
 def _grid(table: pd.DataFrame, value: str) -> Array:
     grid = table.pivot_table(value, "intensity", "semidiagonal", dropna=False)
-    return np.asarray(grid.to_numpy(dtype=np.float64))
+    found = grid.to_numpy(dtype=np.float64)
+    return np.where(np.isposinf(found), _FAR, found)  # a colour and a contour need a number
 
 
 def _contour(x: Array, y: Array, values: Array, level: float) -> tuple[Array, Array]:
-    """The line of a level over the cells; what is infinite is far above every level."""
+    """The line of a level over the cells."""
     if min(values.shape) < 2:
         return np.empty(0), np.empty(0)
-    return contour(x, y, np.where(np.isposinf(values), 1e3, values), level)
+    return contour(x, y, values, level)
 
 
 def _free(name: str, what: str, table: pd.DataFrame) -> Picture:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from rockwobble.compare.studies.tradeoff import (
     ROUNDS,
-    TARGETS,
     costs,
     engine_factors,
     plateaus,
@@ -72,7 +71,7 @@ def _ways(cheapest: pd.DataFrame) -> pd.DataFrame:
         for row in cheapest.to_dict("records")
     ]
     keys = ["problem", "support", "target"]
-    wide = cheapest.assign(said=said).pivot(index=keys, columns="family", values="said")
+    wide = cheapest.assign(said=said).pivot_table("said", keys, "family", aggfunc="first")
     order = cheapest[keys].drop_duplicates()
     return order.merge(wide.fillna(NONE).reset_index(), on=keys)
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import pandas as pd
-
 from rockwobble.compare.metrics.distributions import MARGIN
 from rockwobble.compare.studies.validity import limits_of
 from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
@@ -18,6 +16,8 @@ from ..figures.validity import METHODS, validity_pictures
 from .page import Page
 
 if TYPE_CHECKING:
+    import pandas as pd
+
     from rockwobble.compare.studies.validity import Validity
 
 
@@ -54,6 +54,8 @@ def validity_pages(found: Validity) -> dict[str, bytes]:
 
 def limits_table(found: Validity) -> pd.DataFrame:
     """Return every number of every limit: limit, number, value."""
+    import pandas as pd
+
     rows = [
         {"limit": limit, "number": number, "value": value}
         for limit, numbers in limits_of(found.tables).items()
@@ -74,7 +76,7 @@ def _contrasts(table: pd.DataFrame) -> list[dict[str, object]]:
 
 
 def _summary(table: pd.DataFrame) -> list[dict[str, object]]:
-    """The maps in one table: a row for each slenderness and intensity, the least and the largest over sizes."""
+    """The maps in one table: by slenderness and intensity the least and the largest over the sizes."""
     rows: list[dict[str, object]] = []
     for (tan_alpha, intensity), own in table.groupby(["tan_alpha", "intensity"]):
         rows.append(

@@ -1,28 +1,28 @@
 """Print what a real recess costs against clearance, inclination, facets and friction of its ring of walls.
 
-The engine in an ideal recess and on flat ground stands above the rings: what it differs by from its models
-is its error.
+The engine in an ideal recess and on flat ground stands above the rings: what they differ by from their models
+is the error of the engine.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from rockwobble.compare.runs.execution import Job, simulate_all
-from rockwobble.compare.studies.validity.motions import EL_CENTRO, REFERENCE_SIZE, shaken_case
+from rockwobble.compare.runs.execution import simulate_run
+from rockwobble.compare.runs.scheduler import run_tasks
+from rockwobble.compare.runs.task import Lost
+from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case
 from rockwobble.compare.studies.validity.rings import against_models, has_room, losses, release_of
 from rockwobble.models import Case, Run
 
 from .console import options_of
 
-Row = Mapping[str, Any]
-# tan(alpha): peak of the record over the acceleration that uplifts. Large motion, and the ground keeps hold
-INTENSITIES = ((0.2, 2.0), (1.0, 1.3))
-_RELEASED, _SHAKEN = 8.0, 15.0  # lengths [s]: of the record the strong part
+if TYPE_CHECKING:
+    import pandas as pd
 
 CLEARANCES = (0.0, 1e-4, 1e-3, 3e-3, 1e-2, 5e-2)  # [b]
 INCLINATIONS = (0.1, 0.2, 0.3, 0.5, 0.8, 1.1)  # [rad]
@@ -30,10 +30,13 @@ FACETS = (8, 16, 32, 64, 128, 256)
 FRICTIONS = (0.0, 0.2, 0.5, 1.0)
 # azimuths by which each case is turned [deg]: the same problem, but for the walls and for chance
 TURNS = (0.0, 2.0, 5.0, 9.0)
+# tan(alpha): peak of the record over the acceleration that uplifts. Large motion, and the ground keeps hold
+INTENSITIES = {0.2: 2.0, 1.0: 1.3}
+_LENGTH, _RECORD = 8.0, 15.0  # [s] of a free response, and of the strong part of the record
 
 
 def ring_runs() -> tuple[Run, ...]:
-    """Return the runs of each case: recess, flat ground, rings that differ from the default in one thing."""
+    """Return the runs of each case: recess, flat, and rings that differ from the default in one setting."""
     varied: dict[str, Sequence[Any]] = {
         "ring_clearance": CLEARANCES,
         "ring_inclination": INCLINATIONS,
@@ -44,85 +47,45 @@ def ring_runs() -> tuple[Run, ...]:
     return (Run("mujoco", "recess"), Run("mujoco", "flat"), *rings)
 
 
-def ring_cases(turn: float, intensities: Sequence[tuple[float, float]] = INTENSITIES) -> list[Case]:
-    """Return a release and the record for each slenderness, turned by an angle [rad]."""
-    return [
-        case
-        for tan_alpha, intensity in intensities
-        for case in (
-            release_of(tan_alpha, turn, _RELEASED),
-            shaken_case(EL_CENTRO, tan_alpha, REFERENCE_SIZE, intensity, duration=_SHAKEN, turn=turn),
-        )
-    ]
+def ring_cases(tan_alpha: float, turn: float = 0.0) -> dict[str, Case]:
+    """Return free response and El Centro by name, turned by an azimuth [rad]."""
+    name = f"tan alpha {tan_alpha:g}"
+    shaken = shaken_case(EL_CENTRO, tan_alpha, 6.0, INTENSITIES[tan_alpha], duration=_RECORD, turn=turn)
+    return {f"free response, {name}": release_of(tan_alpha, turn, _LENGTH), f"El Centro, {name}": shaken}
 
 
-def measure(cases: Sequence[Case], runs: Sequence[Run], *, workers: int | None = None) -> list[Row]:
-    """Return a row for each case and run whose walls leave room for the release.
-
-    case, support, settings, what `rings.losses` and `rings.against_models` say.
-    """
-    jobs = [Job(case=case, run=run) for case in cases for run in runs if has_room(case, run)]
-    return [
-        {
-            "case": f"{job.case.name}, tan alpha {job.case.cylinder.tan_alpha:g}",
-            "support": job.run.support,
-            "settings": job.run.settings,
-            **losses(trace),
-            **against_models(trace),
-        }
-        for job, trace in zip(jobs, simulate_all(jobs, workers=workers), strict=True)
-    ]
+def measure(task: tuple[str, Case, Run]) -> dict[str, object]:
+    """Return the row of one run: case, run, what it cost, and its RMS differences from the models."""
+    name, case, run = task
+    trace = simulate_run(case, run)
+    changed = " ".join(f"{key.removeprefix('ring_')} {value:g}" for key, value in run.settings.items())
+    return {"case": name, "run": changed or run.support, **losses(trace), **against_models(trace)}
 
 
-def table(rows: Sequence[Row]) -> str:
-    """Return the rows as text, one block for each case: medians over the rows of a case and a ring."""
-    head = [
-        f"{'run':17} {'first':>6} {'contact':>8} {'passes':>6} {'lost':>8} {'from':>8} {'to':>8} "
-        f"{'a pass':>8} {'rolled':>8} {'at end':>8} {'twist':>6} {'recess':>7} {'flat':>7}",
-        f"{'':17} {'s':>6} {'s':>8} {'':>6} {'%':>8} {'%':>8} {'%':>8} {'%':>8} "
-        f"{'b':>8} {'b':>8} {'rad':>6} {'RMS':>7} {'RMS':>7}",
-    ]
-    lines = []
-    for case in dict.fromkeys(row["case"] for row in rows):
-        lines += ["", case, *head]
-        blocks: dict[str, list[Row]] = {}
-        for row in rows:
-            if row["case"] == case:
-                blocks.setdefault(_name(row), []).append(row)
-        lines += [_line(name, block) for name, block in blocks.items()]
-    return "\n".join(lines)
+def medians(rows: pd.DataFrame) -> pd.DataFrame:
+    """Return a row for each case and run: medians over the turns, and the span of the energy lost [%]."""
+    import pandas as pd
 
-
-def _name(row: Row) -> str:
-    changed = (f"{name.removeprefix('ring_')} {value:g}" for name, value in row["settings"].items())
-    return " ".join(changed) or str(row["support"])
-
-
-def _line(name: str, rows: Sequence[Row]) -> str:
-    def median(field: str) -> float:
-        return _median(abs(row[field]) for row in rows)
-
-    lost = [100.0 * row["loss"] for row in rows]
-    each = _median(100.0 * row["loss"] / row["passes"] for row in rows if row["passes"])
-    broken = sum(row["outcome"] in ("failed", "overturned") for row in rows)
-    return (
-        f"{name:17} {median('first_contact'):6.2f} {median('contact_time'):8.4f} {median('passes'):6.0f} "
-        f"{_median(lost):8.3f} {min(lost):8.3f} {max(lost):8.3f} {each:8.3f} "
-        f"{median('rolled_out'):8.4f} {median('at_end'):8.4f} {median('twist'):6.3f} "
-        f"{median('recess'):7.0e} {median('flat'):7.0e}"
-        + (f"  {broken} of {len(rows)} failed or overturned" if broken else "")
-    )
-
-
-def _median(values: Iterable[float]) -> float:
-    """Median of what is finite: a run without a touch has no time of it."""
-    finite = [value for value in values if math.isfinite(value)]
-    return float(np.median(finite)) if finite else math.nan
+    found = []
+    for (case, run), own in rows.groupby(["case", "run"], sort=False):
+        lost = 100.0 * own["loss"]
+        passes = own["passes"].where(own["passes"] > 0)
+        sizes = own[["contact_time", "rolled_out", "at_end", "recess", "flat"]].median()
+        first = own["first_contact"].replace(np.inf, np.nan).median()
+        found.append(
+            {"case": case, "run": run, "first": first, "passes": own["passes"].median(),
+             "lost": lost.median(), "from": lost.min(), "to": lost.max(), "a pass": (lost / passes).median(),
+             "twist": own["twist"].abs().median(),
+             "broken": int(own["outcome"].isin(("failed", "overturned")).sum())} | sizes.to_dict()
+        )  # fmt: skip
+    return pd.DataFrame(found)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
     import sys
+
+    import pandas as pd
 
     parser = options_of(
         "ring_losses",
@@ -140,22 +103,31 @@ def main(arguments: Sequence[str] | None = None) -> int:
         "--tan-alpha",
         type=float,
         action="append",
-        choices=[tan_alpha for tan_alpha, _ in INTENSITIES],
+        choices=list(INTENSITIES),
         help="slenderness, may be repeated (default: all)",
     )
     given = parser.parse_args(arguments)
-    chosen = [each for each in INTENSITIES if each[0] in (given.tan_alpha or [each[0]])]
-    turns = TURNS[: given.turns]
-    rows: list[Row] = []
-    for turn in turns:
-        print(f"turned by {turn:g} deg", file=sys.stderr)
-        rows += measure(ring_cases(math.radians(turn), intensities=chosen), ring_runs())
-    azimuths = ", ".join(f"{turn:g}" for turn in turns)
-    print(
-        "MuJoCo, R = 6 m, friction of the ground 3. A ring has its default settings but for the one named.\n"
-        f"Medians of runs turned by {azimuths} deg about the vertical. lost: of the largest energy reached.\n"
-        "rolled: how far from its place the cylinder would come down, largest and at the end.\n"
-        "recess, flat: RMS of the tilt difference over that of the model's tilt."
+    tasks = [
+        (name, case, run)
+        for tan_alpha in given.tan_alpha or INTENSITIES
+        for turn in TURNS[: given.turns]
+        for name, case in ring_cases(tan_alpha, math.radians(turn)).items()
+        for run in ring_runs()
+        if has_room(case, run)
+    ]
+    found = run_tasks(
+        measure,
+        tasks,
+        label=lambda task: f"{task[0]}, {task[2]}",
+        progress=lambda event: print(f"{event.done} of {event.total}: {event.label}", file=sys.stderr),
     )
-    print(table(rows))
+    table = medians(pd.DataFrame([row for row in found if not isinstance(row, Lost)]))
+    print(
+        "MuJoCo, R = 6 m, ample friction. A ring has its default settings but for the one named.\n"
+        f"Medians of runs turned by {', '.join(f'{turn:g}' for turn in TURNS[: given.turns])} deg.\n"
+        "first contact with a wall [s]; lost [%] of the largest energy reached; rolled_out, at_end: how\n"
+        "far from its place it would come down [b]; recess, flat: relative RMS against the models."
+    )
+    for case, own in table.groupby("case", sort=False):
+        print(f"\n{case}\n{own.drop(columns='case').to_string(index=False, float_format='{:.4g}'.format)}")
     return 0

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pandas as pd
@@ -40,13 +41,15 @@ def test_each_support_has_its_own_answer(turn: Problem) -> None:
     initial = turn.cases[0].initial
     assert initial is not None
     recess, flat, ring = (turn.references[support] for support in ("recess", "flat", "ring"))
-    assert recess.values[0] == pytest.approx([math.degrees(reduced.angle_of_turn(PIER, initial))], rel=1e-15)
+    assert recess.quantities[0] == pytest.approx(
+        [math.degrees(reduced.angle_of_turn(PIER, initial))], rel=1e-15
+    )
     assert (recess.doubt, recess.source) == (0.0, "exact")
     assert flat.source == "tight"
     assert 0.0 < flat.doubt < CONVERGED
     # a ring that is not yet touched lets the cylinder roll as flat ground does: but for the engine's error
     assert ring.source == "half_step"
-    assert ring.values[0] == pytest.approx(flat.values[0], abs=20.0 * ring.doubt)
+    assert ring.quantities[0] == pytest.approx(flat.quantities[0], abs=20.0 * ring.doubt)
 
 
 def test_the_models_and_scipy_find_the_angle_of_turn(turn: Problem, methods: list[Method]) -> None:
@@ -63,7 +66,7 @@ def test_the_models_and_scipy_find_the_angle_of_turn(turn: Problem, methods: lis
 @pytest.mark.parametrize("line", ["mujoco recess", "mujoco ring"])
 def test_an_engine_comes_closer_with_its_step(turn: Problem, methods: list[Method], line: str) -> None:
     errors = [error(turn, m) for m in methods if m.line == line]
-    assert all(coarse > 1.9 * fine > 0.0 for coarse, fine in zip(errors, errors[1:], strict=False))
+    assert all(coarse > 1.9 * fine > 0.0 for coarse, fine in pairwise(errors))
 
 
 def test_a_refused_run_says_so_and_has_no_error(turn: Problem, methods: list[Method]) -> None:

@@ -2,206 +2,196 @@
 
 from __future__ import annotations
 
-import dataclasses
-import json
 import math
+from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from tiny_validity import TINY, tiny_tables
 
-from rockwobble.compare.studies.validity import PARTS, QUICK, limits_of, measure_all
-from rockwobble.compare.studies.validity.limits.limit import first_failing, percent, up_to
-from rockwobble.compare.studies.validity.limits.peaks import peak_difference
+from rockwobble.compare.runs.progress import Progress
+from rockwobble.compare.studies.validity import FULL, PARTS, QUICK, limits_of, measure_all
+from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
+from rockwobble.compare.studies.validity.limits import LIMITS
+from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
+from rockwobble.compare.studies.validity.limits.engine import damping
+from rockwobble.compare.studies.validity.limits.numbers import first_failing, reached, up_to
 from rockwobble.compare.studies.validity.parts import part_named
+from rockwobble.compare.studies.validity.records import HALVED, RECESS
+from rockwobble.models import Cylinder
 from rockwobble.reduced import body, problem
+from rockwobble.reduced.body import Body
 from rockwobble.reduced.exact import _checks
-from rockwobble.reports.pages.validity.headline import headline
 
-TINY = dataclasses.replace(
-    QUICK,
-    name="tiny",
-    tan_alphas=(0.2, 0.7),
-    releases=(0.5,),
-    spins=(0.1, 0.5),
-    sizes=(4.0, 12.0),
-    intensities=(1.5, 3.0),
-    shaken_tan_alphas=(0.2, 0.7),
-    engine_points=((0.4, 0.5, 0.25),),
-    slip_points=((0.2, 0.5, 0.25),),
-    slip_shares=(0.9, 1.05),
-    trace_points=((0.2, 6.0, 2.0),),
-    trace_length=3.0,
-    ring_tan_alphas=(0.7,),
-    ring_clearances=(1e-3,),
-    ring_length=4.0,
-    contacts=((2e-3, 1.0),),
-    members=2,
-    member_step=5e-4,
-)
-ENGINE_FREE = ("free_response", "shaking")
+Tables = Mapping[str, pd.DataFrame]
 # of the transverse inertia: far above every error of an engine, and no other body
 HEAVIER = 1.1
+FAST = [part_named(name) for name in ("free_response", "peaks")]
 
 
-def _with_heavier_models(patch):
-    """Let the reduced models, and nothing else, have another transverse inertia."""
+@pytest.fixture(scope="module")
+def tables() -> Tables:
+    return tiny_tables()
 
-    def heavier(cylinder, gravity):
+
+@pytest.fixture(scope="module")
+def heavier(tables: Tables, tmp_path_factory: pytest.TempPathFactory) -> Tables:
+    """The tables where the reduced models, and nothing else, have another transverse inertia."""
+
+    def heavier_body(cylinder: Cylinder, gravity: float) -> Body:
         true = body.body_of(cylinder, gravity)
         I1 = HEAVIER * true.I1
         A, J = true.A - true.I1 + I1, true.J - true.I1 + I1
         p2 = true.p2 * true.A / A
         return true._replace(I1=I1, A=A, J=J, p2=p2, p=p2**0.5)
 
-    patch.setattr(problem, "body_of", heavier)
-    patch.setattr(_checks, "body_of", heavier)
-
-
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory):
-    return tmp_path_factory.mktemp("measured")
-
-
-@pytest.fixture(scope="module")
-def tables(kept):
-    return measure_all(TINY, kept, workers=1)
-
-
-@pytest.fixture(scope="module")
-def heavier_tables(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
-        _with_heavier_models(patch)
+        patch.setattr(problem, "body_of", heavier_body)
+        patch.setattr(_checks, "body_of", heavier_body)
         return measure_all(TINY, tmp_path_factory.mktemp("heavier"), workers=1)
 
 
-def test_every_part_measures_and_every_limit_is_drawn(tables):
+def test_every_part_measures_and_every_limit_has_numbers(tables: Tables) -> None:
     assert set(tables) == {part.name for part in PARTS}
     assert all(len(table) for table in tables.values())
     limits = limits_of(tables)
-    assert len({limit.subject for limit in limits}) == len(limits) == 10
-    for limit in limits:
-        for words in (limit.use, limit.error, limit.avoid):
-            assert words.endswith(".")
-            assert "nan" not in words.split()
+    assert set(limits) == set(LIMITS)
+    assert all(isinstance(value, float) for numbers in limits.values() for value in numbers.values())
 
 
-def test_engine_confirms_both_models_and_the_report_says_so(tables):
-    numbers = {limit.subject: limit.numbers for limit in limits_of(tables)}
-    form = numbers["Free response: rolling out"]
-    assert form["confirmed"] == form["points"] == 2.0
-    assert headline(limits_of(tables)).startswith("In an ideal recess the reduced model is right")
+def test_engine_confirms_both_models_and_contradicts_another_body(tables: Tables, heavier: Tables) -> None:
+    right, wrong = (limits_of(found)["free_response"] for found in (tables, heavier))
+    assert (right["confirmed"], right["contradicted"], right["points"]) == (2.0, 0.0, 2.0)
+    assert (wrong["confirmed"], wrong["contradicted"]) == (0.0, 2.0)
 
 
-def test_another_constant_in_the_reduced_model_changes_the_conclusions(tables, heavier_tables):
-    right, wrong = limits_of(tables), limits_of(heavier_tables)
-    form = next(limit for limit in wrong if limit.subject == "Free response: rolling out")
-    assert form.numbers["contradicted"] == form.numbers["points"] == 2.0
-    assert form.use.startswith("Not established: the engine contradicts")
-    assert headline(wrong).startswith("The reduced model is not established even in an ideal recess")
-    changed = [ours.subject for ours, theirs in zip(right, wrong, strict=True) if ours != theirs]
-    # what each limit rests on is the reduced model, in part at least
-    assert set(changed) == {limit.subject for limit in right}
-
-
-@pytest.mark.parametrize(
-    ("factor", "scatter", "words"),
-    [
-        (1.001, 0.0, "they agree within 5 % in the median (95 %: a ratio from 1.001 to 1.001)"),
-        (1.1, 0.0, "they do not agree within 5 % in the median (95 %: a ratio from 1.100 to 1.100)"),
-        (1.0, 0.3, "it is undecided whether they agree within 5 % in the median"),
-    ],
-)
-def test_over_records_agreement_is_said_where_the_interval_shows_it(tables, factor, scatter, words):
-    random, count = np.random.default_rng(1), 22
-    peaks = random.lognormal(-1.2, 0.8, count)
-    scattered = factor * peaks * np.exp(scatter * random.standard_normal(count))
-    members = pd.DataFrame(
-        [
-            {"motion": f"record {i}", "level": 2.0, "method": method, "peak": peak, "outcome": "completed"}
-            for method, values in (("recess", peaks), ("engine, recess", scattered), ("engine, flat", peaks))
-            for i, peak in enumerate(values)
-        ]
-    )
-    limits = limits_of({**tables, "statistics": members})
-    use = next(limit.use for limit in limits if limit.subject == "Distributions of peak tilt")
-    assert f"in an ideal recess {words}" in use
-    assert "on open ground they agree within 5 % in the median (95 %: a ratio from 1.000 to 1.000)" in use
-    said = headline(limits)
-    assert said.startswith("The reduced model is not established") is (factor == 1.1)
-    assert ("over 22 records it is undecided whether peaks agree within 5 %" in said) is (scatter > 0.0)
-
-
-def test_engine_does_not_know_of_the_constant(tables, heavier_tables):
-    ours, theirs = (found["statistics"] for found in (tables, heavier_tables))
-    engine = ours["method"].str.startswith("engine")
+def test_every_limit_rests_on_the_reduced_model_and_the_engine_does_not(
+    tables: Tables, heavier: Tables
+) -> None:
+    right, wrong = limits_of(tables), limits_of(heavier)
+    assert {name for name in LIMITS if right[name] != wrong[name]} == set(LIMITS)
+    ours, theirs = (found["records"] for found in (tables, heavier))
+    engine = ~ours["method"].isin((RECESS, "flat-ground model", "perturbed copy"))
     np.testing.assert_array_equal(ours[engine]["peak"], theirs[engine]["peak"])
     assert (ours[~engine]["peak"].to_numpy() != theirs[~engine]["peak"].to_numpy()).all()
 
 
-def test_second_run_repeats_nothing_and_finds_the_same(tables, kept, monkeypatch):
-    def measured_again(*_):
-        raise AssertionError("measured again")
-
-    monkeypatch.setattr("rockwobble.compare.studies.validity.campaign.measure_task", measured_again)
-    told = []
-    again = measure_all(TINY, kept, workers=1, progress=told.append)
-    assert told[-1].found == told[-1].total == told[-1].done
-    for name, table in tables.items():
-        assert table.to_csv() == again[name].to_csv()
+def test_no_record_is_stronger_than_earthquakes_are() -> None:
+    for extent in (QUICK, FULL):
+        asked = [
+            inputs["tan_alpha"] * max(inputs["intensities"]) for inputs in part_named("peaks").tasks(extent)
+        ]
+        assert max(asked) <= LARGEST_PEAK
+        points = (*extent.record_points, *extent.trace_points)
+        assert max(tan_alpha * intensity for tan_alpha, _, intensity in points) <= LARGEST_PEAK
 
 
-def test_an_ended_run_goes_on_where_it_was(tmp_path, monkeypatch):
-    parts = [part_named(name) for name in ENGINE_FREE]
-    whole = measure_all(TINY, tmp_path / "whole", parts=parts, workers=1)
-    seen = []
+def test_quick_is_a_part_of_the_full_report_in_every_respect() -> None:
+    for part in PARTS:
+        quick, full = list(part.tasks(QUICK)), list(part.tasks(FULL))
+        assert 0 < len(quick) <= len(full)
+        assert sum(map(part.cost, quick)) < sum(map(part.cost, full))
+    assert FULL.members >= 20
+    assert {ring.friction for ring in FULL.rings} >= {0.0, 0.5, 1.0}
+    assert len({ring.clearance for ring in FULL.rings}) >= 4
 
-    def stop(event):
-        seen.append(event.done)
-        if event.done == 3:
+
+@pytest.mark.parametrize(
+    ("factor", "scatter", "verdict"), [(1.001, 0.0, "within"), (1.1, 0.0, "beyond"), (1.0, 0.3, "undecided")]
+)
+def test_over_records_agreement_is_said_where_the_interval_shows_it(
+    tables: Tables, factor: float, scatter: float, verdict: str
+) -> None:
+    random, count = np.random.default_rng(1), 22
+    peaks = random.lognormal(-1.2, 0.8, count)
+    scattered = factor * peaks * np.exp(scatter * random.standard_normal(count))
+    rows = [
+        {"motion": f"record {i}", "tan_alpha": 0.2, "semidiagonal": 6.0, "intensity": 2.0, "method": method,
+         "peak": peak, "outcome": "completed", "contact_time": 0.0, "loss": 0.0}
+        for method, values in ((RECESS, peaks), ("recess", scattered), ("ring", 2.0 * peaks), (HALVED, peaks))
+        for i, peak in enumerate(values)
+    ]  # fmt: skip
+    members = {**tables, "records": pd.DataFrame(rows)}
+    found = contrasts(members).set_index(["method", "against"])
+    assert found.loc[("recess", RECESS), "verdict"] == verdict
+    # a ring is another system, and is held against itself for how far it has converged
+    assert found.loc[("ring", RECESS), "ratio"] == pytest.approx(2.0)
+    assert found.loc[("ring", HALVED), "ratio"] == pytest.approx(2.0)
+    numbers = limits_of(members)["records"]
+    assert (numbers["recess_within"], numbers["recess_beyond"]) == (
+        float(verdict == "within"),
+        float(verdict == "beyond"),
+    )
+    assert numbers["ring_beyond"] == 1.0
+
+
+def test_a_cell_is_of_records_signed_and_knows_who_overturns(tables: Tables) -> None:
+    fallen = 0.5 * math.pi / math.atan(0.2)
+    rows = {
+        "recess": [0.1, 0.2, 0.4, fallen],
+        "flat": [0.05, 0.1, fallen, fallen],
+        "copy": [0.1, 0.2, 0.4, 0.9],
+    }
+    nothing = dict.fromkeys(("friction", "least_normal", "moment"), math.nan)
+    table = pd.DataFrame(rows).assign(
+        motion=[f"record {n}" for n in range(4)], tan_alpha=0.2, semidiagonal=6.0, intensity=2.0, **nothing
+    )
+    found = cells({**tables, "peaks": table}).iloc[0]
+    assert (found["members"], found["rocked"]) == (4, 4)
+    assert (found["overturned"], found["flat_overturned"], found["copy_overturned"]) == (0.25, 0.5, 0.0)
+    # halved, halved, and one that overturns on flat ground alone; twice overturned there is no ratio
+    assert found["flat_ratio"] == pytest.approx(0.5)
+    assert found["flat_90"] == math.inf
+    assert found["copy_ratio"] == pytest.approx(1.0)
+
+
+def test_soft_contact_is_told_by_its_damping_and_failures_are_counted(tables: Tables) -> None:
+    rows = [
+        {"damping": damping, "softness": softness, "loss": 0.1, "peak": peak, "recess_peak": 0.5,
+         "free_outcome": "completed", "outcome": outcome}
+        for damping, softness, peak, outcome in (
+            (0.1, 0.01, 0.51, "completed"),
+            (0.3, 0.01, 0.8, "completed"),
+            (1.0, 0.002, 0.5, "completed"),
+            (1.0, 0.02, math.nan, "failed"),
+        )
+    ]  # fmt: skip
+    found = {**tables, "contact": pd.DataFrame(rows)}
+    by_damping = damping(found).set_index("damping")
+    assert by_damping["largest"].to_dict() == pytest.approx({0.1: 1.02, 0.3: 1.6, 1.0: 1.0})
+    assert by_damping["failed"].to_dict() == {0.1: 0, 0.3: 0, 1.0: 1}
+    numbers = limits_of(found)["soft_contact"]
+    assert (numbers["held_up_to"], numbers["left_from"], numbers["failed"]) == (0.002, 0.01, 1.0)
+
+
+def test_an_ended_run_goes_on_where_it_was_and_finds_the_same(tmp_path: Path) -> None:
+    whole = measure_all(TINY, tmp_path / "whole", parts=FAST, workers=1)
+
+    def stop(event: Progress) -> None:
+        if event.state == "finished" and event.done == 3:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        measure_all(TINY, tmp_path / "ended", parts=parts, workers=1, progress=stop)
-    told = []
-    found = measure_all(TINY, tmp_path / "ended", parts=parts, workers=1, progress=told.append)
+        measure_all(TINY, tmp_path / "ended", parts=FAST, workers=1, progress=stop)
+    told: list[Progress] = []
+    found = measure_all(TINY, tmp_path / "ended", parts=FAST, workers=1, progress=told.append)
     assert told[0].found == 3
-    assert all(found[name].to_csv() == whole[name].to_csv() for name in whole)
+    told.clear()
+    again = measure_all(TINY, tmp_path / "ended", parts=FAST, workers=1, progress=told.append)
+    assert not told  # nothing ran
+    for name, table in whole.items():
+        assert table.to_csv() == found[name].to_csv() == again[name].to_csv()
 
 
-def test_a_torn_file_is_not_taken_for_a_result(tmp_path):
-    parts = [part_named("free_response")]
-    measure_all(TINY, tmp_path, parts=parts, workers=1)
-    for path in (tmp_path / "measured").glob("*.json"):
-        assert set(json.loads(path.read_text())) == {"part", "inputs", "rows"}
-
-
-def test_up_to_needs_every_row_of_a_point():
+def test_measures_of_limits() -> None:
     points = np.array([0.1, 0.1, 0.2, 0.2, 0.3])
     holds = np.array([True, True, True, False, True])
-    assert up_to(points, holds) == 0.1
+    assert up_to(points, holds) == 0.1  # needs every row of a point
     assert first_failing(points, holds) == 0.2
-    assert math.isnan(up_to(points, ~holds | (points > 0.1)) - up_to(points, np.zeros(5, bool)))
+    assert math.isnan(up_to(points, np.zeros(5, bool)))
     assert math.isnan(first_failing(points, np.ones(5, bool)))
-
-
-def test_percent_is_short_and_says_when_it_does_not_know():
-    assert [percent(share) for share in (0.0, 1e-9, 0.00123, 0.1234, 1.5)] == [
-        "0 %",
-        "less than 0.001 %",
-        "0.12 %",
-        "12 %",
-        "150 %",
-    ]
-    assert percent(math.nan) == "an unknown share"
-
-
-def test_peak_difference_counts_falls_apart():
-    found = peak_difference(
-        np.array([0.0, 0.1, 0.2, 8.0, 8.0, math.nan]),
-        np.array([0.1, 0.11, 8.0, 8.0, 0.3, 0.1]),
-        np.full(6, 8.0),
-    )
-    assert (found.standing, found.falls) == (1, 3)
-    assert found.half == pytest.approx(0.1)
-    assert found.verdicts == pytest.approx(2.0 / 3.0)
+    # what is infinite counts, what is not known does not
+    assert reached(np.array([1.0, 2.0, math.inf, math.nan]), 0.6) == 2.0
+    assert reached(np.array([1.0, 2.0, math.inf]), 0.9) == math.inf

@@ -2,57 +2,85 @@
 
 from __future__ import annotations
 
-import math
+import dataclasses
+import re
 from pathlib import Path
 
 import pandas as pd
 import pytest
+from typer.testing import CliRunner
 
-from rockwobble.compare.studies import extremes
-from rockwobble.reports.cli.main import main
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(["extremes", *arguments])
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
+from rockwobble.compare.storage.manifest import made_now
+from rockwobble.compare.studies import extremes as study
+from rockwobble.compare.studies.extremes import KIND, METHODS, Extremes, Verdict, measure_extremes
+from rockwobble.compare.studies.extremes import study as scan
+from rockwobble.reports.cli.main import app
+from rockwobble.reports.pages.extremes import extremes_page
 
 
-def given(worst: str) -> pd.DataFrame:
+def given(worst: Verdict) -> Extremes:
     rows = [
-        ("spin", "0", "a", "fine", 1e-7),
-        ("spin", "0", "b", worst, 0.3),
-        ("spin", "9", "a", "n/a", math.nan),
+        ("spin", "0", "recess model", Verdict(verdict="fine", error=1e-7, reference="tight")),
+        ("spin", "0", "mujoco flat", worst),
+        ("spin", "0", "mujoco recess", worst),
+        ("spin", "9", "recess model", Verdict(verdict="n/a")),
     ]
-    names = ("extreme", "value", "method", "verdict", "error")
-    return pd.DataFrame([dict(zip(names, row, strict=True)) for row in rows]).assign(
-        backed_by="a reference", message="<b>said</b>"
+    names = ("extreme", "value", "method")
+    table = pd.DataFrame(
+        [dict(zip(names, row[:3], strict=True)) | dataclasses.asdict(row[3]) for row in rows]
     )
+    return Extremes(table=table, made=made_now(KIND, command="rockwobble extremes"))
 
 
-@pytest.mark.parametrize(("worst", "code"), [("inaccurate", 0), ("silent", 1)])
+FLAGGED = Verdict(verdict="flagged", error=0.3, reference="model", begins=0.5, limit="slip")
+SILENT = Verdict(verdict="silent", error=0.3, reference="model", begins=0.5)
+
+
+@pytest.mark.parametrize(("worst", "code"), [(FLAGGED, 0), (SILENT, 1)])
 def test_the_exit_code_tells_whether_anything_is_silently_wrong(
-    worst, code, tmp_path: Path, monkeypatch, capsys
-):
-    monkeypatch.setattr(extremes, "measure_extremes", lambda **_: given(worst))
-    assert call("--out", str(tmp_path)) == code
-    printed = " ".join(capsys.readouterr().out.split())
-    assert ("Nothing is silently wrong: of 2 runs 1 are fine" in printed) == (code == 0)
-    assert ("Silently wrong: b, spin 0: an error of 3e-01" in printed) == (code == 1)
-    assert {path.name for path in tmp_path.iterdir()} == {
-        f"extremes.{ending}" for ending in ("html", "md", "svg", "parquet", "json")
-    }
-    page = (tmp_path / "extremes.html").read_text()
-    assert "&lt;b&gt;said&lt;/b&gt;" in page
-    assert "<b>said" not in page
-    assert "(extremes.svg)" in (tmp_path / "extremes.md").read_text()
+    worst: Verdict, code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(study, "measure_extremes", lambda *_, **__: given(worst))
+    done = CliRunner().invoke(app, ["extremes", "--out", str(tmp_path)])
+    assert done.exit_code == code
+    printed = " ".join(done.stdout.split())
+    assert ("Nothing is silently wrong: of 3 runs 1 are fine" in printed) == (code == 0)
+    assert ("2 of 3 runs are silently wrong" in printed) == (code == 1)
+    names = {path.name for path in tmp_path.iterdir() if path.is_file()}
+    assert names >= {"extremes.html", "extremes.md", "extremes.parquet", "manifest.json"}
+    before = (tmp_path / "extremes.md").read_text()
+    (tmp_path / "extremes.md").unlink()
+    assert CliRunner().invoke(app, ["report", str(tmp_path)]).exit_code == 0
+    assert (tmp_path / "extremes.md").read_text() == before
 
 
-def test_bad_input_is_one_line(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_what_is_not_fine_is_one_line_for_what_the_same_thing_limits() -> None:
+    document = extremes_page(given(FLAGGED)).markdown()
+    section = document.split("## What is not fine")[1].split("##")[0]
+    rows = [row for row in section.splitlines() if row.startswith("| spin")]
+    assert len(rows) == 1
+    assert "mujoco flat, mujoco recess" in rows[0]
+    assert "contact slipped" in rows[0]
+    refused = extremes_page(given(Verdict(verdict="refused", refusal="<b>must</b> be *less*")))
+    assert "&lt;b&gt;must&lt;/b&gt;" in refused.html()
+    assert "<b>must" not in refused.html()
+
+
+def test_a_second_scan_repeats_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cheap = [each for each in scan.conditions() if each.value in ("0.001 s", "R = 0.01 m")]
+    monkeypatch.setattr(scan, "conditions", lambda **_: cheap)
+    monkeypatch.setattr(scan, "METHODS", METHODS[:2])
+    first = measure_extremes(tmp_path, workers=1)
+    assert list(first.table["verdict"]) == ["fine"] * 4
+    monkeypatch.setattr(scan, "judge", None)
+    again = measure_extremes(tmp_path, workers=1)
+    pd.testing.assert_frame_equal(first.table, again.table)
+    assert again.made.headline == {"fine": 4}
+
+
+def test_bad_input_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("")
-    assert call("--out", "taken") == 2
-    captured = capsys.readouterr()
-    assert "the output folder must be a folder" in captured.err
-    assert captured.err.count("\n") == 1
+    done = CliRunner().invoke(app, ["extremes", "--out", str(tmp_path / "taken")])
+    assert done.exit_code == 2
+    assert "the output folder must be a folder" in done.stderr
+    assert not re.search(r"\n.+\n", done.stderr)

@@ -2,51 +2,37 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pandas as pd
 import pytest
+from typer.testing import CliRunner
 
-from rockwobble.compare.storage.origin import Origin
-from rockwobble.compare.studies import tradeoff
-from rockwobble.compare.studies.tradeoff import Tradeoff, read_tradeoff, tradeoff_tables
-from rockwobble.reports.cli.main import main
+from rockwobble.compare.storage.manifest import made_now, read_results, write_results
+from rockwobble.compare.studies import tradeoff as study
+from rockwobble.compare.studies.tradeoff import KIND, Tradeoff, read_tradeoff
+from rockwobble.reports.cli.main import app
+from rockwobble.reports.pages.tradeoff import tradeoff_page
 
-FILES = {
-    "tradeoff.html", "tradeoff.md", "tradeoff.svg", "points.parquet", "problems.parquet", "scenes.parquet",
-    "tradeoff.json",
-}  # fmt: skip
-
-
-def call(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
-        main(list(arguments))
-    assert isinstance(ended.value.code, int)
-    return ended.value.code
+TABLES = ("points", "problems", "scenes")
 
 
 @pytest.fixture
 def found() -> Tradeoff:
-    rows = []
-    for family, line, knob, cost in (
-        ("reduced", "reduced, recess", "tolerance", 1.0),
-        ("scipy", "scipy LSODA, Python", "tolerance", 300.0),
-        ("mujoco", "MuJoCo recess", "time step", 700.0),
-    ):
-        rows += [
-            {
-                "problem": "shaken", "model": "recess", "family": family, "line": line, "support": "",
-                "knob": knob, "value": 10.0**-n, "settings": "", "ratio": cost * n,
-                "milliseconds": 0.2 * cost * n,
-                "error": 10.0 ** -(n + 1), "message": "",
-            }
-            for n in (2, 3, 4)
-        ]  # fmt: skip
-    problem = {
-        "problem": "shaken", "title": "Shaken", "error_title": "largest error of the tilt [α]",
-        "model": "recess",
-        "source": "tight solution", "doubt": 1e-12, "members": 1, "chance": float("nan"),
-    }  # fmt: skip
+    rows = [
+        {"problem": "shaken", "support": "recess", "panel": panel, "family": family, "line": line,
+         "knob": knob, "value": 10.0**-n, "ratio": cost * n, "ratio_low": 0.9 * cost * n,
+         "ratio_high": 1.2 * cost * n, "milliseconds": 0.2 * cost * n, "error": 10.0 ** -(n + 1), "said": ""}
+        for panel, family, line, knob, cost in (
+            ("methods", "reduced", "recess model", "tolerance", 1.0),
+            ("scipy", "scipy", "LSODA, Python", "tolerance", 300.0),
+            ("methods", "mujoco", "mujoco recess", "time step", 700.0),
+        )
+        for n in (2, 3, 4)
+    ]  # fmt: skip
+    problem = {"problem": "shaken", "support": "recess", "source": "tight", "doubt": 1e-12, "members": 1,
+               "chance": float("nan")}  # fmt: skip
     scene = {"engine": "mujoco", "degrees_of_freedom": 6, "contacts": 1, "constraint_rows": 3}
     return Tradeoff(
         points=pd.DataFrame(rows),
@@ -57,58 +43,62 @@ def found() -> Tradeoff:
                 scene | {"support": "ring", "option": "128 walls", "microseconds": 10.0, "ratio": 2.5},
             ]
         ),
-        rounds=3,
         load=(0.1, 1.2),
-        origin=Origin(
-            command="rockwobble tradeoff", date="2026-01-02", processor="an abacus", versions={"numpy": "2"}
-        ),
+        made=made_now(KIND, command="rockwobble tradeoff", about={"load": [0.1, 1.2]}),
     )
 
 
-@pytest.fixture
-def stored(found: Tradeoff, tmp_path: Path) -> Path:
-    folder = tmp_path / "stored"
-    folder.mkdir()
-    for name, content in tradeoff_tables(found).items():
-        (folder / name).write_bytes(content)
-    return folder
-
-
-def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(found, tmp_path, monkeypatch, capsys):
-    monkeypatch.setattr(tradeoff, "measure_tradeoff", lambda **_: found)
-    out = tmp_path / "out"
-    assert call("tradeoff", "--quick", "--out", str(out)) == 0
-    assert {path.name for path in out.iterdir()} == FILES
-    printed = " ".join(capsys.readouterr().out.split())
-    assert "takes 700 times the time of the reduced model" in printed
-    assert "scipy's solvers on the same equations takes 300 to 300 times" in printed
-    page = (out / "tradeoff.html").read_text()
-    assert page.count("plotly-graph-div") >= 1
-    assert "takes 2.5 times its time a step" in page
+def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
+    found: Tradeoff, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(study, "measure_tradeoff", lambda **_: found)
+    done = CliRunner().invoke(app, ["tradeoff", "--quick", "--out", str(tmp_path)])
+    assert done.exit_code == 0
+    assert {path.name for path in tmp_path.iterdir() if path.is_file()} >= {
+        *(f"{name}.parquet" for name in TABLES), "tradeoff.html", "tradeoff.md", "tradeoff-shaken.svg",
+        "manifest.json",
+    }  # fmt: skip
+    # multiples of the recess model at its default tolerance, not of another family at that error
+    printed = " ".join(done.stdout.split())
+    assert (
+        "an engine takes 1,400 to 2,100 times the computing time of the recess model at its default"
+        in printed
+    )
+    assert "scipy's solvers on the same equations takes 600 to 900 times" in printed
+    page = (tmp_path / "tradeoff.html").read_text()
+    assert page.count("plotly-graph-div") >= 2
     assert "The load of the machine was 0.1 before and 1.2 after." in page
     assert len(page) < 8e6
-    assert "(tradeoff.svg)" in (out / "tradeoff.md").read_text()
-    stored = read_tradeoff(out)
-    assert (stored.origin, stored.rounds, stored.load) == (found.origin, found.rounds, found.load)
-    for name in ("points", "problems", "scenes"):
-        pd.testing.assert_frame_equal(getattr(stored, name), getattr(found, name))
+    stored = read_tradeoff(tmp_path)
+    assert stored.load == found.load
+    for name in TABLES:
+        pd.testing.assert_frame_equal(getattr(stored, name), getattr(found, name), check_exact=True)
+    assert json.loads((tmp_path / "manifest.json").read_text())["kind"] == KIND
 
 
-def test_other_stored_numbers_have_other_conclusions(stored: Path, capsys):
-    points = pd.read_parquet(stored / "points.parquet")
+def test_other_stored_numbers_have_other_conclusions(found: Tradeoff, tmp_path: Path) -> None:
+    points = found.points.copy()
     points.loc[points["family"] == "mujoco", "ratio"] *= 2.0
-    points.to_parquet(stored / "points.parquet")
-    assert call("report", str(stored)) == 0
+    write_results(
+        tmp_path, found.made, {"points": points, "problems": found.problems, "scenes": found.scenes}
+    )
+    assert CliRunner().invoke(app, ["report", str(tmp_path)]).exit_code == 0
     for name in ("tradeoff.html", "tradeoff.md"):
-        text = (stored / name).read_text()
-        assert "takes 1,400 times the time of the reduced model" in text
-        assert "on 2026-01-02, on an abacus, with numpy 2." in text
+        assert "an engine takes 2,800 to 4,200 times" in (tmp_path / name).read_text()
+    assert read_results(tmp_path, KIND).manifest.command == "rockwobble tradeoff"
 
 
-def test_bad_input_is_one_line(tmp_path, monkeypatch, capsys):
-    monkeypatch.chdir(tmp_path)
+def test_variants_stand_beside_what_they_vary_on_shared_axes(found: Tradeoff) -> None:
+    (picture,) = tradeoff_page(found).pictures
+    methods, scipy = picture.panels
+    assert methods.entries() == ["recess model", "mujoco recess"]
+    assert scipy.entries() == ["recess model", "LSODA, Python"]
+    assert (methods.x, methods.y) == (scipy.x, scipy.y)
+
+
+def test_bad_input_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "taken").write_text("")
-    assert call("tradeoff", "--out", "taken") == 2
-    captured = capsys.readouterr()
-    assert "the output folder must be a folder" in captured.err
-    assert captured.err.count("\n") == 1
+    done = CliRunner().invoke(app, ["tradeoff", "--out", str(tmp_path / "taken")])
+    assert done.exit_code == 2
+    assert "the output folder must be a folder" in done.stderr
+    assert done.stderr.count("\n") == 1

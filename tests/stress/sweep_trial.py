@@ -15,14 +15,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.sweep.grid import Grid
-from rockwobble.compare.studies.sweep.store import CHUNKS
-from rockwobble.compare.studies.sweep.study import SweepProgress, sweep
+from rockwobble.compare.studies.sweep.study import sweep
 from rockwobble.models import el_centro_1940
 
 if TYPE_CHECKING:
     import pandas as pd
 
+CHUNKS = "finished/sweep"  # folder of those that are finished
 # some tens of milliseconds of work: most kills fall into the middle of several chunks
 CHUNK_SIZE = 40
 # of Dask, which takes some milliseconds for each: the killed worker is in the middle of one
@@ -101,8 +102,8 @@ def killed_sweep(folder: Path, *, sizes: int, kills: int, seed: int, workers: in
 def swept(folder: str, sizes: int, workers: int | None) -> None:
     """Sweep the grid of a trial and say when the first chunk is finished; the body of a killed process."""
 
-    def tell(event: SweepProgress) -> None:
-        if event.done > event.found:
+    def tell(event: Progress) -> None:
+        if event.state == "finished":
             print(event.done, flush=True)
 
     sweep(trial_grid(sizes), out=folder, chunk_size=CHUNK_SIZE, workers=workers, progress=tell)
@@ -143,7 +144,7 @@ def dask_sweep_with_a_death(
     killed_at: list[int] = []
     with dask_cluster(3) as (address, processes):
 
-        def tell(event: SweepProgress) -> None:
+        def tell(event: Progress) -> None:
             if not killed_at and 3 * event.done >= event.total:
                 processes[0].kill()
                 killed_at.append(event.done)

@@ -9,8 +9,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare import sweep
-from rockwobble.compare.studies.sweep.store import CHUNKS
-from stress.sweep_trial import CHUNK_SIZE, dask_sweep_with_a_death, killed_sweep, trial_grid
+from stress.sweep_trial import CHUNK_SIZE, CHUNKS, dask_sweep_with_a_death, killed_sweep, trial_grid
 
 
 def test_kills_at_random_moments_lose_and_repeat_nothing(tmp_path: Path) -> None:

@@ -50,14 +50,14 @@ class Reference:
 
     Attributes
     ----------
-    values : sequence of ndarray
+    quantities : sequence of ndarray
         Of all cases.
     doubt : float
         Its own error, from an answer ten times less tight or of twice the step; 0 where it is exact.
     source : {"exact", "tight", "half_step"}
     """
 
-    values: Sequence[Array]
+    quantities: Sequence[Array]
     doubt: float
     source: str
 
@@ -96,7 +96,7 @@ class Problem:
         """Return the error of an answer; NaN without one for each case."""
         if any(value.size == 0 or not np.isfinite(value).all() for value in quantities):
             return math.nan
-        return self.distance(quantities, self.references[support].values)
+        return self.distance(quantities, self.references[support].quantities)
 
 
 def problems(*, quick: bool = False) -> Iterator[Problem]:
@@ -119,7 +119,7 @@ def turn(*, quick: bool = False) -> Problem:
             few_steps=_STEPS[:2] if quick else _STEPS[:5],
             quantity=_angle_of_turn,
             distance=_largest,
-            references={"recess": Reference(values=[np.array([exact])], doubt=0.0, source="exact")},
+            references={"recess": Reference(quantities=[np.array([exact])], doubt=0.0, source="exact")},
         )
     )
 
@@ -167,7 +167,7 @@ def sampling_distance(problem: Problem, support: str, *, draws: int = 500, seed:
 
     No method needs to be better than that, because another earthquake changes more.
     """
-    found = np.concatenate(problem.references[support].values)
+    found = np.concatenate(problem.references[support].quantities)
     random = np.random.default_rng(seed)
     samples = np.sort(random.choice(found, (2, draws, len(found))), axis=2)
     return float(np.median(np.abs(samples[0] - samples[1]).mean(axis=1)))
@@ -187,7 +187,7 @@ def _answered(problem: Problem) -> Problem:
         if support not in found:
             best, other = ([_answer(problem, case, run) for case in problem.cases] for run in runs)
             source = "half_step" if support == "ring" else "tight"
-            found[support] = Reference(values=best, doubt=problem.distance(other, best), source=source)
+            found[support] = Reference(quantities=best, doubt=problem.distance(other, best), source=source)
     return replace(problem, references=found)
 
 

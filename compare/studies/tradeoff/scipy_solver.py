@@ -113,7 +113,7 @@ def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: fl
     """Return what a problem asks, by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
     from scipy.integrate import solve_ivp
 
-    step, reference = problem.sample_step, problem.references["recess"].values[0]
+    step, reference = problem.sample_step, problem.references["recess"].quantities[0]
     times = step * np.arange(math.ceil(rates.start / step), math.floor(rates.end / step) + 2)
     times = times[: int(np.searchsorted(times, rates.end + 1e-9))]
     sampled = problem.name == "shaken"

@@ -6,10 +6,10 @@ from . import (
     contact,
     following,
     free_response,
-    rings,
     peaks,
-    slip,
     records,
+    rings,
+    slip,
     verification,
 )
 from .part import Part

@@ -36,9 +36,9 @@ def contrasts(tables: Tables) -> pd.DataFrame:
     DataFrame
         tan_alpha, semidiagonal, intensity, method, against, members; the median ratio of the two peaks of a
         record and its 95 % interval (ratio, low, high), what 5 % and 95 % of the records do not exceed
-        (ratio_05, ratio_95, and the outer ends of their intervals, low_05 and high_95); p of
-        Wilcoxon's signed ranks; verdict on the margin of the median and the ratio within_reach; overturned, against_overturned
-        and both. 0 and infinity: it overturns by one of the two alone.
+        (ratio_05, ratio_95, and the outer ends of their intervals, low_05 and high_95); p of Wilcoxon's
+        signed ranks; verdict on the margin of the median and the ratio within_reach; overturned,
+        against_overturned and both. 0 and infinity: it overturns by one of the two alone.
     """
     import pandas as pd
 
