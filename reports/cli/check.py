@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -136,19 +137,16 @@ def _run(bench: Bench, layers: list[str]) -> tuple[list[Finding], float]:
 
     from rockwobble.compare.check import run_checks
 
-    from ..console.check_progress import shown_progress
+    from ..console.progress import shown_progress
     from ..pages.check import print_layer
 
     console = Console()
     begun = time.monotonic()
     findings: list[Finding] = []
     for layer in layers:
-        with shown_progress(layer) as (tell, count):
-            bench.progress = tell
-            of_layer = []
-            for finding in run_checks(bench, [layer]):
-                of_layer.append(finding)
-                count(len(of_layer))
+        print(f"checking {layer} ...", file=sys.stderr, flush=True)
+        with shown_progress("engine runs") as bench.progress:
+            of_layer = list(run_checks(bench, [layer]))
         print_layer(console, layer, of_layer)
         findings += of_layer
     return findings, time.monotonic() - begun
