@@ -19,6 +19,7 @@ from .definitions import G, BenchmarkRun
 
 Array = NDArray[np.float64]
 REST = 1e-8  # rest threshold over alpha
+NOTHING = 1e-9  # [s]
 EARLY = 3e-4  # of the shortest time scale: of the series that follows an uplift
 
 
@@ -75,13 +76,15 @@ def sampled(run: BenchmarkRun, spacing: float, end: float, *, rtol: float = 1e-1
         else:
             y, proposed = advance(P, body.p, y, length, a, slope, rtol, proposed)
         f = excess(P, a + slope * length)
-        least = G * (body.b * math.sin(REST * body.alpha) - 2.0 * body.h * math.sin(0.5 * REST * body.alpha) ** 2)
+        least = G * (
+            body.b * math.sin(REST * body.alpha) - 2.0 * body.h * math.sin(0.5 * REST * body.alpha) ** 2
+        )
         if moving and f < 0.0 and energy(P, y) < least * -f * body.h / (G * body.b):
             moving = False
             y = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, y[6]])
         states[float(finish)] = y
     chosen = np.array([states[float(time)] for time in np.round(times, 12)])
-    tilts = [tilt_of(one) if one[2] < 1.0 else (0.0, 0.0) for one in chosen]
+    tilts = [tilt_of(one) if one[0] or one[1] else (0.0, 0.0) for one in chosen]
     return Sampled(times, *np.array(tilts).T, chosen[:, 6])
 
 
@@ -95,6 +98,8 @@ def _lifted(
     lift = 0.0 if jump else crossing(P, a, slope, 0.0, length)
     ground = a + slope * lift
     unit = 1.0 / max(math.sqrt(p2), math.hypot(slope[0], slope[1]) / math.hypot(ground[0], ground[1]))
+    if length - lift < NOTHING:  # an uplift at the very end belongs to the next piece
+        return y, False, length
     early = min(EARLY * unit, length - lift)
     return lifted(P, p2, ground, slope, early, y[6], jump), True, lift + early
 

@@ -96,7 +96,7 @@ def read_csv(path: Path) -> dict[str, Columns]:
     return {run: {name: column[of_run == run] for name, column in values.items()} for run in names}
 
 
-def motion_of(columns: Columns, run: dict[str, Any], support: str) -> Motion:
+def motion_of(columns: Columns, run: dict[str, Any]) -> Motion:
     """Return the motion that the columns tell."""
     time = columns.get("time", np.array([]))
     if not len(time) or not np.all(np.diff(time) > 0.0):
@@ -116,7 +116,7 @@ def motion_of(columns: Columns, run: dict[str, Any], support: str) -> Motion:
     else:  # the height of the mass centre is R cos(alpha - tilt)
         share = np.abs(path[:, 2]) / math.hypot(run["base_radius"], run["mass_centre_height"])
         tilt = run["alpha"] - np.arccos(np.minimum(share, 1.0))
-        if support == "recess":
+        if run["support"] == "recess":
             lean = np.sin(tilt) * np.exp(1j * np.arctan2(path[:, 1], path[:, 0]))
     if np.any(np.isnan(tilt)) or np.any(np.isnan(lean)) != np.all(np.isnan(lean)):
         raise RejectedError("there must be tilt; or qw, qx, qy, qz; or x, y, z; with a value in each row")
@@ -182,7 +182,8 @@ def measured(quantity: str, motion: Motion, run: dict[str, Any], wanted: float) 
         moved = np.hypot(*(motion.path - motion.path[0]).T[:2])
         return exceeds(motion.time, moved, run["slide_level"] * run["base_radius"], 3.0)
     if quantity == "peak_tilt":
-        return max([float(motion.tilt.max()), *(tilt for _, tilt, _ in maxima(motion))]) / run["alpha"]
+        peak = max([float(motion.tilt.max()), *(tilt for _, tilt, _ in maxima(motion))])
+        return min(peak, 0.5 * math.pi) / run["alpha"]  # the side lies on the ground
     at = exceeds(motion.time, motion.tilt, run["lean_level"] * run["alpha"], 3.0)
     if quantity == "lean_time" or math.isnan(at):
         return at
@@ -250,6 +251,8 @@ class Case:
         known = np.isfinite(apart)
         if np.count_nonzero(known) < FEWEST or time[known][-1] - time[known][0] < 0.9 * (high - low):
             return math.inf
+        if one.get("measure") == "largest":
+            return float(apart[known].max())
         length = (np.append(np.diff(time), 0.0) + np.insert(np.diff(time), 0, 0.0))[known]
         return math.sqrt(float(np.sum(length * apart[known] ** 2) / np.sum(length)))
 
@@ -305,15 +308,14 @@ def axes(motion: Motion) -> Iterator[Change]:
 
 def clocks(case: Case, motions: Motions) -> Iterator[Change]:
     """Yield an offset and a wrong rate of the clock, as the tilts tell them."""
-    traces = [one for one in case.accept["criteria"] if one["kind"] == "trace" and one["name"] != "path"]
-    used = [name for name in (traces[0].get("runs", case.runs) if traces else ()) if name in motions]
+    tilts = [one for one in case.accept["criteria"] if one["kind"] == "trace" and one["name"] == "tilt"]
+    asked = [({**one, "measure": ""}, n) for one in tilts for n in one.get("runs", case.runs) if n in motions]
 
     def clocked(given: Motion, shift: float, rate: float) -> Motion:
         return replace(given, time=rate * given.time + shift)
 
     def misfit(shift: float, rate: float) -> float:
-        one = {**traces[0], "name": "tilt"}
-        return max(case.difference(one, name, clocked(motions[name], shift, rate)) for name in used)
+        return max(case.difference(one, name, clocked(motions[name], shift, rate)) for one, name in asked)
 
     def fitted(centre: float, width: float, misfit: Callable[[float], float]) -> float:
         for _ in range(6):
@@ -321,8 +323,8 @@ def clocks(case: Case, motions: Motions) -> Iterator[Change]:
             centre, width = float(tried[int(np.argmin([misfit(one) for one in tried]))]), 0.1 * width
         return centre
 
-    if used:
-        longest = max(float(motions[name].time[-1]) for name in used)
+    if asked:
+        longest = max(float(motions[name].time[-1]) for _, name in asked)
         shift = fitted(0.0, 0.3 * longest, lambda value: misfit(value, 1.0))
         yield f"times are off by {-shift:.4g} s", lambda given: clocked(given, shift, 1.0)
         rate = fitted(1.0, 0.1, lambda value: misfit(0.0, value))
@@ -334,9 +336,9 @@ def mistakes(case: Case, columns: dict[str, Columns], motions: Motions) -> tuple
     """Return the fewest mistakes that explain why a case is not passed, or not as well as it might be."""
     nothing: list[Change] = [("", lambda given: given)]
     candidates: list[tuple[tuple[str, ...], Motions]] = []
-    first, support = next(iter(motions)), case.given["support"]
+    first = next(iter(motions))
     for unit, convert in [*nothing, *units(columns[first])]:
-        runs = {name: motion_of(convert(given), case.runs[name], support) for name, given in columns.items()}
+        runs = {name: motion_of(convert(given), case.runs[name]) for name, given in columns.items()}
         for frame, turn in [*nothing, *axes(runs[first])]:
             turned = {name: turn(motion) for name, motion in runs.items()}
             if frame in ("", "z points down"):  # the others leave the tilt as it is
@@ -360,9 +362,11 @@ def judged(case: Case, path: Path) -> tuple[str, list[Outcome], tuple[str, ...]]
         columns = {next(iter(case.runs)): columns[""]}
     if set(columns) - set(case.runs) or (case.accept["runs"] == "all" and len(columns) < len(case.runs)):
         raise RejectedError(f"the column run must name {', '.join(case.runs)}; got {', '.join(columns)}")
-    motions = {n: motion_of(columns[n], case.runs[n], case.given["support"]) for n in columns}
+    motions = {name: motion_of(columns[name], case.runs[name]) for name in columns}
     found = case.judge(motions)
-    missing = [one.name for one in found if not one.run and one.name in case.accept["needed"]]
+    missing = [
+        name for name in case.accept["needed"] if all(one.name != name or not one.run for one in found)
+    ]
     missing += [f"enough of {one.name} in its window" for one in found if math.isinf(one.error)]
     if missing:
         raise RejectedError(f"the file does not tell {', '.join(missing)}, which this case needs")
