@@ -281,14 +281,14 @@ def el_centro() -> Definition:
     )
     agreement = {"pass": 0.01, "good": 0.001, "measure": "largest"}
     criteria = [
-        {**one, **agreement, "runs": [name]} for name in SUPPORTS for one in lean_and_tilt(ends[name], 1e-5)
+        {**one, **agreement, "runs": [name]} for name in SUPPORTS for one in lean_and_tilt(ends[name], 1e-4)
     ]
     return Definition(
         name="el-centro",
         title="El Centro 1940 until agreement must end",
         runs=runs,
         step=0.01,
-        criteria=(quantity("lean_time", "s", 0.02, 1e-4), *criteria),
+        criteria=(quantity("lean_time", "s", 0.02, 5e-4), *criteria),
         needed=("tilt",),
         needs="any",
     )

@@ -21,7 +21,7 @@ from rockwobble import reduced
 from rockwobble.models import Case
 from rockwobble.reduced.exact import free_response, steady_wobble_rate
 
-from .definitions import G, BenchmarkRun, Definition
+from .definitions import BenchmarkRun, Definition, G
 from .second import REST, Sampled, sampled
 
 Array = NDArray[np.float64]
@@ -89,6 +89,7 @@ def measured(name: str, run: BenchmarkRun, trace: Sampled) -> float:
     time, alpha = trace.time, run.cylinder.alpha
     if kind in ("turn", "period", "maximum"):
         falls = np.flatnonzero((trace.tilt_rate[:-1] > 0.0) & (trace.tilt_rate[1:] <= 0.0))
+        falls = falls[falls > 0]  # a release is a maximum itself, to rounding
         at = _root(time, trace.tilt_rate, int(falls[int(digits) - 1]))
         if kind == "period":
             return at / int(digits)

@@ -6,6 +6,7 @@ constant but radius, height and inertias: nothing of what `rockwobble.reduced` i
 
 from __future__ import annotations
 
+import itertools
 import math
 from typing import NamedTuple
 
@@ -15,7 +16,7 @@ from rigid_body import crossing, energy, excess, jit, lifted, step, tilt_of
 
 from rockwobble.reduced.body import body_of
 
-from .definitions import G, BenchmarkRun
+from .definitions import BenchmarkRun, G
 
 Array = NDArray[np.float64]
 REST = 1e-8  # rest threshold over alpha
@@ -62,7 +63,7 @@ def sampled(run: BenchmarkRun, spacing: float, end: float, *, rtol: float = 1e-1
     moving = run.initial is not None
     proposed = 1e-4 / body.p
     states = {0.0: y}
-    for begin, finish in zip(breaks[:-1], breaks[1:], strict=True):
+    for begin, finish in itertools.pairwise(breaks):
         i = int((begin + 1e-9) / dt) if len(record) else 0
         a, slope = np.zeros(3), np.zeros(3)
         if i < len(record) - 1:

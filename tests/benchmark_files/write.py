@@ -1,4 +1,4 @@
-"""Write the cases of reports/published/benchmark: python tests/benchmark_files/write.py [FOLDER] [CASE ...]."""
+"""The files of a case: case.json, accept.json, reference.json and reference.csv, and its ground motions."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rockwobble.reduced.body import body_of
 
-from .definitions import G, BenchmarkRun, Definition
+from .definitions import BenchmarkRun, Definition, G
 from .references import FIRST, SECOND, Reference
 
 PUBLISHED = Path(__file__).resolve().parents[2] / "reports" / "published" / "benchmark"
@@ -119,9 +119,8 @@ def _run(definition: Definition, run: BenchmarkRun) -> dict[str, Any]:
 def pose(run: BenchmarkRun) -> dict[str, list[float]]:
     """Return the start as a rigid body's: of its mass centre against the ground, in world axes.
 
-    The axis leans by the tilt towards the azimuth without a twist, the base touches the ground on its original
-    circle, equations (8) and (10), and the angular velocity has the spin about the axis that takes the
-    twist away: psi' = -phi'.
+    The axis leans by the tilt towards the azimuth without a twist, the base touches the ground on its
+    original circle, equations (8) and (10), and there is no twist rate: psi' = -phi'.
     """
     start, body = run.initial, body_of(run.cylinder, G)
     if start is None:

@@ -14,22 +14,21 @@ import csv
 import hashlib
 import json
 import math
-import re
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-VERSION = "1"
 LEVELS = ("exact", "good", "pass")
 UNITS = {"": 1.0, "-": 1.0, "s": 1.0, "ms": 1e-3, "rad": 1.0, "deg": math.pi / 180.0, "m": 1.0, "mm": 1e-3}
 ANGLES, QUATERNION, POSITION = ("tilt", "azimuth"), ("qw", "qx", "qy", "qz"), ("x", "y", "z")
 KNOWN = ("time", *ANGLES, *QUATERNION, *POSITION)
-FEWEST = 30  # samples in a window
-FITTED = 7  # samples of the polynomial through a maximum of the tilt
+FEWEST, FITTED = 30, 7  # samples in a window; samples of the polynomial through a maximum of the tilt
+FALLEN = 1.5  # [rad]: what fell ends before a window does
 ENOUGH = 4.0  # what is named as a mistake reduces the error at least so many times
 Columns = dict[str, np.ndarray]
 
@@ -72,28 +71,27 @@ Change = tuple[str, Callable[[Any], Any]]  # the words for a mistake, and what t
 def read_csv(path: Path) -> dict[str, Columns]:
     """Return the columns of each run, in SI units and radians as far as the header tells the units."""
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
+        lines = [line for line in path.read_text("utf-8-sig").splitlines() if line.strip(" ,;\t")]
     except (OSError, UnicodeDecodeError) as error:
         raise RejectedError(f"{path.name} cannot be read: {error}") from None
-    lines = [line for line in lines if line.strip() and not line.startswith("#")]
-    if len(lines) < 2:
+    if len(lines := [line for line in lines if not line.startswith("#")]) < 2:
         raise RejectedError(f"{path.name} has no samples")
     titles, *rows = csv.reader(lines, delimiter=max(",;\t", key=lines[0].count))
     values: Columns = {}
     for i, title in enumerate(titles):
-        name, unit = re.match(r"\s*([\w:.-]*)\s*[\[(]?\s*([^\])]*)", title.lower()).groups()
-        if name in KNOWN and unit.strip() not in UNITS:
+        name, _, unit = title.lower().replace("(", "[").partition("[")
+        name, unit = name.strip(), unit.strip(" )]")
+        if name in KNOWN and unit not in UNITS:
             raise RejectedError(f"the unit of {name} must be one of {', '.join(list(UNITS)[1:])}, got {unit}")
         try:
-            cells = [row[i].strip() for row in rows]
-            factor = UNITS.get(unit.strip(), 1.0)
+            cells, factor = [row[i].strip() for row in rows], UNITS.get(unit, 1.0)
             values[name] = np.array(cells if name == "run" else [float(c or "nan") * factor for c in cells])
         except (ValueError, IndexError):
             if name in KNOWN:
                 raise RejectedError(f"a cell of {name} is missing or is not a number") from None
     of_run = values.pop("run", np.array([""] * len(rows)))
-    names = dict.fromkeys(of_run.tolist())
-    return {run: {name: column[of_run == run] for name, column in values.items()} for run in names}
+    runs = dict.fromkeys(of_run.tolist())
+    return {run: {name: column[of_run == run] for name, column in values.items()} for run in runs}
 
 
 def motion_of(columns: Columns, run: dict[str, Any]) -> Motion:
@@ -114,8 +112,8 @@ def motion_of(columns: Columns, run: dict[str, Any]) -> Motion:
         if "azimuth" in columns:
             lean = np.sin(tilt) * np.exp(1j * np.where(tilt == 0.0, 0.0, columns["azimuth"]))
     else:  # the height of the mass centre is R cos(alpha - tilt)
-        share = np.abs(path[:, 2]) / math.hypot(run["base_radius"], run["mass_centre_height"])
-        tilt = run["alpha"] - np.arccos(np.minimum(share, 1.0))
+        share = path[:, 2] / math.hypot(run["base_radius"], run["mass_centre_height"])
+        tilt = run["alpha"] - np.arccos(np.clip(share, -1.0, 1.0))
         if run["support"] == "recess":
             lean = np.sin(tilt) * np.exp(1j * np.arctan2(path[:, 1], path[:, 0]))
     if np.any(np.isnan(tilt)) or np.any(np.isnan(lean)) != np.all(np.isnan(lean)):
@@ -127,10 +125,9 @@ def through(x: np.ndarray, X: np.ndarray, Y: np.ndarray) -> np.ndarray:
     """Return the cubic through the four nearest of evenly spaced samples; NaN outside them."""
     at = (x - X[0]) * (len(X) - 1) / (X[-1] - X[0])
     first = np.clip(np.floor(at).astype(int) - 1, 0, len(X) - 4)
-    u = at - first
-    a, b, c, d = u, u - 1.0, u - 2.0, u - 3.0
-    weights = (-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0)
-    total = sum(weight * Y[first + k] for k, weight in enumerate(weights))
+    a, b, c, d = (at - first - k for k in range(4))
+    weights = enumerate((-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0))
+    total = sum(weight * Y[first + k] for k, weight in weights)
     return np.where((at > -1e-6) & (at < len(X) - 1 + 1e-6), total, np.nan)
 
 
@@ -145,10 +142,8 @@ def maxima(motion: Motion) -> Iterator[tuple[float, float, float]]:
         fit = np.polyfit(time, tilt[near], degree)
         roots = np.roots(np.polyder(fit))
         best = float(min(roots[np.abs(roots.imag) < 1e-9].real, key=abs, default=0.0))
-        azimuth = np.angle(motion.lean[i])
-        if not np.isnan(azimuth):
-            turned = np.angle(motion.lean[near] * np.conj(motion.lean[i]))
-            azimuth += np.polyval(np.polyfit(time, turned, degree), best)
+        turned = np.nan_to_num(np.angle(motion.lean[near] * np.conj(motion.lean[i])))
+        azimuth = np.angle(motion.lean[i]) + np.polyval(np.polyfit(time, turned, degree), best)
         yield float(motion.time[i] + best * unit), float(np.polyval(fit, best)), float(azimuth)
 
 
@@ -156,25 +151,23 @@ def exceeds(time: np.ndarray, value: np.ndarray, level: float, power: float) -> 
     """Return when a value first exceeds a level; its root of that power is linear between samples."""
     i = int(np.argmax(value > level))
     if i == 0:
-        return float(time[0]) if value[0] > level else math.nan
+        return float(time[0]) if value[0] > level else math.nan if np.isnan(value[0]) else math.inf
     low, high = np.maximum(value[i - 1 : i + 1], 0.0) ** (1.0 / power)
     return float(time[i - 1] + (time[i] - time[i - 1]) * (level ** (1.0 / power) - low) / (high - low))
 
 
 def measured(quantity: str, motion: Motion, run: dict[str, Any], wanted: float) -> float:
-    """Return a quantity of reference.json from a trajectory; NaN where the trajectory does not tell it."""
+    """Return a quantity of reference.json; NaN where it is not told, inf where it does not happen."""
     name, _, digits = quantity.rpartition("_")
     if digits.isdigit() and name in ("turn", "period", "maximum"):  # of the first so many tilt maxima
         found = list(maxima(motion))[: int(digits)]
         if len(found) < int(digits):
-            return math.nan
+            return math.inf
         time, tilt, azimuth = found[-1]
-        if (
-            name == "turn"
-        ):  # samples do not tell whole revolutions apart: of all, the nearest to the reference
+        if name == "turn":  # samples do not tell revolutions apart: of all, the nearest to the reference
             off = azimuth - run["start"]["azimuth"] - int(digits) * wanted
             return wanted + math.remainder(off, 2.0 * math.pi) / int(digits)
-        return time / int(digits) if name == "period" else tilt / run["alpha"]
+        return float(time / int(digits) if name == "period" else tilt / run["alpha"])
     if name == "revolutions":
         turned = np.abs(np.unwrap(np.angle(motion.lean)) - run["start"]["azimuth"])
         return exceeds(motion.time, turned, 2.0 * math.pi * int(digits), 1.0)
@@ -183,27 +176,27 @@ def measured(quantity: str, motion: Motion, run: dict[str, Any], wanted: float) 
         return exceeds(motion.time, moved, run["slide_level"] * run["base_radius"], 3.0)
     if quantity == "peak_tilt":
         peak = max([float(motion.tilt.max()), *(tilt for _, tilt, _ in maxima(motion))])
-        return min(peak, 0.5 * math.pi) / run["alpha"]  # the side lies on the ground
+        return float(min(peak, 0.5 * math.pi) / run["alpha"])  # no more than the side on the ground
     at = exceeds(motion.time, motion.tilt, run["lean_level"] * run["alpha"], 3.0)
-    if quantity == "lean_time" or math.isnan(at):
+    if quantity == "lean_time":
         return at
     azimuth = float(np.angle(motion.lean[int(np.argmax(motion.time >= at))]))
     return wanted + math.remainder(azimuth - wanted, 2.0 * math.pi)
 
 
 class Case:
-    """A folder of the benchmark, and what it asks for."""
+    """A folder of the benchmark, and what it asks for; distributions by Kolmogorov and Smirnov."""
 
     def __init__(self, folder: Path) -> None:
         self.digest = hashlib.sha256((folder / "reference.json").read_bytes()).hexdigest()
         texts = [(folder / f"{name}.json").read_text("utf-8") for name in ("case", "accept", "reference")]
-        self.given, self.accept, reference = (json.loads(text) for text in texts)
-        self.runs: dict[str, dict[str, Any]] = {run["name"]: run for run in self.given["runs"]}
+        given, self.accept, reference = (json.loads(text) for text in texts)
+        self.runs = {run["name"]: run for run in given["runs"]}
         self.wanted = {(one["name"], one["run"]): one["value"] for one in reference["quantities"]}
         self.table = read_csv(folder / "reference.csv")[""]
 
     def judge(self, motions: Motions) -> list[Outcome]:
-        """Return the outcome of every criterion."""
+        """Return the outcome of every criterion; what is told of some runs only is not told."""
         outcomes = []
         for one in self.accept["criteria"]:
             runs = [name for name in one.get("runs", self.runs) if name in motions]
@@ -212,18 +205,16 @@ class Case:
             else:
                 wanted = {name: self.wanted[one["name"], name] for name in runs}
                 got = {n: measured(one["name"], motions[n], self.runs[n], wanted[n]) for n in runs}
-                units = {n: abs(wanted[n]) if one["unit"] == "relative" else 1.0 for n in runs}
-                found = {n: abs(got[n] - wanted[n]) / units[n] for n in runs}
+                relative = one["unit"] == "relative"
+                found = {n: abs(got[n] - wanted[n]) / (abs(wanted[n]) if relative else 1.0) for n in runs}
                 if one["kind"] == "distribution" and runs:
                     both = [*wanted.values(), *got.values()]
-                    # distance of Kolmogorov and Smirnov: the largest difference of the shares below a value
                     below = [np.searchsorted(np.sort([*v.values()]), both, "right") for v in (wanted, got)]
                     found = {"all": float(np.max(np.abs(below[0] - below[1]))) / len(runs)}
-            # what is told of some runs only is not told
             told = bool(found) and not any(math.isnan(error) for error in found.values())
             worst = max(found, key=lambda name: found[name]) if told else ""
-            bounds = tuple(one[level] for level in LEVELS)
-            outcomes.append(Outcome(one["name"], one["unit"], found.get(worst, 0.0), worst, bounds))
+            error, bounds = found.get(worst, 0.0), tuple(one[level] for level in LEVELS)
+            outcomes.append(Outcome(one["name"], one["unit"], error, worst, bounds))
         return outcomes
 
     def score(self, motions: Motions) -> float:
@@ -273,6 +264,7 @@ def units(columns: Columns) -> Iterator[Change]:
         yield "the azimuth is in degrees, not radians", scaled(math.pi / 180.0, "azimuth")
     if set(POSITION) <= set(columns):
         yield "lengths are in mm, not m", scaled(1e-3, *POSITION)
+        yield "z points down", scaled(-1.0, "z")
     if set(QUATERNION) <= set(columns):
         yield "the quaternion has its scalar last, not first", quaternion("zwxy", 1)
         yield "the quaternion is inverse: from world to body", quaternion("wxyz", -1)
@@ -292,18 +284,17 @@ AXES = {
 
 def axes(motion: Motion) -> Iterator[Change]:
     """Yield the mistakes in the axes: horizontal vectors mirrored in x, then turned, and z reversed."""
-    down = bool(np.median(motion.tilt) > 0.5 * math.pi or np.median(motion.path[:, 2]) < 0.0)
+    down = bool(np.median(motion.tilt) > 0.5 * math.pi)
 
     def mapped(given: Motion, turn: complex, mirrored: bool) -> Motion:
         flat = given.path[:, 0] + 1j * given.path[:, 1]
-        flat, lean = (turn * (np.conj(z) if mirrored else z) for z in (flat, given.lean))
-        path = np.column_stack([flat.real, flat.imag, (-1.0 if down else 1.0) * given.path[:, 2]])
-        return Motion(given.time, np.minimum(given.tilt, math.pi - given.tilt), lean, path)
+        flat, lean = (turn * (z.conj() if mirrored else z) for z in (flat, given.lean))
+        path = np.column_stack([flat.real, flat.imag, given.path[:, 2]])
+        return Motion(given.time, math.pi - given.tilt if down else given.tilt, lean, path)
 
-    if down:
-        yield "z points down", lambda given: mapped(given, 1, False)
-    for text, how in AXES.items():
-        yield "z points down, and " * down + text, lambda given, how=how: mapped(given, *how)
+    for text, (turn, mirrored) in [*([("", (1, False))] if down else []), *AXES.items()]:
+        words = " and ".join(filter(None, ("z points down" if down else "", text)))
+        yield words, partial(mapped, turn=turn, mirrored=mirrored)
 
 
 def clocks(case: Case, motions: Motions) -> Iterator[Change]:
@@ -324,19 +315,18 @@ def clocks(case: Case, motions: Motions) -> Iterator[Change]:
         return centre
 
     if asked:
-        longest = max(float(motions[name].time[-1]) for _, name in asked)
-        shift = fitted(0.0, 0.3 * longest, lambda value: misfit(value, 1.0))
+        shift = fitted(0.0, 0.3 * max(m.time[-1] for m in motions.values()), lambda value: misfit(value, 1.0))
         yield f"times are off by {-shift:.4g} s", lambda given: clocked(given, shift, 1.0)
         rate = fitted(1.0, 0.1, lambda value: misfit(0.0, value))
-        text = f"it moves as slowly as a body {100.0 * (rate**-2 - 1.0):+.2g} % in size (R)"
-        yield text, lambda given: clocked(given, 0.0, rate)
+        size = f"{100.0 * (rate**-2 - 1.0):+.2g} % in size (R)"
+        yield f"it moves as a body of {size}", lambda given: clocked(given, 0.0, rate)
 
 
 def mistakes(case: Case, columns: dict[str, Columns], motions: Motions) -> tuple[str, ...]:
     """Return the fewest mistakes that explain why a case is not passed, or not as well as it might be."""
     nothing: list[Change] = [("", lambda given: given)]
     candidates: list[tuple[tuple[str, ...], Motions]] = []
-    first = next(iter(motions))
+    first, before = next(iter(motions)), case.score(motions)
     for unit, convert in [*nothing, *units(columns[first])]:
         runs = {name: motion_of(convert(given), case.runs[name]) for name, given in columns.items()}
         for frame, turn in [*nothing, *axes(runs[first])]:
@@ -344,9 +334,8 @@ def mistakes(case: Case, columns: dict[str, Columns], motions: Motions) -> tuple
             if frame in ("", "z points down"):  # the others leave the tilt as it is
                 found = [*nothing, *clocks(case, turned)]
             for clock, correct in found:
-                said = tuple(text for text in (unit, frame, clock) if text)
+                said = tuple(filter(None, (unit, frame, clock)))
                 candidates.append((said, {name: correct(motion) for name, motion in turned.items()}))
-    before = case.score(motions)
     for count in (1, 2, 3):
         alike = [(case.score(other), said) for said, other in candidates if len(said) == count]
         best, said = min(alike, default=(math.inf, ()))
@@ -364,41 +353,45 @@ def judged(case: Case, path: Path) -> tuple[str, list[Outcome], tuple[str, ...]]
         raise RejectedError(f"the column run must name {', '.join(case.runs)}; got {', '.join(columns)}")
     motions = {name: motion_of(columns[name], case.runs[name]) for name in columns}
     found = case.judge(motions)
-    missing = [
-        name for name in case.accept["needed"] if all(one.name != name or not one.run for one in found)
-    ]
-    missing += [f"enough of {one.name} in its window" for one in found if math.isinf(one.error)]
-    if missing:
-        raise RejectedError(f"the file does not tell {', '.join(missing)}, which this case needs")
+    if missing := set(case.accept["needed"]) - {one.name for one in found if one.run}:
+        raise RejectedError(f"the file does not tell {', '.join(sorted(missing))}, which this case needs")
     verdict = max((one.level for one in found if one.run), key=(*LEVELS, "fail").index)
-    return verdict, found, mistakes(case, columns, motions) if verdict != "exact" else ()
+    said = mistakes(case, columns, motions) if verdict != "exact" else ()
+    short = [one.name for one in found if one.unit in ("alpha", "b") and one.error == math.inf]
+    if short and not said and all(motion.tilt.max() < FALLEN for motion in motions.values()):
+        raise RejectedError(f"the samples do not cover the window of {', '.join(short)}")
+    return verdict, found, said
 
 
 def main() -> int:
     """Judge one file; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     cases = {one.parent.name: one.parent for one in Path(__file__).resolve().parent.glob("cases/*/case.json")}
-    parser.add_argument("case", choices=sorted(cases), metavar="CASE", help=", ".join(sorted(cases)))
-    parser.add_argument("trajectory", type=Path, metavar="TRAJECTORY.csv")
+    parser.add_argument("case", choices=sorted(cases))
+    parser.add_argument("trajectory", type=Path)
     parser.add_argument("--label", default="", help="who made it: name, version and settings of the code")
     parser.add_argument("--out", type=Path, default=Path("result.json"))
     given = parser.parse_args()
-    case, reason = Case(cases[given.case]), ""
+    case = Case(cases[given.case])
     try:
-        verdict, found, said = judged(case, given.trajectory)
+        verdict, found, said, reason = *judged(case, given.trajectory), ""
     except RejectedError as error:
         verdict, found, said, reason = "rejected", [], (), str(error)
     print(f"{given.case}: {verdict}{': ' * bool(reason)}{reason}")
     for one in found:
-        limits = ", ".join(f"{level} {bound:.3g}" for level, bound in zip(LEVELS, one.bounds, strict=True))
+        limits = "exact {:.2g}, good {:.2g}, pass {:.2g}".format(*one.bounds)
         value = f" {one.error:.3g} {one.unit} (run {one.run}; {limits})" if one.run else ""
         print(f"  {one.name}: {one.level}{value}")
     for text in said:
         print(f"  likely mistake: {text}")
     result = {"schema": "result/1", "case": given.case, "label": given.label, "verdict": verdict}
-    result |= {"reason": reason, "criteria": [{**asdict(one), "level": one.level} for one in found]}
-    result |= {"likely_mistakes": said, "check": VERSION, "reference_sha256": case.digest}
-    given.out.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    errors = [{"level": one.level, "error": one.error if one.error < math.inf else None} for one in found]
+    result |= {
+        "reason": reason,
+        "criteria": [asdict(one) | error for one, error in zip(found, errors, strict=True)],
+    }
+    result |= {"likely_mistakes": said, "check": "1", "reference_sha256": case.digest}
+    given.out.write_text(json.dumps(result, indent=1) + "\n", "utf-8")
     return {"fail": 1, "rejected": 2}.get(verdict, 0)
 
 
