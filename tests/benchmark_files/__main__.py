@@ -1,34 +1,54 @@
-"""The command `python tests/benchmark_files [CASE ...]`: write the cases of reports/published/benchmark."""
+"""The command `python tests/benchmark_files`: write reports/published/benchmark, or parts of it.
+
+python tests/benchmark_files cases [CASE ...]       the references, and how well each is known
+python tests/benchmark_files results [ENGINE ...]   what check.py says of our models and engines, and the board
+"""
 
 from __future__ import annotations
 
 import argparse
+import subprocess
 import sys
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1]
+ENGINES = ("rockwobble", "mujoco", "pybullet", "exudyn")
 
 
-def main() -> None:
-    """Write the cases that are asked for, and print how well each reference is known."""
+def cases(names: list[str]) -> None:
+    """Write the cases, and print the largest bounds."""
     from benchmark_files.definitions import definitions
     from benchmark_files.references import reference
     from benchmark_files.write import PUBLISHED, write
 
-    parser = argparse.ArgumentParser(prog="python tests/benchmark_files", description=__doc__)
-    parser.add_argument("case", nargs="*", help="default: all")
-    parser.add_argument("--out", type=Path, default=PUBLISHED)
-    given = parser.parse_args()
-    known = {one.name: one for one in definitions()}
-    if unknown := set(given.case) - set(known):
-        parser.error(f"the cases are {', '.join(known)}, got {', '.join(sorted(unknown))}")
-    for name, definition in known.items():
-        if given.case and name not in given.case:
+    for definition in definitions():
+        if names and definition.name not in names:
             continue
         found = reference(definition)
-        write(definition, found, given.out / "cases" / name)
+        write(definition, found, PUBLISHED / "cases" / definition.name)
         worst = max((one["bound"] for one in found.quantities), default=0.0)
-        print(f"{name}: {len(found.quantities)} quantities, largest bound {worst:.0e}; traces {found.bounds}")
+        number = len(found.quantities)
+        print(f"{definition.name}: {number} quantities, largest bound {worst:.0e}; traces {found.bounds}")
+
+
+def results(names: list[str]) -> None:
+    """Write the results, and the scoreboard."""
+    from benchmark_files.engines import REDUCED, VARIANTS, results_of
+    from benchmark_files.write import PUBLISHED
+
+    for engine in names or ENGINES:
+        for variant in ("default",) if engine == REDUCED else VARIANTS:
+            results_of(engine, variant, PUBLISHED)
+    subprocess.run([sys.executable, str(PUBLISHED / "scoreboard.py")], check=True)
+
+
+def main() -> None:
+    """Do what is asked for."""
+    parser = argparse.ArgumentParser(prog="python tests/benchmark_files", description=__doc__)
+    parser.add_argument("part", choices=("cases", "results"))
+    parser.add_argument("names", nargs="*", help="default: all")
+    given = parser.parse_args()
+    {"cases": cases, "results": results}[given.part](given.names)
 
 
 if __name__ == "__main__":
