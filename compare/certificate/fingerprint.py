@@ -86,6 +86,8 @@ def fingerprint(method: Method) -> Iterator[dict[str, Any]]:
         spread = _BEYOND * np.array([_apart(copy, values) for copy in copies]).max(axis=0)
         lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > _AGREEMENT)
         allowed = method.repeats * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
+        if len(lost):  # from there on copies are no measure
+            allowed[lost[0] :] = allowed[max(lost[0] - 1, 0)]
         found["agreement_time"] = found["time"][lost[0]] if len(lost) else None
         found["repeats"] = method.repeats
         found["allowed"] = {name: _listed(allowed[:, k]) for k, name in enumerate(SIGNALS)}
