@@ -70,7 +70,7 @@ def short_cases() -> tuple[ShortCase, ...]:
             options={"plane": 0.0, "restitution": "momentum"},
         ),
         _record("el-centro", "all terms together", 1.4, 12.0),
-        _record("resting", "rest threshold", 1.05, 6.0, rest_tilt=0.02),
+        _shaken("resting", "rest threshold", [[0.0, 0.0], [1.3, 1.6], [0.0, 0.0]], 1.0, 3.0, rest_tilt=0.02),
         _record("close-passes", "a hundred passes near upright", 1.05, 9.0),
     )
 
@@ -84,15 +84,23 @@ def _release(
     return ShortCase(name=name, claim=claim, term=term, case=case, support=support)
 
 
-def _shaken(name: str, term: str, samples: list[list[float]], step: float) -> ShortCase:
+def _shaken(
+    name: str,
+    term: str,
+    samples: list[list[float]],
+    step: float,
+    length: float | None = None,
+    **options: float,
+) -> ShortCase:
     motion = GroundMotion(np.array(samples), step)
-    case = Case(_PIER, motion, duration=motion.duration)
-    return ShortCase(name=name, claim="uplift and motion under a ramp of the ground", term=term, case=case)
+    case = Case(_PIER, motion, duration=motion.duration if length is None else length)
+    claim = "uplift and motion under a ramp of the ground"
+    return ShortCase(name=name, claim=claim, term=term, case=case, options=options)
 
 
-def _record(name: str, term: str, strength: float, length: float, **options: float) -> ShortCase:
+def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
     """Return a case under El Centro, so many times as strong as what lifts the pier."""
     record = el_centro_1940()
     motion = record.scaled(strength * G * _PIER.tan_alpha / record.peak)
     case = Case(_PIER, motion, duration=length)
-    return ShortCase(name=name, claim="response to shaking", term=term, case=case, options=options)
+    return ShortCase(name=name, claim="response to shaking", term=term, case=case)

@@ -27,8 +27,8 @@ Only = Annotated[
     typer.Option(
         "--only",
         metavar="LAYER",
-        help="Make claims of one layer of `rockwobble check`; may be repeated. Default: equations, conserved, "
-        "exact, rest, invariance, order, residual, and with --engine traces and agreement.",
+        help="Make claims of one layer of `rockwobble check`; may be repeated. Default: equations, "
+        "conserved, exact, rest, invariance, order, residual, and with --engine traces and agreement.",
     ),
 ]
 Commit = Annotated[

@@ -1,7 +1,7 @@
 """The command `python tests/benchmark_files`: write reports/published/benchmark, or parts of it.
 
 python tests/benchmark_files cases [CASE ...]       the references, and how well each is known
-python tests/benchmark_files results [ENGINE ...]   what check.py says of our models and engines, and the board
+python tests/benchmark_files results [ENGINE ...]   what check.py says of our models and engines, scoreboard
 """
 
 from __future__ import annotations

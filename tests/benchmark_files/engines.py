@@ -1,6 +1,6 @@
 """Results of the engines: each case that an engine can do, judged by check.py like anybody's.
 
-`results/NAME` holds one file a case and about.json: code, version, settings, and the computing time of a step.
+`results/NAME` holds one file a case and about.json: code, version, settings, computing time of a step.
 """
 
 from __future__ import annotations
@@ -11,8 +11,8 @@ import statistics
 import subprocess
 import sys
 import tempfile
+from collections.abc import Collection
 from pathlib import Path
-from typing import Any
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Trace
@@ -26,42 +26,41 @@ REDUCED = "rockwobble"
 _LONG = 60.0  # [s] of all runs of a case: those with a finer step stay below
 
 
-def results_of(engine: str, variant: str, folder: Path, only: tuple[str, ...] = ()) -> None:
-    """Run the cases of a benchmark folder, and write what check.py says to its results."""
+def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = ()) -> None:
+    """Run the cases of a benchmark folder, the shortest first, and write what check.py says to its results."""
     target = folder / "results" / f"{engine}-{variant}"
     target.mkdir(parents=True, exist_ok=True)
-    about: dict[str, Any] = {}
-    costs = []
-    for path in sorted((folder / "cases").iterdir()):
-        cases = cases_of(path)
-        length = sum(case.length for case, _ in cases.values())
-        if (only and path.name not in only) or (variant != "default" and length > _LONG):
+    costs: list[float] = []
+    problems = {path: cases_of(path) for path in (folder / "cases").iterdir()}
+    lengths = {path: sum(case.length for case, _ in cases.values()) for path, cases in problems.items()}
+    for path in sorted(problems, key=lambda path: lengths[path]):
+        if (only and path.name not in only) or (variant != "default" and lengths[path] > _LONG):
             continue
         traces: dict[str, Trace] = {}
-        for name, (case, support) in cases.items():
+        for name, (case, support) in problems[path].items():
             try:
                 traces[name] = _simulate(engine, case, support, **VARIANTS[variant])
             except ValueError as error:  # what an engine cannot do
                 print(f"{engine}, {path.name}, {name}: {error}")
         if not traces:
             continue
-        one = next(iter(traces.values()))
+        version = next(iter(traces.values())).version
+        words = variant.replace("-", " ")
         costs += [t.wall_time * t.time_step / t.time[-1] for t in traces.values() if engine != REDUCED]
-        about = {
-            "code": engine,
-            "version": one.version,
-            "settings": variant.replace("-", " "),
-            "step": VARIANTS[variant].get("step", 1.0),
-        }
         with tempfile.TemporaryDirectory() as scratch:
             tables = {name: tilt_and_azimuth(trace) for name, trace in traces.items()}
             file = submit(tables, Path(scratch) / "trajectory.csv")
-            label = f"{engine} {one.version}, {about['settings']}"
-            command = [sys.executable, str(folder / "check.py"), path.name, str(file), "--label", label]
-            subprocess.run([*command, "--out", str(target / f"{path.name}.json")], check=False)
-    about["seconds_a_step"] = statistics.median(costs) if costs else None
-    about["machine"] = f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}"
-    (target / "about.json").write_text(json.dumps(about, indent=1) + "\n")
+            command = [sys.executable, str(folder / "check.py"), path.name, str(file)]
+            command += ["--label", f"{engine} {version}, {words}", "--out", str(target / f"{path.name}.json")]
+            subprocess.run(command, check=False)
+        about = {
+            "code": engine,
+            "version": version,
+            "settings": words,
+            "seconds_a_step": statistics.median(costs) if costs else None,
+            "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
+        }
+        (target / "about.json").write_text(json.dumps(about, indent=1) + "\n")
 
 
 def _simulate(engine: str, case: Case, support: str, step: float = 1.0) -> Trace:

@@ -3,7 +3,8 @@
     python scoreboard.py
 
 A folder results/NAME has about.json (code, version, settings, seconds_a_step) and for each case that was run
-the result.json of check.py, as CASE.json. A result that belongs to other references than those here is refused.
+the result.json of check.py, as CASE.json. A result that belongs to other references than those here is
+refused.
 """
 
 from __future__ import annotations
@@ -107,11 +108,9 @@ def main() -> None:
         "padding:.4em .6em;text-align:left;vertical-align:top}.exact,.good{background:#e2f2e4}"
         ".pass{background:#f4f7dc}.fail,.rejected{background:#f9e0dc}"
     )
-    (HERE / "scoreboard.html").write_text(
-        f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Scoreboard</title><style>{style}</style>'
-        f"<h1>Scoreboard</h1><p>{html.escape(words)}</p><table>{''.join(page)}</table></html>\n",
-        "utf-8",
-    )
+    start = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Scoreboard</title><style>{style}'
+    text = f"</style><h1>Scoreboard</h1><p>{html.escape(words)}</p><table>{''.join(page)}</table></html>\n"
+    (HERE / "scoreboard.html").write_text(start + text, "utf-8")
 
 
 if __name__ == "__main__":
