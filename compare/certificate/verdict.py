@@ -121,9 +121,11 @@ def compare_entries(old: Mapping[str, Any], new: Mapping[str, Any]) -> Answer:
         return Answer(CHANGED, quantity="agreement time, which no longer ends", **about)
     gap = largest_gap(old_peaks, new_peaks)
     most = _ONE_PERCENT * math.sqrt(1.0 / len(old_peaks) + 1.0 / len(new_peaks))
-    where = {"time": first[1]} if first else {}
+    time = first[1] if first else math.nan
     word = CHAOTIC if gap <= most else CHANGED
-    return Answer(word, quantity="distribution of the peaks", difference=gap, allowed=most, **where, **about)
+    return Answer(
+        word, quantity="distribution of the peaks", difference=gap, allowed=most, time=time, **about
+    )
 
 
 def _first_difference(

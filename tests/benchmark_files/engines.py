@@ -27,7 +27,7 @@ _LONG = 60.0  # [s] of all runs of a case: those with a finer step stay below
 
 
 def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = ()) -> None:
-    """Run the cases of a benchmark folder, the shortest first, and write what check.py says to its results."""
+    """Run the cases of a benchmark folder, the shortest first, and write what check.py says of them."""
     target = folder / "results" / f"{engine}-{variant}"
     target.mkdir(parents=True, exist_ok=True)
     costs: list[float] = []

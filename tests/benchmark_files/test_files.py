@@ -201,7 +201,8 @@ def test_programs_are_short_and_need_numpy_only(copied: Path) -> None:
     assert len((PUBLISHED / "check.py").read_text().splitlines()) < 400
     for name in ("check", "verify", "scoreboard"):
         code = (
-            "import sys; before = set(sys.modules); sys.path.insert(0, sys.argv[1]); __import__(sys.argv[2]); "
+            "import sys; before = set(sys.modules); sys.path.insert(0, sys.argv[1]); "
+            "__import__(sys.argv[2]); "
             "print(*sorted({m.partition('.')[0] for m in set(sys.modules) - before}))"
         )
         command = [sys.executable, "-I", "-c", code, str(copied), name]

@@ -39,7 +39,8 @@ def lean(given: Outputs) -> Array:
     if given.azimuth is None:
         return np.column_stack([np.sin(given.tilt), np.zeros_like(given.tilt)])
     azimuth = np.nan_to_num(given.azimuth)
-    return np.sin(given.tilt)[:, None] * np.column_stack([np.cos(azimuth), np.sin(azimuth)])
+    direction = np.column_stack([np.cos(azimuth), np.sin(azimuth)])
+    return np.asarray(np.sin(given.tilt)[:, None] * direction, dtype=np.float64)
 
 
 def apart(one: Outputs, other: Outputs, alpha: float, end: float, *, stretch: float = 1.0) -> float:
