@@ -11,7 +11,8 @@ from typing import Any
 from rockwobble.models import Run
 
 from ..check import Finding
-from ..storage.provenance import package_versions
+from ..storage.files import replace_files
+from ..storage.provenance import commit, package_versions
 from .claims import claims_of
 from .fingerprint import Method, engine_method, fingerprint, reduced_method, repeated
 from .short_cases import short_cases
@@ -21,7 +22,7 @@ FORMAT = 1
 Certificate = Mapping[str, Any]
 
 
-def certify(method: Method, findings: Iterable[Finding], *, commit: str = "") -> dict[str, Any]:
+def certify(method: Method, findings: Iterable[Finding]) -> dict[str, Any]:
     """Make a certificate.
 
     Parameters
@@ -29,8 +30,6 @@ def certify(method: Method, findings: Iterable[Finding], *, commit: str = "") ->
     method : Method
     findings : iterable of Finding
         Of the checks, which become claims.
-    commit : str, optional
-        Of the sources, where they are known.
 
     Raises
     ------
@@ -43,7 +42,7 @@ def certify(method: Method, findings: Iterable[Finding], *, commit: str = "") ->
         "format": FORMAT,
         "method": described(method.run),
         "versions": package_versions(),
-        "commit": commit,
+        "commit": commit(),
         "claims": [asdict(claim) for claim in claims],
         "not_covered": open_points,
         "fingerprint": list(fingerprint(method)),
@@ -105,6 +104,4 @@ def read_certificate(path: Path) -> dict[str, Any]:
 
 def write_certificate(certificate: Certificate, path: Path) -> None:
     """Write it whole, or not at all."""
-    beside = path.with_name(f".{path.name}.part")
-    beside.write_text(json.dumps(certificate, indent=1) + "\n", encoding="utf-8")
-    beside.replace(path)
+    replace_files(path.parent, {path.name: (json.dumps(certificate, indent=1) + "\n").encode()})

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
@@ -31,9 +30,6 @@ Only = Annotated[
         "conserved, exact, rest, invariance, order, residual, and with --engine traces and agreement.",
     ),
 ]
-Commit = Annotated[
-    str | None, typer.Option("--commit", help="Of the sources. Default: $GITHUB_SHA, where it is set.")
-]
 CertificateFile = Annotated[Path, typer.Argument(help="File that certify wrote.", show_default=False)]
 Json = Annotated[bool, typer.Option("--json", help="Print the answer as JSON.")]
 
@@ -43,7 +39,6 @@ def certify(
     engine: Engine = None,
     time_step: TimeStep = None,
     only: Only = None,
-    commit: Commit = None,
 ) -> None:
     """Write a certificate: claims with their evidence, and a fingerprint of twelve short cases.
 
@@ -71,7 +66,7 @@ def certify(
             raise ValueError(f"--out must be a file in a folder that exists, got {out}")
         method = reduced_method() if engine is None else engine_method(engine, time_step)
         findings = run_checks(Bench(reduced=reduced, suite=read_suite("quick")), layers)
-        found = make(method, findings, commit=commit or os.environ.get("GITHUB_SHA", ""))
+        found = make(method, findings)
         write_certificate(found, out)
     print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")
 

@@ -20,7 +20,7 @@ from rockwobble.compare.certificate.certificate import write_certificate
 from rockwobble.compare.certificate.fingerprint import entry, fingerprint
 from rockwobble.compare.certificate.short_cases import ShortCase, short_cases
 from rockwobble.compare.certificate.verdict import CHANGED, CHAOTIC, SAME, compare, compare_entries
-from rockwobble.compare.check import at_most, not_run
+from rockwobble.compare.check.finding import Bound, Finding, at_most, not_run
 from rockwobble.models import Case, Trace
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,8 +30,11 @@ FAULTS = [one for one in mutations() if one.faults][::10]
 
 @pytest.fixture(scope="module")
 def certificate() -> dict[str, Any]:
-    found = at_most("exact", "period", 1e-13, 1e-12, reason="quadrature", part="the model")
-    return certify(reduced_method(), [found], commit="abc")
+    return certify(reduced_method(), [finding("exact", "period", 1e-13, 1e-12)])
+
+
+def finding(layer: str, name: str, value: float, bound: float) -> Finding:
+    return dataclasses.replace(at_most(name, value, Bound(bound, "a reason"), "the model"), layer=layer)
 
 
 def changed_by(change: Any) -> Any:
@@ -176,17 +179,17 @@ def test_what_is_not_validated_cannot_be_called_so() -> None:
 
 def test_findings_become_claims_and_what_did_not_run_is_said() -> None:
     found = [
-        at_most("exact", "period", 1e-13, 1e-12, reason="quadrature", part="the model"),
-        at_most("agreement", "peak", 1e-3, 1e-2, reason="MuJoCo", part="the model"),
-        at_most("records", "files", 0.0, 0.0, reason="read", part="files"),
-        not_run("agreement", "peak, pybullet", part="pybullet", note="not installed here"),
+        finding("exact", "period", 1e-13, 1e-12),
+        finding("agreement", "peak", 1e-3, 1e-2),
+        finding("records", "files", 0.0, 0.0),
+        not_run("peak, pybullet", "pybullet", "not installed here"),
     ]
     claims, not_covered = claims_of(found)
     assert [claim.status for claim in claims] == ["verified", "cross-validated"]
     assert "peak, pybullet: not installed here" in not_covered
     assert any("no experiment" in point for point in not_covered)
     with pytest.raises(ValueError, match="nothing is certified"):
-        claims_of([at_most("exact", "period", 1.0, 1e-12, reason="", part="")])
+        claims_of([finding("exact", "period", 1.0, 1e-12)])
 
 
 def test_a_file_that_is_no_certificate_is_refused(tmp_path: Path) -> None:

@@ -10,12 +10,11 @@ import numpy as np
 
 from rockwobble.models import Case
 
-from ..finding import Finding, at_most, not_run
-from .model import TOLERANCE, Outside
+from ..finding import Finding
+from .model import TOLERANCE, Outside, left_out
 from .motion import apart, rises
 from .outputs import Outputs
 
-_REASON = "tolerance that was asked for"
 _ONLY_MODELS = ("exact", "invariance", "order")
 _LEVEL = 1e-3  # of alpha
 
@@ -34,39 +33,28 @@ def check_trajectory(
     tolerance : float
         How exact it claims to be.
     """
-    ours = Outside(model=_none, support=support, tolerance=tolerance).ours(case)
-    alpha = case.cylinder.alpha
+    outside = Outside(model=_none, support=support, tolerance=tolerance)
+    ours, alpha = outside.ours(case), case.cylinder.alpha
     if case.initial is None:
         seen = [rises(one, _LEVEL * alpha) for one in (given, ours)]
         off = 0.0 if all(map(math.isnan, seen)) else abs(seen[0] - seen[1])
-        yield at_most(
-            "rest",
-            "time of uplift [s]",
-            off,
-            tolerance,
-            reason=_REASON,
-            part="(25), or the offset of the clock",
-        )
+        yield outside.finding("rest", "time of uplift [s]", off, "(25), or the offset of the clock")
     else:
-        start = case.initial
-        off = abs(given.tilt[0] - start.tilt) / alpha
-        yield at_most("rest", "tilt at release", off, tolerance, reason=_REASON, part="start, or units")
+        off = abs(given.tilt[0] - case.initial.tilt) / alpha
+        yield outside.finding("rest", "tilt at release", off, "start, or units")
     if given.azimuth is None:
         ours = dataclasses.replace(ours, azimuth=None)
-        yield not_run("agreement", "azimuth", part="(19)", note="the file has no azimuth")
+        yield left_out("agreement", "azimuth", "(19)", "the file has no azimuth")
     end = _agreement(ours, case, support)
     value = apart(given, ours, alpha, end)
-    name = f"lean up to {end:.4g} s"
-    yield at_most("agreement", name, value, tolerance, reason=_REASON, part="the equations, body or axes")
+    yield outside.finding("agreement", f"lean up to {end:.4g} s", value, "the equations, body or axes")
     peaks = [float(one.tilt[one.time <= end].max()) / alpha for one in (given, ours)]
-    yield at_most(
-        "agreement", "peak tilt", abs(peaks[0] - peaks[1]), tolerance, reason=_REASON, part="the equations"
-    )
+    yield outside.finding("agreement", "peak tilt", abs(peaks[0] - peaks[1]), "the equations")
     if given.energy is None:
-        yield not_run("conserved", "energy", part="energy", note="the file has no energy")
+        yield left_out("conserved", "energy", "energy", "the file has no energy")
     for layer in _ONLY_MODELS:
         note = "one motion does not tell: give a model that can be called"
-        yield not_run(layer, f"checks of the layer {layer}", part="the model", note=note)
+        yield left_out(layer, f"checks of the layer {layer}", "the model", note)
 
 
 def _agreement(ours: Outputs, case: Case, support: str) -> float:
