@@ -23,7 +23,8 @@ extensions = [
     "numpydoc",
     "myst_nb",
     "sphinx_design",
-    "mathml",  # the three of _extensions
+    "mathml",  # these four are in _extensions
+    "mapping_table",
     "command_help",
     "first_use",
 ]

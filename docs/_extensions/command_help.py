@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Iterable
 from typing import Any, ClassVar
 
 import typer
@@ -11,6 +10,7 @@ from docutils import nodes
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
+from mapping_table import table
 from rockwobble.reports.cli.main import app as command_line
 
 GENERAL = "Options"
@@ -41,7 +41,7 @@ class CommandHelp(SphinxDirective):
                 groups.setdefault(getattr(parameter, "rich_help_panel", None) or GENERAL, []).append(parameter)
         for group, parameters in groups.items():
             found.append(nodes.rubric("", group))
-            found.append(_table(("option", "default", "meaning"), map(_row, parameters)))
+            found.append(table(("option", "default", "meaning"), (30, 15, 55), [_row(each) for each in parameters]))
         return found
 
 
@@ -59,16 +59,6 @@ def _row(parameter: Any) -> tuple[nodes.Node, nodes.Node, nodes.Node]:
     nothing = default is None or default is False or default in ((), [], "")
     shown = nodes.paragraph() if nothing else nodes.paragraph("", "", nodes.literal("", str(default)))
     return option, shown, _paragraph(parameter.help or "")
-
-
-def _table(head: Iterable[str], rows: Iterable[Iterable[nodes.Node]]) -> nodes.table:
-    titles = [nodes.paragraph("", word) for word in head]
-    group = nodes.tgroup("", *(nodes.colspec(colwidth=width) for width in (30, 15, 55)), cols=len(titles))
-    for section, lines in ((nodes.thead(), [titles]), (nodes.tbody(), rows)):
-        for cells in lines:
-            section += nodes.row("", *(nodes.entry("", cell) for cell in cells))
-        group += section
-    return nodes.table("", group)
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
