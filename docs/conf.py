@@ -65,7 +65,8 @@ html_theme_options = {
 }
 # the one place that knows the address of the repository is CITATION.cff; until it does, nothing links there
 if found := re.search(r"^repository-code:\s*(\S+)", _CITATION, re.MULTILINE):
-    html_theme_options["icon_links"] = [{"name": "Repository", "url": found.group(1), "icon": "fa-brands fa-git"}]
+    place = {"name": "Repository", "url": found.group(1), "icon": "fa-brands fa-git"}
+    html_theme_options["icon_links"] = [place]
 
 # the debugger of the notebooks' kernel warns that its files are frozen; no notebook is debugged here
 warnings.filterwarnings("ignore", message=".*frozen modules.*")

@@ -7,10 +7,10 @@ from typing import Any, ClassVar
 
 import typer
 from docutils import nodes
+from mapping_table import table
 from sphinx.application import Sphinx
 from sphinx.util.docutils import SphinxDirective
 
-from mapping_table import table
 from rockwobble.reports.cli.main import app as command_line
 
 GENERAL = "Options"
@@ -38,10 +38,11 @@ class CommandHelp(SphinxDirective):
         groups: dict[str, list[Any]] = {}
         for parameter in command.params:
             if not getattr(parameter, "hidden", False) and parameter.name != "help":
-                groups.setdefault(getattr(parameter, "rich_help_panel", None) or GENERAL, []).append(parameter)
+                group = getattr(parameter, "rich_help_panel", None) or GENERAL
+                groups.setdefault(group, []).append(parameter)
         for group, parameters in groups.items():
-            found.append(nodes.rubric("", group))
-            found.append(table(("option", "default", "meaning"), (30, 15, 55), [_row(each) for each in parameters]))
+            rows = [_row(each) for each in parameters]
+            found += [nodes.rubric("", group), table(("option", "default", "meaning"), (30, 15, 55), rows)]
         return found
 
 

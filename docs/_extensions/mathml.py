@@ -32,6 +32,6 @@ def _displayed(writer: HTML5Translator, node: nodes.math_block) -> None:
 
 
 def setup(app: Sphinx) -> dict[str, Any]:
-    """Register the renderer; conf.py chooses it. Equations have the numbers of the paper, none of their own."""
+    """Register the renderer, which conf.py chooses; equations have the numbers of the paper alone."""
     app.add_html_math_renderer("mathml", (_inline, None), (_displayed, None))
     return {"parallel_read_safe": True, "parallel_write_safe": True}
