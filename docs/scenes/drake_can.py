@@ -32,7 +32,7 @@ def scene() -> tuple[Simulator, MultibodyPlant, RigidBody]:
     """Build ground and can; return the simulator, the plant and the can."""
     builder = DiagramBuilder()
     plant, _ = AddMultibodyPlantSceneGraph(builder, STEP)
-    # the default; SAP loses a hundred times the energy at the same step
+    # the default; SAP loses more than a hundred times the energy at the same step
     plant.set_discrete_contact_approximation(DiscreteContactApproximation.kLagged)
     can = plant.AddRigidBody("can", SpatialInertia(1.0, np.zeros(3), UnitInertia(I1, I1, I2)))
     contact = ProximityProperties()
