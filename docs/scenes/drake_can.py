@@ -18,13 +18,9 @@ from pydrake.multibody.tree import RigidBody, SpatialInertia, UnitInertia
 from pydrake.systems.analysis import Simulator
 from pydrake.systems.framework import DiagramBuilder
 
-B, H, TILT, SPIN, STEP = (
-    1.0,
-    2.0,
-    0.5 * math.atan(0.5),
-    0.1,
-    2e-4,
-)  # radius, half height [m], release, step [s]
+B, H = 1.0, 2.0  # radius and half height [m]
+TILT, SPIN = 0.5 * math.atan(0.5), 0.1  # tilt [rad] and rolling rate [rad/s] of the release
+STEP = 2e-4  # [s]
 I1, I2 = (3 * B**2 + 4 * H**2) / 12, B**2 / 2  # per unit mass
 
 
