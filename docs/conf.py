@@ -47,6 +47,7 @@ autodoc_default_options = {"members": True}
 autosummary_generate = False
 numpydoc_show_class_members = False
 default_role = "literal"
+smartquotes_action = "qe"  # two dashes begin an option
 
 html_theme = "pydata_sphinx_theme"
 html_title = "rockwobble"
