@@ -11,6 +11,8 @@ import pytest
 import typer
 
 import rockwobble
+from rockwobble import compare
+from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.models.suites.tables import TABLES
 from rockwobble.reports.cli.main import app
 
@@ -69,6 +71,20 @@ def test_every_key_of_a_suite_file_is_on_its_page() -> None:
     keys = [key for name, table in TABLES.items() if name for key in table.model_fields]
     assert len(keys) > 40
     assert [key for key in keys if f"`{key}`" not in page] == []
+
+
+def test_every_file_of_a_comparison_and_key_of_its_manifest_is_on_its_page(tmp_path: Path) -> None:
+    page = (DOCS / "reference" / "results.md").read_text(encoding="utf-8")
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=0.1)
+    compare.compare(case, runs=[Run(None, "flat")], workers=1, out=tmp_path)
+    written = [path.name for path in tmp_path.iterdir()]
+    keys = list(json.loads((tmp_path / "manifest.json").read_text(encoding="utf-8")))
+    columns = compare.simulate(case).to_frame().columns
+    assert len(written) > 4
+    assert len(keys) > 8
+    missing = [name for name in [*written, *keys, *columns] if f"`{name}`" not in page]
+    assert [name for name in missing if f"## {name}" not in page] == []
 
 
 @pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
