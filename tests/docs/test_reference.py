@@ -100,3 +100,17 @@ def test_notebooks_are_short_ask_a_question_and_hold_no_output(notebook: Path) -
 
 def test_there_are_six_notebooks() -> None:
     assert [path.name[:2] for path in NOTEBOOKS] == ["01", "02", "03", "04", "05", "06"]
+
+
+def test_one_version_is_said_everywhere() -> None:
+    said = {
+        "pyproject.toml": r'^version = "([^"]+)"',
+        "CITATION.cff": r"^version: (\S+)",
+        "CHANGELOG.md": r"^## \[(\d[^\]]*)\]",
+    }
+    found = {}
+    for name, pattern in said.items():
+        first = re.search(pattern, (DOCS.parent / name).read_text(encoding="utf-8"), re.MULTILINE)
+        assert first, name
+        found[name] = first.group(1)
+    assert len(set(found.values())) == 1, found
