@@ -10,6 +10,7 @@ import typer
 
 from ..console.terminal import FAILED, INTERRUPTED, complain, user_input
 from .inputs import options
+from .show import show
 
 if TYPE_CHECKING:
     from rockwobble.compare import CaseSweep, Grid
@@ -115,10 +116,8 @@ def sweep(
     for line in _echo(plan):
         print(line)
     _run(plan, out, scheduler, workers, chunk)
-    from .show import print_results
-
     print()
-    print_results(out, KIND)
+    show(out)
 
 
 def _run(

@@ -122,7 +122,9 @@ def sweep(
             )
         by_place = dict(zip(order, found, strict=True))
         tables = [by_place[index] for index in range(len(chunks))]
-        table = pd.concat([each for each in tables if not isinstance(each, Lost)], ignore_index=True)
+        table: pd.DataFrame = pd.concat(
+            [each for each in tables if not isinstance(each, Lost)], ignore_index=True
+        )
         if out is not None:
             about = {"plan": whole.kind, "runs": whole.rows, **whole.describe()}
             made = made_now(
@@ -130,7 +132,8 @@ def sweep(
                 inputs=fingerprint([chunk.key() for chunk in chunks]),
                 command=command,
                 seeds=seeds,
-                headline={"runs": len(table), **table["outcome"].value_counts().to_dict()},
+                headline={"runs": len(table)}
+                | {str(k): int(n) for k, n in table["outcome"].value_counts().items()},
                 about=about,
             )
             write_results(out, made, {"sweep": table, **_motions(whole)})
