@@ -15,7 +15,7 @@ from ..words import sentence
 if TYPE_CHECKING:
     import pandas as pd
 
-WORDS = "external.md.j2"
+WORDS = "comparison/external.md.j2"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
