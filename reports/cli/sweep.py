@@ -102,7 +102,6 @@ def sweep(
     """
     with user_input():
         from rockwobble.compare import require_writable
-        from rockwobble.compare.studies.sweep.study import KIND
 
         if suite is None:
             plan: Grid | CaseSweep = _grid(
