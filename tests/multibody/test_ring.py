@@ -124,7 +124,9 @@ def test_first_contact_is_when_the_geometry_says() -> None:
     inclination = 0.3
     clearance = clearance_needed(SQUAT, tilt, inclination) + 1e-3
     fall = InitialState(tilt, tilt_rate=0.3)
-    run = multibody.simulate(
+    case = Case(SQUAT, initial=fall, duration=1.0)
+    ring = {"ring_clearance": clearance, "ring_inclination": inclination}
+    run = multibody.simulate(case, support="ring", sample_step=0.001, **ring)
         Case(SQUAT, initial=fall, duration=1.0),
         support="ring",
         sample_step=0.001,
