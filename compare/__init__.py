@@ -9,7 +9,7 @@ from typing import Any
 
 from .comparison.driver import compare
 from .comparison.error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
-from .comparison.result import Comparison, describe_case, describe_run
+from .comparison.result import Comparison, describe_case
 from .comparison.summary import SUMMARY_COLUMNS
 from .metrics.agreement import AGREEMENT
 from .metrics.contact import TILTED
@@ -31,7 +31,7 @@ from .studies.ensemble.members import far_field_motions, perturbed_starts, synth
 from .studies.ensemble.study import Ensemble, ensemble
 from .studies.sweep.cases import CaseSweep
 from .studies.sweep.grid import Grid
-from .studies.sweep.study import SweepIncompleteError, sweep
+from .studies.sweep.study import SweepIncompleteError, read_sweep, sweep
 from .traces.pair import Pair, make_pair
 from .traces.trajectory import External, read_trajectory
 
@@ -54,7 +54,6 @@ __all__ = [
     "compare",
     "default_runs",
     "describe_case",
-    "describe_run",
     "ensemble",
     "far_field_motions",
     "findings",
@@ -63,6 +62,7 @@ __all__ = [
     "missing_engines",
     "own_model",
     "perturbed_starts",
+    "read_sweep",
     "read_trajectory",
     "relative_rms",
     "replace_files",

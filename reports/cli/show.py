@@ -25,7 +25,7 @@ def show(store: Store, as_json: Json = False) -> None:
 
     Nothing runs, and nothing is written. Files that are not what was written are named, with exit code 1.
 
-    Example: rockwobble show rockwobble-out
+    Example: rockwobble show rockwobble-compare
     """
     from rockwobble.models import plain_json
 

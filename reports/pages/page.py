@@ -160,7 +160,8 @@ def _html(part: str | Picture | Table | Safe) -> str:
             f"<div>{f'<h4>{html.escape(title)}</h4>' if title else ''}{plot}</div>"
             for title, plot in plots(part)
         )
-        several = ' class="panels"' if len(part.panels) > 1 and not part.link_x else ""
+        columns = f' class="panels" style="--columns: {part.columns}"'
+        several = columns if len(part.panels) > 1 and not part.link_x else ""
         words = f"<h3>{html.escape(part.title)}</h3><p>{html.escape(part.caption)}</p>"
         return f'<figure id="{html.escape(part.name)}">{words}<div{several}>{panels}</div></figure>'
     if isinstance(part, Table):

@@ -53,7 +53,7 @@ def period_picture(table: pd.DataFrame) -> Picture:
     )
     return Picture(
         name="figure-3",
-        title="Figure 3: period of steady wobble over the tilt",
+        title="Periods over the tilt",
         caption="Time in which the contact point goes once round the rim at constant tilt, times p, for "
         "bodies from slender to flat; and the full period of planar rocking released at that tilt: "
         "linearised after Housner (dotted), which does not depend on α, and exact for tan α = 1 (dashed) and "
@@ -81,7 +81,7 @@ def free_picture(table: pd.DataFrame) -> Picture:
             panels.append(Panel(x=_FROM_0, y=y, layers=[line], height=1.5))
     return Picture(
         name="figure-4",
-        title="Figure 4: three modes of free response",
+        title="Paths and time histories of the modes",
         caption="Above, the path of the centre of mass seen from above, from the dot on.",
         panels=[*orbits, *panels],
         columns=len(modes),
@@ -135,7 +135,7 @@ def earthquake_picture(table: pd.DataFrame, record: pd.DataFrame, numbers: Mappi
         panels.append(_over_time(at, ground, y, marks, Style(colour="#444444"), 1.4))
     return Picture(
         name="figure-5",
-        title="Figure 5: response to the 1940 El Centro record",
+        title="Response and ground motion",
         caption=f"R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}. Shaded: the record itself "
         f"can uplift; dashed: from here on the response to a record {100.0 * earthquake.NUDGE:g} % stronger "
         "differs by 1 % of α.",
@@ -172,7 +172,7 @@ def overturning_picture(spectrum: OverturningSpectrum) -> Picture:
     return replace(
         whole,
         name="figure-6",
-        title="Figure 6: overturning spectra of the 1940 El Centro record",
+        title="Peak tilts, and the lowest intensities found to overturn",
         caption="Peak tilt of sizes under intensities, in 3D and of each component alone, undamped; the line "
         "is the lowest intensity found to overturn. The three runs of a cell share one factor on the record; "
         "the scale on the right of a planar map is the peak of its own component, the axis of the paper.",

@@ -108,19 +108,27 @@ def measure(
     say : callable, optional
         Called with a line of progress.
     """
-    import os
-
     import pandas as pd
 
-    from rockwobble.compare.runs.process_pool import ProcessPool
+    from rockwobble.compare.runs.progress import Progress
+    from rockwobble.compare.runs.scheduler import run_tasks
+    from rockwobble.compare.runs.task import Lost
+
+    def tell(event: Progress) -> None:
+        if say is not None and event.state == "finished":
+            say(f"{event.done}/{event.total} {event.label}")
 
     chosen = trials() if chosen is None else chosen
-    rows = []
-    with ProcessPool(workers or os.cpu_count() or 1) as pool:
-        for done, row in enumerate(pool.map(run, chosen), 1):
-            rows.append(row)
-            if say is not None:
-                say(f"{done}/{len(chosen)} {row['engine']} {row['extreme']} {row['value']}: {row['verdict']}")
+    found = run_tasks(
+        run,
+        chosen,
+        workers=workers,
+        label=lambda trial: f"{trial.engine} {trial.extreme} {trial.value}",
+        progress=tell,
+    )
+    rows = [row for row in found if not isinstance(row, Lost)]
+    if len(rows) < len(found):
+        raise RuntimeError(next(row.why for row in found if isinstance(row, Lost)))
     return pd.DataFrame(rows)
 
 

@@ -121,7 +121,9 @@ def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monk
     assert first.members.equals(again.members)
     assert first.contrasts.equals(again.contrasts)
     assert first.about == again.about
-    assert {len(pd.read_parquet(path)) for path in (tmp_path / "finished" / "ensemble").glob("*.parquet")} == {1}
+    assert {
+        len(pd.read_parquet(path)) for path in (tmp_path / "finished" / "ensemble").glob("*.parquet")
+    } == {1}
 
 
 def test_every_input_is_in_the_hash_of_an_ensemble():

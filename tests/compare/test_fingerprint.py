@@ -6,8 +6,7 @@ import sys
 import numpy as np
 import pytest
 
-from rockwobble.compare.runs.execution import Job
-from rockwobble.compare.runs.run_store import job_fingerprint
+from rockwobble.compare.runs.execution import Job, job_fingerprint
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 
@@ -28,9 +27,12 @@ VALUES = [
 ]
 
 
-def job(method: str | Run = "recess", name: str = "a", label: str = "b", **changes) -> Job:
+MODEL = Run(None, "recess")
+
+
+def job(run: Run = MODEL, name: str = "a", label: str = "b", **changes) -> Job:
     case = {"cylinder": PIER, "motion": MOTION} | changes
-    return Job(case=Case(name=name, **case), method=method, label=label)
+    return Job(case=Case(name=name, **case), run=run, label=label)
 
 
 def test_different_values_have_different_names():
@@ -61,7 +63,8 @@ def test_what_has_no_bits_has_no_name():
 @pytest.mark.parametrize(
     "other",
     [
-        job("flat"),
+        job(Run(None, "flat")),
+        job(Run(None, "recess", plane=0.0)),
         job(Run("mujoco", "recess")),
         job(cylinder=Cylinder(semidiagonal=6.0, tan_alpha=0.2, height=11.0)),
         job(motion=MOTION.scaled(1.0 + 1e-15)),

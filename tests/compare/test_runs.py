@@ -48,11 +48,11 @@ def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeyp
     pytest.importorskip("exudyn", reason="exudyn is not installed")
     assert "exudyn" in installed_engines()
     assert "exudyn" not in {run.engine for run in default_runs()}
-    assert reserved_engines()["exudyn"] == "exudyn has no guided support and no uplift"
+    assert reserved_engines()["exudyn"] == "exudyn has no recess support and no uplift"
     # named, it runs on open ground; a support that is named stays, and is refused
     assert default_runs(engines=("exudyn",)) == (Run("exudyn", "flat"),)
     (guided,) = default_runs(engines=("exudyn",), supports=("recess",))
-    with pytest.raises(ValueError, match="support must be free in exudyn, got 'recess'"):
+    with pytest.raises(ValueError, match="support must be flat in exudyn, got 'recess'"):
         require_runnable(case, guided)
     with pytest.raises(ValueError, match="exudyn cannot uplift a cylinder that stands"):
         require_runnable(case, Run("exudyn", "flat"))
@@ -82,20 +82,33 @@ def test_a_time_step_too_large_for_the_size_is_refused(case):
         require_runnable(small, Run("mujoco", "recess", 1e-3))
 
 
-def test_open_ground_is_held_against_both_models():
-    assert references_of(Run("mujoco", "recess"), "recess") == ("recess",)
-    assert references_of(Run("mujoco", "flat"), "recess") == ("recess", "flat")
-    assert references_of(Run("mujoco", "flat"), "flat") == ("flat",)
-    assert references_of(Run("mujoco", "ring"), "recess") == ("recess", "flat")
+def labels(case: Case, run: Run, reference: Run | None = None) -> list[str]:
+    return list(references_of(case, run, str(run), reference))
 
 
-def test_a_ring_that_is_not_touched_follows_the_model_of_its_support():
+def test_each_support_is_held_against_what_it_asks_for(case):
+    recess, flat = Run(None, "recess"), Run(None, "flat")
+    assert labels(case, Run("mujoco", "recess")) == ["recess model"]
+    assert labels(case, Run("mujoco", "flat")) == ["recess model", "flat-ground model"]
+    assert labels(case, Run("mujoco", "flat"), flat) == ["flat-ground model"]
+    assert labels(case, Run("mujoco", "flat"), Run("pybullet", "flat")) == ["pybullet flat"]
+    assert labels(case, recess, recess) == []
+    found = references_of(case, Run("mujoco", "ring", 2e-4), "mujoco ring")
+    assert list(found) == ["recess model", "mujoco ring, half the step"]
+    assert found["mujoco ring, half the step"] == Run("mujoco", "ring", 1e-4)
+
+
+def test_a_ring_that_is_not_touched_follows_the_model_of_open_ground():
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=2.0, name="release")
-    rows = compare(case, runs=[Run("mujoco", "ring")], workers=1).summary.set_index("reference")
-    assert not rows["message"].str.contains("wall").any()
-    other = {"recess": "flat", "flat": "recess"}[own_model("ring")]
-    assert rows.loc[own_model("ring"), "tilt_rms"] < FOLLOWS * rows.loc[other, "tilt_rms"]
+    ring = Run("mujoco", "ring")
+    assert own_model(ring) == Run(None, "flat")
+    own, other = (
+        compare(case, runs=[ring], reference=Run(None, support), workers=1).summary.iloc[0]
+        for support in ("flat", "recess")
+    )
+    assert "wall_contact" not in own["diagnostics"]
+    assert own["tilt_rms"] < FOLLOWS * other["tilt_rms"]
 
 
 def test_a_support_that_no_engine_has_is_refused(case):
@@ -113,7 +126,7 @@ def test_a_ring_runs_with_the_engines_that_have_it_unless_others_are_named(case)
     if "pybullet" in installed_engines():
         assert unsupported(["ring", "flat"]) == ("pybullet has no ring support and is left out there",)
         assert ("pybullet", "flat") in [(run.engine, run.support) for run in both]
-        with pytest.raises(ValueError, match=r"one of guided, free in pybullet, got 'ring'"):
+        with pytest.raises(ValueError, match=r"one of recess, flat in pybullet, got 'ring'"):
             require_runnable(case, *default_runs(["pybullet"], ["ring"]))
 
 
@@ -128,9 +141,9 @@ def test_labels_tell_runs_apart_with_as_little_as_possible():
     assert run_labels(runs) == (
         "mujoco recess",
         "mujoco flat 0.0001 s",
-        "mujoco flat 5e-5 s",
-        "mujoco flat 5e-5 s integrator=RK4",
-        "mujoco flat 5e-5 s integrator=Euler",
+        "mujoco flat 5e-05 s",
+        "mujoco flat 5e-05 s integrator=RK4",
+        "mujoco flat 5e-05 s integrator=Euler",
     )
 
 
