@@ -151,7 +151,7 @@ GROUPS = (
     Group(
         name="studies",
         patterns=(
-            "compare/studies/spectrum/lowest_overturning.py",
+            "compare/studies/spectrum/search.py",
             "compare/studies/spectrum/study.py",
             "compare/studies/sweep/grid.py",
         ),
