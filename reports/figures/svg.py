@@ -106,7 +106,8 @@ def _settle(drawn: Figure) -> None:
         layout.execute(drawn)
     drawn.set_layout_engine("none")
     for axes in drawn.axes:
-        axes.set_position([round(number, 3) for number in axes.get_position(original=True).bounds])
+        x, y, width, height = (round(each, 3) for each in axes.get_position(original=True).bounds)
+        axes.set_position((x, y, width, height))
 
 
 def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
