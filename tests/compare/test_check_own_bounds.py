@@ -127,9 +127,9 @@ def test_a_release_that_passes_upright_gives_no_alarm_and_finds_a_wrong_model(sp
 
 def test_twice_the_step_or_half_of_it() -> None:
     job = Job(case=SHORT, run=Run("mujoco", "recess"))
-    for step, times, factor in ((1e-4, 2.0, 1.0), (1e-3, 0.5, 2.0)):
+    for step, other_one, factor in ((1e-4, 2e-4, 1.0), (1e-3, 5e-4, 2.0), (math.nan, 2e-4, 1.0)):
         other, given = own_bounds.other_step(job, made(np.zeros(2), np.zeros(2), time_step=step))
-        assert (other.run.time_step, given) == (times * step, factor)
+        assert (other.run.time_step, given) == (other_one, factor)
 
 
 TIME = 0.01 * np.arange(101)

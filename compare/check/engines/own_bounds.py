@@ -17,6 +17,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from rockwobble.models import Case, GroundMotion, InitialState, Run, Trace
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 
 from ...comparison.prediction import early_rms, estimated_error, landings, time_scale
 from ...metrics.agreement import AGREEMENT
@@ -91,14 +92,16 @@ def in_motion(case: Case) -> Case | None:
 def other_step(job: Job, trace: Trace) -> tuple[Job, float]:
     """Return the run at twice its step, or at half of it, and what their difference is to be taken times."""
     settings = {key: value for key, value in job.run.settings.items() if key != "step_tolerance"}
+    # a trace of several steps has none of its own: that of the engine by default
+    step = trace.time_step if math.isfinite(trace.time_step) else REFERENCE_TIME_STEP * time_scale(job.case)
     for times, factor in ((2.0, 1.0), (0.5, 2.0)):
-        run = Run(job.run.engine, job.run.support, times * trace.time_step, **settings)
+        run = Run(job.run.engine, job.run.support, times * step, **settings)
         try:
             require_runnable(job.case, run)
         except ValueError:  # twice the step is more than contact allows
             continue
         return Job(case=job.case, run=run, label=f"{job.label}, {times:g} times the step"), factor
-    raise ValueError(f"the run must have a step beside {trace.time_step:g} s, got none for {job.label}")
+    raise ValueError(f"the run must have a step beside {step:g} s, got none for {job.label}")
 
 
 def _in_motion(job: Job) -> Job | None:
