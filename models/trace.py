@@ -9,78 +9,18 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Protocol, overload
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from . import trace_file
 from .assumptions import Assumptions
 from .case import Case, Run
 from .diagnostic import Diagnostic
+from .trace_source import Array, Late, Source, friction_of, no_passes
 
 if TYPE_CHECKING:
     import pandas as pd
-
-Array = NDArray[np.float64]
-
-
-class Source(Protocol):
-    """Who made a trace: gives what costs something, when it is first asked for."""
-
-    def sampled(self) -> Mapping[str, Array]:
-        """Return the sampled quantities that it knows beyond those that are fields, (n,) or (n, 3)."""
-        ...
-
-    def assumptions(self, until: float) -> Assumptions | None:
-        """Return whether contact and friction held until a time [s]; None if it does not know."""
-        ...
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Known:
-    """A source that has everything at hand, such as an engine or a stored file."""
-
-    values: Mapping[str, Array]
-    held: Assumptions | None = None
-
-    def sampled(self) -> Mapping[str, Array]:
-        """Return the quantities, each (n,) or (n, 3)."""
-        return self.values
-
-    def assumptions(self, until: float) -> Assumptions | None:
-        """Return what is known of contact and friction, of the whole motion."""
-        return self.held
-
-
-def no_passes() -> pd.DataFrame:
-    """Return an empty table of passes."""
-    import pandas as pd
-
-    table = pd.DataFrame({name: np.empty(0) for name in ("time", "minimum_tilt", "angle_of_turn")})
-    return table.assign(resolved=np.empty(0, dtype=bool))
-
-
-class _Late:
-    """A sampled quantity that may cost something: the source computes it when it is first asked for."""
-
-    def __init__(self, width: int) -> None:
-        self._width = width
-
-    def __set_name__(self, owner: type, name: str) -> None:
-        self._name = name
-
-    @overload
-    def __get__(self, trace: None, owner: type) -> _Late: ...
-    @overload
-    def __get__(self, trace: Trace, owner: type) -> Array: ...
-    def __get__(self, trace: Trace | None, owner: type) -> Array | _Late:
-        if trace is None:
-            return self
-        found = trace.late.get(self._name)
-        count = len(trace.time)
-        return (
-            np.full(count if self._width == 1 else (count, self._width), math.nan) if found is None else found
-        )
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -182,14 +122,14 @@ class Trace:
     error_estimate: float = math.nan
     settled_until: float = math.nan
 
-    rolling_rate = _Late(1)
-    energy = _Late(1)
-    contact_force = _Late(3)
-    restraining_moment = _Late(1)
-    energy_error = _Late(1)
-    slip = _Late(1)
-    wall_contact = _Late(1)
-    wall_impulse = _Late(1)
+    rolling_rate = Late(1)
+    energy = Late(1)
+    contact_force = Late(3)
+    restraining_moment = Late(1)
+    energy_error = Late(1)
+    slip = Late(1)
+    wall_contact = Late(1)
+    wall_impulse = Late(1)
 
     @property
     def friction_needed(self) -> Array:
@@ -260,14 +200,31 @@ class Trace:
         # by name: a motion does not depend on who draws it
         return importlib.import_module("rockwobble.reports.figures.trace").draw(self)
 
+    def to_plain(self) -> dict[str, Any]:
+        """Return all of it but its case and samples, for JSON."""
+        numbers = {name: getattr(self, name) for name in trace_file.NUMBERS}
+        return {
+            "run": trace_file.run_to_plain(self.run),
+            **numbers,
+            "settings": dict(self.settings),
+            "facts": self.facts,
+            "assumptions": self.assumptions,
+            "rests": self.rests,
+            "extrema": self.extrema,
+            "passes": {name: self.passes[name].to_numpy() for name in self.passes.columns},
+        }
+
+    @classmethod
+    def from_plain(cls, facts: Mapping[str, Any], samples: pd.DataFrame, case: Case) -> Trace:
+        """Return the trace of what `to_plain` and `to_frame` gave, and its case."""
+        return cls(case=case, **trace_file.restored(facts, samples))
+
     def save(self, path: str | Path) -> None:
         """Write the motion to a Parquet file, from which `load` returns it with the same bits."""
-        from .trace_file import to_bytes
+        Path(path).write_bytes(trace_file.packed(self.to_frame(), self.to_plain(), self.case))
 
-        Path(path).write_bytes(to_bytes(self))
-
-    @staticmethod
-    def load(path: str | Path) -> Trace:
+    @classmethod
+    def load(cls, path: str | Path) -> Trace:
         """Return the motion that `save` wrote.
 
         Raises
@@ -275,9 +232,8 @@ class Trace:
         ValueError
             If the file is not one of a trace.
         """
-        from .trace_file import read
-
-        return read(path)
+        facts, samples, case = trace_file.unpacked(path)
+        return cls.from_plain(facts, samples, case)
 
     def summary(self) -> dict[str, str]:
         """Return the main facts in words and numbers, by name."""
@@ -309,34 +265,3 @@ class Trace:
     def late(self) -> Mapping[str, Array]:
         """The sampled quantities that its source gave beyond the fields."""
         return self.source.sampled()
-
-
-def friction_of(force: Array) -> Array:
-    """Return horizontal over normal force (n,) of `force` (n, 3); inf where N is not positive."""
-    horizontal, normal = np.hypot(force[:, 0], force[:, 1]), force[:, 2]
-    pressed = normal > 0.0
-    needed = np.where(pressed, horizontal / np.where(pressed, normal, 1.0), math.inf)
-    return np.where(np.isnan(normal), math.nan, needed)
-
-
-def lost_trace(case: Case, run: Run, why: str) -> Trace:
-    """Return the trace of a run that left none, as where its process died: no samples, outcome "failed"."""
-    none = np.empty(0)
-    return Trace(
-        case=case,
-        run=run,
-        version="",
-        time=none,
-        tilt=none,
-        tilt_rate=none,
-        rolling_angle=none,
-        twist=none,
-        contact_point=np.empty((0, 2)),
-        centre_of_mass=np.empty((0, 3)),
-        peak_tilt=math.nan,
-        outcome="failed",
-        uplift_time=math.nan,
-        uplift_direction=math.nan,
-        source=Known({}),
-        facts=(Diagnostic(code="died", detail=why),),
-    )

@@ -17,7 +17,7 @@ from .cylinder import Cylinder
 from .diagnostic import Diagnostic
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
-from .trace import Known, Trace
+from .trace_source import Known
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -33,28 +33,14 @@ _LATE = (
     *("rolling_rate", "energy", "contact_force", "restraining_moment"),
     *("energy_error", "slip", "wall_contact", "wall_impulse"),
 )
-_NUMBERS = (
+NUMBERS = (
     *("version", "outcome", "peak_tilt", "uplift_time", "uplift_direction", "time_step", "wall_time"),
     *("step_count", "contact_resolution", "residual_displacement", "error_estimate", "settled_until"),
 )
 
 
-def facts_of(trace: Trace) -> dict[str, Any]:
-    """Return all of a trace but its case and samples, for JSON."""
-    return {
-        "run": run_to_plain(trace.run),
-        **{name: getattr(trace, name) for name in _NUMBERS},
-        "settings": dict(trace.settings),
-        "facts": trace.facts,
-        "assumptions": trace.assumptions,
-        "rests": trace.rests,
-        "extrema": trace.extrema,
-        "passes": {name: trace.passes[name].to_numpy() for name in trace.passes.columns},
-    }
-
-
-def trace_of(facts: Mapping[str, Any], samples: pd.DataFrame, case: Case) -> Trace:
-    """Return the trace of what `facts_of` gave, its samples and its case."""
+def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
+    """Return the arguments of a trace, but its case, of what `Trace.to_plain` and its samples hold."""
     import pandas as pd
 
     def array(name: str) -> Any:
@@ -62,26 +48,24 @@ def trace_of(facts: Mapping[str, Any], samples: pd.DataFrame, case: Case) -> Tra
         return samples[name].to_numpy() if columns is None else samples[list(columns)].to_numpy()
 
     held = facts["assumptions"]
-    return Trace(
-        case=case,
-        run=run_from_plain(facts["run"]),
+    passes = {
+        name: np.array(column, dtype=bool if name == "resolved" else float)
+        for name, column in facts["passes"].items()
+    }
+    return {
+        "run": run_from_plain(facts["run"]),
         **{name: array(name) for name in _FIELDS},
-        **{name: facts[name] for name in _NUMBERS},
-        settings=facts["settings"],
-        facts=_diagnostics(facts["facts"]),
-        rests=np.array(facts["rests"], dtype=float).reshape(-1, 2),
-        extrema=np.array(facts["extrema"], dtype=float).reshape(-1, 4),
-        passes=pd.DataFrame(
-            {
-                name: np.array(column, dtype=bool if name == "resolved" else float)
-                for name, column in facts["passes"].items()
-            }
-        ),
-        source=Known(
+        **{name: facts[name] for name in NUMBERS},
+        "settings": facts["settings"],
+        "facts": _diagnostics(facts["facts"]),
+        "rests": np.array(facts["rests"], dtype=float).reshape(-1, 2),
+        "extrema": np.array(facts["extrema"], dtype=float).reshape(-1, 4),
+        "passes": pd.DataFrame(passes),
+        "source": Known(
             {name: array(name) for name in _LATE},
             None if held is None else Assumptions(**held | {"breaches": _diagnostics(held["breaches"])}),
         ),
-    )
+    }
 
 
 def _diagnostics(given: list[dict[str, Any]]) -> tuple[Diagnostic, ...]:
@@ -120,21 +104,21 @@ def case_from_plain(given: Mapping[str, Any]) -> Case:
     return Case(**{**given, **fields})
 
 
-def to_bytes(trace: Trace, about: Mapping[str, Any] | None = None) -> bytes:
-    """Return a trace as the bytes of a Parquet file; `about` is kept beside it."""
+def packed(samples: pd.DataFrame, facts: Mapping[str, Any], case: Case) -> bytes:
+    """Return a trace as the bytes of a Parquet file."""
     import pyarrow as pa
     import pyarrow.parquet as pq
 
-    whole = {**(about or {}), "case": case_to_plain(trace.case), "trace": facts_of(trace)}
-    table = pa.Table.from_pandas(trace.to_frame(), preserve_index=False)
+    whole = {"case": case_to_plain(case), "trace": facts}
+    table = pa.Table.from_pandas(samples, preserve_index=False)
     metadata = {**(table.schema.metadata or {}), METADATA: plain_json.dumps(whole).encode()}
     buffer = io.BytesIO()
     pq.write_table(table.replace_schema_metadata(metadata), buffer)
     return buffer.getvalue()
 
 
-def read(path: str | Path) -> Trace:
-    """Return the trace in a file that `to_bytes` made.
+def unpacked(path: str | Path) -> tuple[dict[str, Any], pd.DataFrame, Case]:
+    """Return facts, samples and case of a file that `packed` made.
 
     Raises
     ------
@@ -148,7 +132,7 @@ def read(path: str | Path) -> Trace:
         content = Path(path).read_bytes()
         metadata = pq.read_schema(io.BytesIO(content)).metadata or {}
         about = plain_json.loads(metadata[METADATA])
-        return trace_of(about["trace"], pd.read_parquet(io.BytesIO(content)), case_from_plain(about["case"]))
+        return about["trace"], pd.read_parquet(io.BytesIO(content)), case_from_plain(about["case"])
     except (OSError, ValueError, KeyError) as error:
         why = str(error).partition("\n")[0] or type(error).__name__
         raise ValueError(f"{path} must be the file of a trace, cannot read it as one: {why}") from None

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 
 from rockwobble.models import Case, Trace, plain_json
-from rockwobble.models.trace_file import case_from_plain, case_to_plain, facts_of, trace_of
+from rockwobble.models.trace_file import case_from_plain, case_to_plain
 
 from ..storage.manifest import Results
 from .error_budget import ErrorBudget, Limit
@@ -45,7 +45,7 @@ def plain_fields(
         "versions": versions,
         "until": until,
         "cases": {name: case_to_plain(case) | {"motion": _header(case)} for name, case in cases.items()},
-        "traces": {_SEPARATOR.join(key): facts_of(trace) for key, trace in traces.items()},
+        "traces": {_SEPARATOR.join(key): trace.to_plain() for key, trace in traces.items()},
         "budgets": {
             _SEPARATOR.join(key): {
                 "covered": budget.covered,
@@ -108,7 +108,7 @@ def _traces(given: Mapping[str, Any], samples: pd.DataFrame, cases: Mapping[str,
     traces = {}
     for joined, facts in given.items():
         case, _, label = joined.partition(_SEPARATOR)
-        traces[case, label] = trace_of(facts, tables.get((case, label), none), cases[case])
+        traces[case, label] = Trace.from_plain(facts, tables.get((case, label), none), cases[case])
     return traces
 
 

@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.trace import lost_trace
-from rockwobble.models.trace_file import facts_of, trace_of
+from rockwobble.models.lost_trace import lost_trace
 
 from ..storage.fingerprint import fingerprint
 from ..storage.parquet_file import pack, read
@@ -180,13 +179,13 @@ def open_trace_cache(
     """
 
     def packed(job: Job, trace: Trace) -> bytes:
-        about = {"kind": "run", "case": job.case.name, "label": job.label, "trace": facts_of(trace)}
+        about = {"kind": "run", "case": job.case.name, "label": job.label, "trace": trace.to_plain()}
         table = trace.to_frame()
         return pack(table if samples else table.iloc[-1:], about)
 
     def unpacked(job: Job, path: Path) -> Trace:
         table, about = read(path)
-        return dataclasses.replace(trace_of(about["trace"], table, job.case), run=job.run)
+        return dataclasses.replace(Trace.from_plain(about["trace"], table, job.case), run=job.run)
 
     return open_cache(folder, kind, name=job_fingerprint, pack=packed, unpack=unpacked)
 

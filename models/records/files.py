@@ -15,7 +15,8 @@ from .units import UNITS, factor
 
 # over a whole record two components may drift apart by this part of a step, the rounding of printed times
 _DRIFT = 0.05
-# components may differ in length by this part, and by more where what is left out is below this part of the peak
+# components may differ in length by this part, and by more where what is left out is below this part of
+# the peak
 _LEFT_OUT, _STILL = 0.01, 0.05
 
 

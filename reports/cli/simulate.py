@@ -176,11 +176,11 @@ def _facts(trace: Trace) -> dict[str, str]:
 def _save(out: Path, job: Job, trace: Trace) -> list[str]:
     from rockwobble.compare.runs.execution import job_fingerprint
     from rockwobble.compare.storage.manifest import made_now, write_results
-    from rockwobble.models.trace_file import case_to_plain, facts_of, to_bytes
+    from rockwobble.models.trace_file import case_to_plain, packed
 
     from ..pages.provenance import command_line
 
-    case, found = case_to_plain(job.case), facts_of(trace)
+    case, found = case_to_plain(job.case), trace.to_plain()
     motion = job.case.motion
     about = {
         "run": job.label,
@@ -199,7 +199,7 @@ def _save(out: Path, job: Job, trace: Trace) -> list[str]:
         "run", inputs=job_fingerprint(job), command=command_line(), headline=headline, about=about
     )
     files = {
-        "run.parquet": to_bytes(trace),
+        "run.parquet": packed(trace.to_frame(), trace.to_plain(), trace.case),
         "run.csv": trace.to_frame().to_csv(index=False).encode(),
         "passes.csv": trace.passes.to_csv(index=False).encode(),
     }

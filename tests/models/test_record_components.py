@@ -32,7 +32,9 @@ def test_cut_to_the_shortest_component(write: Write) -> None:
 
 def test_half_a_component_is_no_record(write: Write) -> None:
     x, y = write(columns(0.01, 300), "x"), write(columns(0.01, 150), "y")
-    message = r"must be equally long, got 300 samples in x and 150 in another: what would be left out has 100 %"
+    message = (
+        r"must be equally long, got 300 samples in x and 150 in another: what would be left out has 100 %"
+    )
     with pytest.raises(ValueError, match=message):
         read_record(x, y)
 

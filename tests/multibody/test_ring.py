@@ -124,7 +124,15 @@ def test_first_contact_is_when_the_geometry_says() -> None:
     inclination = 0.3
     clearance = clearance_needed(SQUAT, tilt, inclination) + 1e-3
     fall = InitialState(tilt, tilt_rate=0.3)
-    run = multibody.simulate(Case(SQUAT, initial=fall, duration=1.0), support='ring', sample_step=0.001, ring_clearance=clearance, ring_inclination=inclination)  # fmt: skip
+    case = Case(SQUAT, initial=fall, duration=1.0)
+    ring = {"ring_clearance": clearance, "ring_inclination": inclination}
+    run = multibody.simulate(case, support="ring", sample_step=0.001, **ring)
+        Case(SQUAT, initial=fall, duration=1.0),
+        support="ring",
+        sample_step=0.001,
+        ring_clearance=clearance,
+        ring_inclination=inclination,
+    )
     first = run.first("wall_contact")
     touching = float(np.interp(first, run.time, run.tilt))
     assert touching > tilt
@@ -157,7 +165,13 @@ def test_impulse_is_that_of_the_force_of_the_wall() -> None:
     # is left of the impact
     push, steep = 0.05 * 9.81, 0.4
     motion = GroundMotion(np.tile([-push, 0.0], (51, 1)), 0.01)
-    run = multibody.simulate(Case(PIER, motion, friction=0.0, duration=0.5), support='ring', ring_clearance=0.0001, ring_friction=0.0, ring_inclination=steep)  # fmt: skip
+    run = multibody.simulate(
+        Case(PIER, motion, friction=0.0, duration=0.5),
+        support="ring",
+        ring_clearance=0.0001,
+        ring_friction=0.0,
+        ring_inclination=steep,
+    )
     late = run.time > 0.3
     slope = np.polyfit(run.time[late], run.wall_impulse[late], 1)[0]
     assert slope == pytest.approx(push / math.cos(steep), rel=1e-3)
