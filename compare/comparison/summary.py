@@ -204,7 +204,7 @@ def external_row(
         trial,
         prediction=close_pass(reference, trial.contact_resolution, case.length),
         until=until,
-        allowance=noise_allowance(measurement(trial).noise, case.cylinder.alpha),
+        allowance=noise_allowance(measurement(trial).poses.noise, case.cylinder.alpha),
     )
     for name, part in (("uplift_time", verdict.uplift_time), ("uplift_direction", verdict.uplift_direction)):
         if part is not None:

@@ -71,28 +71,17 @@ class Measurement:
 
     Attributes
     ----------
-    told : tuple of str
-        What the file tells of "tilt", "azimuth" and "path".
-    noise, position_noise : float
-        Standard deviations of its scatter [rad], [m].
-    stands : float
-        Tilt below which it stands [rad].
+    poses : Poses
+        Its own samples, with what they tell and how they scatter.
     first_lean : float
-        First of its own samples that leans [s].
-    uplift_time_uncertainty, uplift_direction_uncertainty : float
-        [s], [rad]
+        First of them that leans [s]; NaN if none does.
     given : External
     columns : Columns
         The file that it was read from.
     """
 
-    told: tuple[str, ...]
-    noise: float
-    position_noise: float
-    stands: float
+    poses: Poses
     first_lean: float
-    uplift_time_uncertainty: float
-    uplift_direction_uncertainty: float
     given: External
     columns: Columns
 
@@ -120,10 +109,10 @@ def measurement(trace: Trace) -> Measurement:
 
 def external_motion(trace: Trace) -> Motion:
     """Return what is compared: the tilt, the azimuth, also where it follows from the path, and the path."""
-    told = measurement(trace)
+    poses = measurement(trace).poses
     known = bool(np.isfinite(trace.rolling_angle).any())
-    names = (*(("azimuth",) if known else ()), *told.told)
-    return motion_of(trace, names, noise=told.noise, path_noise=told.position_noise)
+    names = (*(("azimuth",) if known else ()), *poses.told)
+    return motion_of(trace, names, noise=poses.noise, path_noise=poses.position_noise)
 
 
 def read_trajectory(external: External | str | Path, case: Case) -> Trace:
@@ -149,7 +138,7 @@ def trajectory_of(columns: Columns, given: External, case: Case) -> Trace:
     )
     poses = _from_start_to_end(poses, start, case.length)
     stands = poses.stands
-    begin = uplift(poses.time, poses.tilt, poses.rolling_angle, stands=stands, noise=poses.noise)
+    begin = uplift(poses.time, poses.tilt, poses.rolling_angle, stands=stands)
     fell = bool(poses.tilt[-1] >= _FALLEN)
     time = sample_times(float(poses.time[-1]) if fell else min(float(poses.time[-1]), case.length))
     tilt, angle, axis = resampled(poses, time)
@@ -176,17 +165,7 @@ def trajectory_of(columns: Columns, given: External, case: Case) -> Trace:
         uplift_direction=begin.direction,
         time_step=float(np.median(np.diff(poses.time))),
         residual_displacement=moved,
-        source=Measurement(
-            told=poses.told,
-            noise=poses.noise,
-            position_noise=poses.position_noise,
-            stands=stands,
-            first_lean=first_lean,
-            uplift_time_uncertainty=begin.time_uncertainty,
-            uplift_direction_uncertainty=begin.direction_uncertainty,
-            given=given,
-            columns=columns,
-        ),
+        source=Measurement(poses=poses, first_lean=first_lean, given=given, columns=columns),
     )
 
 

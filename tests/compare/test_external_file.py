@@ -121,7 +121,7 @@ def test_a_signed_tilt_leans_to_the_other_side(save):
 def test_a_mass_centre_alone_tells_the_pose_of_a_cylinder_in_a_recess(save, response):
     x, y, z = 100.0 * response.centre_of_mass.T
     trajectory = read_trajectory(save(columns(response, **{"x [cm]": x, "y [cm]": y, "z [cm]": z})), RELEASE)
-    assert measurement(trajectory).told == ("path",)
+    assert measurement(trajectory).poses.told == ("path",)
     assert trajectory.tilt == pytest.approx(response.tilt, abs=ROUNDING)
     assert trajectory.rolling_angle == pytest.approx(response.rolling_angle, abs=ROUNDING)
     assert "tilt and azimuth are those of a cylinder in a recess" in notes(trajectory)
@@ -150,7 +150,7 @@ def test_uneven_samples_and_a_clock_that_does_not_start_at_zero(save):
     wanted = np.interp(trajectory.time, fine.time, fine.tilt)
     # a local cubic through samples up to 0.013 s apart, times p^3 of the tilt
     assert trajectory.tilt == pytest.approx(wanted, abs=2e-5)
-    assert measurement(trajectory).noise < 1e-4 * PIER.alpha
+    assert measurement(trajectory).poses.noise < 1e-4 * PIER.alpha
 
 
 @pytest.mark.parametrize("share", [0.001, 0.005])
@@ -163,11 +163,11 @@ def test_the_noise_is_told_by_the_samples(save, response, share):
     table = columns(response, **{"tilt [rad]": np.arcsin(np.abs(lean)), "azimuth [rad]": np.angle(lean)})
     trajectory = read_trajectory(save(table), RELEASE)
     # the median of 400 normal numbers, to three of its standard deviations
-    assert measurement(trajectory).noise == pytest.approx(share * PIER.alpha, rel=0.2)
-    assert measurement(trajectory).stands == pytest.approx(5.0 * measurement(trajectory).noise)
+    assert measurement(trajectory).poses.noise == pytest.approx(share * PIER.alpha, rel=0.2)
+    assert measurement(trajectory).poses.stands == pytest.approx(5.0 * measurement(trajectory).poses.noise)
 
 
 def test_columns_that_are_not_read_are_said(save):
     trajectory = read_trajectory(save(GOOD.replace("azimuth", "heading")), RELEASE)
-    assert measurement(trajectory).told == ("tilt",)
+    assert measurement(trajectory).poses.told == ("tilt",)
     assert "columns not read: heading [deg]" in notes(trajectory)

@@ -13,8 +13,10 @@ import numpy as np
 from rockwobble.models import Trace
 
 from ...traces.trajectory import measurement
-from ...traces.uplift import CONFIDENCE
 from .difference import Part
+
+# standard deviations of the noise: the first of some hundred samples that is above a tilt is sought
+CONFIDENCE = 4.0
 
 
 def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None, Part | None]:
@@ -24,7 +26,7 @@ def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None
     one of the two never leans.
     """
     told = measurement(trajectory)
-    stands, blur = told.stands, CONFIDENCE * told.noise
+    stands, blur = told.poses.stands, CONFIDENCE * told.poses.noise
     seen = told.first_lean
     passed = [first_passage(reference, tilt) for tilt in (stands - blur, stands, stands + blur)]
     if not (seen > 0.0 and passed[1] > 0.0):

@@ -139,7 +139,7 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Verdict:
         ),
         uplift_time=time,
         uplift_direction=direction,
-        noise=measurement(trajectory).noise / case.cylinder.alpha,
+        noise=measurement(trajectory).poses.noise / case.cylinder.alpha,
     )
     if not found.differs_in:
         return verdict

@@ -7,23 +7,16 @@ from typing import Any, Literal
 
 import typer
 
-AUTO: Literal["auto"] = "auto"
-
 
 def time_step(text: str) -> float | Literal["auto"]:
-    """Return a time step [s], or "auto".
+    """Return a time step [s], or "auto"; whether an engine can use the number is said later.
 
     Raises
     ------
     BadParameter
-        If the text is neither; whether the number is one that an engine can use is said later.
+        If the text is neither.
     """
-    if text == AUTO:
-        return AUTO
-    try:
-        return float(text)
-    except ValueError:
-        raise typer.BadParameter(f'must be a number [s] or "auto", got {text!r}') from None
+    return "auto" if text == "auto" else _number(text, 'a number [s] or "auto"')
 
 
 def restitution(text: str) -> float | Literal["momentum"]:
@@ -34,12 +27,14 @@ def restitution(text: str) -> float | Literal["momentum"]:
     BadParameter
         If the text is neither.
     """
-    if text == "momentum":
-        return "momentum"
+    return "momentum" if text == "momentum" else _number(text, 'a number or "momentum"')
+
+
+def _number(text: str, allowed: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise typer.BadParameter(f'must be a number or "momentum", got {text!r}') from None
+        raise typer.BadParameter(f"must be {allowed}, got {text!r}") from None
 
 
 def settings(given: Sequence[str] | None) -> dict[str, Any]:

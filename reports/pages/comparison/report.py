@@ -114,7 +114,7 @@ def _case(view: CaseView) -> dict[str, object]:
 
 def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
     """Yield what is drawn of a case; of many cases what every one has to show."""
-    yield tilt_picture(view, f"figure-{place}" if place else "figure")
+    yield tilt_picture(view, f"tilt-{place}" if place else "figure")
     if not many:
         yield orbit_picture(view, f"orbits-{place}")
         yield contact_picture(view, f"contact-{place}")
@@ -122,7 +122,7 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
         yield azimuth_picture(view, f"contact-{place}")
     yield turn_picture(view, f"turns-{place}", notes=not many)
     if view.budgets:
-        yield budget_picture(view, f"budget-{place}")
+        yield budget_picture(view, f"shares-{place}")
         # where there is nothing to explain they are a megabyte for nothing
         parts = parts_picture(view, f"parts-{place}", above=WORTH_EXPLAINING if many else 0.0)
         yield from () if parts is None else (parts,)
