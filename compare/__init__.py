@@ -31,8 +31,7 @@ from .studies.ensemble.members import far_field_motions, perturbed_starts, synth
 from .studies.ensemble.study import Ensemble, ensemble
 from .studies.sweep.cases import CaseSweep
 from .studies.sweep.grid import Grid
-from .studies.sweep.store import SweepStore, open_sweep_store
-from .studies.sweep.study import SweepIncompleteError, SweepProgress, sweep
+from .studies.sweep.study import SweepIncompleteError, read_sweep, sweep
 from .traces.pair import Pair, make_pair
 from .traces.trajectory import External, read_trajectory
 
@@ -52,8 +51,6 @@ __all__ = [
     "Pair",
     "Progress",
     "SweepIncompleteError",
-    "SweepProgress",
-    "SweepStore",
     "compare",
     "default_runs",
     "describe_case",
@@ -64,9 +61,9 @@ __all__ = [
     "installed_engines",
     "make_pair",
     "missing_engines",
-    "open_sweep_store",
     "own_model",
     "perturbed_starts",
+    "read_sweep",
     "read_trajectory",
     "relative_rms",
     "replace_files",

@@ -249,8 +249,9 @@ class Trace:
                 **dict(zip(("contact_x", "contact_y"), contact.T, strict=True)),
                 **dict(zip(("centre_x", "centre_y", "centre_z"), centre.T, strict=True)),
                 **dict(zip(("force_x", "force_y", "force_z"), force.T, strict=True)),
-                **{name: getattr(self, name) for name in ("energy", "restraining_moment", "energy_error")},
-                **{name: getattr(self, name) for name in ("slip", "wall_contact", "wall_impulse")},
+                **{name: getattr(self, name) for name in ("friction_needed", "restraining_moment", "energy")},
+                **{name: getattr(self, name) for name in ("energy_error", "slip")},
+                **{name: getattr(self, name) for name in ("wall_contact", "wall_impulse")},
             }
         )
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import importlib
 import math
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -219,28 +219,6 @@ def describe_case(case: Case) -> dict[str, Any]:
             "rolling_angle": initial.rolling_angle,
             "rolling_rate": initial.rolling_rate,
         },
-    }
-
-
-def describe_run(trace: Trace) -> dict[str, Any]:
-    """Return what there is to know of a run besides its samples, for a file; SI units and radians."""
-    names = (
-        *("version", "time_step", "outcome", "peak_tilt", "uplift_time", "uplift_direction", "wall_time"),
-        *("contact_resolution", "residual_displacement", "residual_twist", "error_estimate", "settled_until"),
-    )
-    found = {name: getattr(trace, name) for name in names}
-    return {
-        "engine": trace.run.engine,
-        "support": trace.run.support,
-        **{name: _number(value) if isinstance(value, float) else value for name, value in found.items()},
-        "settings": dict(trace.settings),
-        "diagnostics": [
-            {
-                name: _number(value) if isinstance(value, float) else value
-                for name, value in asdict(fact).items()
-            }
-            for fact in trace.facts
-        ],
     }
 
 

@@ -94,9 +94,9 @@ def reduced_makers() -> dict[str, str]:
     return _makers(_REDUCED, "reduced")
 
 
-def engine_makers(engine: str) -> dict[str, str]:
-    """Return versions and code on which the runs of an engine depend."""
-    return _makers(("rockwobble", "numpy", engine), "multibody")
+def engine_makers(*engines: str) -> dict[str, str]:
+    """Return versions and code on which the runs of engines depend."""
+    return _makers(("rockwobble", "numpy", *engines), "multibody")
 
 
 def _makers(packages: tuple[str, ...], folder: str) -> dict[str, str]:

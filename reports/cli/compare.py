@@ -17,8 +17,7 @@ from .inputs.problem import Problem, states_problem
 from .inputs.suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 
 if TYPE_CHECKING:
-    from rockwobble.compare import Comparison, External
-    from rockwobble.compare.runs.progress import ProgressCallback
+    from rockwobble.compare import External
     from rockwobble.models import Case, Run
 
 
@@ -54,7 +53,9 @@ def compare(
     kept = f"the finished runs are kept in {out}, the same command goes on"
     with interruptible(kept if suite else "nothing was written"):
         with user_input():
+            from rockwobble.compare import compare as held_against_models
             from rockwobble.compare import require_runnable, require_writable, with_settings
+            from rockwobble.models import Suite
 
             from .inputs.estimate import require_memory
 
@@ -81,8 +82,8 @@ def compare(
         from ..console.progress import shown_progress
 
         with user_input(), shown_progress() as tell:
-            comparison = run_comparison(
-                cases,
+            comparison = held_against_models(
+                Suite(cases, runs),
                 runs=runs,
                 progress=tell,
                 external=external,
@@ -98,23 +99,6 @@ def compare(
     print(f"\nWritten to {out}: manifest.json, {', '.join(pages)} and the tables")
     if (comparison.summary["outcome"] == "failed").any():
         raise typer.Exit(FAILED)
-
-
-def run_comparison(
-    cases: Sequence[Case],
-    runs: list[Run],
-    progress: ProgressCallback,
-    external: Sequence[External] = (),
-    resume: Path | None = None,
-    budget: bool = False,
-) -> Comparison:
-    """Run engines and models; imported here, because --help must not wait for it."""
-    from rockwobble.compare import compare as run
-    from rockwobble.models import Suite
-
-    return run(
-        Suite(cases, runs), runs=runs, progress=progress, external=external, resume=resume, budget=budget
-    )
 
 
 def _suite(

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -64,18 +64,20 @@ def simulate(
 
     Without options: the recess model under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
-    Writes run.csv and run.parquet with the samples, passes.csv with the passes, and
-    run.json with the rest; SI units and radians.
+    Writes the samples to run.csv, the passes to passes.csv, all to run.parquet, which Trace.load reads, and
+    manifest.json; SI units and radians.
     """
     from ..pages.case_words import describe
     from .inputs.estimate import require_memory, time_needed
 
     with interruptible():
         with user_input():
-            from rockwobble.compare import Job, replace_files, require_runnable, require_writable
+            from rockwobble.compare import Job, require_runnable, require_writable
             from rockwobble.models import Run
 
             case = problem.case()
+            if plane is not None and case.initial is not None:  # it leans in the plane that holds it
+                case = replace(case, initial=replace(case.initial, rolling_angle=plane))
             require_writable(out)
             model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
             run = _with_settings(case, Run(engine, support, time_step), setting, model)
@@ -85,11 +87,10 @@ def simulate(
             print(line)
         job = Job(case=case, run=run)
         trace = _run(job)
-        contents = _contents(job, trace)
         with user_input():
-            replace_files(out, contents)
+            written = _save(out, job, trace)
         _print_result(trace, job.label)
-    print(f"\nWritten to {out}: {', '.join(contents)}")
+    print(f"\nWritten to {out}: manifest.json, {', '.join(written)}")
     if trace.outcome == "failed":
         raise typer.Exit(FAILED)
 
@@ -172,20 +173,35 @@ def _facts(trace: Trace) -> dict[str, str]:
     return facts
 
 
-def _contents(job: Job, trace: Trace) -> dict[str, bytes]:
-    from rockwobble.compare import describe_case, describe_run
+def _save(out: Path, job: Job, trace: Trace) -> list[str]:
     from rockwobble.compare.runs.execution import job_fingerprint
-    from rockwobble.compare.storage.parquet_file import pack
-    from rockwobble.compare.storage.provenance import about_results
+    from rockwobble.compare.storage.manifest import made_now, write_results
+    from rockwobble.models.trace_file import case_to_plain, facts_of, to_bytes
 
     from ..pages.provenance import command_line
 
-    case, samples = job.case, trace.to_frame()
-    made = about_results("rockwobble run", job_fingerprint(job)) | {"command": command_line()}
-    about = made | {"run": job.label, "case": describe_case(case), "result": describe_run(trace)}
-    return {
-        "run.csv": samples.to_csv(index=False).encode(),
-        "run.parquet": pack(samples, about),
-        "passes.csv": trace.passes.to_csv(index=False).encode(),
-        "run.json": (json.dumps(about, indent=2, allow_nan=False) + "\n").encode(),
+    case, found = case_to_plain(job.case), facts_of(trace)
+    motion = job.case.motion
+    about = {
+        "run": job.label,
+        "case": case | {"motion": motion and {"name": motion.name, "time_step": motion.time_step}},
+        "result": {
+            name: value for name, value in found.items() if name not in ("rests", "extrema", "passes")
+        },
     }
+    headline: dict[str, float | int | str | None] = {
+        "outcome": trace.outcome,
+        "peak tilt [alpha]": trace.peak_tilt / trace.case.cylinder.alpha,
+        "uplift [s]": trace.uplift_time,
+        "passes": len(trace.passes),
+    }
+    made = made_now(
+        "run", inputs=job_fingerprint(job), command=command_line(), headline=headline, about=about
+    )
+    files = {
+        "run.parquet": to_bytes(trace),
+        "run.csv": trace.to_frame().to_csv(index=False).encode(),
+        "passes.csv": trace.passes.to_csv(index=False).encode(),
+    }
+    write_results(out, made, {}, files=files)
+    return list(files)

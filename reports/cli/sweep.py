@@ -97,11 +97,11 @@ def sweep(
 
     Whatever ends the sweep, the same command goes on where it stopped.
 
-    Writes sweep.json and the Parquet dataset chunks; rockwobble show prints
-    what they hold.
+    Writes sweep.parquet, one row for each run; rockwobble show prints what it holds.
     """
     with user_input():
         from rockwobble.compare import require_writable
+        from rockwobble.compare.studies.sweep.study import KIND
 
         if suite is None:
             plan: Grid | CaseSweep = _grid(
@@ -115,14 +115,10 @@ def sweep(
     for line in _echo(plan):
         print(line)
     _run(plan, out, scheduler, workers, chunk)
-    from rockwobble.compare.describe.folder import describe_store
-
-    from .show import print_description
+    from .show import print_results
 
     print()
-    for found in describe_store(out):
-        if found["kind"] == "a sweep":
-            print_description(out, found)
+    print_results(out, KIND)
 
 
 def _run(
@@ -131,11 +127,20 @@ def _run(
     from rockwobble.compare import SweepIncompleteError
     from rockwobble.compare import sweep as run
 
-    from ..console.sweep_progress import shown_sweep
+    from ..console.progress import shown_progress
+    from ..pages.provenance import command_line
 
     try:
-        with user_input(), shown_sweep() as tell:
-            run(plan, out=out, scheduler=scheduler, workers=workers, chunk_size=chunk, progress=tell)
+        with user_input(), shown_progress("chunks") as tell:
+            run(
+                plan,
+                out=out,
+                scheduler=scheduler,
+                workers=workers,
+                chunk_size=chunk,
+                progress=tell,
+                command=command_line(),
+            )
     except SweepIncompleteError as error:
         complain(str(error))
         raise typer.Exit(FAILED) from None
@@ -159,11 +164,16 @@ def _grid(
 
 
 def _suite(name: str, models: list[str] | None) -> CaseSweep:
+    from rockwobble import reduced
     from rockwobble.compare import CaseSweep, default_runs
-    from rockwobble.models import read_suite
+    from rockwobble.models import Run, read_suite
 
+    for model in models or ():
+        if model not in reduced.MODELS:
+            raise ValueError(f"--model must be of {', '.join(reduced.MODELS)}, got {model!r}")
     suite = read_suite(name)
-    return CaseSweep(suite.cases, (*(models or ()), *(suite.runs or (() if models else default_runs()))))
+    chosen = [Run(None, **{"support": "recess", **reduced.MODELS[model]}) for model in models or ()]
+    return CaseSweep(suite.cases, (*chosen, *(suite.runs or (() if models else default_runs()))))
 
 
 def values(option: str, text: str) -> list[float]:
@@ -227,7 +237,7 @@ def _echo(plan: Grid | CaseSweep) -> list[str]:
         )
     else:
         ends = [case.cylinder for case in plan.cases]
-        what = f"{len(plan.cases)} cases, {len(plan.methods)} methods"
+        what = f"{len(plan.cases)} cases, {len(plan.runs)} runs of each"
     return [
         "Cylinders: "
         + ", ".join(

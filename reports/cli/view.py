@@ -56,6 +56,7 @@ def view(
         with user_input():
             from rockwobble.compare import (
                 Comparison,
+                compare,
                 replace_files,
                 require_runnable,
                 require_writable,
@@ -79,13 +80,12 @@ def view(
         if folder is None:
             from ..console.progress import shown_progress
             from ..pages.case_words import describe
-            from .compare import run_comparison
             from .inputs.estimate import time_needed
 
             for line in (*describe(case), *time_needed([case], [run])):
                 print(line)
             with user_input(), shown_progress() as tell:
-                comparison = run_comparison([case], runs=[run], progress=tell)
+                comparison = compare(case, runs=[run], progress=tell)
         with user_input():
             from ..pages.comparison.report import view_page
 

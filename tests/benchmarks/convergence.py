@@ -4,7 +4,7 @@
 
 1. In the recess against the recess model and on flat ground against the flat-ground model over 8 s, released
    at 0.3, 0.5 and 0.8 alpha with 0.5 rad/s at 6 m, for tan(alpha) from 0.1 to 3: error at each step, and the
-   order. A release in which the model itself loses contact with the ground is left out, and said below the table.
+   order. A release in which the model itself loses contact is left out, and said below the table.
 2. The angle of turn from tilt maximum to tilt maximum, b = 1 m, h = 2 b, released at alpha/2 with 0.1 rad/s,
    against exact quadrature (recess) and against the flat-ground model; Exudyn, which has no recess, as well.
 3. The first table's release at 0.5 alpha for cylinders of 1 cm, 6 m and 100 m.

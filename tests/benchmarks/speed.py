@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.compare.studies.tradeoff.scipy_solver import SOLVERS, TOLERANCE_SCALE, SolverName, rates_of
+from rockwobble.compare.studies.tradeoff.scipy_solver import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
 from rockwobble.models import Case, Cylinder, el_centro_1940
 from rockwobble.reduced.solution import Solution
 
@@ -36,7 +36,7 @@ _TOLERANCES = 10.0 ** -np.arange(5.0, 13.1, 0.25)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Problem:
-    """The run, its state just after uplift for solvers that cannot uplift, and its exact end."""
+    """The run, for solvers that cannot uplift from just after it, and its exact end."""
 
     case: Case
     start: float  # [s]
@@ -66,12 +66,12 @@ def el_centro_problem() -> Problem:
     """Return the problem of the benchmark."""
     cylinder, motion = Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940()
     uplift = reduced.simulate(Case(cylinder, motion), rtol=1e-13).uplift_time
-    case = Case(cylinder, motion, duration=uplift + _AFTER_UPLIFT)
+    end = uplift + _AFTER_UPLIFT
     start = reduced.simulate(Case(cylinder, motion, duration=uplift + _START), rtol=1e-13).source
     assert isinstance(start, Solution)
-    exact = reduced.simulate(case, rtol=1e-13)
+    exact = reduced.simulate(Case(cylinder, motion, duration=end), rtol=1e-13)
     return Problem(
-        case=case,
+        case=Case(cylinder, motion, duration=end),
         start=uplift + _START,
         state=start.states[-1, :4],
         exact=np.array([exact.tilt[-1], exact.tilt_rate[-1]]),
@@ -88,17 +88,18 @@ def kernel(problem: Problem) -> Solver:
     return Solver(name="rockwobble", solve=solve)
 
 
-def scipy_solver(problem: Problem, method: SolverName, rates: Callable[..., Any], language: str) -> Solver:
-    """One of scipy's solvers, over the whole record."""
+def scipy_solver(problem: Problem, method: SolverName, *, compiled: bool) -> Solver:
+    """One of scipy's solvers, over the whole record, with equations in Python or compiled."""
     from scipy.integrate import solve_ivp
 
-    span = problem.start, problem.case.length
+    rates = start_of(problem.case, compiled=compiled).function
+    span = (problem.start, problem.case.length)
 
     def solve(rtol: float) -> tuple[State, int]:
         run = solve_ivp(rates, span, problem.state, method, rtol=rtol, atol=rtol * TOLERANCE_SCALE)
         return run.y[:2, -1], int(run.nfev)
 
-    return Solver(name=f"scipy {method}, {language}", solve=solve)
+    return Solver(name=f"scipy {method}, {'numba' if compiled else 'Python'}", solve=solve)
 
 
 def heyoka_solver(problem: Problem) -> Solver | None:
@@ -107,7 +108,7 @@ def heyoka_solver(problem: Problem) -> Solver | None:
         import heyoka as hy
     except ImportError:
         return None
-    cylinder, motion, end = problem.case.cylinder, problem.case.motion, problem.case.length
+    cylinder, motion = problem.case.cylinder, problem.case.motion
     assert motion is not None
     b, h = cylinder.base_radius, cylinder.half_height
     I1, I2, g = (3.0 * b * b + 4.0 * h * h) / 12.0, 0.5 * b * b, 9.81
@@ -136,6 +137,7 @@ def heyoka_solver(problem: Problem) -> Solver | None:
             integrators[rtol] = hy.taylor_adaptive(system, state=problem.state.copy(), tol=rtol)
         run = integrators[rtol]
         run.state[:] = problem.state
+        end = problem.case.length
         first, last, steps = int(problem.start / step), int(end / step), 0
         for i in range(first, last + 1):
             run.pars[:2], run.pars[2:] = samples[i], slopes[i]
@@ -184,9 +186,8 @@ def measure(
 
     problem = el_centro_problem()
     solvers = [kernel(problem)]
-    solvers += [scipy_solver(problem, m, rates_of(problem.case, compiled=False), "Python") for m in SOLVERS]
-    if compiled:
-        solvers += [scipy_solver(problem, m, rates_of(problem.case, compiled=True), "numba") for m in SOLVERS]
+    for each in (False, True) if compiled else (False,):
+        solvers += [scipy_solver(problem, method, compiled=each) for method in SOLVERS]
     peer = heyoka_solver(problem)
     if peer is not None:
         solvers.append(peer)

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
 
 # Of the force: the goal. Measured: 0.4 % in free response, 0.5 % under El Centro.
 FORCE = 0.01
@@ -22,7 +22,7 @@ ENGINES = [name for name in ("mujoco", "pybullet") if name in multibody.availabl
 MODELS = {"recess": "recess", "flat": "flat"}
 
 
-def _agree(run: multibody.Trajectory, model: reduced.Response, alpha: float, start: float) -> None:
+def _agree(run: multibody.Trajectory, model: Trace, alpha: float, start: float) -> None:
     np.testing.assert_allclose(run.time, model.time, rtol=1e-14)  # rounding
     between = (model.tilt > BETWEEN * alpha) & (model.time >= start)
     assert between.sum() > 200

@@ -8,13 +8,12 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import ensemble, far_field_motions, perturbed_starts, read_ensemble, synthetic_motions
-from rockwobble.compare.describe.ensemble import describe_ensemble
+from rockwobble.compare import ensemble, far_field_motions, perturbed_starts, synthetic_motions
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
-from rockwobble.compare.storage.parquet_file import pack
+from rockwobble.compare.storage.manifest import made_now, read_results, write_results
 from rockwobble.compare.studies.ensemble import members as ensemble_members
-from rockwobble.compare.studies.ensemble.study import ensemble_of
+from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of, stored_ensemble
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace
 
 ROUNDING = 1e-12
@@ -92,18 +91,16 @@ def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
         ensemble_of(pd.concat([found.members, found.members[:1]]), found.about)
 
 
-def test_stored_members_that_say_too_little_are_too_old(tmp_path):
+def test_a_stored_ensemble_comes_back_with_the_same_bits(tmp_path):
     found = ensemble(CASE, runs=[], size=3, workers=1)
-    file = tmp_path / "members.parquet"
-    file.write_bytes(pack(found.members, found.about))
-    assert read_ensemble(tmp_path).contrasts.equals(found.contrasts)
-    about = {name: value for name, value in found.about.items() if name != "methods"}
-    file.write_bytes(pack(found.members, about))
-    with pytest.raises(ValueError, match="too old: it does not hold methods; run the ensemble again"):
-        read_ensemble(tmp_path)
+    write_results(tmp_path, made_now(KIND, about=found.about), {"members": found.members})
+    again = stored_ensemble(read_results(tmp_path, KIND))
+    assert again.contrasts.equals(found.contrasts)
+    assert again.methods.equals(found.methods)
+    assert again.about == found.about
 
 
-def test_a_failed_run_is_no_member_that_stands(tmp_path):
+def test_a_failed_run_is_no_member_that_stands():
     found = ensemble(CASE, runs=[], size=4, workers=1)
     members = found.members
     recess = members["method"] == "recess model"
@@ -115,12 +112,6 @@ def test_a_failed_run_is_no_member_that_stands(tmp_path):
     turned = ensemble_of(members, {**found.about, "methods": {"flat-ground model": "", "recess model": ""}})
     assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
     assert again.methods.loc[0, ["runs", "rocked", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
-    (tmp_path / "members.parquet").write_bytes(pack(members, found.about))
-    figure = describe_ensemble(tmp_path)["figures"][0]
-    assert (figure["rows"], figure["failed"]) == (4, 1)
-    assert figure["overturned [%]"] == pytest.approx(200.0 / 3.0)
-    assert figure["median peak tilt / alpha"] == "overturned"
-    assert figure["largest where not overturned"] == 0.3
 
 
 def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):
@@ -130,7 +121,9 @@ def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monk
     assert first.members.equals(again.members)
     assert first.contrasts.equals(again.contrasts)
     assert first.about == again.about
-    assert {len(pd.read_parquet(path)) for path in (tmp_path / "members").glob("*.parquet")} == {1}
+    assert {
+        len(pd.read_parquet(path)) for path in (tmp_path / "finished" / "ensemble").glob("*.parquet")
+    } == {1}
 
 
 def test_every_input_is_in_the_hash_of_an_ensemble():

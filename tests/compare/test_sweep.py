@@ -1,18 +1,18 @@
 from __future__ import annotations
 
 import math
-from contextlib import contextmanager
 
 import numpy as np
 import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import CaseSweep, Grid, SweepIncompleteError, open_sweep_store, sweep
-from rockwobble.compare.runs.executor import InThisProcess, Workers, run_chunk
-from rockwobble.compare.runs.process_pool import WorkerDiedError
-from rockwobble.compare.storage.parquet_file import read_about
-from rockwobble.compare.studies.sweep.store import CHUNKS
+from rockwobble.compare import CaseSweep, Grid, SweepIncompleteError, read_sweep, sweep
+from rockwobble.compare.runs.cache import CACHE
+from rockwobble.compare.runs.task import Lost
+from rockwobble.compare.storage.manifest import read_results
+from rockwobble.compare.studies.sweep import study
+from rockwobble.compare.studies.sweep.study import KIND
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -26,7 +26,7 @@ def grid(**changes) -> Grid:
 
 
 def files(folder) -> dict[str, int]:
-    return {path.name: path.stat().st_ino for path in (folder / CHUNKS).glob("*.parquet")}
+    return {path.name: path.stat().st_ino for path in (folder / CACHE / KIND).glob("*.parquet")}
 
 
 def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
@@ -58,7 +58,7 @@ def test_a_second_sweep_repeats_nothing(tmp_path):
     before = files(tmp_path)
     events = []
     second = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append)
-    assert [(event.done, event.found, event.total) for event in events] == [(40, 40, 40)]
+    assert events == []
     assert files(tmp_path) == before
     pd.testing.assert_frame_equal(first, second, check_exact=True)
 
@@ -68,10 +68,10 @@ def test_a_grid_that_grows_keeps_what_is_there(tmp_path):
     before = set(files(tmp_path).values())
     events = []
     table = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append)
-    assert events[0].found == 20
+    assert (events[0].found, events[0].total) == (4, 8)
     assert before < set(files(tmp_path).values())
     pd.testing.assert_frame_equal(table, sweep(grid(), workers=1), check_exact=True)
-    pd.testing.assert_frame_equal(table, pd.read_parquet(tmp_path / CHUNKS), check_exact=True)
+    pd.testing.assert_frame_equal(table, read_sweep(tmp_path), check_exact=True)
 
 
 def test_chunks_of_another_sweep_go_only_when_this_one_is_complete(tmp_path):
@@ -85,50 +85,25 @@ def test_chunks_of_another_sweep_go_only_when_this_one_is_complete(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5, progress=interrupt)
     assert len(files(tmp_path)) == len(other) + 1
-    assert len(open_sweep_store(tmp_path).read()) == 5
     table = sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5)
     assert not other & set(files(tmp_path))
-    pd.testing.assert_frame_equal(table, pd.read_parquet(tmp_path / CHUNKS), check_exact=True)
+    pd.testing.assert_frame_equal(table, read_sweep(tmp_path), check_exact=True)
 
 
-def test_a_scheduler_that_is_not_there(monkeypatch):
-    monkeypatch.setattr("rockwobble.compare.runs.executor._PATIENCE", 0.5)
-    with pytest.raises(ValueError, match=r"no Dask scheduler answers at 'tcp://127.0.0.1:9'"):
-        sweep(grid(), scheduler="tcp://127.0.0.1:9")
+def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeypatch):
+    run_tasks = study.run_tasks
 
+    def losing(*args, **options):
+        assert options["tries"] == 3
+        found = run_tasks(*args, **options)
+        return [Lost("killed"), *found[1:]]
 
-def test_a_chunk_whose_process_dies_is_tried_again(tmp_path, monkeypatch):
-    class Dying(InThisProcess):
-        calls = 0
-
-        def submit(self, fn, /, *args, **kwargs):
-            Dying.calls += 1
-
-            def once(*inner):
-                if Dying.calls in deadly:
-                    raise WorkerDiedError("killed")
-                return fn(*inner)
-
-            return super().submit(once, *args, **kwargs)
-
-    @contextmanager
-    def dying(*_):
-        yield Workers(Dying(), lambda: 1, (WorkerDiedError,))
-
-    monkeypatch.setattr("rockwobble.compare.studies.sweep.study.open_workers", dying)
-    deadly = {2, 3, 5}
-    table = sweep(grid(), chunk_size=5)
-    pd.testing.assert_frame_equal(table, sweep(grid()), check_exact=True)
-    Dying.calls, deadly = 0, {2, 3, 4}
+    monkeypatch.setattr(study, "run_tasks", losing)
     with pytest.raises(SweepIncompleteError, match=r"1 of 8 chunks ended their processes 3 times.*killed"):
-        sweep(grid(), chunk_size=5, out=tmp_path)
-    assert len(files(tmp_path)) == 7
-
-
-def test_a_worker_with_another_version_is_refused():
-    chunk = next(grid().chunks())
-    with pytest.raises(ValueError, match=r"numba is .* there and 0\.1 here"):
-        run_chunk(chunk, chunk.makers | {"numba": "0.1"})
+        sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
+    assert len(files(tmp_path)) == 8
+    with pytest.raises(ValueError, match="does not hold results"):
+        read_sweep(tmp_path)
 
 
 def test_each_input_of_a_chunk_is_in_its_key():
@@ -168,22 +143,27 @@ def test_cases_with_engines_and_models(tmp_path):
     pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
 
 
-def test_every_chunk_says_what_made_it(tmp_path):
-    sweep(grid(), out=tmp_path, workers=1, seeds={"records": 7})
-    for path in (tmp_path / CHUNKS).glob("*.parquet"):
-        about = read_about(path)
-        assert path.stem.endswith(about["inputs"])
-        assert {"numba", "numpy", "python", "code of reduced"} <= set(about["versions"])
-        assert about["seeds"] == {"records": 7}
-    assert open_sweep_store(tmp_path).about["seeds"] == {"records": 7}
+def test_the_manifest_says_what_was_swept(tmp_path):
+    table = sweep(grid(), out=tmp_path, workers=1, seeds={"records": 7}, command="rockwobble sweep")
+    made = read_results(tmp_path, KIND).manifest
+    assert (made.seeds, made.command) == ({"records": 7}, "rockwobble sweep")
+    assert made.headline == {"runs": 40, **table["outcome"].value_counts().to_dict()}
+    assert (made.about["semidiagonals"], made.about["runs"]) == (SIZES, 40)
+    motions = read_results(tmp_path, KIND).table("motions")
+    assert np.array_equal(motions[["acceleration_x", "acceleration_y"]], SHORT.acceleration)
 
 
-def test_a_chunk_that_cannot_be_read_is_named(tmp_path):
-    sweep(grid(), out=tmp_path, workers=1)
-    path = next((tmp_path / CHUNKS).glob("*.parquet"))
-    path.write_bytes(path.read_bytes()[:100])
-    with pytest.raises(ValueError, match=rf"{path.name} cannot be read, remove it"):
-        open_sweep_store(tmp_path).read()
+@pytest.mark.parametrize("where", [100, 300])  # in the data; the footer has no checksum
+def test_a_damaged_chunk_runs_again(tmp_path, where):
+    first = sweep(grid(), out=tmp_path, workers=1)
+    path = next((tmp_path / CACHE / KIND).glob("*.parquet"))
+    content = bytearray(path.read_bytes())
+    content[where] ^= 1  # a single bit
+    path.write_bytes(content)
+    events = []
+    again = sweep(grid(), out=tmp_path, workers=1, progress=events.append)
+    assert (events[-1].found, events[-1].total) == (1, 2)
+    pd.testing.assert_frame_equal(first, again, check_exact=True)
 
 
 @pytest.mark.parametrize(
@@ -201,7 +181,7 @@ def test_a_chunk_that_cannot_be_read_is_named(tmp_path):
         (lambda: CaseSweep([], [Run(None, "recess")]), "at least one case"),
         (lambda: CaseSweep([Case(PIER, duration=1.0, name="a")] * 2, [Run(None, "recess")]), "got 'a' twice"),
         (lambda: sweep(grid(), chunk_size=0), "chunk_size must be at least 1"),
-        (lambda: open_sweep_store("/"), "must be the folder of a sweep"),
+        (lambda: read_sweep("/"), "does not hold results"),
     ],
 )
 def test_bad_input_gets_one_clear_line(make, words):

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Case, Cylinder, InitialState, Run
+from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace
+from rockwobble.models.trace import Known
 from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
-from rockwobble.multibody.recording.trajectory import Trajectory
 
 ALPHA = 0.2
 # Richardson with a measured order is good for a factor; three is what it misses by at the bounds of the order
@@ -39,7 +39,7 @@ def test_the_error_is_as_estimated(
     error = float(np.abs(run.tilt - exact.tilt).max())
     assert error < ESTIMATE * run.error_estimate
     assert run.error_estimate < 2e-4 * cylinder.alpha
-    assert f"time step {run.time_step:.3g} s" in run.message
+    assert step_fact(run).code == "settled"
     assert told == sorted(told)
     assert told[-1] == 1.0
 
@@ -57,36 +57,53 @@ def test_the_step_scales_with_size() -> None:
     assert run.time_step == pytest.approx(0.1 * COARSEST / 2)
 
 
-def made(tilt: Any, *, passes: tuple[float, ...] = (), outcome: str = "completed") -> Trajectory:
-    """Return a trajectory with that tilt and nothing else to speak of."""
+def made(tilt: Any, *, passes: tuple[float, ...] = (), outcome: str = "completed") -> Trace:
+    """Return a trace with that tilt and nothing else to speak of."""
     import pandas as pd
 
     n = len(tilt)
     zeros, points = np.zeros(n), np.zeros((n, 3))
-    return Trajectory(
-        engine="made", support="flat", engine_version="", time_step=1.0, settings={}, wall_time=1.0,
-        time=0.01 * np.arange(n), tilt=np.asarray(tilt, dtype=float), tilt_rate=zeros, rolling_angle=zeros,
-        rolling_rate=zeros, twist=zeros, contact_point=points[:, :2], contact_offset=zeros,
-        contact_force=points, centre_of_mass=points, energy=zeros, energy_error=zeros, slip=zeros,
-        wall_contact=zeros, wall_impulse=zeros, first_wall_contact=np.nan, peak_tilt=0.1, outcome=outcome,
-        message="why" if outcome == "failed" else "", uplift_time=0.0, uplift_direction=0.0,
-        passes=pd.DataFrame({"time": passes}), contact_resolution=1e-6, residual_displacement=0.0,
-        residual_twist=0.0,
-    )  # fmt: skip
+    return Trace(
+        case=Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0),
+        run=Run("made", "flat"),
+        version="",
+        time=0.01 * np.arange(n),
+        tilt=np.asarray(tilt, dtype=float),
+        tilt_rate=zeros,
+        rolling_angle=zeros,
+        twist=zeros,
+        contact_point=points[:, :2],
+        centre_of_mass=points,
+        peak_tilt=0.1,
+        outcome=outcome,
+        facts=(Diagnostic(code="warning", detail="why"),) if outcome == "failed" else (),
+        uplift_time=0.0,
+        uplift_direction=0.0,
+        passes=pd.DataFrame({"time": passes}),
+        contact_resolution=1e-6,
+        wall_time=1.0,
+        source=Known({}),
+    )
+
+
+def step_fact(run: Trace) -> Diagnostic:
+    """What the search for a step says of its end."""
+    (fact,) = (fact for fact in run.facts if fact.code in ("settled", "unsettled"))
+    return fact
 
 
 def search(
     tilt_of: Callable[[float], Any], tolerance: float = 1e-3, **kept: Any
-) -> tuple[Trajectory, list[float]]:
+) -> tuple[Trace, list[float]]:
     """Find the step of a made-up engine; return the run and the steps that were tried."""
     from dataclasses import replace
 
     steps: list[float] = []
 
-    def attempt(step: float, _: Any) -> Trajectory:
+    def attempt(step: float, _: Any) -> Trace:
         steps.append(step)
         given = tilt_of(step)
-        run = given if isinstance(given, Trajectory) else made(given, **kept)
+        run = given if isinstance(given, Trace) else made(given, **kept)
         return replace(run, time_step=step)
 
     return find_step(attempt, 1.0, ALPHA, tolerance, None), steps
@@ -100,15 +117,14 @@ def test_the_estimate_is_exact_where_the_order_is(order: float) -> None:
     assert len(steps) >= 3
     error = np.abs(run.tilt - 0.1).max()
     assert run.error_estimate == pytest.approx(error, rel=1e-6)
-    assert f"order {order:g}" in run.message
+    assert step_fact(run).bound == pytest.approx(order, rel=1e-3)
 
 
 def test_halving_ends_where_it_no_longer_helps() -> None:
     # converging at first, and then worse with each step
     level = {COARSEST: 8e-4, COARSEST / 2: 4e-4, COARSEST / 4: 2e-4, COARSEST / 8: 6e-4}
     run, steps = search(lambda step: np.full(50, 0.1 + level[step]), 1e-4)
-    assert "does not bring it closer" in run.message
-    assert "has not settled" in run.message
+    assert (step_fact(run).code, step_fact(run).detail) == ("unsettled", "no_closer")
     assert run.time_step == COARSEST / 4
     assert len(steps) == 4
 
@@ -116,7 +132,7 @@ def test_halving_ends_where_it_no_longer_helps() -> None:
 def test_halving_ends_at_the_smallest_step() -> None:
     run, steps = search(lambda step: 0.1 + np.full(50, 0.0015 * (step / COARSEST) ** 0.2), 1e-7)
     assert steps[-1] == pytest.approx(SMALLEST)
-    assert "has not settled by halving the step: it still changes at the smallest step" in run.message
+    assert (step_fact(run).code, step_fact(run).detail) == ("unsettled", "still_changes")
 
 
 def test_a_parting_that_stays_is_where_agreement_ends() -> None:
@@ -127,7 +143,7 @@ def test_a_parting_that_stays_is_where_agreement_ends() -> None:
     run, _ = search(tilt, passes=(0.5, 1.1, 1.5))
     assert run.settled_until == 1.1
     assert run.error_estimate < 2e-5
-    assert "until 1.1 s, the last pass before traces part," in run.message
+    assert step_fact(run).duration == 1.1
 
 
 def test_failed_steps_are_passed_over() -> None:
@@ -137,10 +153,10 @@ def test_failed_steps_are_passed_over() -> None:
     assert len(steps) == 3
     run, _ = search(lambda step: fails)
     assert run.outcome == "failed"
-    assert run.message == "why"
+    assert [fact.detail for fact in run.facts] == ["why"]
     run, _ = search(lambda step: fails if step < 0.9 * COARSEST else np.full(50, 0.1))
     assert run.time_step == COARSEST
-    assert "the run fails, because why" in run.message
+    assert step_fact(run).detail == "fails"
 
 
 def test_closeness_knows_an_end_before_the_other() -> None:

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
 
 pytest.importorskip("exudyn", reason="exudyn is not installed")
 
@@ -25,7 +25,7 @@ ORDER = 0.2
 Solve = Callable[..., Any]
 
 
-def free(cylinder: Cylinder, initial: InitialState, **changes: Any) -> multibody.Trajectory:
+def free(cylinder: Cylinder, initial: InitialState, **changes: Any) -> Trace:
     return multibody.simulate(Case(cylinder, initial=initial), engine="exudyn", support="flat", **changes)
 
 
@@ -49,7 +49,7 @@ def test_angle_of_turn(slenderness: float, rate: float, turn: float, period: flo
     found = math.degrees(run.passes["angle_of_turn"].iloc[0])
     assert found == pytest.approx(turn, abs=TURN)
     assert run.settings["integrator"] == "trapezoidal"
-    assert run.message == ""
+    assert run.facts == ()
 
 
 @pytest.mark.parametrize("tan_alpha", [0.1, 0.2, 0.5, 1.0, 3.0])
@@ -88,8 +88,8 @@ def test_rolling_through_the_apex_ends_the_run(
     run = free(pier, release, duration=3.0)
     assert run.outcome == "failed"
     assert math.isnan(run.peak_tilt)
-    words = "the state is not finite; the engine warned: the rim rolled through upright, where it has no"
-    assert run.message.startswith(words)
+    assert run.facts[0].code == "not_finite"
+    assert run.facts[0].detail.startswith("the rim rolled through upright, where it has no")
     # it is cut where that happened, at the first pass, and was right until then
     assert 1.1 < run.time[-1] < 1.3
     exact = solve_free(pier, release, run.time[:-1], rolls_out=True)
@@ -101,18 +101,17 @@ def test_rolling_through_the_apex_ends_the_run(
 def test_a_rim_that_would_slip_is_said(pier: Cylinder, friction: float) -> None:
     # the release needs a friction of about 0.13
     run = free(pier, InitialState(pier.alpha / 2, rolling_rate=0.5), duration=0.5, friction=friction)
-    words = "where the friction of the case would let it slip"
-    assert (words in run.message) == (friction < 0.1)
+    assert ("friction_needed" in {fact.code for fact in run.facts}) == (friction < 0.1)
 
 
 def test_contact_that_would_be_lost_is_said(pier: Cylinder) -> None:
     squat = Cylinder(semidiagonal=6.0, tan_alpha=3.0)
     run = free(squat, InitialState(squat.alpha / 2, rolling_rate=10.0), duration=1.0)
-    assert run.message.startswith("a joint holds the rim down at 0.1")
-    first = float(run.message.split(" at ")[1].split()[0])
+    first = run.first("tension")
+    assert 0.1 <= first < 0.2
     pulled = run.time[run.contact_force[:, 2] < -1e-2]
     assert pulled[0] == pytest.approx(first, abs=0.02)
-    assert free(pier, InitialState(pier.alpha / 2, rolling_rate=0.5), duration=3.0).message == ""
+    assert free(pier, InitialState(pier.alpha / 2, rolling_rate=0.5), duration=3.0).facts == ()
 
 
 def test_a_step_that_does_not_converge_ends_the_run_in_silence(
@@ -120,7 +119,8 @@ def test_a_step_that_does_not_converge_ends_the_run_in_silence(
 ) -> None:
     run = free(pier, InitialState(pier.alpha / 2, rolling_rate=0.5), duration=0.2, iterations=1)
     assert run.outcome == "failed"
-    assert "the engine warned: Newton's iteration did not converge" in run.message
+    assert run.facts[0].code == "warning"
+    assert run.facts[0].detail.startswith("Newton's iteration did not converge")
     assert capfd.readouterr() == ("", "")
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.35)
 RELEASE = InitialState(0.4 * PIER.alpha, rolling_angle=0.6, rolling_rate=0.9)
@@ -24,7 +24,7 @@ SHAKING = GroundMotion(
 
 
 @pytest.fixture
-def run(engine: str) -> multibody.Trajectory:
+def run(engine: str) -> Trace:
     """A release under all three components, free to twist, and still ground from 0.8 s on."""
     return multibody.simulate(
         Case(PIER, SHAKING, initial=RELEASE, duration=1.0), engine=engine, support="flat", sample_step=SAMPLE

@@ -94,7 +94,7 @@ def test_twist_goes_on_over_whole_turns_and_signs_of_the_quaternion(chunks: list
     steps = Steps(leaning.position * ones, quaternion, 0.0 * ones * leaning.position, spin * ones)
     samples = 0.01 * np.arange(31)
     found = record(scene_of(start), steps, np.zeros((count, 3)), samples, chunks)
-    assert not found.ended, found.reason
+    assert not found.ended, found.failure
     twist = found.table[:, 1 + COLUMNS.index("twist")]
     np.testing.assert_allclose(twist, rate * samples, atol=1e-9)
     assert abs(twist[-1]) > 3.0 * np.pi

@@ -15,7 +15,7 @@ SCALES = np.linspace(0.3, 4.0, 12)
 
 @pytest.mark.parametrize("model", ["recess", "flat", "planar"])
 def test_cells_are_single_runs(model):
-    peaks = reduced.peak_tilts(SIZES, 0.1, EL_CENTRO, SCALES, model=model)
+    peaks = reduced.peak_tilts(SIZES, 0.1, EL_CENTRO, SCALES, **reduced.MODELS[model])
     assert peaks.shape == (3, 12)
     assert (peaks == 0.5 * math.pi).any()
     assert ((peaks > 0.0) & (peaks < 0.1)).any()
@@ -65,7 +65,7 @@ BARELY_LIFTED = [
 @pytest.mark.parametrize(("model", "tan_alpha", "size", "intensity"), BARELY_LIFTED)
 def test_a_cell_that_chatters_is_its_single_run_to_the_bit(model, tan_alpha, size, intensity):
     scale = intensity * 9.81 * tan_alpha / EL_CENTRO.peak
-    peaks = reduced.peak_tilts([size], tan_alpha, EL_CENTRO, [scale], model=model)
+    peaks = reduced.peak_tilts([size], tan_alpha, EL_CENTRO, [scale], **reduced.MODELS[model])
     cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
     single = reduced.simulate(Case(cylinder, EL_CENTRO.scaled(scale)), rtol=1e-7, **reduced.MODELS[model])
     assert single.step_count > 10 * len(EL_CENTRO.acceleration)
@@ -77,14 +77,14 @@ def test_every_cell_is_its_single_run_to_the_bit(model):
     # factors that round, an azimuth that rounds, more tasks than threads
     sizes, scales = np.geomspace(0.3, 40.0, 5), np.linspace(0.31, 1.7, 7) / 3.0
     turned = EL_CENTRO.rotated(0.3)
-    peaks = reduced.peak_tilts(sizes, 0.1, turned, scales, model=model, plane=0.7, workers=2)
+    method = {"plane": 0.7} if model == "planar" else reduced.MODELS[model]
+    peaks = reduced.peak_tilts(sizes, 0.1, turned, scales, **method, workers=2)
     single = [
         [
             reduced.simulate(
                 Case(Cylinder(semidiagonal=size, tan_alpha=0.1), turned.scaled(scale)),
                 rtol=1e-7,
-                **reduced.MODELS[model],
-                plane=0.7,
+                **method,
             ).peak_tilt
             for scale in scales
         ]

@@ -4,9 +4,9 @@ import math
 
 import numpy as np
 import pytest
+from stating import solve
 
-from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Cylinder, GroundMotion, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 TOLERANCES = 10.0 ** np.arange(-5.0, -10.5, -1.0)
@@ -30,12 +30,9 @@ PROBLEMS = {
 @pytest.mark.parametrize("problem", PROBLEMS)
 def test_error_is_proportional_to_the_tolerance(model, problem):
     options = PROBLEMS[problem]
-    exact = reduced.simulate(Case(PIER), rtol=1e-13, **reduced.MODELS[model], **options)
+    exact = solve(PIER, rtol=1e-13, model=model, **options)
     errors = [
-        np.abs(
-            reduced.simulate(Case(PIER), rtol=rtol, **reduced.MODELS[model], **options).tilt - exact.tilt
-        ).max()
-        for rtol in TOLERANCES
+        np.abs(solve(PIER, rtol=rtol, model=model, **options).tilt - exact.tilt).max() for rtol in TOLERANCES
     ]
     slope = np.polyfit(np.log10(TOLERANCES), np.log10(errors), 1)[0]
     assert slope == pytest.approx(1.0, abs=0.2)

@@ -92,9 +92,10 @@ def test_assumptions_hold_and_name_their_extremes(response):
     slippery = reduced.simulate(Case(PIER, el_centro_1940(), friction=0.21))
     assert not slippery.assumptions.held
     (breach,) = slippery.assumptions.breaches
-    assert breach.assumption == "friction"
-    assert breach.extreme == pytest.approx(review.largest_friction_needed, rel=1e-6)
-    assert "it would need a friction of 0.221" in str(slippery.assumptions)
+    assert breach.code == "friction_needed"
+    assert breach.size == pytest.approx(review.largest_friction_needed, rel=1e-6)
+    assert breach.bound == 0.21
+    assert breach in slippery.diagnostics
 
 
 def test_an_overturned_run_ends_at_tilt_half_pi():

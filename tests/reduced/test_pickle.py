@@ -14,5 +14,7 @@ def test_a_response_from_elsewhere_is_solved_again_with_the_compiled_march():
     # compiled code that travels with a response would be compiled again where it arrives, for many seconds
     response = reduced.simulate(Case(PIER, initial=InitialState(tilt=0.1, rolling_rate=0.1), duration=1.0))
     sent = pickle.loads(pickle.dumps(response))
-    assert sent.problem.solve(np.empty(0))[0].peak == response.problem.solve(np.empty(0))[0].peak
-    assert sent.problem._set_up.march is response.problem._set_up.march
+    assert (
+        sent.source.problem.solve(np.empty(0))[0].peak == response.source.problem.solve(np.empty(0))[0].peak
+    )
+    assert sent.source.problem._set_up.march is response.source.problem._set_up.march

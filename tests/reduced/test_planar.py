@@ -26,7 +26,9 @@ def test_quarter_period_of_the_reference_table(alpha, row):
     initial = InitialState(row["theta0_over_alpha"] * cylinder.alpha)
     response = reduced.simulate(Case(cylinder, initial=initial, duration=8.0), rtol=1e-12, plane=0.0)
     impact = response.extrema[1, 0]
-    assert impact * math.sqrt(response.problem.body.p2) == pytest.approx(row[f"alpha_{alpha}"], abs=2e-11)
+    assert impact * math.sqrt(response.source.problem.body.p2) == pytest.approx(
+        row[f"alpha_{alpha}"], abs=2e-11
+    )
 
 
 def test_signed_tilt_is_continuous_and_the_unsigned_is_its_size():
@@ -62,7 +64,7 @@ def test_each_impact_takes_its_share_of_energy(restitution):
         restitution=restitution,
         rtol=1e-11,
     )
-    factor = response.problem.restitution
+    factor = response.source.problem.restitution
     maxima = response.extrema[response.extrema[:, 3] > 0.0][:, 1]
     # at a maximum all energy is potential: p^2 [cos(theta - alpha) - cos(alpha)]
     potential = np.cos(maxima - PIER.alpha) - math.cos(PIER.alpha)
@@ -114,7 +116,7 @@ def one_sine(amplitude, omega, cylinder, p):
 def test_overturning_by_a_one_sine_pulse_without_impact(row):
     """The slender limit: at alpha = 1e-4 what is left out is of the order alpha^2, 1e-8."""
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=math.tan(1e-4))
-    p = reduced.simulate(Case(cylinder, duration=1.0), plane=0.0).problem.body.p
+    p = reduced.simulate(Case(cylinder, duration=1.0), plane=0.0).source.problem.body.p
     verdicts = []
     for factor in (1.0 - 2e-8, 1.0 + 2e-8):
         motion = one_sine(factor * row["a"], row["w_over_p"], cylinder, p)

@@ -12,13 +12,13 @@ import pytest
 from shaken_problems import G, Problem, joined, problem, resampled, sensitivity
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, Trace
 
 FIRM = 1e-4  # of the peak that perturbed copies may differ by: beyond it a problem says nothing
 SAME = 2e-3  # of the peak: the tolerance of 1e-9, amplified as that of a perturbed copy of 1e-7 may be
 
 
-def changed(x: reduced.Response, y: reduced.Response) -> bool:
+def changed(x: Trace, y: Trace) -> bool:
     return x.outcome != y.outcome or not abs(x.peak_tilt - y.peak_tilt) <= SAME * x.peak_tilt
 
 
@@ -180,7 +180,7 @@ def test_overturned_is_what_still_ground_for_as_long_as_it_takes_decides():
         plain = given.simulate(duration=cut, rtol=1e-10)
         record = given.motion.acceleration[: round(cut / given.motion.time_step) + 1]
         motion = GroundMotion(record, given.motion.time_step)
-        longer = cut + max(30.0, 60.0 / plain.problem.body.p)
+        longer = cut + max(30.0, 60.0 / plain.source.problem.body.p)
         padded = given.simulate(motion=motion, duration=longer, rtol=1e-10)
         assert (plain.outcome == "overturned") == (padded.outcome == "overturned"), seed
         if plain.outcome == "overturned":
@@ -198,7 +198,7 @@ def test_a_cell_that_falls_after_the_record_is_its_single_run(model):
     motion = problem(9, models=(model,)).motion
     cut = GroundMotion(motion.acceleration[: len(motion.acceleration) // 2], motion.time_step)
     sizes, scales = [0.6, 2.0, 7.0], np.geomspace(0.5, 8.0, 8) * G * 0.2 / cut.peak
-    peaks = reduced.peak_tilts(sizes, 0.2, cut, scales, model=model)
+    peaks = reduced.peak_tilts(sizes, 0.2, cut, scales, **reduced.MODELS[model])
     single = [
         [
             reduced.simulate(

@@ -44,11 +44,11 @@ def test_a_near_pass_turns_to_the_side_of_the_momentum():
         given = problem(seed, models=("recess", "flat"), sizes=(2.0, 50.0), released=seed % 3 == 0)
         response = given.simulate(rest_tilt=1e-4)  # less chatter
         passes = response.passes
-        solved, _ = response.problem.solve(passes.time.to_numpy())
+        solved, _ = response.source.problem.solve(passes.time.to_numpy())
         maxima = response.extrema[response.extrema[:, 3] > 0.0]
         after = np.searchsorted(maxima[:, 0], passes.time)
         lower = np.minimum(maxima[after - 1, 1], maxima[after, 1])
-        near = (passes.minimum_tilt < 0.03 * lower) & (lower > 1e-3 * response.cylinder.alpha)
+        near = (passes.minimum_tilt < 0.03 * lower) & (lower > 1e-3 * response.case.cylinder.alpha)
         momentum = solved.samples[: len(passes), 3]
         assert (np.sign(passes.angle_of_turn[near]) == np.sign(momentum[near])).all(), seed
         count += near.sum()
@@ -85,17 +85,17 @@ def test_demands_are_the_extrema_of_dense_samples(seed):
     least = 1e-9
     assert found.least_normal_force <= normal.min() + least
     assert found.largest_normal_force >= normal.max() - least
-    assert found.largest_couple >= np.abs(dense.restraining_moment[moving]).max() - least
+    assert found.largest_restraining_moment >= np.abs(dense.restraining_moment[moving]).max() - least
     assert found.largest_friction_needed >= (1.0 - 1e-9) * friction.max()
-    breaches = {breach.assumption: breach for breach in found.breaches}
+    breaches = {breach.code: breach for breach in found.breaches}
     for name, broken in (
-        ("contact", normal <= 0.0),
-        ("friction", (normal > 0.0) & (friction > needed)),
+        ("tension", normal <= 0.0),
+        ("friction_needed", (normal > 0.0) & (friction > needed)),
     ):
         if broken.any():
             changes = np.count_nonzero(np.diff(broken)) + 1
             assert breaches[name].duration == pytest.approx(DENSE * broken.sum(), abs=DENSE * changes)
-            assert breaches[name].first_time <= dense.time[moving][broken][0] + DENSE
+            assert breaches[name].time <= dense.time[moving][broken][0] + DENSE
 
 
 @pytest.mark.parametrize("tan_alpha", [0.2, 1.0, 3.0])

@@ -8,9 +8,9 @@ from random import Random
 from typing import Any, NamedTuple
 
 import numpy as np
+from stating import solve
 
-from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
 
 G = 9.81
 MODELS = ("recess", "flat", "planar")
@@ -22,12 +22,14 @@ class Problem(NamedTuple):
     model: str
     initial: InitialState | None
 
-    def simulate(self, **changes: Any) -> reduced.Response:
-        """Simulate with `changes` to the motion or to any option."""
+    def simulate(self, **changes: Any) -> Trace:
+        """Simulate with `changes` to the motion or to any option; a planar release falls in its plane."""
         options: dict[str, Any] = {"model": self.model, "initial": self.initial, "rtol": 1e-9}
-        options["sample_step"] = 1.0
-        motion = changes.pop("motion", self.motion)
-        return reduced.simulate(Case(changes.pop("cylinder", self.cylinder), motion), **options | changes)
+        options = {**options, "sample_step": 1.0, **changes}
+        cylinder, motion = options.pop("cylinder", self.cylinder), options.pop("motion", self.motion)
+        if options["model"] == "planar" and options["initial"] is not None:
+            options.setdefault("plane", options["initial"].rolling_angle)
+        return solve(cylinder, motion, **options)
 
     @property
     def threshold(self) -> float:
@@ -116,15 +118,13 @@ def _between(random: Random, low: float, high: float) -> float:
     return low * (high / low) ** random.random()
 
 
-def sensitivity(
-    given: Problem, response: reduced.Response, *, components: slice = slice(None), **options: Any
-) -> float:
+def sensitivity(given: Problem, response: Trace, *, components: slice = slice(None), **options: Any) -> float:
     """Return how much of the peak perturbed copies and a tighter tolerance change, inf where the outcome.
 
     The copies have 1e-7, 1e-8 and 1e-9 more of some components of the record, or the tenth part of the
     tolerance.
     """
-    copies = [given.simulate(**{**options, "rtol": 0.1 * response.problem.rtol})]
+    copies = [given.simulate(**{**options, "rtol": 0.1 * response.source.problem.rtol})]
     for share in (1e-7, 1e-8, 1e-9):
         acceleration = np.array(given.motion.acceleration)
         acceleration[:, components] *= 1.0 + share

@@ -67,7 +67,7 @@ def test_auto_says_what_error_is_left(tmp_path: Path, capsys: pytest.CaptureFixt
     method = ["--engine", "mujoco", "--time-step", "auto", "--set", "step_tolerance=1e-4"]
     assert call("simulate", *RELEASE, *method, "--out", str(tmp_path)) == 0
     assert "the tilt is, until 0.2 s, within" in " ".join(capsys.readouterr().out.split())
-    assert json.loads((tmp_path / "run.json").read_text())["result"]["error_estimate"] > 0.0
+    assert json.loads((tmp_path / "manifest.json").read_text())["about"]["result"]["error_estimate"] > 0.0
 
 
 def test_a_setting_goes_to_the_runs_that_know_it() -> None:
@@ -89,9 +89,9 @@ def test_a_run_that_flies_in_a_ring_of_its_own_says_so(
     given = ["--set", "ring_clearance=3", "--set", "ring_inclination=0.05", "--set", "ring_facets=16"]
     place = ["--engine", "mujoco", "--support", "ring", "--out", str(tmp_path)]
     assert call("simulate", *spin, *place, *given) == 0
-    result = json.loads((tmp_path / "run.json").read_text())["result"]
+    result = json.loads((tmp_path / "manifest.json").read_text())["about"]["result"]
     walls = (result["settings"][f"ring_{name}"] for name in ("clearance", "inclination", "facets"))
     assert tuple(walls) == (3, 0.05, 16)
     assert "the cylinder left the ground at 0.2043 s" in " ".join(capsys.readouterr().out.split())
-    (flight,) = (fact for fact in result["diagnostics"] if fact["code"] == "lift_off")
+    (flight,) = (fact for fact in result["facts"] if fact["code"] == "lift_off")
     assert flight["time"] == pytest.approx(0.2043, abs=1e-4)

@@ -90,9 +90,10 @@ def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
     gained = (Diagnostic(code="energy_gain", time=0.5),)
     no_engines(outcome="failed", facts=gained, peak_tilt=float("nan"))
     failed = compare(case, runs=[Run("mujoco", "recess")])
-    assert "mujoco recess failed: the engine gained energy that nothing supplied at 0.5 s" in comparison_page(
-        failed
-    ).html()
+    assert (
+        "mujoco recess failed: the engine gained energy that nothing supplied at 0.5 s"
+        in comparison_page(failed).html()
+    )
     assert comparison_files(failed)["figure.svg"]
 
 

@@ -95,10 +95,10 @@ def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp
     [
         (["view", "{folder}", "--scale", "2"], "--scale states a run and does not go with a stored one"),
         (["view", "--case", "x"], "--case chooses from a folder"),
-        (["view", "{folder}/missing"], "must be the folder of a comparison"),
+        (["view", "{folder}/missing"], "does not hold results of rockwobble: it has no manifest.json"),
         (
             ["report", "{folder}/missing"],
-            "a report is drawn from a folder with one of comparison.json (compare),",
+            "does not hold results of rockwobble: it has no manifest.json",
         ),
         (["view", "{folder}", "--case", "x"], "--case must be one of release, got 'x'"),
     ],

@@ -89,8 +89,7 @@ BAD = {
 
 @pytest.mark.parametrize("kind", BAD)
 def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch, capsys, kind):
-    monkeypatch.setattr(execution, "simulate_run", lambda *_: pytest.fail("it ran"))
-    monkeypatch.setattr(execution, "ProcessPool", lambda _: pytest.fail("it ran"))
+    monkeypatch.setattr(execution, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
     before = sorted(path.name for path in folder.iterdir())
     arguments, words = BAD[kind]
     assert call("compare", *arguments) == 2
@@ -107,7 +106,9 @@ def test_a_suite_is_echoed_run_summed_up_and_written(folder, no_engines, capsys)
     assert "Suite mine.suite.toml: 4 cases x 2 runs = 8 runs of engines" in out
     assert "Cases: release (4)" in out
     assert re.search(r"release\s+mujoco recess +4 +4 +100 %", out)
-    assert "8 of 8 runs stay within 1 % of alpha of the model of their support to the end." in " ".join(out.split())
+    assert "8 of 8 runs stay within 1 % of alpha of the model of their support to the end." in " ".join(
+        out.split()
+    )
     summary = pd.read_csv(folder / "results" / "summary.csv")
     assert summary["case"].nunique() == 4
     page = (folder / "results" / "report.html").read_text()

@@ -22,7 +22,11 @@ def test_the_table_fits_its_terminal_and_every_row_its_line(comparison, width):
     text = printed(comparison, width)
     assert "…" not in text
     assert max(len(line.rstrip()) for line in text.splitlines()) <= width
-    rows = [line for line in text.splitlines() if re.match(r"(mujoco|pybullet) (recess|flat) +(recess|flat) ", line)]
+    rows = [
+        line
+        for line in text.splitlines()
+        if re.match(r"(mujoco|pybullet) (recess|flat) +(recess|flat) ", line)
+    ]
     assert len(rows) == len(comparison.summary)
     for heading in ("agrees", "[α]", "[s]", "[deg]", "[b]"):
         assert heading in text

@@ -15,9 +15,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockwobble.compare.runs.cache import CACHE
+from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.sweep.grid import Grid
-from rockwobble.compare.studies.sweep.store import CHUNKS
-from rockwobble.compare.studies.sweep.study import SweepProgress, sweep
+from rockwobble.compare.studies.sweep.study import KIND, sweep
 from rockwobble.models import el_centro_1940
 
 if TYPE_CHECKING:
@@ -88,12 +89,12 @@ def killed_sweep(folder: Path, *, sizes: int, kills: int, seed: int, workers: in
         process.kill()
         process.wait()
         process.stdout.close()
-        now = {path.name: path.stat().st_ino for path in (folder / CHUNKS).glob("*.parquet")}
+        now = {path.name: path.stat().st_ino for path in (folder / CACHE / KIND).glob("*.parquet")}
         repeated += sum(now.get(name) != inode for name, inode in finished.items())
         finished = now
         counts.append(len(finished))
     table = sweep(trial_grid(sizes), out=folder, chunk_size=CHUNK_SIZE, workers=workers)
-    now = {path.name: path.stat().st_ino for path in (folder / CHUNKS).glob("*.parquet")}
+    now = {path.name: path.stat().st_ino for path in (folder / CACHE / KIND).glob("*.parquet")}
     repeated += sum(now.get(name) != inode for name, inode in finished.items())
     return Kills(table=table, chunks=tuple(counts), repeated=repeated)
 
@@ -101,7 +102,7 @@ def killed_sweep(folder: Path, *, sizes: int, kills: int, seed: int, workers: in
 def swept(folder: str, sizes: int, workers: int | None) -> None:
     """Sweep the grid of a trial and say when the first chunk is finished; the body of a killed process."""
 
-    def tell(event: SweepProgress) -> None:
+    def tell(event: Progress) -> None:
         if event.done > event.found:
             print(event.done, flush=True)
 
@@ -139,11 +140,11 @@ def _address(scheduler_file: Path) -> str:
 def dask_sweep_with_a_death(
     folder: Path, *, sizes: int, chunk_size: int = CHUNK_SIZE
 ) -> tuple[pd.DataFrame, int]:
-    """Sweep on three Dask workers and kill one in the middle; return the table and the runs done by then."""
+    """Sweep on three Dask workers and kill one in the middle; return table and chunks done by then."""
     killed_at: list[int] = []
     with dask_cluster(3) as (address, processes):
 
-        def tell(event: SweepProgress) -> None:
+        def tell(event: Progress) -> None:
             if not killed_at and 3 * event.done >= event.total:
                 processes[0].kill()
                 killed_at.append(event.done)

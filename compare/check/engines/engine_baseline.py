@@ -18,7 +18,7 @@ from ...runs.execution import Job
 from ..baseline_file import Baseline, Values, read_baseline
 from ..bench import Bench
 from ..finding import NO_BASELINE, Bound, Finding, at_most
-from .known_bounds import tilt_bound
+from .agreement import tilt_bound
 
 FILE = "engines"
 INSTANTS = 8  # evenly over the run

@@ -16,7 +16,7 @@ from rockwobble.models import Case, GroundMotion, Trace
 
 from ...comparison.prediction import Prediction
 from ...comparison.summary import summary_row
-from ...metrics.agreement import agreed_passes, agreement_time, closest_pass
+from ...metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
 from ...metrics.contact import contact_rms
 from ...metrics.energy import energy_loss
 from ...metrics.tilt import tilt_rms, tilt_rms_relative
@@ -38,31 +38,16 @@ WORK = Bound(1e-7, "made up so that each value is known; samples 0.01 s apart")
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part."""
     del bench
-    for name, errors, bound, part in (
-        ("differences of tilt", _tilts(), ROUNDING, "RMS of the tilt (compare/metrics/tilt.py)"),
-        (
-            "one time axis for two traces",
-            _axes(),
-            ROUNDING,
-            "interpolation or window of a pair (compare/traces/pair.py)",
-        ),
-        ("distance of the contact points", _contacts(), ROUNDING, "contact RMS (compare/metrics/contact.py)"),
-        ("differences of turn and direction", _turns(), ROUNDING, "turning (compare/metrics/turning.py)"),
-        (
-            "agreement time and passes",
-            _agreement(),
-            ROUNDING,
-            "agreement time (compare/metrics/agreement.py)",
-        ),
-        ("energy lost", _energies(), WORK, "energy lost (compare/metrics/energy.py)"),
-        (
-            "a row of the summary",
-            _row(),
-            ROUNDING,
-            "columns of the summary (compare/comparison/summary.py)",
-        ),
+    for name, errors, part in (
+        ("differences of tilt", _tilts(), "RMS of the tilt (compare/metrics/tilt.py)"),
+        ("one time axis for two traces", _axes(), "interpolation or window (compare/traces/pair.py)"),
+        ("distance of the contact points", _contacts(), "contact RMS (compare/metrics/contact.py)"),
+        ("differences of turn and direction", _turns(), "turning (compare/metrics/turning.py)"),
+        ("agreement time and passes", _agreement(), "agreement time (compare/metrics/agreement.py)"),
+        ("a row of the summary", _row(), "columns of the summary (compare/comparison/summary.py)"),
     ):
-        yield worst_of(name, errors, bound, part)
+        yield worst_of(name, errors, ROUNDING, part)
+    yield worst_of("energy lost", _energies(), WORK, "energy lost (compare/metrics/energy.py)")
 
 
 def _pair(reference: Trace, trial: Trace, until: float | None = None) -> Pair:
@@ -118,36 +103,27 @@ def _contacts() -> dict[str, float]:
     tilt = np.where(low, 0.04, 1.0) * 0.5 * ALPHA
     at = np.column_stack([np.cos(TIME), np.sin(TIME)]) * B
     off = np.where(low[:, None], [[3.0, 3.0]], [[0.03, -0.04]]) * B
-    pair = _pair(made(TIME, tilt, contact_point=at), made(TIME, tilt, contact_point=at + off))
-    trial = made(TIME, tilt, contact_point=at + off)
-    one_low = _pair(made(TIME, tilt + 0.01, contact_point=at), trial)
     gap = at.copy()
     gap[::4] = math.nan
-    rests = _pair(made(TIME, tilt, contact_point=gap), trial)
-    return {
-        "RMS": contact_rms(pair) - 0.05,
-        "RMS where one of two tilts": contact_rms(one_low) - 0.05,
-        "RMS with a reference that rests now and then": contact_rms(rests) - 0.05,
+    references = {
+        "RMS": made(TIME, tilt, contact_point=at),
+        "RMS where one of two tilts": made(TIME, tilt + 0.01, contact_point=at),
+        "RMS with a reference that rests now and then": made(TIME, tilt, contact_point=gap),
     }
+    trial = made(TIME, tilt, contact_point=at + off)
+    return {name: contact_rms(_pair(one, trial)) - 0.05 for name, one in references.items()}
 
 
 def _turns() -> dict[str, float]:
-    one = _rolling(2.0, 0.3)
-    fast = _rolling(3.0, 0.3)
-    turned = _rolling(2.0, 0.5 + 4.0 * math.pi)
-    across = (
-        made(TIME, LEAN, uplift_direction=math.pi - 0.1),
-        made(TIME, LEAN, uplift_direction=0.1 - math.pi),
-    )
-    pair = _pair(one, fast)
+    one, fast, turned = _rolling(2.0, 0.3), _rolling(3.0, 0.3), _rolling(2.0, 0.5 + 4.0 * math.pi)
+    across = (made(TIME, LEAN, uplift_direction=sign * (math.pi - 0.1)) for sign in (1.0, -1.0))
+    pair, named_apart = _pair(one, fast), direction_difference(one, turned)
     engine = made(TIME, one.tilt, passes=passes([1.0, 2.5, 4.0], [0.1, 0.1, 0.1], [False, True, False]))
     return {
         "more than a turn": turn_difference(pair, until=10.0) - 10.0,
         "until the end of the agreement": turn_difference(pair, until=2.5) - 2.5,
         "a direction that is named two turns apart": turn_difference(
-            _pair(one, turned),
-            until=10.0,
-            direction_difference=direction_difference(one, turned),
+            _pair(one, turned), until=10.0, direction_difference=named_apart
         )
         - 0.2,
         "direction across the cut": direction_difference(*across) - 0.2,
@@ -161,17 +137,17 @@ def _agreement() -> dict[str, float]:
     """The trial leaves the reference on a ramp that is at 1 % of alpha at 6.005 s; uplift was at 1 s."""
     table = passes([2.0, 5.0, 6.01, 6.02, 8.0], [0.03, 0.01, 0.02, 0.001, 0.002])
     reference = made(TIME, np.full(len(TIME), 0.4 * ALPHA), uplift_time=1.0, passes=table)
-    for sign in (1.0, -1.0):
-        ramp = sign * 0.01 * ALPHA * np.maximum(0.0, TIME - 5.005)
-        pair = _pair(reference, made(TIME, reference.tilt + ramp))
-        horizon = agreement_time(pair)
-        if not (horizon.diverged and horizon.end == TIME[601]):
-            return {f"a ramp of sign {sign:g}": math.nan}
-    same = agreement_time(_pair(reference, made(TIME, reference.tilt + 0.0099 * ALPHA)))
+    ramp = np.maximum(0.0, TIME - 5.005)
+
+    def parts(off: Array | float) -> Agreement:
+        return agreement_time(_pair(reference, made(TIME, reference.tilt + off * ALPHA)))
+
+    up, horizon, same, early = parts(0.01 * ramp), parts(-0.01 * ramp), parts(0.0099), parts(0.02)
     cut = _pair(reference, made(TIME[:501], reference.tilt[:501]))
     broken = agreement_time(cut, broken=True)
-    early = agreement_time(_pair(reference, made(TIME, reference.tilt + 0.02 * ALPHA)))
     return {
+        "a ramp upwards": 0.0 if up == horizon and horizon.diverged else math.nan,
+        "end of the agreement": horizon.end - TIME[601],
         "length from the uplift": horizon.length - 5.01,
         "passes within it": agreed_passes(reference, horizon) - 3.0,
         "closest of them": closest_pass(reference, horizon) - 0.01,
@@ -183,34 +159,27 @@ def _agreement() -> dict[str, float]:
 
 def _energies() -> dict[str, float]:
     """Work of a known acceleration on a known path, in three components; and a loss that is put in."""
-    samples = np.column_stack(
-        [np.linspace(0.0, 3.0, 6), np.linspace(-1.0, 1.0, 6), np.linspace(0.5, -0.5, 6)]
-    )
-    motion = GroundMotion(samples, 2.0)
     # a = a0 + c t along each axis, r = sin(w t): the work of -a is -[a sin(w t) + c cos(w t)/w]
-    rates, start = np.array([0.3, 0.2, -0.1]), samples[0]
-    speeds = np.array([1.1, 0.7, 1.9])
+    start, rates, speeds = np.array([[0.0, -1.0, 0.5], [0.3, 0.2, -0.1], [1.1, 0.7, 1.9]])
+    motion = GroundMotion(start + np.outer(2.0 * np.arange(6.0), rates), 2.0)
     place = np.sin(np.outer(TIME, speeds))
     ground = start + np.outer(TIME, rates)
     swept = ground * place + rates * np.cos(np.outer(TIME, speeds)) / speeds
     work = -(swept - swept[0]).sum(axis=1)
     energy = work - work.min() + 1.0
-    lossy = energy - 0.02 * TIME
-    largest = float(lossy.max())
+    lossy, even = energy - 0.02 * TIME, np.ones(len(TIME))
+    late = np.maximum(0.0, TIME - 4.0)[:, None] ** 3 * [0.01, 0.0, 0.0]
+
+    def lost(energy: Array, place: Array, motion: GroundMotion | None) -> float:
+        return energy_loss(made(TIME, LEAN, energy=energy, centre_of_mass=place), motion)
+
+    still = 0.0 * place
     return {
-        "none": energy_loss(made(TIME, LEAN, energy=energy, centre_of_mass=place), motion),
-        "some": energy_loss(made(TIME, LEAN, energy=lossy, centre_of_mass=place), motion) - 0.2 / largest,
-        "over still ground": energy_loss(made(TIME, LEAN, energy=2.0 - 0.05 * TIME), None) - 0.25,
-        "of what never moves": energy_loss(made(TIME, LEAN), None),
-        "after the end of the record": energy_loss(
-            made(
-                TIME,
-                LEAN,
-                energy=1.0 + 0.0 * TIME,
-                centre_of_mass=np.maximum(0.0, TIME - 4.0)[:, None] ** 3 * [0.01, 0.0, 0.0],
-            ),
-            GroundMotion([[1.0, 0.0], [1.0, 0.0]], 4.0),
-        ),
+        "none": lost(energy, place, motion),
+        "some": lost(lossy, place, motion) - 0.2 / float(lossy.max()),
+        "over still ground": lost(2.0 - 0.05 * TIME, still, None) - 0.25,
+        "of what never moves": lost(0.0 * even, still, None),
+        "after the end of the record": lost(even, late, GroundMotion([[1.0, 0.0], [1.0, 0.0]], 4.0)),
     }
 
 

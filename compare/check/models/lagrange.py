@@ -148,13 +148,8 @@ def residuals(
 ) -> tuple[Array, Array]:
     """Return what a motion leaves of Lagrange's equations (12) for tilt and rolling angle (n,) [m^2/s^2].
 
-    Parameters
-    ----------
-    shape : Shape
-    place, rates, curves : tuple of ndarray, shape (n,)
-        Tilt and rolling angle, their rates and their second derivatives.
-    ground : ndarray, shape (n, 3)
-        Acceleration of the ground [m/s^2].
+    `place`, `rates` and `curves` are tilt and rolling angle (n,), their rates and their second derivatives;
+    `ground` (n, 3) is the acceleration of the ground.
     """
     # the momenta along the parabola that has this place, these rates and these curves
     time = (np.arange(2 * differences.REACH + 1) - differences.REACH)[:, None] * _ALONG

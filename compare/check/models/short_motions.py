@@ -42,39 +42,20 @@ class FailedMotionError(RuntimeError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Sampled:
-    """States of computed motions, n in all.
-
-    Parameters
-    ----------
-    shape : Shape
-    p : float
-        Frequency parameter of the cylinder [1/s], the scale of rates.
-    theta, phi : ndarray, shape (n,)
-        [rad]
-    theta_rate, phi_rate, theta_curve, phi_curve : ndarray, shape (n,)
-        First and second derivatives, by differences of the angles.
-    ground : ndarray, shape (n, 3)
-        Acceleration of the ground [m/s^2].
-    stated_rate : ndarray, shape (n,)
-        theta' as the response states it [rad/s].
-    stated_force : ndarray, shape (n, 3)
-        Contact force as the response states it, in weights.
-    centre_curve : ndarray, shape (n, 3)
-        Acceleration of the mass centre relative to O, by differences [m/s^2].
-    """
+    """States of computed motions, n in all: angles (n,), and vectors (n, 3)."""
 
     shape: Shape
-    p: float
-    theta: Array
+    p: float  # [1/s] frequency parameter of the cylinder, the scale of rates
+    theta: Array  # [rad]
     phi: Array
-    theta_rate: Array
+    theta_rate: Array  # derivatives, by differences of the angles
     phi_rate: Array
     theta_curve: Array
     phi_curve: Array
-    ground: Array
-    stated_rate: Array
-    stated_force: Array
-    centre_curve: Array
+    ground: Array  # its acceleration [m/s^2]
+    stated_rate: Array  # theta' as the trace states it [rad/s]
+    stated_force: Array  # and the contact force [weights]
+    centre_curve: Array  # acceleration of the mass centre relative to O, by differences [m/s^2]
 
 
 def sample(bench: Bench, cylinder: Cylinder) -> Sampled:

@@ -40,9 +40,10 @@ class GridChunk:
         return len(self.semidiagonals) * len(self.scales)
 
     @property
-    def makers(self) -> dict[str, str]:
-        """Versions and code on which the results depend."""
-        return reduced_makers()
+    def name(self) -> str:
+        """What it is, for whoever waits."""
+        where = f"tan alpha {self.tan_alpha:g}, R from {self.semidiagonals[0]:g} m, scale from"
+        return f"{self.label}, {self.model}, {where} {self.scales[0]:g}"
 
     def key(self) -> str:
         """Return the hash of all that the results depend on."""
@@ -54,7 +55,7 @@ class GridChunk:
                 "semidiagonals": self.semidiagonals,
                 "scales": self.scales,
                 "options": self.options,
-                "made with": self.makers,
+                "made with": reduced_makers(),
             }
         )
 
