@@ -78,22 +78,8 @@ def replace_files(folder: str | Path, contents: Mapping[str, bytes]) -> None:
 
 
 def write_whole(target: Path, content: bytes) -> None:
-    """Write one file into a folder that exists, whole or not at all.
-
-    Raises
-    ------
-    ValueError
-        If it cannot be written.
-    """
-    part = _beside(target)
-    try:
-        part.write_bytes(content)
-        _force_to_disk(part)
-        part.replace(target)
-        _force_to_disk(target.parent)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise ValueError(f"{target} cannot be written: {error.strerror or error}") from None
+    """Write one file, whole or not at all; see `replace_files`."""
+    replace_files(target.parent, {target.name: content})
 
 
 def remove_leftovers(folder: Path) -> None:

@@ -7,10 +7,8 @@ import importlib.metadata
 import importlib.util
 import platform
 import subprocess
-from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
 
 from rockwobble.models.cpus import usable_cpus
 
@@ -27,33 +25,6 @@ def package_versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
         except importlib.metadata.PackageNotFoundError:
             versions[package] = "not installed"
     return versions
-
-
-def about_results(
-    kind: str,
-    inputs: str,
-    *,
-    versions: Mapping[str, str] | None = None,
-    seeds: Mapping[str, int] | None = None,
-) -> dict[str, Any]:
-    """Return what every file of results says of itself: its kind, inputs by hash, versions and seeds.
-
-    Parameters
-    ----------
-    kind : str
-    inputs : str
-        Hash of all that the results depend on, see `fingerprint`.
-    versions : mapping, optional
-        Default: those of all packages and engines here.
-    seeds : mapping, optional
-        Of whatever random numbers the inputs were drawn with.
-    """
-    return {
-        "kind": kind,
-        "inputs": inputs,
-        "versions": dict(package_versions() if versions is None else versions),
-        "seeds": dict(seeds or {}),
-    }
 
 
 def processor() -> str:

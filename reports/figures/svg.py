@@ -106,7 +106,8 @@ def _settle(drawn: Figure) -> None:
         layout.execute(drawn)
     drawn.set_layout_engine("none")
     for axes in drawn.axes:
-        axes.set_position([round(number, 3) for number in axes.get_position(original=True).bounds])
+        left, bottom, width, height = axes.get_position(original=True).bounds
+        axes.set_position((round(left, 3), round(bottom, 3), round(width, 3), round(height, 3)))
 
 
 def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:

@@ -17,20 +17,17 @@ trial only has to say that it slips or flies.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from rockwobble import multibody, reduced
 from rockwobble.compare.runs.choice import own_model
-from rockwobble.compare.runs.progress import ProgressCallback
-from rockwobble.compare.runs.scheduler import run_tasks
-from rockwobble.compare.runs.task import Lost
 from rockwobble.compare.traces.pair import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 
-from .console import options_of, show, tell
+from .console import options_of, show
 from .engine_trials import Trial, trials
 
 if TYPE_CHECKING:
@@ -98,31 +95,52 @@ def measure(
     chosen: Sequence[Trial] | None = None,
     *,
     workers: int | None = None,
-    progress: ProgressCallback | None = None,
+    say: Callable[[str], None] | None = None,
 ) -> pd.DataFrame:
-    """Run the trials, all by default; return their rows in the same order, see `run`."""
+    """Run the trials; return their rows in the same order, see `run`.
+
+    Parameters
+    ----------
+    chosen : sequence of Trial, optional
+        Default: all.
+    workers : int, optional
+        Processes; default one for each core.
+    say : callable, optional
+        Called with a line of progress.
+    """
     import pandas as pd
 
+    from rockwobble.compare.runs.progress import Progress
+    from rockwobble.compare.runs.scheduler import run_tasks
+    from rockwobble.compare.runs.task import Lost
+
+    def tell(event: Progress) -> None:
+        if say is not None and event.state == "finished":
+            say(f"{event.done}/{event.total} {event.label}")
+
+    chosen = trials() if chosen is None else chosen
     found = run_tasks(
         run,
-        trials() if chosen is None else chosen,
+        chosen,
         workers=workers,
         label=lambda trial: f"{trial.engine} {trial.extreme} {trial.value}",
-        progress=progress,
+        progress=tell,
     )
-    lost = [row.why for row in found if isinstance(row, Lost)]
-    if lost:
-        raise RuntimeError(f"the process of {len(lost)} trials ended: {lost[0]}")
-    return pd.DataFrame([row for row in found if not isinstance(row, Lost)])
+    rows = [row for row in found if not isinstance(row, Lost)]
+    if len(rows) < len(found):
+        raise RuntimeError(next(row.why for row in found if isinstance(row, Lost)))
+    return pd.DataFrame(rows)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table; return 1 if a run is silently wrong."""
+    import sys
+
     options = options_of(
         "engine_extremes", "The engines at their own extremes: does a run that goes wrong say so?"
     )
     options.parse_args(arguments)
-    table = measure(progress=tell)
+    table = measure(say=lambda line: print(line, file=sys.stderr, flush=True))
     formats = {"extreme": "", "value": "", "tan_alpha": "g", "engine": "", "support": ""}
     counts = ", ".join(f"{count} {verdict}" for verdict, count in table["verdict"].value_counts().items())
     show(

@@ -7,11 +7,12 @@ import signal
 import time
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 
-def squared(task: int) -> pd.DataFrame:
-    return pd.DataFrame({"square": [task * task]})
+def multiples(task: int) -> pd.DataFrame:
+    return pd.DataFrame({"multiple": np.arange(1000.0) * task})
 
 
 def refuse(task: int) -> None:
@@ -32,7 +33,7 @@ def die_once(mark: str) -> str:
 
 def killed(task: int) -> pd.DataFrame:
     os.kill(os.getpid(), signal.SIGKILL)
-    return squared(task)
+    return multiples(task)
 
 
 def never_the_same() -> dict[str, str]:
