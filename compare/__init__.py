@@ -9,7 +9,7 @@ from typing import Any
 
 from .comparison.driver import compare
 from .comparison.error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
-from .comparison.result import Comparison, describe_case, describe_run
+from .comparison.result import Comparison, describe_case
 from .comparison.summary import SUMMARY_COLUMNS
 from .metrics.agreement import AGREEMENT
 from .metrics.contact import TILTED
@@ -54,7 +54,6 @@ __all__ = [
     "compare",
     "default_runs",
     "describe_case",
-    "describe_run",
     "ensemble",
     "far_field_motions",
     "findings",

@@ -9,7 +9,7 @@ import numpy as np
 
 from ....metrics.distributions import log_ratios
 from ....metrics.order_statistics import quantile_interval
-from ...ensemble.tables import pairs
+from ...ensemble.tables import contrast_row, pairs
 from ..motions import EL_CENTRO
 from ..records import FLAT, HALVED, PERTURBED, RECESS
 from .numbers import Array, Numbers, Tables, column, largest, quantile, reached
@@ -37,11 +37,9 @@ def contrasts(tables: Tables) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        tan_alpha, semidiagonal, intensity, method, against, members; the median ratio of the two peaks of a
-        record and its 95 % interval (ratio, low, high), what 5 % and 95 % of the records do not exceed
-        (ratio_05, ratio_95, and the outer ends of their intervals, low_05 and high_95); p of Wilcoxon's
-        signed ranks; verdict on the margin of the median and the ratio within_reach; overturned,
-        against_overturned and both. 0 and infinity: it overturns by one of the two alone.
+        tan_alpha, semidiagonal, intensity, method, against, and the attributes of `Contrast`: of the ratio
+        of the two peaks of a record the median, what 5 % and 95 % of the records do not exceed, each with its
+        95 % interval, and more. 0 and infinity: it overturns by one of the two alone.
     """
     import pandas as pd
 
@@ -49,29 +47,9 @@ def contrasts(tables: Tables) -> pd.DataFrame:
     for point, runs in tables["records"].groupby(POINT, sort=False):
         for method, against in CONTRASTS:
             found = pairs(runs, method, against, member="motion", peak="peak").contrast()
-            if found is None:
-                continue
-            rows.append(
-                dict(zip(POINT, point, strict=True))
-                | {
-                    "method": method,
-                    "against": against,
-                    "members": found.count,
-                    "ratio": found.ratio.value,
-                    "low": found.ratio.low,
-                    "high": found.ratio.high,
-                    "ratio_05": found.ratio_05.value,
-                    "low_05": found.ratio_05.low,
-                    "ratio_95": found.ratio_95.value,
-                    "high_95": found.ratio_95.high,
-                    "p": found.ratio_p,
-                    "verdict": found.verdict,
-                    "within_reach": found.within_reach,
-                    "overturned": found.overturned,
-                    "against_overturned": found.against_overturned,
-                    "both": found.both_overturned,
-                }
-            )
+            if found is not None:
+                at = dict(zip(POINT, point, strict=True)) | {"method": method, "against": against}
+                rows.append(at | contrast_row(found))
     return pd.DataFrame(rows)
 
 
@@ -90,7 +68,7 @@ def records(tables: Tables) -> Numbers:
     """
     table, runs = contrasts(tables), tables["records"]
     numbers: Numbers = {
-        "members": float(table["members"].max()),
+        "members": float(table["count"].max()),
         "points": float(len(table[POINT].drop_duplicates())),
     }
     for (method, against), name in _NAMES.items():
