@@ -29,7 +29,7 @@ def validity(
     Peaks over records by the reduced models, and by MuJoCo in an ideal
     recess, in a ring of walls and on flat ground, beside a perturbed copy of
     the model; what friction, contact and moment a recess needs; rings, softer
-    contact and less friction. Takes about half an hour on two idle cores. What
+    contact and less friction. Takes about 40 minutes on two idle cores. What
     is measured is kept in the folder: a second run repeats nothing.
 
     Writes validity.html, validity.md with its pictures as SVG, as Parquet the

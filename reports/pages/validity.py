@@ -6,6 +6,8 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from rockwobble.compare.metrics.distributions import MARGIN
 from rockwobble.compare.studies.validity import limits_of, read_validity
 from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
@@ -31,6 +33,7 @@ def validity_page(found: Validity) -> Page:
         "contrasts": _contrasts(contrasts(tables)),
         "summary": _summary(cells(tables)),
         "rings": _rings(tables["rings"]),
+        "worst": _worst(tables["rings"]),
         "damping": damping(tables).to_dict("records"),
         "ranges": {
             name: (float(tables[part][column].min()), float(tables[part][column].max()))
@@ -129,3 +132,14 @@ def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
             }
         )
     return rows
+
+
+def _worst(table: pd.DataFrame) -> dict[str, object]:
+    """The ring whose peak is farthest from that of the recess model."""
+    shaken = table[(table["support"] == "ring") & (table["motion"] != FREE) & (table["outcome"] != "failed")]
+    ratio = (shaken["peak"] / shaken["recess_peak"]).to_numpy(dtype=float)
+    with np.errstate(divide="ignore"):
+        worst = shaken.iloc[int(np.argmax(np.maximum(ratio, 1.0 / ratio)))]
+    return {str(name): value for name, value in worst.items()} | {
+        "ratio": worst["peak"] / worst["recess_peak"]
+    }

@@ -19,7 +19,7 @@ from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case
 from rockwobble.compare.studies.validity.rings import against_models, has_room, losses, release_of
 from rockwobble.models import Case, Run
 
-from .console import options_of
+from .console import options_of, tell
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -83,8 +83,6 @@ def medians(rows: pd.DataFrame) -> pd.DataFrame:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the table."""
-    import sys
-
     import pandas as pd
 
     parser = options_of(
@@ -119,7 +117,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         measure,
         tasks,
         label=lambda task: f"{task[0]}, {task[2]}",
-        progress=lambda event: print(f"{event.done} of {event.total}: {event.label}", file=sys.stderr),
+        progress=tell,
     )
     table = medians(pd.DataFrame([row for row in found if not isinstance(row, Lost)]))
     print(

@@ -11,9 +11,10 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.studies.tradeoff import costs, engine_factors, plateaus, rest_tilt_price
+from rockwobble.compare.runs.progress import Progress
+from rockwobble.compare.studies.tradeoff import costs, engine_factors, plateaus, rest_tilt_price, study
 from rockwobble.compare.studies.tradeoff import problem as problems
-from rockwobble.compare.studies.tradeoff.methods import BASE_LINE, Method, methods_for
+from rockwobble.compare.studies.tradeoff.methods import BASE_LINE, BASE_TOLERANCE, Method, methods_for
 from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, Problem
 
 # a release at a tolerance of 1e-8 turns by 1.5e-7 deg too much or too little
@@ -91,6 +92,24 @@ def test_the_ensemble_knows_what_chance_alone_does() -> None:
     peaks = problems.peaks(quick=True)
     assert 0.0 < problems.sampling_distance(peaks, "recess") < 1.0
     assert max(peaks.references[support].doubt for support in ("recess", "flat")) < CONVERGED
+
+
+def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
+    turn: Problem, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(study, "problems", lambda **_: [turn])
+    told: list[Progress] = []
+    found = study.measure_tradeoff(quick=True, progress=told.append, command="rockwobble tradeoff")
+    assert (told[-1].state, told[-1].done, told[-1].share) == ("finished", told[-1].total, 1.0)
+    base = found.points[(found.points["line"] == BASE_LINE) & (found.points["value"] == BASE_TOLERANCE)]
+    assert base[["ratio", "ratio_low", "ratio_high"]].to_numpy().tolist() == [[1.0, 1.0, 1.0]]
+    assert (found.points["ratio_low"] <= found.points["ratio"]).all()
+    assert (found.points["ratio"] <= found.points["ratio_high"]).all()
+    assert set(found.problems["support"]) == {"recess", "flat", "ring"}
+    # an engine takes a step of some microseconds, the model a few for the whole release
+    low, high = engine_factors(found.points)
+    assert 2.0 < low < high
+    assert found.made.headline["engine over recess model, least"] == low
 
 
 def points(

@@ -120,11 +120,9 @@ def test_over_records_agreement_is_said_where_the_interval_shows_it(
     assert found.loc[("ring", RECESS), "ratio"] == pytest.approx(2.0)
     assert found.loc[("ring", HALVED), "ratio"] == pytest.approx(2.0)
     numbers = limits_of(members)["records"]
-    assert (numbers["recess_within"], numbers["recess_beyond"]) == (
-        float(verdict == "within"),
-        float(verdict == "beyond"),
-    )
-    assert numbers["ring_beyond"] == 1.0
+    found_at = numbers["recess_within"], numbers["recess_beyond"]
+    assert found_at == (float(verdict == "within"), float(verdict == "beyond"))
+    assert (numbers["ring_beyond"], numbers["points"]) == (1.0, 1.0)
 
 
 def test_a_cell_is_of_records_signed_and_knows_who_overturns(tables: Tables) -> None:

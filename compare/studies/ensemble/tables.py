@@ -127,14 +127,15 @@ def contrast_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.Data
         found = both.contrast()
         if found is not None:
             masked = ", ".join(both.members[both.failed])
-            rows.append({"method": method, "against": against, **_flat(found), "masked": masked})
+            rows.append({"method": method, "against": against, **contrast_row(found), "masked": masked})
     table = pd.DataFrame(rows)
     for name in ("ratio_p", "overturned_p") if len(table) else ():
         table[f"{name}_adjusted"] = adjusted(table[name].to_numpy(float))
     return table
 
 
-def _flat(found: Contrast) -> dict[str, float | int | str]:
+def contrast_row(found: Contrast) -> dict[str, float | int | str]:
+    """Return a contrast by the names of its attributes, the ends of an interval as NAME_low and NAME_high."""
     row: dict[str, float | int | str] = {}
     for field in dataclasses.fields(found):
         value = getattr(found, field.name)

@@ -23,6 +23,7 @@ from rockwobble.multibody.scene_of_case import open_scene
 if TYPE_CHECKING:
     import pandas as pd
 
+ENGINES = ("mujoco", "pybullet")
 ROUNDS = 9
 STEPS = 2000  # that are timed, 0.2 s of the cylinder of 6 m
 _WARM_UP = 100  # steps before them: contact settles, the machine fetches the scene
@@ -35,24 +36,23 @@ _PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 class Variant:
     """A scene, and the one thing that it has and its neighbours in the table have not.
 
-    Parameters
+    Attributes
     ----------
-    engine, support : str
+    support : str
+    option : str
+        What is special, for the table.
     standing : bool
         Upright at rest, or released at half of alpha.
     components : str
         Of the ground acceleration: "", "xy" or "xyz".
-    option : str
-        What is special, for the table.
     settings : mapping
         Of the engine.
     """
 
-    engine: str
     support: str
+    option: str
     standing: bool = False
     components: str = ""
-    option: str = ""
     settings: Mapping[str, Any] = field(default_factory=dict)
 
 
@@ -64,42 +64,31 @@ def variants(engine: str) -> list[Variant]:
     ValueError
         If the engine has no such table.
     """
-
-    def scene(support: str, option: str = "", **rest: Any) -> Variant:
-        return Variant(engine=engine, support=support, option=option, **rest)
-
-    common = [
-        scene("flat", "released"),
-        scene("recess", "released"),
-        scene("recess", "ground motion x, y", components="xy"),
-        scene("recess", "ground motion x, y, z", components="xyz"),
+    if engine not in ENGINES:
+        raise ValueError(f"engine must be one of {', '.join(ENGINES)}, got {engine!r}")
+    found = [
+        Variant(support="flat", option="released"),
+        Variant(support="recess", option="released"),
+        Variant(support="recess", option="ground motion x, y", components="xy"),
+        Variant(support="recess", option="ground motion x, y, z", components="xyz"),
     ]
     if engine == "pybullet":
-        return [*common, scene("recess", "standing", standing=True, components="xy")]
-    if engine != "mujoco":
-        raise ValueError(f"engine must be one of mujoco, pybullet, got {engine!r}")
-    return [
-        *common,
-        *(
-            scene("recess", f"integrator {name}", settings={"integrator": name})
-            for name in ("implicitfast", "implicit", "RK4", "discrete")
-        ),
-        scene("recess", "pyramidal cone", settings={"cone": "pyramidal"}),
-        *(
-            scene("ring", f"{count} walls", settings={"ring_facets": count, "ring_clearance": clearance})
-            for count, clearance in ((8, 0.1), (32, 0.1), (128, 0.1))
-        ),
-        *(
-            scene(
-                "recess",
-                f"standing on {corners} corners" if corners else "standing without prisms",
-                standing=True,
-                components="xy",
-                settings={"standing_corners": corners},
-            )
-            for corners in (0, 4, 12, 24, 48)
-        ),
+        return [*found, Variant(support="recess", option="standing", standing=True, components="xy")]
+    found += [
+        Variant(support="recess", option=f"integrator {name}", settings={"integrator": name})
+        for name in ("implicitfast", "implicit", "RK4", "discrete")
     ]
+    found.append(Variant(support="recess", option="pyramidal cone", settings={"cone": "pyramidal"}))
+    for count in (8, 32, 128):
+        walls = {"ring_facets": count, "ring_clearance": 0.1}
+        found.append(Variant(support="ring", option=f"{count} walls", settings=walls))
+    for corners in (0, 4, 12, 24, 48):
+        option = f"standing on {corners} corners" if corners else "standing without prisms"
+        settings = {"standing_corners": corners}
+        found.append(
+            Variant(support="recess", option=option, standing=True, components="xy", settings=settings)
+        )
+    return found
 
 
 def scene_costs(
@@ -135,27 +124,27 @@ def scene_costs(
 
     if rounds < 1 or steps < 1:
         raise ValueError(f"rounds and steps must be positive, got {rounds} and {steps}")
-    names = engines or [name for name in ("mujoco", "pybullet") if name in available_engines()]
-    scenes = [variant for name in names for variant in variants(name)]
+    names = engines or [name for name in ENGINES if name in available_engines()]
+    scenes = [(name, variant) for name in names for variant in variants(name)]
     times = np.empty((rounds, len(scenes)))
     counts: list[SceneCounts] = []
     for number in range(rounds):
-        for place, variant in enumerate(scenes):
-            times[number, place], count = step_cost(variant, steps)
+        for place, scene in enumerate(scenes):
+            times[number, place], count = step_cost(*scene, steps)
             if not number:
                 counts.append(count)
         if tell is not None:
             tell()
     ratio = np.empty(len(scenes))
     for name in names:
-        ours = np.array([variant.engine == name for variant in scenes])
+        ours = np.array([engine == name for engine, _ in scenes])
         cheapest = np.flatnonzero(ours)[np.argmin(np.median(times[:, ours], axis=0))]
         ratio[ours] = np.median(times[:, ours] / times[:, [cheapest]], axis=0)
     return pd.DataFrame(
         {
-            "engine": [variant.engine for variant in scenes],
-            "support": [variant.support for variant in scenes],
-            "option": [variant.option for variant in scenes],
+            "engine": [engine for engine, _ in scenes],
+            "support": [variant.support for _, variant in scenes],
+            "option": [variant.option for _, variant in scenes],
             "degrees_of_freedom": [count.degrees_of_freedom for count in counts],
             "contacts": [count.contacts for count in counts],
             "constraint_rows": [count.constraint_rows for count in counts],
@@ -165,7 +154,7 @@ def scene_costs(
     )
 
 
-def step_cost(variant: Variant, steps: int) -> tuple[float, SceneCounts]:
+def step_cost(engine: str, variant: Variant, steps: int) -> tuple[float, SceneCounts]:
     """Return the processor time of one step [s], a mean over `steps`, and what the step solved."""
     initial = None if variant.standing else InitialState(0.5 * _PIER.alpha, rolling_rate=0.5)
     motion = None
@@ -173,7 +162,7 @@ def step_cost(variant: Variant, steps: int) -> tuple[float, SceneCounts]:
         motion = GroundMotion(np.full((2, len(variant.components)), _PUSH), 1.0)
     case = Case(_PIER, motion, initial=initial, duration=1.0, name="cost")
     push = np.array([_PUSH if name in variant.components else 0.0 for name in "xyz"])
-    with open_scene(case, variant.engine, variant.support, variant.settings) as stepper:
+    with open_scene(case, engine, variant.support, variant.settings) as stepper:
         stepper.advance(np.tile(push, (_WARM_UP, 1)))
         rows = np.tile(push, (steps, 1))
         begin = time.thread_time()

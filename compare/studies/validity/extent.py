@@ -126,7 +126,12 @@ FULL = Extent(
         for tan_alpha in (0.1, 0.2, 0.4, 0.7, 1.0)
         for release, spin in ((0.3, 0.5), (0.5, 0.1), (0.7, 0.25), (0.5, 0.01))
     ),
-    record_points=((0.1, 6.0, 2.0), (0.2, 6.0, 2.0), (0.2, 6.0, 3.5), (0.4, 6.0, 2.0)),
+    record_points=tuple(
+        (tan_alpha, size, intensity)
+        for tan_alpha in (0.1, 0.2, 0.4)
+        for size in (6.0, 16.0)
+        for intensity in (2.0, 3.5)
+    ),
     record_step=2e-4,
     slip_points=tuple((tan_alpha, 0.5, 0.25) for tan_alpha in (0.1, 0.2, 0.4, 0.7, 1.0)),
     slip_shares=(0.4, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 0.99, 1.01, 1.05, 1.2),

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
 KIND = "validity"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
-_ENDS = {"low": "median, low end", "high": "median, high end", "05": "5 %", "95": "95 %"}
+_ENDS = {"least": "least median", "largest": "largest median", "05": "5 %", "95": "95 %"}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
