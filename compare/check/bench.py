@@ -7,14 +7,14 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from rockwobble.models import Case, Run, Suite
+from rockwobble.multibody.engines.registry import standard_engines
 
 from ..runs.choice import installed_engines, run_labels
 from ..runs.execution import Crash, Job, ProgressCallback, simulate_all
 from ..storage.fingerprint import fingerprint
 from .finding import Finding, not_run
 
-# the engines that every installation is meant to have, and whose accuracy at the default step is known
-ENGINES = ("mujoco", "pybullet")
+ENGINES = standard_engines()
 
 
 def _as_given(run: Run) -> Run:

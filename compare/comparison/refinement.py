@@ -18,22 +18,18 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from rockwobble.models import Case, Run
+from rockwobble.multibody.engines.registry import engine_facts
 
 from ..runs.execution import SAMPLE_STEP, Crash, Job
 from .error_budget import COVERED, WORTH_EXPLAINING, Limit, common_count, extrapolated
 
 # of the step of the run: always two, and one more where the limit is uncertain
 _ALWAYS, _AT_MOST = 2, 3
-# Engines whose uplift has an error that is a power series in the step
-_SMOOTH_UPLIFT = frozenset({"mujoco"})
-# What an engine needs besides a finer step to uplift without chance
-_FINER_SETTINGS: Mapping[str, Mapping[str, Any]] = MappingProxyType({"pybullet": {"held_standing": True}})
 # uncertainty of a limit, over the whole difference, that asks for a finer step
 _UNCERTAIN = 0.1
 
@@ -67,12 +63,12 @@ class Refined:
     @property
     def smooth(self) -> bool:
         """Whether the error of the run is a power series in the step: from rest not in every engine."""
-        return _released(self.case) or self.run.engine in _SMOOTH_UPLIFT
+        return _released(self.case) or engine_facts(self.run.engine).smooth_uplift
 
     @property
     def finer_smooth(self) -> bool:
         """Whether that of the finer runs is."""
-        return self.smooth or self.run.engine in _FINER_SETTINGS
+        return self.smooth or bool(engine_facts(self.run.engine).finer_settings)
 
 
 def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str, str], Limit]:
@@ -109,7 +105,7 @@ def finer_case(refined: Refined) -> Case:
     end = min(case.length, math.ceil(refined.end / SAMPLE_STEP - 1e-6) * SAMPLE_STEP)
     motion, direction = case.motion, refined.trajectory.uplift_direction
     uplifts = not _released(case) and math.isfinite(direction)
-    if motion is not None and uplifts and refined.run.engine in _FINER_SETTINGS:
+    if motion is not None and uplifts and engine_facts(refined.run.engine).finer_settings:
         # elsewhere the error of an uplift may have no order, and a flat landing loses too little
         motion = motion.rotated(math.pi - direction)
     return dataclasses.replace(case, motion=motion, duration=max(end, SAMPLE_STEP))
@@ -122,7 +118,7 @@ def _released(case: Case) -> bool:
 def _job(refined: Refined, level: int) -> Job:
     run = refined.run
     step = refined.trajectory.time_step * 0.5**level
-    more = {} if _released(refined.case) else _FINER_SETTINGS.get(run.engine, {})
+    more = {} if _released(refined.case) else engine_facts(run.engine).finer_settings
     return Job(
         case=finer_case(refined),
         method=Run(run.engine, run.support, step, **{**more, **run.settings}),

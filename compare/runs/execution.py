@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, Literal, Protocol
 
 from rockwobble.models import Case, Run
+from rockwobble.multibody.engines.registry import engine_facts
 
 from .process_pool import ProcessPool, WorkerDiedError
 
@@ -218,13 +219,13 @@ def _progress(job: Job, state: Literal["started", "finished"], done: int, total:
 
 
 def _cost(job: Job) -> float:
-    """Rough computing time of a job, in steps of MuJoCo."""
+    """Rough computing time of a job, [s]."""
     if isinstance(job.method, str):
         return math.inf  # may compile
-    per_step = 1.0 if job.method.engine == "mujoco" else 3.0
     step = job.method.time_step or 1e-4
     # the usual search ends at half of the default step
-    return job.case.length / (2.5e-5 if step == "auto" else step) * per_step
+    steps = job.case.length / (2.5e-5 if step == "auto" else step)
+    return steps * engine_facts(job.method.engine).step_time
 
 
 def _cores() -> int:

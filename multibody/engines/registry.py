@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
+from ..facts import EngineFacts
 from ..protocol import MEMBERS, Engine
 
 if TYPE_CHECKING:
@@ -89,6 +90,28 @@ def find_engine(name: str) -> Engine:
         return _load(name, declared[name])
     if importlib.util.find_spec(entry.package) is None:
         raise EngineNotInstalledError(f"engine {name!r} is not installed here: {entry.remedy}")
+    return _made(entry)
+
+
+def engine_facts(name: str) -> EngineFacts:
+    """Return what is known of the engine called `name`, installed or not.
+
+    Raises
+    ------
+    ValueError
+        If there is no such engine; BrokenEngineError if it is of another package and does not load.
+    """
+    entry = _ENGINES.get(name)
+    return find_engine(name).facts if entry is None else _made(entry).facts
+
+
+def engine_packages() -> dict[str, str]:
+    """Return the package of each of our engines, by the name of the engine."""
+    return {name: entry.package for name, entry in _ENGINES.items()}
+
+
+def _made(entry: _Entry) -> Engine:
+    # our modules import the package of an engine only where it is used
     module, factory = entry.factory.split(":")
     return cast(Engine, getattr(importlib.import_module(module, __package__), factory)())
 

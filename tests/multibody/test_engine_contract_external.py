@@ -19,7 +19,7 @@ from rockwobble.multibody.testing import ContractCheck, check_engine, leaves_no_
 SOURCE = """
 import contextlib, dataclasses, random
 import numpy as np
-from rockwobble.multibody.mujoco_engine import MujocoEngine
+from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
 
 class Wrapped:
     def __init__(self, stepper, change):
@@ -151,7 +151,7 @@ def test_a_fault_is_found(install: Install, fault: str, rule: Callable[[str, str
         ("external_engine:Missing", "does not load: AttributeError: "),
         ("no_such_module:Engine", "does not load: ModuleNotFoundError: No module named 'no_such_module'"),
         ("external_engine:fails", "does not load: RuntimeError: no licence"),
-        ("external_engine:Half", "is no engine: it has no uplifts, settings, open"),
+        ("external_engine:Half", "is no engine: it has no uplifts, facts, settings, open"),
         ("not an object reference", "does not load: "),
     ],
 )

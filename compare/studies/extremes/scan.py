@@ -27,6 +27,7 @@ import numpy as np
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Run
+from rockwobble.multibody.engines.registry import engine_facts, engine_packages, find_engine
 
 from ...runs.choice import own_model
 from ...runs.execution import run_engine
@@ -43,18 +44,24 @@ _ENERGY = 1e-5
 _TIGHT = 1e-12
 _STEP = 1e-4  # [s] the default at 6 m
 
-METHODS = (
+_MODELS = (
     ("reduced planar", "planar", ""),
     ("reduced recess", "recess", ""),
     ("reduced rolling", "flat", ""),
-    ("MuJoCo recess", "mujoco", "recess"),
-    ("MuJoCo flat", "mujoco", "flat"),
-    ("MuJoCo ring", "mujoco", "ring"),
-    ("PyBullet recess", "pybullet", "recess"),
-    ("PyBullet flat", "pybullet", "flat"),
-    ("Exudyn flat", "exudyn", "flat"),
 )
 STAGES = ("extremes",)
+
+
+def methods() -> tuple[tuple[str, str, str], ...]:
+    """Return name, kind and support of each reduced model, and of our engines that are installed."""
+    installed = multibody.available_engines()
+    engines = (
+        (f"{engine_facts(name).title} {support}", name, support)
+        for name in engine_packages()
+        if name in installed
+        for support in find_engine(name).supports
+    )
+    return (*_MODELS, *engines)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -88,13 +95,8 @@ def measure_extremes(
 
     import pandas as pd
 
-    known = multibody.available_engines()
-    tasks = [
-        (condition, method)
-        for condition in conditions(quick=quick)
-        for method in METHODS
-        if not (method[2] and method[1] not in known)
-    ]
+    known = methods()
+    tasks = [(condition, method) for condition in conditions(quick=quick) for method in known]
     rows = []
     with ProcessPool(workers or os.cpu_count() or 1) as pool:
         futures = [pool.submit(run, *task) for task in tasks]
@@ -114,7 +116,7 @@ def run(condition: Condition, method: tuple[str, str, str]) -> dict[str, Any]:
     _, kind, support = method
     if not support and condition.only_engines:
         return _row(condition, method, _Verdict(verdict="n/a"))
-    if math.isfinite(condition.contact) and kind != "mujoco":
+    if math.isfinite(condition.contact) and not (support and engine_facts(kind).contact_time):
         return _row(condition, method, _Verdict(verdict="n/a"))
     try:
         found = _engine(condition, kind, support) if support else _reduced(condition, kind)
@@ -202,7 +204,7 @@ def _engine(condition: Condition, engine: str, support: str) -> _Verdict:
     case = condition.case
     step = _STEP * condition.time_step * unit_time(case)
     settings: dict[str, Any] = (
-        {} if math.isnan(condition.contact) else {"contact_time_constant": condition.contact * step}
+        {} if math.isnan(condition.contact) else {engine_facts(engine).contact_time: condition.contact * step}
     )
     run = Run(engine, support, None if condition.time_step == 1.0 and not settings else step, **settings)
     result = run_engine(case, run, sample_step=condition.sample_step)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Run
+from rockwobble.multibody.engines.registry import engine_facts, engine_packages, find_engine
 
 from ...runs.choice import own_model
 from ...runs.execution import run_engine
@@ -28,6 +29,7 @@ _STEPS = (1e-3, 5e-4, 2e-4, 1e-4, 5e-5, 2e-5)
 _QUICK_STEPS = (1e-3, 5e-4, 2e-4)
 # what a held contact time constant is: that of the default settings at a step of 1e-3 s [s]
 _HELD = 2e-3
+_CHEAP = 2e-5  # [s] of a step: of such an engine the finest steps are worth their time
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -159,28 +161,30 @@ def _engine_lines(problem: Problem, quick: bool) -> list[list[Method]]:
     lines: list[list[Method]] = []
 
     def line(
-        name: str, engine: str, support: str, steps: Sequence[float], given: dict[str, Any] | None = None,
-        contact: float = math.nan,
-    ) -> None:  # fmt: skip
-        if engine in multibody.available_engines():
-            lines.append(
-                [_engine(problem, name, engine, support, step, given or {}, contact) for step in steps]
-            )
+        name: str, steps: Sequence[float], given: Mapping[str, Any] | None = None, contact: float = math.nan
+    ) -> None:
+        # of the engine and the support of the loops below
+        lines.append([_engine(problem, name, engine, support, step, given or {}, contact) for step in steps])
 
-    line("MuJoCo recess", "mujoco", "recess", steps)
-    line("MuJoCo flat", "mujoco", "flat", steps)
-    line("MuJoCo ring", "mujoco", "ring", few)
-    line("PyBullet recess", "pybullet", "recess", few)
-    line("PyBullet flat", "pybullet", "flat", few)
-    if problem.name == "turn":  # its ideal rim cannot uplift
-        line("Exudyn flat", "exudyn", "flat", few)
-    if problem.name != "peaks":
-        for integrator in ("RK4",) if quick else ("implicitfast", "implicit", "RK4", "discrete"):
-            line(f"MuJoCo {integrator}", "mujoco", "recess", few, {"integrator": integrator})
+    installed = [name for name in engine_packages() if name in multibody.available_engines()]
+    # what cannot uplift has a part only where a cylinder is released
+    able = [name for name in installed if problem.name == "turn" or find_engine(name).uplifts]
+    for engine in able:
+        facts, supports = engine_facts(engine), find_engine(engine).supports
+        for support in supports:
+            cheap = facts.step_time < _CHEAP and support != "ring"
+            line(f"{facts.title} {support}", steps if cheap else few)
+        if problem.name == "peaks" or not facts.contact_time:
+            continue
+        support = supports[0]
+        integrators = [each for each in facts.alternatives.items() if "integrator" in each[1]]
+        for option, given in integrators:
+            if quick and given["integrator"] != "RK4":
+                continue
+            line(f"{facts.title} {option.removeprefix('integrator ')}", few, given)
         for contact in (20.0,) if quick else (4.0, 20.0):
-            line(f"MuJoCo contact {contact:g} steps", "mujoco", "recess", few, contact=contact)
-        held = {"contact_time_constant": _HELD}
-        line(f"MuJoCo contact {1e3 * _HELD:g} ms", "mujoco", "recess", few, held)
+            line(f"{facts.title} contact {contact:g} steps", few, contact=contact)
+        line(f"{facts.title} contact {1e3 * _HELD:g} ms", few, {facts.contact_time: _HELD})
     return lines
 
 
@@ -190,12 +194,12 @@ def _engine(
     engine: str,
     support: str,
     step: float,
-    given: dict[str, Any],
+    given: Mapping[str, Any],
     contact: float,
 ) -> Method:
     settings = dict(given)
     if math.isfinite(contact):
-        settings["contact_time_constant"] = contact * step
+        settings[engine_facts(engine).contact_time] = contact * step
 
     def solve(case: Case) -> Answer:
         try:

@@ -24,9 +24,7 @@ _PROBLEM = (
     "rolling_rate",
     "duration",
 )
-# computing time of one step [s], and the default step of a cylinder of 6 m [s]: good enough to say how long
-_STEP_COSTS = {"mujoco": 1.2e-5, "pybullet": 3.6e-5}
-_DEFAULT_STEP = 1e-4
+_DEFAULT_STEP = 1e-4  # [s] of a cylinder of 6 m: good enough to say how long a suite takes
 
 
 def refuse_problem_options(context: Any, suite: str) -> None:
@@ -108,12 +106,14 @@ def describe_suite(name: str, cases: Sequence[Case], runs: Sequence[Run]) -> Ite
 
 def _computing_time(cases: Sequence[Case], runs: Sequence[Run]) -> float:
     """Rough time on one core [s]."""
+    from rockwobble.multibody.engines.registry import engine_facts
+
     total = 0.0
     for case in cases:
         default = _DEFAULT_STEP * math.sqrt(case.cylinder.semidiagonal / 6.0 * 9.81 / case.gravity)
         for run in runs:
             step = run.time_step if isinstance(run.time_step, float) else default
-            total += case.length / step * _STEP_COSTS.get(run.engine, _STEP_COSTS["pybullet"])
+            total += case.length / step * engine_facts(run.engine).step_time
     return total
 
 

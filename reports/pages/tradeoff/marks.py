@@ -6,11 +6,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from rockwobble.multibody.engines.registry import engine_packages
+
 Dash = Literal["-", "--", ":", "-."]
 
 # M. Okabe and K. Ito, Color Universal Design, 2008
-_COLOURS = {"reduced": "#000000", "scipy": "#CC79A7", "mujoco": "#0072B2", "pybullet": "#D55E00"}
-_OTHER = "#009E73"
+_ENGINES = ("#0072B2", "#D55E00", "#009E73", "#E69F00", "#56B4E9")  # in the order in which they are known
+_COLOURS = {"reduced": "#000000", "scipy": "#CC79A7"} | dict(zip(engine_packages(), _ENGINES, strict=False))
+_OTHER = "#F0E442"
 # in plotly's words and in matplotlib's
 _MARKS = (
     ("circle", "o"), ("square", "s"), ("diamond", "D"), ("triangle-up", "^"), ("triangle-down", "v"),

@@ -6,6 +6,7 @@ import math
 from typing import TYPE_CHECKING, Any
 
 from rockwobble.compare.studies.tradeoff import Fastest, Tradeoff, fastest, plateaus, rest_tilt_price
+from rockwobble.multibody.engines.registry import engine_facts, engine_packages
 
 from .charts import WHERE, records
 
@@ -15,10 +16,11 @@ if TYPE_CHECKING:
 # in the unit of each problem
 TARGETS = {"turn": (0.1, 0.01, 1e-3), "shaken": (1e-2, 1e-3, 1e-4), "peaks": (0.05, 1e-2, 1e-3)}
 UNITS = {"turn": "deg", "shaken": "α", "peaks": "α"}
+_ENGINES = tuple(engine_packages())
 # what a method family is called in a table
-_FAMILIES = {"reduced": "reduced model", "scipy": "scipy", "mujoco": "MuJoCo", "pybullet": "PyBullet",
-             "exudyn": "Exudyn"}  # fmt: skip
-_ENGINES = ("mujoco", "pybullet", "exudyn")
+_FAMILIES = {"reduced": "reduced model", "scipy": "scipy"} | {
+    name: engine_facts(name).title for name in _ENGINES
+}
 COST_HEADINGS = ("problem", "error at most", *(_FAMILIES[name] for name in _FAMILIES))
 PLATEAU_HEADINGS = ("problem", "line", "error stops falling at", "its level")
 SCENE_HEADINGS = ("engine", "support", "scene", "contacts", "constraint rows", "time / cheapest", "µs a step")
