@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..facts import EngineFacts
+from ..kinematics import turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
 from ..scene.friction import body_friction
 from .scene_counts import SceneCounts
@@ -123,8 +124,8 @@ class _PybulletStepper:
         self._position, self._quaternion = position[-1], quaternion[-1]
         # the new velocity moves the pose, so poses give the velocities, and the loop is spared a call
         velocity = np.diff(np.vstack([before[0], position]), axis=0) / self._step
-        turning = _turning(before[1], quaternion) / self._step
-        return Steps(position, quaternion, velocity, turning, unsolved=self._unsolved)
+        spin = turning(before[1], quaternion) / self._step
+        return Steps(position, quaternion, velocity, spin, unsolved=self._unsolved)
 
     def _held_steps(self, acceleration: Array) -> int:
         """Number of steps for which the cylinder is held upright: until the load is on the rim."""
@@ -238,19 +239,6 @@ def _build(bullet: Any, client: int, scene: Scene, settings: PybulletSettings) -
         **common,
     )
     return int(ground), int(body)
-
-
-def _turning(before: Array, quaternion: Array) -> Array:
-    """Rotation vectors (n, 3), world axes, from each orientation to the next."""
-    earlier = np.vstack([before, quaternion[:-1]])
-    w0, v0, w1, v1 = earlier[:, :1], earlier[:, 1:], quaternion[:, :1], quaternion[:, 1:]
-    real = w1 * w0 + np.einsum("ij,ij->i", v1, v0)[:, None]
-    imaginary = w0 * v1 - w1 * v0 - np.cross(v1, v0)
-    # the shorter way, whichever sign the engine gave the quaternion
-    imaginary, real = imaginary * np.where(real < 0.0, -1.0, 1.0), np.abs(real)
-    size = np.linalg.norm(imaginary, axis=1)[:, None]
-    factor = np.where(size > 0.0, 2.0 * np.arctan2(size, real) / np.where(size > 0.0, size, 1.0), 2.0)
-    return np.asarray(factor * imaginary)
 
 
 @contextlib.contextmanager

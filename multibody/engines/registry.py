@@ -47,6 +47,7 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             ".pybullet_engine:PybulletEngine",
             "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
         ),
+        "dart": _Entry("dartpy", ".dart_engine:DartEngine", "pip install 'rockwobble[dart]'", standard=False),
         "exudyn": _Entry(
             "exudyn", ".exudyn_engine:ExudynEngine", "pip install 'rockwobble[exudyn]'", standard=False
         ),

@@ -141,7 +141,7 @@ def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(insta
 )
 def test_a_fault_is_found(install: Install, fault: str, rule: Callable[[str, str], None], words: str) -> None:
     install(faulty=f"external_engine:{fault}")
-    with pytest.raises(AssertionError, match=f"faulty free {rule.__name__}: {words}"):
+    with pytest.raises(AssertionError, match=f"faulty flat {rule.__name__}: {words}"):
         check_engine("faulty", [ContractCheck("faulty", "flat", rule)])
 
 
