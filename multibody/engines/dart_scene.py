@@ -86,7 +86,7 @@ def build(scene: Scene, settings: DartSettings) -> DartScene:
 
 
 def rotation_vector(quaternion: Array, spin: float) -> Array:
-    """Return the rotation vector (3,) of a quaternion (4,), scalar first, and a turn `spin` about the axis."""
+    """Return the rotation vector (3,) of a quaternion (4,), scalar first, and a turn about the axis."""
     w, x, y, z = quaternion
     c, s = math.cos(0.5 * spin), math.sin(0.5 * spin)
     imaginary = np.array([x * c + y * s, y * c - x * s, z * c + w * s])

@@ -54,9 +54,11 @@ class MujocoSettings:
         Of the Newton solver. One contact needs two iterations, so a tight tolerance costs nothing.
     standing_corners : int
         Corners of the inscribed prisms that carry a standing cylinder, a multiple of four up to 48. They
-        turn until one of them is under the load: fixed ones uplift early by up to 1 - cos(pi/corners) of it,
-        and where its direction turns, they roll on as a polygon, which no step removes. From 96 on
-        neighbours share the load, and the uplift is worse by a factor of twenty. Not in the scene of a
+        turn until one of them is under the load, and once the base opens under its lean: fixed ones uplift
+        early by up to 1 - cos(pi/corners) of it, and roll on as a polygon, which no step removes. Neighbours
+        that share the load let the base lean before it opens, which leaves a tilt rate: under El Centro
+        (relative RMS on (10 m, 0.1) at 1e-4 s) the error is 5.8e-5 with 48, 1.6e-5 with 12 and 1.1e-5 with
+        eight, and a step costs half. Four chatter, where the load is near the rim. Not in the scene of a
         release.
     """
 
@@ -69,7 +71,7 @@ class MujocoSettings:
     cone: str = "elliptic"
     tolerance: float = 1e-12
     iterations: int = 100
-    standing_corners: int = 48
+    standing_corners: int = 8
 
     @classmethod
     def resolve(cls, given: Mapping[str, Any], time_step: float) -> MujocoSettings:
