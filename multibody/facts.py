@@ -32,8 +32,6 @@ class EngineFacts:
     smooth_uplift : bool
         Whether the error of a run that uplifts is a power series in the step, so that finer steps tell its
         limit.
-    finer_settings : mapping
-        Settings that make it one.
     contact_time : str
         Name of the setting that is the time in which contact removes a velocity [s]; empty without one.
     alternatives : mapping
@@ -49,7 +47,6 @@ class EngineFacts:
     release_error: float = 2e-6
     uplift_error: float = 2.5e-5
     smooth_uplift: bool = False
-    finer_settings: Options = field(default_factory=lambda: _NOTHING)
     contact_time: str = ""
     alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)
     standing_alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)

@@ -172,6 +172,13 @@ def turning(before: Array, quaternion: Array) -> Array:
     return np.asarray(factor * imaginary)
 
 
+def about_vertical(vectors: Array, angle: Array | float) -> Array:
+    """Return vectors (n, 3) turned about the vertical by one angle or by angles (n,) [rad]."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    x, y, z = vectors.T
+    return np.column_stack([cosine * x - sine * y, sine * x + cosine * y, z])
+
+
 def tilt_of(quaternion: Array) -> Array:
     """Return the tilts, shape (n,) [rad], of quaternions (n, 4), scalar first."""
     ax, ay, az = axis_of(quaternion).T

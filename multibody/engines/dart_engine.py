@@ -26,9 +26,9 @@ from typing import Any
 import numpy as np
 
 from ..facts import EngineFacts
-from ..kinematics import turning
+from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
-from .dart_scene import DartScene, about_vertical, build, quaternions, rotation_vector
+from .dart_scene import DartScene, build, quaternions, rotation_vector
 from .dart_settings import DartSettings
 from .scene_counts import SceneCounts
 

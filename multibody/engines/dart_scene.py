@@ -101,10 +101,3 @@ def quaternions(vectors: Array, spin: float) -> Array:
     w = np.cos(0.5 * angle)
     c, s = math.cos(0.5 * spin), math.sin(0.5 * spin)
     return np.column_stack([w * c + z * s, x * c - y * s, y * c + x * s, z * c - w * s])
-
-
-def about_vertical(vectors: Array, angle: Array) -> Array:
-    """Return vectors (n, 3) turned about the vertical by angles (n,) [rad]."""
-    cosine, sine = np.cos(angle), np.sin(angle)
-    x, y, z = vectors.T
-    return np.column_stack([cosine * x - sine * y, sine * x + cosine * y, z])

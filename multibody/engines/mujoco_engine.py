@@ -30,8 +30,10 @@ _RISEN = 1e-7
 _RISEN_DEPTHS = 1000.0
 # of that lean: from there it has a direction, which a corner follows instead of the load
 _LEANS = 0.1
-# of b, eccentricities of the load: from the first a corner follows it, from the second at every step
-_LOADED, _OPENING = 0.5, 0.95
+# of b, eccentricities of the load: from the first a corner follows it, from the second at every step, and on
+# the four corners of the first prism alone
+_LOADED, _OPENING = 0.5, 0.98
+_LAST_PRISMS, _OUT_OF_REACH = 1, 1e-3  # [-], [m]
 # A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
 # under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
 _ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # of b, [rad]
@@ -131,6 +133,7 @@ class _MujocoStepper:
         names = [self._model.geom(index).name for index in range(self._model.ngeom)]
         self._prisms = [index for index, name in enumerate(names) if name.startswith("prism")]
         self._model.geom_sameframe[self._prisms] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # they will turn
+        self._middle = 0.5 * scene.body.height - scene.body.mass_centre_height  # of the outline [m]
         self._warned: list[str] = []
         set_start(self._model, self._data, scene, self._staggered)
         kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
@@ -229,6 +232,10 @@ class _MujocoStepper:
         half = 0.5 * (first + 2.0 * np.pi / corners * np.arange(corners // 4))
         self._model.geom_quat[self._prisms] = np.outer(np.cos(half), [1, 0, 0, 0]) + np.outer(
             np.sin(half), [0, 0, 0, 1]
+        )
+        # neighbours that share the load of the last corner would let the base lean before it opens
+        self._model.geom_pos[self._prisms[_LAST_PRISMS:], 2] = self._middle + (
+            _OUT_OF_REACH if opens else 0.0
         )
         return 1 if opens else len(acceleration)
 

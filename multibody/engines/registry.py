@@ -36,6 +36,7 @@ class _Entry:
     package: str
     factory: str  # module:callable, relative to this folder
     remedy: str
+    module: str = ""  # to import, where it is not called as the package
     standard: bool = True  # comes with every installation of this package, where it has a wheel
 
 
@@ -48,6 +49,9 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
         ),
         "dart": _Entry("dartpy", ".dart_engine:DartEngine", "pip install 'rockwobble[dart]'", standard=False),
+        "drake": _Entry(
+            "drake", ".drake_engine:DrakeEngine", "pip install 'rockwobble[drake]'", "pydrake", standard=False
+        ),
         "exudyn": _Entry(
             "exudyn", ".exudyn_engine:ExudynEngine", "pip install 'rockwobble[exudyn]'", standard=False
         ),
@@ -67,7 +71,9 @@ def standard_engines() -> tuple[str, ...]:
 
 def available_engines() -> tuple[str, ...]:
     """Return the names of the engines whose packages are installed here, without importing them."""
-    ours = (name for name, entry in _ENGINES.items() if importlib.util.find_spec(entry.package))
+    ours = (
+        name for name, entry in _ENGINES.items() if importlib.util.find_spec(entry.module or entry.package)
+    )
     return (*ours, *_declared())
 
 
@@ -89,7 +95,7 @@ def find_engine(name: str) -> Engine:
         if name not in declared:
             raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")
         return _load(name, declared[name])
-    if importlib.util.find_spec(entry.package) is None:
+    if not _is_here(entry):
         raise EngineNotInstalledError(f"engine {name!r} is not installed here: {entry.remedy}")
     return _made(entry)
 
@@ -109,6 +115,10 @@ def engine_facts(name: str) -> EngineFacts:
 def engine_packages() -> dict[str, str]:
     """Return the package of each of our engines, by the name of the engine."""
     return {name: entry.package for name, entry in _ENGINES.items()}
+
+
+def _is_here(entry: _Entry) -> bool:
+    return importlib.util.find_spec(entry.module or entry.package) is not None
 
 
 def _made(entry: _Entry) -> Engine:

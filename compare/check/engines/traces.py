@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
-from rockwobble.multibody.engines.registry import engine_facts
 
 from ...runs.choice import own_model
 from ...runs.execution import run_engine
@@ -143,8 +142,6 @@ def _shaken(bench: Bench, engine: str, support: str) -> Iterator[Finding]:
 def _uplift(bench: Bench, engine: str) -> Iterator[Finding]:
     """|a| rises and the weight falls: 2 t/0.8 = 1 - 0.5 t/0.8 at the uplift, in units of the threshold."""
     run = bench.adjust(Run(engine, "recess"))
-    # where its base rocks on contacts before: what is checked is where the uplift is found
-    run = Run(engine, run.support, run.time_step, **{**run.settings, **engine_facts(engine).finer_settings})
     case = Case("ramp", PIER, RAMP, duration=0.6, friction=2.0)
     trace = run_engine(case, run, sample_step=0.05)
     if crashed(trace):
