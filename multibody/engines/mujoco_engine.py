@@ -32,7 +32,7 @@ _RISEN_DEPTHS = 1000.0
 _LEANS = 0.1
 # of b, eccentricities of the load: from the first a corner follows it, from the second at every step, and on
 # the four corners of the first prism alone
-_LOADED, _OPENING = 0.5, 0.98
+_LOADED, _OPENING = 0.5, 0.99
 _LAST_PRISMS, _OUT_OF_REACH = 1, 1e-3  # [-], [m]
 # A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
 # under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
