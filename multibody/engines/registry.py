@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import platform
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
@@ -40,6 +42,8 @@ class _Entry:
     standard: bool = True  # comes with every installation of this package, where it has a wheel
 
 
+# of PyBullet; elsewhere DART takes its place in a default run
+_WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
     {
         "mujoco": _Entry("mujoco", ".mujoco_engine:MujocoEngine", "pip install 'mujoco>=4.0,<5'"),
@@ -47,8 +51,11 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             "pybullet",
             ".pybullet_engine:PybulletEngine",
             "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
+            standard=_WHEEL,
         ),
-        "dart": _Entry("dartpy", ".dart_engine:DartEngine", "pip install 'rockwobble[dart]'", standard=False),
+        "dart": _Entry(
+            "dartpy", ".dart_engine:DartEngine", "pip install 'rockwobble[dart]'", standard=not _WHEEL
+        ),
         "drake": _Entry(
             "drake", ".drake_engine:DrakeEngine", "pip install 'rockwobble[drake]'", "pydrake", standard=False
         ),

@@ -116,7 +116,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
 
 def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(install: Install) -> None:
     install(sound="external_engine:Sound")
-    assert multibody.engine_names() == ("mujoco", "pybullet", "exudyn", "sound")
+    assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn", "sound")
     assert multibody.available_engines()[-1] == "sound"
     release = InitialState(PIER.alpha / 2, rolling_rate=0.5)
     run = multibody.simulate(PIER, initial=release, duration=0.5, engine="sound", support="flat")
@@ -180,5 +180,5 @@ def test_a_name_that_two_packages_claim_is_nobodys(install: Install) -> None:
 
 def test_our_names_are_taken(install: Install) -> None:
     install(mujoco="external_engine:fails")
-    assert multibody.engine_names() == ("mujoco", "pybullet", "exudyn")
+    assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn")
     assert type(find_engine("mujoco")).__module__ == "rockwobble.multibody.engines.mujoco_engine"
