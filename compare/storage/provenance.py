@@ -13,8 +13,9 @@ from pathlib import Path
 from typing import Any
 
 from rockwobble.models.cpus import usable_cpus
+from rockwobble.multibody.engines.registry import engine_packages
 
-PACKAGES = ("rockwobble", "numpy", "scipy", "numba", "pandas", "pyarrow", "mujoco", "pybullet", "exudyn")
+PACKAGES = ("rockwobble", "numpy", "scipy", "numba", "pandas", "pyarrow", *engine_packages().values())
 _REDUCED = ("rockwobble", "numpy", "numba")
 
 
@@ -96,7 +97,7 @@ def reduced_makers() -> dict[str, str]:
 
 def engine_makers(engine: str) -> dict[str, str]:
     """Return versions and code on which the runs of an engine depend."""
-    return _makers(("rockwobble", "numpy", engine), "multibody")
+    return _makers(("rockwobble", "numpy", engine_packages().get(engine, engine)), "multibody")
 
 
 def _makers(packages: tuple[str, ...], folder: str) -> dict[str, str]:

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
-from rockwobble.multibody import available_engines
+from rockwobble.multibody.engines.registry import find_engine, own_engines
 from rockwobble.multibody.engines.scene_counts import SceneCounts
 from rockwobble.multibody.scene_of_case import open_scene
 
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 ROUNDS = 9
 STEPS = 2000  # that are timed, 0.2 s of the cylinder of 6 m
 _WARM_UP = 100  # steps before them: contact settles, the machine fetches the scene
+_WALLS = 8, 32, 128
 _PUSH = 0.1  # [m/s^2] of each component that a scene has; far from uplift
 
 _PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -62,42 +63,30 @@ def variants(engine: str) -> list[Variant]:
     Raises
     ------
     ValueError
-        If the engine has no such table.
+        If there is no such engine, or it is not installed.
     """
+    backend = find_engine(engine)
+    supports, facts = backend.supports, backend.facts
 
-    def scene(support: str, option: str = "", **rest: Any) -> Variant:
+    def scene(support: str, option: str, **rest: Any) -> Variant:
         return Variant(engine=engine, support=support, option=option, **rest)
 
-    common = [
-        scene("flat", "released"),
-        scene("recess", "released"),
-        scene("recess", "ground motion x, y", components="xy"),
-        scene("recess", "ground motion x, y, z", components="xyz"),
-    ]
-    if engine == "pybullet":
-        return [*common, scene("recess", "standing", standing=True, components="xy")]
-    if engine != "mujoco":
-        raise ValueError(f"engine must be one of mujoco, pybullet, got {engine!r}")
+    # what changes is the main support of an engine: the recess, where it has one
+    main = "recess" if "recess" in supports else supports[0]
     return [
-        *common,
+        *(scene(support, "released") for support in ("flat", "recess") if support in supports),
+        scene(main, "ground motion x, y", components="xy"),
+        scene(main, "ground motion x, y, z", components="xyz"),
+        *(scene(main, option, settings=given) for option, given in facts.alternatives.items()),
         *(
-            scene("recess", f"integrator {name}", settings={"integrator": name})
-            for name in ("implicitfast", "implicit", "RK4", "discrete")
+            scene("ring", f"{count} walls", settings={"ring_facets": count, "ring_clearance": 0.1})
+            for count in _WALLS
+            if "ring" in supports
         ),
-        scene("recess", "pyramidal cone", settings={"cone": "pyramidal"}),
         *(
-            scene("ring", f"{count} walls", settings={"ring_facets": count, "ring_clearance": clearance})
-            for count, clearance in ((8, 0.1), (32, 0.1), (128, 0.1))
-        ),
-        *(
-            scene(
-                "recess",
-                f"standing on {corners} corners" if corners else "standing without prisms",
-                standing=True,
-                components="xy",
-                settings={"standing_corners": corners},
-            )
-            for corners in (0, 4, 12, 24, 48)
+            scene(main, option, standing=True, components="xy", settings=given)
+            for option, given in (facts.standing_alternatives or {"standing": {}}).items()
+            if backend.uplifts
         ),
     ]
 
@@ -114,7 +103,7 @@ def scene_costs(
     Parameters
     ----------
     engines : sequence of str, optional
-        Default: those of "mujoco" and "pybullet" that are installed.
+        Default: ours, as far as they are installed.
     rounds, steps : int
         Times that each scene is measured, and steps each time.
     tell : callable, optional
@@ -135,7 +124,7 @@ def scene_costs(
 
     if rounds < 1 or steps < 1:
         raise ValueError(f"rounds and steps must be positive, got {rounds} and {steps}")
-    names = engines or [name for name in ("mujoco", "pybullet") if name in available_engines()]
+    names = engines or own_engines()
     scenes = [variant for name in names for variant in variants(name)]
     times = np.empty((rounds, len(scenes)))
     counts: list[SceneCounts] = []
