@@ -10,13 +10,14 @@ FOLDERS = ("models", "reduced", "multibody", "compare", "reports")
 
 
 def main(checkout: Path, wheel: Path) -> None:
-    """Exit with a message unless the wheel holds the five folders, and nothing but them."""
+    """Exit with a message unless the wheel holds the five folders, and nothing but them and the top level."""
     wanted = {
         f"rockwobble/{path.relative_to(checkout).as_posix()}"
         for folder in FOLDERS
         for path in (checkout / folder).rglob("*")
         if path.is_file() and "__pycache__" not in path.parts and "published" not in path.parts
     }
+    wanted |= {"rockwobble/__init__.py", "rockwobble/__main__.py"}
     packed = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
     problems = [f"missing: {name}" for name in sorted(wanted - packed)]
     problems += [f"not wanted: {name}" for name in sorted(packed - wanted)]

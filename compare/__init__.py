@@ -31,7 +31,7 @@ from .studies.ensemble.members import far_field_motions, perturbed_starts, synth
 from .studies.ensemble.study import Ensemble, ensemble
 from .studies.sweep.cases import CaseSweep
 from .studies.sweep.grid import Grid
-from .studies.sweep.study import SweepIncompleteError, sweep
+from .studies.sweep.study import SweepIncompleteError, read_sweep, sweep
 from .traces.pair import Pair, make_pair
 from .traces.trajectory import External, read_trajectory
 
@@ -62,6 +62,7 @@ __all__ = [
     "missing_engines",
     "own_model",
     "perturbed_starts",
+    "read_sweep",
     "read_trajectory",
     "relative_rms",
     "replace_files",

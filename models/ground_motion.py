@@ -83,7 +83,7 @@ class GroundMotion:
 
     @property
     def peak(self) -> float:
-        """Largest horizontal resultant [m/s^2]; exact, because |a| is convex between samples."""
+        """Largest horizontal resultant [m/s^2]; exact, because its size is convex between samples."""
         return float(np.hypot(self.acceleration[:, 0], self.acceleration[:, 1]).max())
 
     @property

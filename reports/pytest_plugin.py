@@ -29,6 +29,9 @@ with a suite (what it may hold is said in the docstring of `rockwobble.models.su
 says which of engine, time step and model is to blame, and what the difference is made of: model form,
 numerics, and what stays unexplained. That repeats the run at finer steps; `--no-rockwobble-budget` leaves it
 out. An engine that is not installed is skipped.
+
+`pytest --rockwobble-certificate FILE` adds an item that fails where this installation changed since the
+certificate was made (`rockwobble certify`).
 """
 
 from __future__ import annotations
@@ -46,16 +49,64 @@ if TYPE_CHECKING:
 # of models.suite_file, which would be imported with every run of pytest
 ENDING = ".suite.toml"
 _OPTION = "--no-rockwobble-budget"
+_CERTIFICATE = "--rockwobble-certificate"
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Add the option of this plugin."""
-    parser.getgroup("rockwobble").addoption(
+    """Add the options of this plugin."""
+    group = parser.getgroup("rockwobble")
+    group.addoption(
         _OPTION,
         action="store_true",
         default=False,
         help="do not repeat a failed run of a suite at finer time steps to explain its difference",
     )
+    group.addoption(
+        _CERTIFICATE,
+        type=Path,
+        metavar="FILE",
+        help="fail if this installation changed since the certificate was made",
+    )
+
+
+def pytest_collection_modifyitems(
+    session: pytest.Session, config: pytest.Config, items: list[pytest.Item]
+) -> None:
+    """Add the item of the certificate."""
+    path = config.getoption(_CERTIFICATE)
+    if path is not None:
+        items.append(CertificateItem.from_parent(session, name=path.name, certificate=path))
+
+
+class CertificateItem(pytest.Item):
+    """The question whether this installation still does what a certificate says."""
+
+    def __init__(self, *, certificate: Path, **common: Any) -> None:
+        super().__init__(**common)
+        self.certificate = certificate
+
+    def runtest(self) -> None:
+        """Repeat the fingerprint, and raise if it changed."""
+        from rockwobble.compare.certificate import read_certificate, verify
+
+        answer = verify(read_certificate(self.certificate))
+        if answer.exit_code:
+            raise ChangedError(answer.words())
+        self.add_report_section("call", "certificate", answer.words())
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """Return what changed; anything else as pytest has it."""
+        if isinstance(excinfo.value, ChangedError | ValueError):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Return what the head of a failure shows."""
+        return self.certificate, 0, f"certificate {self.name}"
+
+
+class ChangedError(Exception):
+    """An installation that does not do what its certificate says."""
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> SuiteFile | None:

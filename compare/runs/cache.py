@@ -56,9 +56,12 @@ class Cache(Generic[T, R]):
         self._expected = 0
 
     def find(self, task: T) -> R | None:
-        """Return the result of a task if it is there."""
+        """Return the result of a task if it is there and whole: what is damaged runs again."""
         path = self._path(task)
-        return self._unpack(task, path) if path.exists() else None
+        try:
+            return self._unpack(task, path)
+        except (OSError, ValueError):
+            return None
 
     def keep(self, task: T, result: R) -> None:
         """Keep the result of a task.

@@ -46,8 +46,8 @@ def run_tasks(
     tasks : sequence
         Picklable.
     workers : int, optional
-        Processes; 1 runs one task after the other in this one. Default: one for each processor that this
-        process may use, but no more than tasks.
+        Processes, of which no more than tasks are started; 1 runs one task after the other in this one.
+        Default: one for each processor that this process may use, and this one for a single task.
     scheduler : str, optional
         Address of a Dask scheduler, such as "tcp://10.0.0.1:8786"; then `workers` has no part in it.
     cost : callable, optional
@@ -89,11 +89,12 @@ def run_tasks(
     order = sorted((index for index in range(len(tasks)) if index not in results), key=lambda i: -costs[i])
     waiting = [tasks[index] for index in order]
     tell = Clock(progress, [costs[i] if math.isfinite(costs[i]) else 0.0 for i in order], len(results))
-    count = min(usable_cpus() if workers is None else workers, len(waiting))
+    # a number that is given holds even for one task: in a process of its own it can be ended in a long call
+    count = min(usable_cpus(), len(waiting)) if workers is None else workers
     if scheduler is not None:
         events = on_cluster(scheduler, function, waiting, tries, makers)
     elif count > 1:
-        events = _in_processes(function, waiting, count, tries)
+        events = _in_processes(function, waiting, min(count, len(waiting)), tries)
     else:
         events = _here(function, waiting)
     with closing(events):

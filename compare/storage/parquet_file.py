@@ -27,16 +27,23 @@ def pack(table: pd.DataFrame | Mapping[str, Any], about: Mapping[str, Any]) -> b
         packed = pa.Table.from_pandas(table, preserve_index=False)
     metadata = {**(packed.schema.metadata or {}), METADATA: plain_json.dumps(about).encode()}
     buffer = io.BytesIO()
-    pq.write_table(packed.replace_schema_metadata(metadata), buffer)
+    pq.write_table(packed.replace_schema_metadata(metadata), buffer, write_page_checksum=True)
     return buffer.getvalue()
 
 
 def read(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
-    """Return the table of a file that `pack` made, and what it says of itself."""
-    import pandas as pd
+    """Return the table of a file that `pack` made, and what it says of itself.
+
+    Raises
+    ------
+    ValueError or OSError
+        If it cannot be read, or is damaged.
+    """
+    import pyarrow.parquet as pq
 
     content = path.read_bytes()
-    return pd.read_parquet(io.BytesIO(content)), read_about(content)
+    table = pq.read_table(io.BytesIO(content), page_checksum_verification=True)
+    return table.to_pandas(), read_about(content)
 
 
 def read_about(source: bytes | Path) -> dict[str, Any]:

@@ -95,9 +95,10 @@ def reduced_makers() -> dict[str, str]:
     return _makers(_REDUCED, "reduced")
 
 
-def engine_makers(engine: str) -> dict[str, str]:
-    """Return versions and code on which the runs of an engine depend."""
-    return _makers(("rockwobble", "numpy", engine_packages().get(engine, engine)), "multibody")
+def engine_makers(*engines: str) -> dict[str, str]:
+    """Return versions and code on which the runs of engines depend."""
+    packages = engine_packages()
+    return _makers(("rockwobble", "numpy", *(packages.get(name, name) for name in engines)), "multibody")
 
 
 def _makers(packages: tuple[str, ...], folder: str) -> dict[str, str]:

@@ -3,24 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .file import Array
 
 
-def unwrapped(
-    axis: Array, leans: np.ndarray[tuple[int], np.dtype[np.bool_]]
-) -> tuple[Array, np.ndarray[tuple[int], np.dtype[np.bool_]]]:
-    """Return the azimuth of the axis without jumps, and whether each change is known without a guess.
+def unwrapped(axis: Array, leans: NDArray[np.bool_]) -> tuple[Array, NDArray[np.bool_]]:
+    """Return the azimuth (n,) of the axis (n, 3) without jumps, and whether each change is no guess.
 
-    Between two samples the azimuth takes the shorter way round, unless that is more than a quarter turn:
-    then upright was passed between them, and which way is told by the sense in which the axis went round
-    before and after (the area that its projection sweeps, which the passage of upright conserves).
-
-    Parameters
-    ----------
-    axis : ndarray, shape (n, 3)
-    leans : ndarray of bool, shape (n,)
-        Where the azimuth means something; elsewhere the angle waits.
+    It means something where the axis `leans` (n,); elsewhere the angle waits. Between two samples it takes
+    the shorter way round, unless that is more than a quarter turn: then upright was passed between them, and
+    which way is told by the sense in which the axis went round before and after (the area that its projection
+    sweeps, which the passage of upright conserves).
     """
     count = len(axis)
     followed = np.ones(count, dtype=bool)

@@ -24,7 +24,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -50,12 +50,11 @@ POSITION = ("x", "y", "z")
 class Columns:
     """What a file holds, in SI units and radians.
 
-    Parameters
+    Attributes
     ----------
     path : Path
-        For messages.
     lines : list of int
-        Line of each of the n samples.
+        Line of each of the n samples, for messages.
     values : dict
         Array of shape (n,) of each known column; an empty cell is NaN.
     ignored : tuple of str
@@ -70,22 +69,22 @@ class Columns:
     ignored: tuple[str, ...] = ()
     lost: int = 0
 
-    def refuse(self, sample: int, reason: str) -> ValueError:
-        """Return the error for a sample, with the number of its line."""
-        return ValueError(f"{self.path.name}, line {self.lines[sample]}: {reason}")
-
-    def complete(self, name: str) -> Array:
-        """Return a column that must have a value in each sample.
+    def require(self, holds: NDArray[np.bool_], reason: Callable[[int], str]) -> None:
+        """Refuse the first sample where something (n,) does not hold, with the number of its line.
 
         Raises
         ------
         ValueError
-            If one is missing; with the number of its line.
+            With the `reason` for that sample.
         """
-        values = self.values[name]
-        if bool(np.isnan(values).any()):
-            raise self.refuse(int(np.argmax(np.isnan(values))), f"{name} is missing")
-        return values
+        if not holds.all():
+            at = int(np.argmin(holds))
+            raise ValueError(f"{self.path.name}, line {self.lines[at]}: {reason(at)}")
+
+    def complete(self, name: str) -> Array:
+        """Return a column that must have a value in each sample."""
+        self.require(~np.isnan(self.values[name]), lambda _: f"{name} is missing")
+        return self.values[name]
 
     def scaled(self, factors: Mapping[str, float]) -> Columns:
         """Return the file as if its columns were in other units: values times the factor of their name."""
@@ -94,13 +93,7 @@ class Columns:
 
 
 def read_columns(path: Path, angle_unit: str | None = None) -> Columns:
-    """Read the known columns of a CSV file.
-
-    Parameters
-    ----------
-    path : Path
-    angle_unit : {"rad", "deg"}, optional
-        Of tilt and azimuth where the header is silent.
+    """Read the known columns of a CSV file; `angle_unit` is that of angles where the header is silent.
 
     Raises
     ------
@@ -113,7 +106,7 @@ def read_columns(path: Path, angle_unit: str | None = None) -> Columns:
     first, header = next(rows, (0, []))
     if not first:
         raise ValueError(f"the trajectory {path} is empty")
-    factors = _known_columns(path, header, angle_unit)
+    known = _known_columns(path, header, angle_unit)
     lines: list[int] = []
     table: list[list[float]] = []
     for number, cells in rows:
@@ -122,21 +115,21 @@ def read_columns(path: Path, angle_unit: str | None = None) -> Columns:
                 f"{path.name}, line {number}: expected {len(header)} cells as in the header, got {len(cells)}"
             )
         lines.append(number)
-        table.append([_number(path, number, header[at], cells[at]) for at, _, _ in factors])
-    values = np.array(table, dtype=np.float64).reshape(len(table), len(factors)).T
-    own = [name for _, name, _ in factors]
-    lost = np.isnan(values[[name != "time" for name in own]]).all(axis=0) & ~np.isnan(
-        values[own.index("time")]
-    )
+        table.append([_number(path, number, header[at], cells[at]) for at, _ in known.values()])
+    columns = np.array(table, dtype=np.float64).reshape(len(table), len(known)).T
+    values = {name: column * scale for (name, (_, scale)), column in zip(known.items(), columns, strict=True)}
+    lost = ~np.isnan(values["time"])
+    for name in known.keys() - {"time"}:
+        lost &= np.isnan(values[name])
     lines = [line for line, left_out in zip(lines, lost, strict=True) if not left_out]
     if len(lines) < 3:
         raise ValueError(f"{path.name} must hold at least three samples, got {len(lines)}")
-    known = {at for at, _, _ in factors}
+    read = {at for at, _ in known.values()}
     return Columns(
         path,
         lines,
-        {name: values[i, ~lost] * scale for i, (_, name, scale) in enumerate(factors)},
-        tuple(title for at, title in enumerate(header) if title and at not in known),
+        {name: column[~lost] for name, column in values.items()},
+        tuple(title for at, title in enumerate(header) if title and at not in read),
         int(np.count_nonzero(lost)),
     )
 
@@ -158,15 +151,15 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
         yield number, [cell.strip().strip('"').strip() for cell in line.split(mark)]
 
 
-def _known_columns(path: Path, header: list[str], angle_unit: str | None) -> list[tuple[int, str, float]]:
-    """Return place, name and factor to SI units of each known column."""
-    found: list[tuple[int, str, float]] = []
+def _known_columns(path: Path, header: list[str], angle_unit: str | None) -> dict[str, tuple[int, float]]:
+    """Return place and factor to SI units of each known column, by name."""
+    found: dict[str, tuple[int, float]] = {}
     for at, title in enumerate(header):
         match = re.fullmatch(r"(\w+)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?", title)
         name = match[1].lower() if match else ""
         if match is None or name not in _UNITS:
             continue
-        if any(name == other for _, other, _ in found):
+        if name in found:
             raise ValueError(f"{path.name} must have each column once, got {name} twice")
         unit = match[2] if match[2] is not None else _SILENT.get(name, angle_unit)
         if unit is None:
@@ -176,8 +169,8 @@ def _known_columns(path: Path, header: list[str], angle_unit: str | None) -> lis
             )
         if unit not in _UNITS[name]:
             raise ValueError(f"{path.name}: {name} must be in {' or '.join(_UNITS[name])}, got {unit!r}")
-        found.append((at, name, _UNITS[name][unit]))
-    _require_enough(path, [name for _, name, _ in found], header)
+        found[name] = at, _UNITS[name][unit]
+    _require_enough(path, list(found), header)
     return found
 
 

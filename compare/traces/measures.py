@@ -31,8 +31,7 @@ def resampled(poses: Poses, time: Array) -> tuple[Array, Array, Array]:
         return poses.tilt.copy(), poses.rolling_angle, poses.axis
     if not np.isfinite(poses.rolling_angle).any() and bool((poses.axis[:, 0] >= 0.0).all()):
         # an unsigned tilt alone has a corner at each pass, where its square is a parabola
-        square = _interpolated(own, poses.tilt**2, time)
-        tilt = np.sqrt(np.maximum(square, 0.0))
+        tilt = np.sqrt(np.maximum(_interpolated(own, poses.tilt**2, time), 0.0))
         axis = np.column_stack([np.sin(tilt), np.zeros_like(tilt), np.cos(tilt)])
         return tilt, np.full(len(time), np.nan), axis
     axis = _interpolated(own, poses.axis, time)
@@ -48,8 +47,7 @@ def _interpolated(own: Array, values: Array, time: Array) -> Array:
     from scipy.interpolate import Akima1DInterpolator
 
     # the first sample may stand a rounding after the start
-    inside = np.clip(time, own[0], own[-1])
-    return np.asarray(Akima1DInterpolator(own, values)(inside))
+    return np.asarray(Akima1DInterpolator(own, values)(np.clip(time, own[0], own[-1])))
 
 
 def peak(poses: Poses) -> float:
@@ -70,15 +68,10 @@ def passes(poses: Poses, start: float, stands: float) -> pd.DataFrame:
     found = passes_between([point for point in points if point.time >= start], stands)
     guesses = poses.time[~poses.followed]
     near = 1.5 * float(np.median(np.diff(poses.time)))
+    names = ("time", "minimum_tilt", "angle_of_turn")
+    table = {name: np.array([getattr(item, name) for item in found], dtype=float) for name in names}
     resolved = [not bool((np.abs(guesses - item.time) < near).any()) for item in found]
-    return pd.DataFrame(
-        {
-            "time": np.array([item.time for item in found], dtype=float),
-            "minimum_tilt": np.array([item.minimum_tilt for item in found], dtype=float),
-            "angle_of_turn": np.array([item.angle_of_turn for item in found], dtype=float),
-            "resolved": np.array(resolved, dtype=bool),
-        }
-    )
+    return pd.DataFrame({**table, "resolved": np.array(resolved, dtype=bool)})
 
 
 def places(
@@ -88,15 +81,13 @@ def places(
     b, h = cylinder.base_radius, cylinder.mass_centre_height
     rests = np.isnan(angle)[:, None]
     outward = np.column_stack([np.cos(angle), np.sin(angle)])
-    lean = np.hypot(axis[:, 0], axis[:, 1])
     if poses.position is not None:
         centre = _interpolated(poses.time, poses.position, time)
         base = centre - h * axis
         contact = np.where(rests, np.nan, base[:, :2] + b * axis[:, 2:] * outward)
         return contact, centre, float(np.hypot(base[-1, 0], base[-1, 1]))
-    rise = 1.0 - axis[:, 2:]
-    base = np.column_stack([np.where(rests, 0.0, b * rise * outward), b * lean])
-    centre = base + h * axis
+    lean, rise = np.hypot(axis[:, 0], axis[:, 1]), 1.0 - axis[:, 2:]
+    centre = np.column_stack([np.where(rests, 0.0, b * rise * outward), b * lean]) + h * axis
     if not np.isfinite(poses.rolling_angle).any():
         centre[:, :2] = np.nan  # the tilt alone tells how high it is, not where
     return np.where(rests, np.nan, b * outward), centre, math.nan

@@ -22,7 +22,7 @@ Complex = NDArray[np.complex128]
 class Motion:
     """The samples of a motion.
 
-    Parameters
+    Attributes
     ----------
     time, tilt : ndarray, shape (n,)
         [s], [rad]
@@ -30,7 +30,7 @@ class Motion:
         x + i y of the axis, a unit vector; None where no azimuth is known.
     path : ndarray, shape (n, 3), or None
         Mass centre from O [m]; None where it is not known.
-    noise, path_noise : float, optional
+    noise, path_noise : float
         Standard deviations of the noise of the axis [rad] and of each coordinate of the mass centre [m].
     """
 
@@ -43,28 +43,22 @@ class Motion:
 
     def turned(self, angle: float, *, mirrored: bool = False) -> Motion:
         """Return the motion turned by `angle` [rad] counter-clockwise, with y reversed first if mirrored."""
-        turn = np.exp(1j * angle)
-        lean, path = self.lean, self.path
+        turn, lean, path = np.exp(1j * angle), self.lean, self.path
         if lean is not None:
             lean = turn * (lean.conj() if mirrored else lean)
         if path is not None:
-            flat = path[:, 0] + (-1j if mirrored else 1j) * path[:, 1]
-            flat = turn * flat
+            flat = turn * (path[:, 0] + (-1j if mirrored else 1j) * path[:, 1])
             path = np.column_stack([flat.real, flat.imag, path[:, 2]])
         return replace(self, lean=lean, path=path)
 
     def at(self, time: Array) -> Motion:
         """Return the motion at other times [s], linear between its samples."""
-        lean, path = self.lean, self.path
-        return replace(
-            self,
-            time=time,
-            tilt=np.interp(time, self.time, self.tilt),
-            lean=None if lean is None else np.interp(time, self.time, lean),
-            path=None
-            if path is None
-            else np.column_stack([np.interp(time, self.time, part) for part in path.T]),
-        )
+        tilt = np.interp(time, self.time, self.tilt)
+        lean = None if self.lean is None else np.interp(time, self.time, self.lean)
+        path = self.path
+        if path is not None:
+            path = np.column_stack([np.interp(time, self.time, part) for part in path.T])
+        return replace(self, time=time, tilt=tilt, lean=lean, path=path)
 
     def delayed(self, time: float) -> Motion:
         """Return the motion with `time` added to its clock [s]."""
@@ -72,18 +66,14 @@ class Motion:
 
 
 def motion_of(
-    trace: Trace,
-    told: tuple[str, ...] = ("azimuth", "path"),
-    *,
-    noise: float = 0.0,
-    path_noise: float = 0.0,
+    trace: Trace, told: tuple[str, ...] = ("azimuth", "path"), *, noise: float = 0.0, path_noise: float = 0.0
 ) -> Motion:
     """Return the motion of a trace, as far as it is `told`."""
-    angle = np.nan_to_num(trace.rolling_angle)
+    lean = np.sin(trace.tilt) * np.exp(1j * np.nan_to_num(trace.rolling_angle))
     return Motion(
         time=trace.time,
         tilt=trace.tilt,
-        lean=np.sin(trace.tilt) * np.exp(1j * angle) if "azimuth" in told else None,
+        lean=lean if "azimuth" in told else None,
         path=trace.centre_of_mass if "path" in told else None,
         noise=noise,
         path_noise=path_noise,
@@ -95,5 +85,4 @@ def on_samples_of(reference: Motion, motion: Motion) -> tuple[Motion, Motion]:
     finite = np.isfinite(reference.tilt)
     within = (reference.time >= motion.time[0] - 1e-9) & (reference.time <= motion.time[-1] + 1e-9) & finite
     time = reference.time[within]
-
     return reference.at(time), motion.at(time)

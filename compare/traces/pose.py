@@ -10,6 +10,7 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder
 
@@ -43,7 +44,7 @@ _OF_A_LENGTH = math.sqrt(2.0 - 0.5 * math.pi)
 _TWISTED = math.radians(1.0)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Poses:
     """What the file says at n samples; arrays of shape (n,) unless another is given.
 
@@ -65,10 +66,8 @@ class Poses:
         Of the mass centre from O [m].
     stands : float
         Tilt below which the cylinder stands [rad].
-    noise : float
-        Standard deviation of the noise of the axis [rad].
-    position_noise : float
-        The same of the position [m].
+    noise, position_noise : float
+        Standard deviations of the noise of axis [rad] and position [m].
     told : tuple of str
         What the file tells of "tilt", "azimuth" and "path".
     notes : tuple of str
@@ -79,7 +78,7 @@ class Poses:
     tilt: Array
     axis: Array
     rolling_angle: Array
-    followed: np.ndarray[tuple[int], np.dtype[np.bool_]]
+    followed: NDArray[np.bool_]
     twist: Array | None
     position: Array | None
     stands: float
@@ -88,32 +87,17 @@ class Poses:
     told: tuple[str, ...]
     notes: tuple[str, ...]
 
-    def taken(self, chosen: np.ndarray[tuple[int], np.dtype[np.int64]]) -> Poses:
+    def taken(self, chosen: NDArray[np.intp]) -> Poses:
         """Return the chosen samples alone."""
-        return replace(
-            self,
-            time=self.time[chosen],
-            tilt=self.tilt[chosen],
-            axis=self.axis[chosen],
-            rolling_angle=self.rolling_angle[chosen],
-            followed=self.followed[chosen],
-            twist=None if self.twist is None else self.twist[chosen],
-            position=None if self.position is None else self.position[chosen],
-        )
+        arrays = {name: getattr(self, name) for name in _SAMPLED}
+        return replace(self, **{name: each[chosen] for name, each in arrays.items() if each is not None})
+
+
+_SAMPLED = ("time", "tilt", "axis", "rolling_angle", "followed", "twist", "position")
 
 
 def poses_of(columns: Columns, case: Case, *, noise: float | None = None, time_offset: float = 0.0) -> Poses:
-    """Return the poses of a file.
-
-    Parameters
-    ----------
-    columns : Columns
-    case : Case
-    noise : float, optional
-        Tilt below which the cylinder stands [rad]. Default: 5 standard deviations of the noise of the
-        samples, as they tell it, and at least 1e-4 alpha.
-    time_offset : float, optional
-        Added to the times [s].
+    """Return the poses of a file; see `External` for noise [rad] and time_offset [s].
 
     Raises
     ------
@@ -165,13 +149,13 @@ def poses_of(columns: Columns, case: Case, *, noise: float | None = None, time_o
     if columns.ignored:
         notes.append(f"columns not read: {', '.join(columns.ignored)[:80]}")
     return Poses(
-        time,
-        tilt,
-        axis,
-        angle,
-        followed,
-        twist,
-        position,
+        time=time,
+        tilt=tilt,
+        axis=axis,
+        rolling_angle=angle,
+        followed=followed,
+        twist=twist,
+        position=position,
         stands=stands,
         noise=own_noise,
         position_noise=0.0 if position is None else scatter(time, position),
@@ -182,95 +166,107 @@ def poses_of(columns: Columns, case: Case, *, noise: float | None = None, time_o
 
 def _checked_time(columns: Columns, offset: float, case: Case) -> Array:
     time = columns.complete("time") + offset
-    steps = np.diff(time)
-    if bool((steps <= 0.0).any()):
-        at = int(np.argmax(steps <= 0.0)) + 1
-        raise columns.refuse(
-            at, f"time must rise [s], got {time[at] - offset:g} after {time[at - 1] - offset:g}"
-        )
-    usual = float(np.median(steps))
+    steps = np.diff(time, prepend=-math.inf)
+    columns.require(
+        steps > 0.0,
+        lambda at: f"time must rise [s], got {time[at] - offset:g} after {time[at - 1] - offset:g}",
+    )
+    usual, first = float(np.median(steps[1:])), np.arange(len(time)) == 0
     longest = _COARSE * math.sqrt(case.cylinder.semidiagonal / case.gravity)
-    if usual > longest:
-        raise columns.refuse(
-            1, f"samples must be at most {longest:.2g} s apart for this cylinder, got {usual:g} s; is it ms?"
-        )
-    if bool((steps > _GAP * usual).any()):
-        at = int(np.argmax(steps > _GAP * usual)) + 1
-        raise columns.refuse(at, f"a gap of {steps[at - 1]:g} s where the usual step is {usual:g} s")
-    if time[0] > 0.5 * usual:
-        raise columns.refuse(
-            0,
+    columns.require(
+        (np.arange(len(time)) != 1) | (usual <= longest),
+        lambda _: (
+            f"samples must be at most {longest:.2g} s apart for this cylinder, got {usual:g} s; is it ms?"
+        ),
+    )
+    columns.require(
+        first | (steps <= _GAP * usual),
+        lambda at: f"a gap of {steps[at]:g} s where the usual step is {usual:g} s",
+    )
+    columns.require(
+        ~first | (time <= 0.5 * usual),
+        lambda _: (
             f"the trajectory begins {time[0]:g} s after the start of the run, where its pose is not known; "
-            f"if that is the start, give its time an offset of {offset - time[0]:g} s",
-        )
-    if time[-1] <= usual:
-        raise columns.refuse(len(time) - 1, f"the trajectory ends {time[-1]:g} s after the start of the run")
+            f"if that is the start, give its time an offset of {offset - time[0]:g} s"
+        ),
+    )
+    columns.require(
+        (np.arange(len(time)) < len(time) - 1) | (time > usual),
+        lambda _: f"the trajectory ends {time[-1]:g} s after the start of the run",
+    )
     return time
 
 
 def _from_angles(columns: Columns) -> tuple[Array, list[str]]:
     """Axis, NaN where it leans to nobody knows where, and what there is to know of it."""
     tilt = columns.complete("tilt")
-    beyond = np.abs(tilt) > math.pi
-    if bool(beyond.any()):
-        at = int(np.argmax(beyond))
-        raise columns.refuse(
-            at,
+    columns.require(
+        np.abs(tilt) <= math.pi,
+        lambda at: (
             f"tilt must be between -pi and pi, got {tilt[at]:.4g} rad; "
-            "is it in degrees, or wrapped at 360 deg?",
-        )
+            "is it in degrees, or wrapped at 360 deg?"
+        ),
+    )
     azimuth = columns.values.get("azimuth", np.zeros_like(tilt))
     azimuth = np.where(np.isnan(azimuth) & (tilt == 0.0), 0.0, azimuth)
     negative = int(np.count_nonzero(tilt < 0.0))
     notes = [f"{negative} negative tilts are read as a lean to the other side"] if negative else []
     # a lean by -theta at phi is one by theta at phi + pi: the axis knows only one of them
+    return _axis(tilt, azimuth), notes
+
+
+def _axis(tilt: Array, azimuth: Array) -> Array:
     sine = np.sin(tilt)
-    return np.column_stack([sine * np.cos(azimuth), sine * np.sin(azimuth), np.cos(tilt)]), notes
+    return np.column_stack([sine * np.cos(azimuth), sine * np.sin(azimuth), np.cos(tilt)])
 
 
 def _require_azimuth(columns: Columns, stands: float) -> None:
     tilt = columns.values["tilt"]
-    unknown = np.isnan(columns.values["azimuth"]) & (np.abs(tilt) > stands)
-    if bool(unknown.any()):
-        at = int(np.argmax(unknown))
-        raise columns.refuse(at, f"azimuth must be given where the tilt is {tilt[at]:.4g} rad")
+    columns.require(
+        ~np.isnan(columns.values["azimuth"]) | (np.abs(tilt) <= stands),
+        lambda at: f"azimuth must be given where the tilt is {tilt[at]:.4g} rad",
+    )
 
 
 def _from_quaternions(columns: Columns) -> tuple[Array, Array, list[str]]:
     w, x, y, z = (columns.complete(name) for name in QUATERNION)
     length = np.sqrt(w * w + x * x + y * y + z * z)
-    if bool((np.abs(length - 1.0) > _UNIT_LENGTH).any()):
-        at = int(np.argmax(np.abs(length - 1.0) > _UNIT_LENGTH))
-        raise columns.refuse(at, f"a quaternion must have the length 1, got {length[at]:.4g}")
+    columns.require(
+        np.abs(length - 1.0) <= _UNIT_LENGTH,
+        lambda at: f"a quaternion must have the length 1, got {length[at]:.4g}",
+    )
     w, x, y, z = w / length, x / length, y / length, z / length
     axis = np.column_stack([2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)])
     # q and -q are one pose: both change the half angle by half a turn
     twist = np.unwrap(2.0 * np.arctan2(z, w))
     twist -= 2.0 * np.pi * round(float(twist[0]) / (2.0 * np.pi))
-    if abs(twist[0]) > _ANOTHER_ORDER:
-        raise columns.refuse(
-            0,
-            f"the quaternion is turned by {math.degrees(abs(twist[0])):.0f} deg about the axis at the start, "
-            "where it must be near 0; are its numbers in the order qx, qy, qz, qw?",
-        )
-    if axis[0, 2] < 0.0:
-        raise columns.refuse(0, "the quaternion holds the cylinder upside down at the start; is z down?")
+    later, start = np.arange(len(twist)) > 0, abs(float(twist[0]))
+    columns.require(
+        later | (start <= _ANOTHER_ORDER),
+        lambda _: (
+            f"the quaternion is turned by {math.degrees(start):.0f} deg about the axis at the start, "
+            "where it must be near 0; are its numbers in the order qx, qy, qz, qw?"
+        ),
+    )
+    columns.require(
+        later | (axis[:, 2] >= 0.0),
+        lambda _: "the quaternion holds the cylinder upside down at the start; is z down?",
+    )
     note = f"turned by {math.degrees(float(twist[0])):.3g} deg about its axis at the start"
-    return axis, twist, [note] if abs(twist[0]) > _TWISTED else []
+    return axis, twist, [note] if start > _TWISTED else []
 
 
 def _require_same_tilt(columns: Columns, axis: Array) -> None:
     if "tilt" not in columns.values:
         return
     tilt, given = np.arctan2(np.hypot(axis[:, 0], axis[:, 1]), axis[:, 2]), columns.values["tilt"]
-    same = np.abs(tilt - np.abs(given)) <= _SAME_TILT
-    if not bool(same.all()):
-        at = int(np.argmax(~same))
-        raise columns.refuse(
-            at,
+    columns.require(
+        np.abs(tilt - np.abs(given)) <= _SAME_TILT,
+        lambda at: (
             f"tilt and quaternion must agree, got tilts of {given[at]:.4g} and {tilt[at]:.4g} rad; "
-            "the quaternion must be qw, qx, qy, qz with z up",
-        )
+            "the quaternion must be qw, qx, qy, qz with z up"
+        ),
+    )
 
 
 def _from_positions(columns: Columns, position: Array, cylinder: Cylinder) -> Array:
@@ -282,15 +278,13 @@ def _from_positions(columns: Columns, position: Array, cylinder: Cylinder) -> Ar
     outward = np.hypot(position[:, 0], position[:, 1]) - cylinder.base_radius
     height, radius = position[:, 2], cylinder.semidiagonal
     from_rim = np.hypot(outward, height)
-    wrong = (np.abs(from_rim / radius - 1.0) > _FROM_RIM) | (height < 0.0)
-    if bool(wrong.any()):
-        at = int(np.argmax(wrong))
-        raise columns.refuse(
-            at,
+    columns.require(
+        (np.abs(from_rim / radius - 1.0) <= _FROM_RIM) & (height >= 0.0),
+        lambda at: (
             f"the mass centre must be R = {radius:.4g} m from the rim and above the ground, got "
             f"{from_rim[at]:.4g} m and z = {height[at]:.4g} m; without a tilt x, y and z must be from the "
-            "original base centre, z up, in the unit of the header",
-        )
+            "original base centre, z up, in the unit of the header"
+        ),
+    )
     tilt = np.maximum(cylinder.alpha + np.arctan2(outward, height), 0.0)
-    azimuth = np.arctan2(position[:, 1], position[:, 0])
-    return np.column_stack([np.sin(tilt) * np.cos(azimuth), np.sin(tilt) * np.sin(azimuth), np.cos(tilt)])
+    return _axis(tilt, np.arctan2(position[:, 1], position[:, 0]))

@@ -8,39 +8,23 @@ from .file import Array
 
 # of a normal distribution: median of the absolute value over the standard deviation
 _MEDIAN_OF_NORMAL = 0.6745
-# samples without which nothing is told of their scatter
-_FEWEST = 12
+_FEWEST = 12  # samples without which nothing is told of their scatter
 
 
 def scatter(time: Array, values: Array) -> float:
-    """Standard deviation of the noise of the roughest component, in the unit of the values.
+    """Standard deviation of the noise of the roughest column of values (n, k); 0 where too few tell it.
 
-    Each sample is held against the cubic through its four neighbours, at their own times, so that uneven
+    Each sample is held against the cubic through its four neighbours, at their own times (n,), so that uneven
     samples do no harm. The median keeps the few samples out at which a pass by the upright position makes a
     real corner.
-
-    Parameters
-    ----------
-    time : ndarray, shape (n,)
-        [s]
-    values : ndarray, shape (n, k)
-        NaN where nothing is known.
-
-    Returns
-    -------
-    float
-        0 where there are too few samples to tell.
     """
     if len(time) < 5:
         return 0.0
-    middle, around = time[2:-2], [time[at : len(time) - 4 + at] for at in (0, 1, 3, 4)]
-    guess = np.zeros_like(values[2:-2])
-    gain = np.ones(len(middle))
-    for one, at in zip(around, (0, 1, 3, 4), strict=True):
-        weight = np.ones(len(middle))
-        for other in around:
-            if other is not one:
-                weight *= (middle - other) / (one - other)
+    middle, places = time[2:-2], {at: time[at : len(time) - 4 + at] for at in (0, 1, 3, 4)}
+    guess, gain = np.zeros_like(values[2:-2]), np.ones(len(middle))
+    for at, one in places.items():
+        others = [other for there, other in places.items() if there != at]
+        weight = np.prod([(middle - other) / (one - other) for other in others], axis=0)
         guess += weight[:, None] * values[at : len(time) - 4 + at]
         gain += weight * weight
     apart = np.abs(values[2:-2] - guess) / np.sqrt(gain)[:, None]

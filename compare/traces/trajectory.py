@@ -127,13 +127,7 @@ def external_motion(trace: Trace) -> Motion:
 
 
 def read_trajectory(external: External | str | Path, case: Case) -> Trace:
-    """Read an external trajectory of a case.
-
-    Parameters
-    ----------
-    external : External, str or Path
-    case : Case
-        The problem that it answers: cylinder and length.
+    """Read an external trajectory of the case that it answers.
 
     Raises
     ------
@@ -149,11 +143,10 @@ def trajectory_of(columns: Columns, given: External, case: Case) -> Trace:
     """Return the trajectory that the columns of a file hold; see `read_trajectory`."""
     poses = poses_of(columns, case, noise=given.noise, time_offset=given.time_offset)
     start = int(np.argmax(poses.time > -0.5 * float(poses.time[1] - poses.time[0])))
-    if poses.tilt[start] >= _FALLEN:
-        raise columns.refuse(
-            start,
-            f"it must not lie at the start, got a tilt of {poses.tilt[start]:.4g} rad; is it in degrees?",
-        )
+    columns.require(
+        (np.arange(len(poses.time)) != start) | (poses.tilt < _FALLEN),
+        lambda at: f"it must not lie at the start, got a tilt of {poses.tilt[at]:.4g} rad; is it in degrees?",
+    )
     poses = _from_start_to_end(poses, start, case.length)
     stands = poses.stands
     begin = uplift(poses.time, poses.tilt, poses.rolling_angle, stands=stands, noise=poses.noise)
@@ -163,11 +156,7 @@ def trajectory_of(columns: Columns, given: External, case: Case) -> Trace:
     angle = np.where((tilt > stands) & (time >= begin.time - SAME_TIME), angle, np.nan)
     contact, centre, moved = places(poses, time, axis, angle, case.cylinder)
     twist = np.full(len(time), np.nan) if poses.twist is None else np.interp(time, poses.time, poses.twist)
-    first_lean = 0.0
-    if begin.first is None:
-        first_lean = math.nan
-    elif begin.first:
-        first_lean = float(poses.time[begin.first])
+    first_lean = math.nan if begin.first is None else float(poses.time[begin.first]) if begin.first else 0.0
     return Trace(
         case=case,
         run=Run(given.label, SUPPORT),
@@ -204,19 +193,7 @@ def trajectory_of(columns: Columns, given: External, case: Case) -> Trace:
 def read_trajectories(
     external: Sequence[External | str | Path], cases: Sequence[Case], *, taken: Collection[str] = ()
 ) -> dict[tuple[str, str], Trace]:
-    """Read all trajectories that belong to the one case of a comparison.
-
-    Parameters
-    ----------
-    external : sequence of External, str or Path
-    cases : sequence of Case
-    taken : collection of str
-        Labels of the other runs.
-
-    Returns
-    -------
-    dict
-        By the name of the case and the label.
+    """Read the trajectories of a case, by its name and their labels; those in `taken` are of other runs.
 
     Raises
     ------

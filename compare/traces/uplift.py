@@ -21,25 +21,25 @@ _POWER, _OTHERS = 3.0, (2.0, 4.0)
 CONFIDENCE = 4.0
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, slots=True)
 class Uplift:
-    """The uplift, as samples tell it.
+    """The uplift, as samples tell it; NaN without one.
 
-    Parameters
+    Attributes
     ----------
     time, time_uncertainty : float
-        [s]; 0 and 0 where the first sample leans already: a release; NaN without uplift.
+        [s]; 0 and 0 where the first sample leans already: a release.
     direction, direction_uncertainty : float
         Azimuth at the first sample that leans [rad], and how far it may be from that at uplift.
     first : int or None
         The first sample that leans.
     """
 
-    time: float
-    time_uncertainty: float
-    direction: float
-    direction_uncertainty: float
-    first: int | None
+    time: float = math.nan
+    time_uncertainty: float = math.nan
+    direction: float = math.nan
+    direction_uncertainty: float = math.nan
+    first: int | None = None
 
 
 def uplift(time: Array, tilt: Array, angle: Array, *, stands: float, noise: float = 0.0) -> Uplift:
@@ -47,51 +47,28 @@ def uplift(time: Array, tilt: Array, angle: Array, *, stands: float, noise: floa
 
     Parameters
     ----------
-    time, tilt : ndarray, shape (n,)
-        [s], [rad]
-    angle : ndarray, shape (n,)
-        Azimuth of the lean; NaN where it is not known [rad].
-    stands : float
-        Tilt up to which the cylinder counts as standing [rad].
-    noise : float, optional
-        Standard deviation of the noise of the tilt [rad].
+    time, tilt, angle : ndarray, shape (n,)
+        [s], [rad], and the azimuth of the lean, NaN where it is not known [rad].
+    stands, noise : float
+        Tilt up to which the cylinder counts as standing, and standard deviation of its noise [rad].
     """
     leaning = np.flatnonzero(tilt > stands)
     if not len(leaning):
-        return Uplift(
-            time=math.nan,
-            time_uncertainty=math.nan,
-            direction=math.nan,
-            direction_uncertainty=math.nan,
-            first=None,
-        )
+        return Uplift()
     first = int(leaning[0])
-    blurred = CONFIDENCE * noise / float(tilt[first])
+    at, direction, blurred = float(time[first]), float(angle[first]), CONFIDENCE * noise / float(tilt[first])
+    step = at - float(time[first - 1]) if first else 0.0
     if first == 0 or first + 1 == len(time):
-        step = 0.0 if first == 0 else float(time[first] - time[first - 1])
-        return Uplift(
-            time=float(time[first]) if first else 0.0,
-            time_uncertainty=step,
-            direction=float(angle[first]),
-            direction_uncertainty=blurred if math.isfinite(angle[first]) else math.nan,
-            first=first,
-        )
+        known = blurred if math.isfinite(direction) else math.nan
+        return Uplift(at if first else 0.0, step, direction, known, first)
     begin = _begin(time, tilt, first, _POWER)
     apart = max(abs(_begin(time, tilt, first, power) - begin) for power in _OTHERS)
-    half = 0.5 * float(time[first] - time[first - 1])
     # noise moves the sample at which the tilt is seen along its growth, theta' = 3 theta/t
-    since = float(time[first]) - begin
-    uncertainty = half + apart + since * blurred / _POWER
-    turning = abs(math.remainder(float(angle[first + 1] - angle[first]), 2.0 * math.pi)) / float(
-        time[first + 1] - time[first]
-    )
-    return Uplift(
-        time=begin,
-        time_uncertainty=uncertainty,
-        direction=float(angle[first]),
-        direction_uncertainty=turning * (since + uncertainty) + blurred,
-        first=first,
-    )
+    since = at - begin
+    uncertainty = 0.5 * step + apart + since * blurred / _POWER
+    turned = abs(math.remainder(float(angle[first + 1]) - direction, 2.0 * math.pi))
+    turning = turned / (float(time[first + 1]) - at)
+    return Uplift(begin, uncertainty, direction, turning * (since + uncertainty) + blurred, first)
 
 
 def _begin(time: Array, tilt: Array, first: int, power: float) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,8 @@ from .units import UNITS, factor
 
 # over a whole record two components may drift apart by this part of a step, the rounding of printed times
 _DRIFT = 0.05
+# components may differ in length by this part, and by more where what is left out is below this part of the peak
+_LEFT_OUT, _STILL = 0.01, 0.05
 
 
 def read_record(
@@ -43,13 +46,13 @@ def read_record(
     Returns
     -------
     GroundMotion
-        In m/s^2, cut to the shortest component.
+        In m/s^2, cut to the shortest component where the others are as good as over by then.
 
     Raises
     ------
     ValueError
         If a file is missing, empty or not readable as numbers, its unit is unknown or contradicts
-        `units`, its times are uneven, or the components have different time steps or starts. The
+        `units`, its times are uneven, or the components have different time steps, starts or lengths. The
         message names the file, and the line where there is one.
     """
     if units is not None and units not in UNITS:
@@ -61,6 +64,7 @@ def read_record(
         _require_same_clock(first, other, length)
     with np.errstate(over="ignore"):  # GroundMotion refuses what is not finite
         columns = [part.values[:length] * factor(part.path, part.unit, units) for part in components]
+    _require_still_beyond(components, length)
     return GroundMotion(np.column_stack(columns), first.time_step, first.path.stem if name is None else name)
 
 
@@ -74,6 +78,18 @@ def _read_component(path: Path) -> Component:
     if not any(line.strip() for line in lines):
         raise ValueError(f"the record {path} is empty")
     return read_at2(path, lines) if is_at2(lines) else read_columns(path, lines)
+
+
+def _require_still_beyond(components: Sequence[Component], length: int) -> None:
+    """Refuse a component that is cut short in the middle of its motion: half a record is another record."""
+    for part in components:
+        rest, peak = np.abs(part.values[length:]), np.abs(part.values).max()
+        if len(rest) > _LEFT_OUT * len(part.values) and rest.max() > _STILL * peak:
+            raise ValueError(
+                f"the components of a record must be equally long, got {len(part.values)} samples in "
+                f"{part.path.name} and {length} in another: what would be left out has "
+                f"{100.0 * rest.max() / peak:.0f} % of its peak"
+            )
 
 
 def _require_same_clock(first: Component, other: Component, length: int) -> None:

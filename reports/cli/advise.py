@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -10,21 +9,13 @@ import typer
 
 from ..console.terminal import FAILED, complain, interruptible, user_input
 from .inputs import options
+from .inputs.problem import Problem, given_options, states_problem
 
 if TYPE_CHECKING:
     from rockwobble.models import Case, Run
 
 _NO_ENGINE = "none"
 
-Friction = Annotated[
-    float | None,
-    typer.Option(
-        "--friction",
-        help="Coefficient between cylinder and ground or recess. Without it the page says what it takes.",
-        rich_help_panel="Method",
-        show_default=False,
-    ),
-]
 Engine = Annotated[
     str | None,
     typer.Option(
@@ -48,24 +39,16 @@ Copies = Annotated[
 Seed = Annotated[int, typer.Option("--seed", help="Of the perturbed copies.", rich_help_panel="Method")]
 
 
+@states_problem
 def advise(
-    semidiagonal: options.Semidiagonal = 6.0,
-    tan_alpha: options.TanAlpha = 0.2,
-    record_x: options.RecordX = None,
-    record_y: options.RecordY = None,
-    record_z: options.RecordZ = None,
-    units: options.Units = None,
-    scale: options.Scale = 1.0,
-    release_tilt_deg: options.ReleaseTilt = None,
-    rolling_rate: options.RollingRate = 0.0,
-    duration: options.Duration = None,
-    friction: Friction = None,
+    context: typer.Context,
+    problem: Problem,
     engine: Engine = None,
     support: Support = "recess",
     time_step: options.TimeStep = None,
     copies: Copies = 100,
     seed: Seed = 1,
-    out: options.Out = Path("rockwobble-out"),
+    out: options.Out = Path("rockwobble-advise"),
 ) -> None:
     """Say how one case ends, how far its results can be trusted, and what its support must supply.
 
@@ -79,26 +62,13 @@ def advise(
     the runs as Parquet.
     """
     from ..pages.case_words import describe
-    from .inputs.problem import case_from_options
 
     with interruptible():
         with user_input():
             from rockwobble.compare import require_writable
 
-            case = case_from_options(
-                semidiagonal=semidiagonal,
-                tan_alpha=tan_alpha,
-                record_x=record_x,
-                record_y=record_y,
-                record_z=record_z,
-                units=units,
-                scale=scale,
-                release_tilt_deg=release_tilt_deg,
-                rolling_rate=rolling_rate,
-                duration=duration,
-            )
-            if friction is not None:
-                case = dataclasses.replace(case, friction=friction)
+            case = problem.case()
+            friction = case.friction if "friction" in given_options(context) else None
             run = _run(case, engine, support, time_step)
             _require_numbers(copies, seed)
             require_writable(out)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -9,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..console.terminal import FAILED, complain, interruptible, user_input
+from .check_outside import Model, Support, Tolerance, Trajectory, outside_findings, print_outside
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Bench, Finding
@@ -66,6 +68,10 @@ def check(
     workers: Workers = None,
     update_baseline: Update = False,
     reason: Reason = None,
+    model: Model = None,
+    trajectory: Trajectory = None,
+    support: Support = "recess",
+    tolerance: Tolerance = 1e-3,
 ) -> None:
     """Check that the reduced model stays the same model, and stays in agreement with the engines.
 
@@ -78,6 +84,9 @@ def check(
 
     A suite of your own is held against the bounds that it states. One that states none is held against what
     the time step of each run leaves, which is measured by a second run of twice that step.
+
+    With --model or --trajectory the same is asked of what somebody else made, as far as its outputs allow;
+    each check that cannot run is listed.
 
     Exit code 0 if all checks hold, 1 if one does not, 2 for bad input.
     """
@@ -93,8 +102,14 @@ def check(
             for path in (json, junit, markdown):
                 if path is not None and (path.is_dir() or not path.absolute().parent.is_dir()):
                     raise ValueError(f"a report must be a file in a folder that exists, got {path}")
-            bench = _bench(suite, workers)
-        if update_baseline:
+            begun, outside, bench = time.monotonic(), None, None
+            if model is None and trajectory is None:
+                bench = _bench(suite, workers)
+            elif only or update_baseline:
+                raise ValueError("--only and --update-baseline do not go with --model or --trajectory")
+            else:
+                outside = outside_findings(model, trajectory, suite, support, tolerance)
+        if bench is not None and update_baseline:
             from ..console.check_update import update
 
             with user_input():
@@ -104,7 +119,11 @@ def check(
                     )
                 update(bench, reason)
             return
-        findings, seconds = _run(bench, [layer for layer in LAYERS if not only or layer in only])
+        if bench is not None:
+            findings, seconds = _run(bench, [layer for layer in LAYERS if not only or layer in only])
+        else:
+            findings, seconds = outside or [], time.monotonic() - begun
+            print_outside(findings)
         _write(findings, seconds, json, junit, markdown)
     if any(finding.failed for finding in findings):
         raise typer.Exit(FAILED)
@@ -136,19 +155,16 @@ def _run(bench: Bench, layers: list[str]) -> tuple[list[Finding], float]:
 
     from rockwobble.compare.check import run_checks
 
-    from ..console.check_progress import shown_progress
+    from ..console.progress import shown_progress
     from ..pages.check import print_layer
 
     console = Console()
     begun = time.monotonic()
     findings: list[Finding] = []
     for layer in layers:
-        with shown_progress(layer) as (tell, count):
-            bench.progress = tell
-            of_layer = []
-            for finding in run_checks(bench, [layer]):
-                of_layer.append(finding)
-                count(len(of_layer))
+        print(f"checking {layer} ...", file=sys.stderr, flush=True)
+        with shown_progress("engine runs") as bench.progress:
+            of_layer = list(run_checks(bench, [layer]))
         print_layer(console, layer, of_layer)
         findings += of_layer
     return findings, time.monotonic() - begun

@@ -10,6 +10,7 @@ import typer
 
 from ..console.terminal import interruptible, user_input
 from .inputs import options
+from .inputs.problem import Problem, states_problem
 
 if TYPE_CHECKING:
     from rockwobble.models import Case, GroundMotion, Run, Suite
@@ -41,19 +42,11 @@ FarField = Annotated[
 Seed = Annotated[int, typer.Option("--seed", help="Of everything random.")]
 
 
+@states_problem
 def ensemble(
     context: typer.Context,
+    problem: Problem,
     suite: options.SuiteName = None,
-    semidiagonal: options.Semidiagonal = 6.0,
-    tan_alpha: options.TanAlpha = 0.2,
-    record_x: options.RecordX = None,
-    record_y: options.RecordY = None,
-    record_z: options.RecordZ = None,
-    units: options.Units = None,
-    scale: options.Scale = 1.0,
-    release_tilt_deg: options.ReleaseTilt = None,
-    rolling_rate: options.RollingRate = 0.0,
-    duration: options.Duration = None,
     members: Members = 20,
     perturbation: Perturbation = 0.01,
     synthetic: Synthetic = None,
@@ -76,32 +69,20 @@ def ensemble(
     Parquet and CSV.
     """
     from ..pages.case_words import describe
-    from .inputs.problem import case_from_options
 
     with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
         with user_input():
             from rockwobble import compare
 
             compare.require_writable(out)
-            problem: Case | Suite | list[Case]
+            stated: Case | Suite | list[Case]
             if suite is not None:
-                problem = _suite(context, suite)
-                print(f"Suite {suite}: {len(problem.cases)} members")
+                stated = _suite(context, suite)
+                print(f"Suite {suite}: {len(stated.cases)} members")
             else:
-                case = case_from_options(
-                    semidiagonal=semidiagonal,
-                    tan_alpha=tan_alpha,
-                    record_x=record_x,
-                    record_y=record_y,
-                    record_z=record_z,
-                    units=units,
-                    scale=scale,
-                    release_tilt_deg=release_tilt_deg,
-                    rolling_rate=rolling_rate,
-                    duration=duration,
-                )
+                case = problem.case()
                 motions = _motions(case, members, synthetic, far_field, seed)
-                problem = _under(case, motions) if motions else case
+                stated = _under(case, motions) if motions else case
                 for line in describe(case)[:1] if motions else describe(case):
                     print(line)
                 print(f"Members: {len(motions) or members}, {_source(synthetic, far_field, perturbation)}")
@@ -116,7 +97,7 @@ def ensemble(
 
         with user_input(), shown_progress() as tell:
             found = compare.ensemble(
-                problem,
+                stated,
                 runs=runs,
                 size=members,
                 perturbation=perturbation,

@@ -20,7 +20,7 @@ Workers = Annotated[
 
 
 def extremes(
-    quick: Quick = False, workers: Workers = None, out: options.Out = Path("rockwobble-out")
+    quick: Quick = False, workers: Workers = None, out: options.Out = Path("rockwobble-extremes")
 ) -> None:
     """Take one thing at a time to its extreme: is the answer right, and if not, does the run say so.
 

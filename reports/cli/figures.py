@@ -16,7 +16,7 @@ _LEAST_GRID, _MOST_GRID = 3, 1000
 Grid = Annotated[int, typer.Option("--grid", help="Sizes, and intensities, of the maps of figure 6.")]
 
 
-def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-out")) -> None:
+def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-figures")) -> None:
     """Compute figures 3 to 6 of the paper again, and hold its statements against the numbers.
 
     Writes paper.md and paper.html with a verdict on each statement, the figures as SVG, and the data of each

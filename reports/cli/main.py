@@ -9,6 +9,7 @@ import typer
 
 from ..console.terminal import BAD_INPUT, INTERRUPTED, complain, forgive_output
 from .advise import advise
+from .certify import certify, verify
 from .check import check
 from .compare import compare
 from .ensemble import ensemble
@@ -38,10 +39,12 @@ app.command(epilog="Example: rockwobble simulate --release-tilt-deg 5 --rolling-
 app.command(epilog="Example: rockwobble spectrum --tan-alpha 0.2 --sizes 50 --intensities 50")(spectrum)
 app.command(epilog="Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid")(sweep)
 app.command(epilog="Example: rockwobble show rockwobble-sweep")(show)
-app.command(epilog="Example: rockwobble report rockwobble-out")(report)
+app.command(epilog="Example: rockwobble report rockwobble-compare")(report)
 app.command(epilog="Example: rockwobble view --scale 2 --support flat")(view)
 app.command(epilog="Example: rockwobble ensemble --synthetic 3 --members 40 --engine mujoco")(ensemble)
 app.command(epilog="Example: rockwobble check --only equations --only conserved")(check)
+app.command(epilog="Example: rockwobble certify --engine mujoco --out mujoco.json")(certify)
+app.command(epilog="Example: rockwobble verify mujoco.json")(verify)
 app.command(epilog="Example: rockwobble validity --quick --out validity")(validity)
 app.command(epilog="Example: rockwobble figures --out paper")(figures)
 app.command(epilog="Example: rockwobble tradeoff --quick --out tradeoff")(tradeoff)

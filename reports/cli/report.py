@@ -24,7 +24,7 @@ def report(folder: Folder, out: Out = None) -> None:
     They say what they said: which engines and records are installed here has no part in it. The results
     stay as they are.
 
-    Example: rockwobble report rockwobble-out --out pages
+    Example: rockwobble report rockwobble-compare --out pages
     """
     place = folder if out is None else out
     with interruptible(), user_input():

@@ -25,7 +25,7 @@ def show(store: Store, as_json: Json = False) -> None:
 
     Nothing runs, and nothing is written. Files that are not what was written are named, with exit code 1.
 
-    Example: rockwobble show rockwobble-out
+    Example: rockwobble show rockwobble-compare
     """
     from rockwobble.models import plain_json
 
@@ -89,7 +89,9 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
 def _text(value: object) -> str:
     from ..pages.table import number
 
+    if isinstance(value, Mapping):
+        return str(value.get("name", value.get("label", "")))
     if isinstance(value, list):
-        shown = ", ".join(number(item) for item in value[:6])
+        shown = ", ".join(_text(item) for item in value[:6])
         return shown + (f" and {len(value) - 6} more" if len(value) > 6 else "")
     return number(value)

@@ -185,7 +185,9 @@ def _save(out: Path, job: Job, trace: Trace) -> list[str]:
     about = {
         "run": job.label,
         "case": case | {"motion": motion and {"name": motion.name, "time_step": motion.time_step}},
-        "result": {name: value for name, value in found.items() if name not in ("rests", "extrema", "passes")},
+        "result": {
+            name: value for name, value in found.items() if name not in ("rests", "extrema", "passes")
+        },
     }
     headline: dict[str, float | int | str | None] = {
         "outcome": trace.outcome,

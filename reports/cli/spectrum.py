@@ -71,7 +71,7 @@ def spectrum(
     intensities: Intensities = 100,
     support: Support = "recess",
     search_step: SearchStep = 0.015,
-    out: options.Out = Path("rockwobble-out"),
+    out: options.Out = Path("rockwobble-spectrum"),
 ) -> None:
     """Map the peak tilt over size and intensity, in 3D and by planar analysis of each component.
 
@@ -95,18 +95,18 @@ def spectrum(
             from rockwobble.compare.studies.spectrum.series import intensity_unit
             from rockwobble.compare.studies.spectrum.study import SUPPORTS
 
-            from .inputs.problem import case_from_options
+            from .inputs.problem import Problem
 
             levels = _axis("weakest", weakest, "strongest", strongest, "intensities", intensities)
             radii = _axis("smallest", smallest, "largest", largest, "sizes", sizes)
-            case = case_from_options(
+            case = Problem(
                 semidiagonal=largest,
                 tan_alpha=tan_alpha,
                 record_x=record_x,
                 record_y=record_y,
                 record_z=record_z,
                 units=units,
-            )
+            ).case()
             motion = case.motion
             if motion is None:  # without a release there always is one
                 raise ValueError("a spectrum needs a ground motion")

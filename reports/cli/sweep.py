@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..console.terminal import FAILED, complain, interruptible, user_input
+from ..console.terminal import FAILED, INTERRUPTED, complain, user_input
 from .inputs import options
+from .show import show
 
 if TYPE_CHECKING:
     from rockwobble.compare import CaseSweep, Grid
@@ -18,11 +18,6 @@ if TYPE_CHECKING:
 
 _GRID, _WORK = "Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT", "Work"
 _MOST_VALUES = 100_000
-_MODELS: Mapping[str, Mapping[str, Any]] = {
-    "recess": {"support": "recess"},
-    "flat": {"support": "flat"},
-    "planar": {"support": "recess", "plane": 0.0},
-}
 
 SuiteFile = Annotated[
     str | None,
@@ -103,10 +98,11 @@ def sweep(
 
     Whatever ends the sweep, the same command goes on where it stopped.
 
-    Writes the table sweep.parquet; rockwobble show prints what it holds.
+    Writes sweep.parquet, one row for each run; rockwobble show prints what it holds.
     """
     with user_input():
         from rockwobble.compare import require_writable
+        from rockwobble.compare.studies.sweep.study import KIND
 
         if suite is None:
             plan: Grid | CaseSweep = _grid(
@@ -119,19 +115,22 @@ def sweep(
         require_writable(out)
     for line in _echo(plan):
         print(line)
+    _run(plan, out, scheduler, workers, chunk)
+    print()
+    show(out)
+
+
+def _run(
+    plan: Grid | CaseSweep, out: Path, scheduler: str | None, workers: int | None, chunk: int | None
+) -> None:
     from rockwobble.compare import SweepIncompleteError
     from rockwobble.compare import sweep as run
 
     from ..console.progress import shown_progress
     from ..pages.provenance import command_line
-    from .show import show
 
     try:
-        with (
-            interruptible(f"the finished chunks are kept in {out}, and the same command goes on"),
-            user_input(),
-            shown_progress("chunks") as tell,
-        ):
+        with user_input(), shown_progress("chunks") as tell:
             run(
                 plan,
                 out=out,
@@ -144,8 +143,9 @@ def sweep(
     except SweepIncompleteError as error:
         complain(str(error))
         raise typer.Exit(FAILED) from None
-    print()
-    show(out)
+    except KeyboardInterrupt:
+        complain(f"interrupted; the finished chunks are kept in {out}, and the same command goes on")
+        raise typer.Exit(INTERRUPTED) from None
 
 
 def _grid(
@@ -163,16 +163,16 @@ def _grid(
 
 
 def _suite(name: str, models: list[str] | None) -> CaseSweep:
+    from rockwobble import reduced
     from rockwobble.compare import CaseSweep, default_runs
     from rockwobble.models import Run, read_suite
 
-    unknown = [model for model in models or () if model not in _MODELS]
-    if unknown:
-        raise ValueError(f"--model must be one of {', '.join(_MODELS)}, got {unknown[0]!r}")
-
+    for model in models or ():
+        if model not in reduced.MODELS:
+            raise ValueError(f"--model must be of {', '.join(reduced.MODELS)}, got {model!r}")
     suite = read_suite(name)
-    reduced = [Run(None, **_MODELS[model]) for model in models or ()]
-    return CaseSweep(suite.cases, (*reduced, *(suite.runs or (() if models else default_runs()))))
+    chosen = [Run(None, **{"support": "recess", **reduced.MODELS[model]}) for model in models or ()]
+    return CaseSweep(suite.cases, (*chosen, *(suite.runs or (() if models else default_runs()))))
 
 
 def values(option: str, text: str) -> list[float]:

@@ -15,7 +15,7 @@ Quick = Annotated[
 ]
 
 
-def tradeoff(quick: Quick = False, out: options.Out = Path("rockwobble-out")) -> None:
+def tradeoff(quick: Quick = False, out: options.Out = Path("rockwobble-tradeoff")) -> None:
     """Measure what accuracy costs: the reduced models, scipy's solvers and the engines on three problems.
 
     The angle of turn in free response, two times El Centro until ten seconds

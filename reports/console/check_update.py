@@ -28,10 +28,9 @@ def update(bench: Bench, reason: str | None) -> None:
     from rockwobble.compare.check.models import reduced_baseline
     from rockwobble.compare.storage.provenance import package_versions
 
-    from .check_progress import shown_progress
+    from .progress import shown_progress
 
-    with shown_progress("baseline") as (tell, _):
-        bench.progress = tell
+    with shown_progress("engine runs") as bench.progress:
         new = {
             reduced_baseline.FILE: {reduced_baseline.GROUP: reduced_baseline.measure(bench)},
             engine_baseline.FILE: engine_baseline.measure(bench),

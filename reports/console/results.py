@@ -1,4 +1,4 @@
-"""The end of a command that makes results: its report is printed, and its files are written."""
+"""The end of a command that makes results: its files are written, and its report is printed."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ def show_and_write(
     tables: Mapping[str, pd.DataFrame],
     files: Mapping[str, bytes] | None = None,
 ) -> None:
-    """Print a page; write it with its tables, other files of data and the manifest; say what was written."""
+    """Write a page with its tables, other files of data and the manifest; then print it."""
     from rockwobble.compare.storage.manifest import MANIFEST, write_results
 
-    page.show()
     pages = page.files()
     with user_input():
         write_results(out, manifest, tables, files=files, pages=pages)
+    page.show()
     names = [MANIFEST, *(f"{name}.parquet" for name in tables), *(files or ()), *pages]
     print(f"\nWritten to {out}: {', '.join(names)}")

@@ -44,9 +44,10 @@ def ensemble_picture(found: Ensemble) -> Picture:
         name="ensemble",
         title="Distributions of peak tilt by method, and ratios of the peaks of each member",
         caption="Above: share of the members whose peak tilt is at most that of the axis; what a curve lacks "
-        "to 1 at the triangle overturns. Below: ratio of the two peaks of each member (dots; triangles at the "
-        "edges count those that overturn by one method alone), the median with its 95 % interval (diamond, "
-        f"thick bar), 5 to 95 % of the members (thin bar), and the margin of {100.0 * MARGIN:g} % (shaded).",
+        "to 1 at the triangle overturns. Below: ratio of the two peaks of each member (dots; triangles at "
+        "the edges count those that overturn by one method alone), the median with its 95 % interval "
+        "(diamond, thick bar), 5 to 95 % of the members (thin bar), and the margin of "
+        f"{100.0 * MARGIN:g} % (shaded).",
         panels=panels,
         legend="panels",
     )
@@ -127,15 +128,10 @@ def _ratios(found: Ensemble, rows: list[dict[str, Any]]) -> Panel:
 
 
 def _bar(
-    row: Mapping[str, Any],
-    names: tuple[str, str],
-    place: int,
-    span: tuple[float, float],
-    name: str,
-    width: float,
+    row: Mapping[str, Any], ends: str, place: int, span: tuple[float, float], name: str, width: float
 ) -> Line:
-    ends = np.clip([row[each] for each in names], *span)
-    return Line(x=ends, y=np.full(2, place + 0.2), name=name, style=Style(colour=DARK), width=width)
+    x = np.clip([row[f"ratio_{end}"] for end in ends.split()], *span)
+    return Line(x=x, y=np.full(2, place + 0.2), name=name, style=Style(colour=DARK), width=width)
 
 
 def _beyond(ratios: Array, place: int, low: float, high: float) -> list[Line | Text]:

@@ -94,7 +94,20 @@ def figure(picture: Picture) -> Figure:
         if picture.legend == "below" and picture.entries():
             _legend(drawn, list(places.flat[: len(picture.panels)]))
         drawn.align_ylabels()
+        _settle(drawn)
     return drawn
+
+
+def _settle(drawn: Figure) -> None:
+    """Place the axes where the layout has them, rounded: in its last digits it differs from call to call."""
+    layout = drawn.get_layout_engine()
+    assert layout is not None
+    for _ in range(2):  # what is placed decides how much room its labels take
+        layout.execute(drawn)
+    drawn.set_layout_engine("none")
+    for axes in drawn.axes:
+        x, y, width, height = (round(each, 3) for each in axes.get_position(original=True).bounds)
+        axes.set_position((x, y, width, height))
 
 
 def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:

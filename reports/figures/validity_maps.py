@@ -40,8 +40,8 @@ _MAPS = (
     (
         "bias",
         "Where rolling out changes the peak: bias",
-        "Median over the records of the peak on flat ground over that in an ideal recess, both of the reduced "
-        "models: red, higher on flat ground; blue, lower.",
+        "Median over the records of the peak on flat ground over that in an ideal recess, both of the "
+        "reduced models: red, higher on flat ground; blue, lower.",
         "flat_percent",
         Shades(label="flat over recess, median", unit="%", low=-50.0, high=50.0, centre=0.0),
     ),
@@ -56,8 +56,8 @@ _MAPS = (
     (
         "sensitivity",
         "What sensitivity alone does",
-        "The same of the recess model against itself under a record 1 % stronger: where it is no less, neither "
-        "model can be asked for the peak of one record.",
+        "The same of the recess model against itself under a record 1 % stronger: where it is no less, "
+        "neither model can be asked for the peak of one record.",
         "copy_90",
         Shades(label="factor of nine in ten", unit="-", low=1.0, high=10.0, log=True),
     ),
@@ -71,8 +71,8 @@ _MAPS = (
     (
         "need-contact",
         "Least normal force",
-        "Normal force that nine in ten of the records that rock without overturning keep at least; below zero "
-        "the ground would have to pull.",
+        "Normal force that nine in ten of the records that rock without overturning keep at least; below "
+        "zero the ground would have to pull.",
         "normal_10",
         Shades(label="normal force / weight", unit="-", low=-1.0, high=1.0, centre=0.0),
     ),

@@ -102,9 +102,8 @@ def as_junit(findings: Sequence[Finding], seconds: float) -> str:
     for layer, found in _by_layer(findings).items():
         outcomes = Counter(_kind(finding) for finding in found)
         counts = {"tests": len(found), "failures": outcomes["failure"], "skipped": outcomes["skipped"]}
-        suite = ElementTree.SubElement(
-            root, "testsuite", name=layer, errors="0", **{key: str(value) for key, value in counts.items()}
-        )
+        said = {"name": layer, "errors": "0", **{key: str(value) for key, value in counts.items()}}
+        suite = ElementTree.SubElement(root, "testsuite", said)
         for finding in found:
             kind = _kind(finding)
             case = ElementTree.SubElement(

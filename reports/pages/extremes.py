@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockwobble.compare.studies.extremes import FINE
+from rockwobble.compare.studies.extremes import FINE, read_extremes
 from rockwobble.models.diagnostic import CODES
 
 from .page import Page
@@ -61,9 +62,15 @@ def extremes_page(found: Extremes) -> Page:
     return Page(name="extremes", template="extremes", values=values)
 
 
-def extremes_pages(found: Extremes) -> dict[str, bytes]:
-    """Return name and content of each file of the report."""
-    return extremes_page(found).files()
+def stored_page(folder: Path) -> Page:
+    """Return the report of what is stored in `folder`.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    return extremes_page(read_extremes(folder))
 
 
 def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:

@@ -27,16 +27,16 @@ KINDS: Mapping[str, tuple[str, str]] = {
         "rockwobble.reports.pages.page:Page.files",
     ),
     "validity": (
-        "rockwobble.compare.studies.validity.study:read_validity",
-        "rockwobble.reports.pages.validity:validity_pages",
+        "rockwobble.reports.pages.validity:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
     ),
     "tradeoff": (
-        "rockwobble.compare.studies.tradeoff.study:read_tradeoff",
-        "rockwobble.reports.pages.tradeoff:tradeoff_pages",
+        "rockwobble.reports.pages.tradeoff:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
     ),
     "extremes": (
-        "rockwobble.compare.studies.extremes.study:read_extremes",
-        "rockwobble.reports.pages.extremes:extremes_pages",
+        "rockwobble.reports.pages.extremes:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
     ),
     "paper": (
         "rockwobble.reports.paper.page:stored_page",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockwobble.compare.studies.tradeoff import (
@@ -9,6 +10,7 @@ from rockwobble.compare.studies.tradeoff import (
     costs,
     engine_factors,
     plateaus,
+    read_tradeoff,
     rest_tilt_price,
 )
 
@@ -50,9 +52,15 @@ def tradeoff_page(found: Tradeoff) -> Page:
     return Page(name="tradeoff", template="tradeoff", values=values, pictures=pictures)
 
 
-def tradeoff_pages(found: Tradeoff) -> dict[str, bytes]:
-    """Return name and content of each file of the report."""
-    return tradeoff_page(found).files()
+def stored_page(folder: Path) -> Page:
+    """Return the report of what is stored in `folder`.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    return tradeoff_page(read_tradeoff(folder))
 
 
 def _rows(table: pd.DataFrame) -> list[dict[str, object]]:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rockwobble.compare.metrics.distributions import MARGIN
-from rockwobble.compare.studies.validity import limits_of
+from rockwobble.compare.studies.validity import limits_of, read_validity
 from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.limits.engine import damping
@@ -47,9 +48,15 @@ def validity_page(found: Validity) -> Page:
     return Page(name="validity", template="validity", values=values, pictures=validity_pictures(tables))
 
 
-def validity_pages(found: Validity) -> dict[str, bytes]:
-    """Return name and content of each file of the report."""
-    return validity_page(found).files()
+def stored_page(folder: Path) -> Page:
+    """Return the report of what is stored in `folder`.
+
+    Raises
+    ------
+    ValueError
+        If it cannot be read.
+    """
+    return validity_page(read_validity(folder))
 
 
 def limits_table(found: Validity) -> pd.DataFrame:

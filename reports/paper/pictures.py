@@ -75,8 +75,8 @@ def free_picture(table: pd.DataFrame) -> Picture:
         for rows, values in zip(modes.values(), (each[place] for each in histories), strict=True):
             # of hardly any spin the rate spans decades
             log = place == 3 and bool(values.max() > 100.0 * values.min())
-            start = 0.0 if place == 3 and not log else low
-            y = Axis(label=label, unit=unit, low=start, high=high, log=log)
+            room = (0.0, 1.15 * float(values.max())) if place == 3 and not log else (low, high)
+            y = Axis(label=label, unit=unit, low=room[0], high=room[1], log=log)
             line = Line(x=_column(rows, "time"), y=values, style=_LINE)
             panels.append(Panel(x=_FROM_0, y=y, layers=[line], height=1.5))
     return Picture(

@@ -11,9 +11,9 @@ from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1]
 SCRIPTS = (
+    "agreement_times",
     "convergence",
     "engine_extremes",
-    "agreement_times",
     "engine_settings",
     "ensemble_intervals",
     "false_alarms",

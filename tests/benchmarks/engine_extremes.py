@@ -108,19 +108,16 @@ def measure(
     say : callable, optional
         Called with a line of progress.
     """
-    import os
-
     import pandas as pd
 
-    from rockwobble.compare.runs.process_pool import ProcessPool
+    from rockwobble.compare.runs.scheduler import run_tasks
+    from rockwobble.compare.runs.task import Lost
 
     chosen = trials() if chosen is None else chosen
-    rows = []
-    with ProcessPool(workers or os.cpu_count() or 1) as pool:
-        for done, row in enumerate(pool.map(run, chosen), 1):
-            rows.append(row)
-            if say is not None:
-                say(f"{done}/{len(chosen)} {row['engine']} {row['extreme']} {row['value']}: {row['verdict']}")
+    rows = [row for row in run_tasks(run, chosen, workers=workers) if not isinstance(row, Lost)]
+    for row in rows:
+        if say is not None:
+            say(f"{row['engine']} {row['extreme']} {row['value']}: {row['verdict']}")
     return pd.DataFrame(rows)
 
 

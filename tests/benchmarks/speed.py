@@ -15,18 +15,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.compare.studies.tradeoff.scipy_equations import (
-    SOLVERS,
-    TOLERANCE_SCALE,
-    InitialValueProblem,
-    Rates,
-    SolverName,
-    State,
-    compiled_rates,
-    python_rates,
-)
+from rockwobble.compare.studies.tradeoff.scipy_solver import SOLVERS, TOLERANCE_SCALE, SolverName, start_of
 from rockwobble.models import Case, Cylinder, el_centro_1940
 from rockwobble.reduced.solution import Solution
 
@@ -35,6 +27,7 @@ from .console import options_of
 if TYPE_CHECKING:
     import pandas as pd
 
+State = NDArray[np.float64]
 TARGET = 1e-7  # error at the end, in alpha
 _AFTER_UPLIFT = 10.0  # [s]
 _START = 2e-3  # the other solvers start this long after uplift [s]: it is singular for them
@@ -45,12 +38,14 @@ _TOLERANCES = 10.0 ** -np.arange(5.0, 13.1, 0.25)
 class Problem:
     """The run, for solvers that cannot uplift from just after it, and its exact end."""
 
-    moving: InitialValueProblem
+    case: Case
+    start: float  # [s]
+    state: State  # theta, theta', phi, L at the start
     exact: State  # theta, theta' at the end
 
     def error(self, state: State) -> float:
         """Error of theta and theta'/p at the end, in alpha."""
-        cylinder = self.moving.cylinder
+        cylinder = self.case.cylinder
         p = math.sqrt(12.0 / (15.0 + math.cos(cylinder.alpha) ** 2) * 9.81 / cylinder.semidiagonal)
         tilt, rate = abs(state[0] - self.exact[0]), abs(state[1] - self.exact[1])
         return float(max(tilt, rate / p)) / cylinder.alpha
@@ -75,40 +70,36 @@ def el_centro_problem() -> Problem:
     start = reduced.simulate(Case(cylinder, motion, duration=uplift + _START), rtol=1e-13).source
     assert isinstance(start, Solution)
     exact = reduced.simulate(Case(cylinder, motion, duration=end), rtol=1e-13)
-    state = start.states[-1, :4]
-    moving = InitialValueProblem(
-        cylinder=cylinder, motion=motion, start=uplift + _START, end=end, state=state
+    return Problem(
+        case=Case(cylinder, motion, duration=end),
+        start=uplift + _START,
+        state=start.states[-1, :4],
+        exact=np.array([exact.tilt[-1], exact.tilt_rate[-1]]),
     )
-    return Problem(moving=moving, exact=np.array([exact.tilt[-1], exact.tilt_rate[-1]]))
 
 
 def kernel(problem: Problem) -> Solver:
     """The reduced kernel, from rest, uplift included."""
 
-    moving = problem.moving
-
     def solve(rtol: float) -> tuple[State, int]:
-        response = reduced.simulate(
-            Case(moving.cylinder, moving.motion, duration=moving.end), rtol=rtol, sample_step=moving.end
-        )
-        return np.array([response.tilt[-1], response.tilt_rate[-1]]), response.step_count
+        trace = reduced.simulate(problem.case, rtol=rtol, sample_step=problem.case.length)
+        return np.array([trace.tilt[-1], trace.tilt_rate[-1]]), trace.step_count
 
     return Solver(name="rockwobble", solve=solve)
 
 
-def scipy_solver(problem: Problem, method: SolverName, rates: Rates, language: str) -> Solver:
-    """One of scipy's solvers, over the whole record."""
+def scipy_solver(problem: Problem, method: SolverName, *, compiled: bool) -> Solver:
+    """One of scipy's solvers, over the whole record, with equations in Python or compiled."""
     from scipy.integrate import solve_ivp
 
-    moving = problem.moving
+    rates = start_of(problem.case, compiled=compiled).function
+    span = (problem.start, problem.case.length)
 
     def solve(rtol: float) -> tuple[State, int]:
-        run = solve_ivp(
-            rates, (moving.start, moving.end), moving.state, method, rtol=rtol, atol=rtol * TOLERANCE_SCALE
-        )
+        run = solve_ivp(rates, span, problem.state, method, rtol=rtol, atol=rtol * TOLERANCE_SCALE)
         return run.y[:2, -1], int(run.nfev)
 
-    return Solver(name=f"scipy {method}, {language}", solve=solve)
+    return Solver(name=f"scipy {method}, {'numba' if compiled else 'Python'}", solve=solve)
 
 
 def heyoka_solver(problem: Problem) -> Solver | None:
@@ -117,8 +108,9 @@ def heyoka_solver(problem: Problem) -> Solver | None:
         import heyoka as hy
     except ImportError:
         return None
-    moving = problem.moving
-    b, h = moving.cylinder.base_radius, moving.cylinder.half_height
+    cylinder, motion = problem.case.cylinder, problem.case.motion
+    assert motion is not None
+    b, h = cylinder.base_radius, cylinder.half_height
     I1, I2, g = (3.0 * b * b + 4.0 * h * h) / 12.0, 0.5 * b * b, 9.81
     A, J, C, E = I1 + h * h + b * b, I1 + h * h, I2 + b * b, h * b
     theta, omega, phi, L = hy.make_vars("theta", "omega", "phi", "L")
@@ -136,20 +128,21 @@ def heyoka_solver(problem: Problem) -> Solver | None:
         (phi, phi_rate),
         (L, lever * (ax * hy.sin(phi) - ay * hy.cos(phi))),
     ]
-    step, samples = moving.motion.time_step, moving.motion.acceleration
+    step, samples = motion.time_step, motion.acceleration
     slopes = np.diff(samples, axis=0) / step
     integrators: dict[float, Any] = {}
 
     def solve(rtol: float) -> tuple[State, int]:
         if rtol not in integrators:
-            integrators[rtol] = hy.taylor_adaptive(system, state=moving.state.copy(), tol=rtol)
+            integrators[rtol] = hy.taylor_adaptive(system, state=problem.state.copy(), tol=rtol)
         run = integrators[rtol]
-        run.state[:] = moving.state
-        first, last, steps = int(moving.start / step), int(moving.end / step), 0
+        run.state[:] = problem.state
+        end = problem.case.length
+        first, last, steps = int(problem.start / step), int(end / step), 0
         for i in range(first, last + 1):
             run.pars[:2], run.pars[2:] = samples[i], slopes[i]
-            run.time = moving.start - i * step if i == first else 0.0
-            steps += run.propagate_until(moving.end - i * step if i == last else step)[3]
+            run.time = problem.start - i * step if i == first else 0.0
+            steps += run.propagate_until(end - i * step if i == last else step)[3]
         return np.array(run.state[:2]), steps
 
     return Solver(name="heyoka (compiled)", solve=solve)
@@ -193,9 +186,8 @@ def measure(
 
     problem = el_centro_problem()
     solvers = [kernel(problem)]
-    solvers += [scipy_solver(problem, m, python_rates(problem.moving), "Python") for m in SOLVERS]
-    if compiled:
-        solvers += [scipy_solver(problem, m, compiled_rates(problem.moving), "numba") for m in SOLVERS]
+    for each in (False, True) if compiled else (False,):
+        solvers += [scipy_solver(problem, method, compiled=each) for method in SOLVERS]
     peer = heyoka_solver(problem)
     if peer is not None:
         solvers.append(peer)

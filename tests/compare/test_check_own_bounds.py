@@ -20,7 +20,7 @@ from rockwobble.compare.check.measures.made_traces import made
 from rockwobble.compare.check.problems import PIER, released
 from rockwobble.compare.runs.choice import installed_engines
 from rockwobble.compare.runs.execution import Job
-from rockwobble.models import Case, Cylinder, InitialState, Run, Suite, Trace, el_centro_1940
+from rockwobble.models import Case, Cylinder, Run, Suite, Trace, el_centro_1940
 
 KEPT: dict[str, Trace] = {}
 SHORT = Case(PIER, el_centro_1940().scaled(2.0), duration=4.0, name="El Centro doubled")
@@ -49,7 +49,7 @@ def test_a_model_that_is_off_is_found_and_blamed(support: str) -> None:
     assert {f.part for f in failed} == {f"the {Run(None, support)}"}
     assert failed[-1].name.endswith("met rocking")
     assert failed[-1].value > 50.0 * failed[-1].bound
-    assert failed[-1].note.startswith("mujoco and pybullet agree to ")
+    assert failed[-1].note.startswith("to 1.99 s; mujoco and pybullet agree to ")
 
 
 @BOTH
@@ -57,7 +57,7 @@ def test_an_engine_that_is_off_is_found_and_blamed() -> None:
     failed = [f for f in found(SHORT, Run("pybullet", "recess", collision_margin=0.04)) if f.failed]
     assert failed[-1].name.endswith("met rocking")
     assert failed[-1].part == "pybullet (recess): its settings"
-    assert failed[-1].note.startswith("mujoco follows the model to ")
+    assert failed[-1].note.startswith("to 1.99 s; mujoco follows the model to ")
 
 
 def test_without_a_second_engine_both_are_named(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -71,7 +71,9 @@ def test_a_step_that_is_too_large_is_named_with_one_that_would_do(monkeypatch: p
     monkeypatch.setattr(own_bounds, "_by_step", lambda _, __, trace: np.full(len(trace.time) - 1, 0.01))
     findings = found(SHORT, Run("mujoco", "recess"), models=Slower)
     assert findings[-1].part == "time step of mujoco"
-    assert findings[-1].note == "the trace changes by 1.0e-02 alpha with its step: try a time step of 2e-05 s"
+    assert findings[-1].note.endswith(
+        "; the trace changes by 1.0e-02 alpha with its step: try a time step of 2e-05 s"
+    )
 
 
 class Slower:
@@ -83,7 +85,7 @@ class Slower:
 
 
 def test_a_motion_is_met_where_it_is_strongest() -> None:
-    met = own_bounds.met_rocking(SHORT)
+    met = own_bounds.in_motion(SHORT)
     assert met is not None
     assert met.motion is not None
     assert met.length == 2.0
@@ -99,18 +101,28 @@ def test_sizes_meet_the_same_motion() -> None:
     motion = el_centro_1940()
     four = dataclasses.replace(motion, time_step=2.0 * motion.time_step)
     large = Cylinder(semidiagonal=24.0, tan_alpha=0.2)
-    small, big = (own_bounds.met_rocking(Case(*each)) for each in ((PIER, motion), (large, four)))
+    small, big = (own_bounds.in_motion(Case(*each)) for each in ((PIER, motion), (large, four)))
     assert small is not None
     assert big is not None
     tilts = [reduced.simulate(c, sample_step=c.length).peak_tilt for c in (small, big)]
     assert tilts[0] == pytest.approx(tilts[1], rel=1e-12)
 
 
-def test_what_already_moves_or_never_does_is_not_met() -> None:
-    assert own_bounds.met_rocking(released(0.5, 0.5, 2.0)) is None
-    assert own_bounds.met_rocking(Case(PIER, duration=1.0)) is None
-    leaning = Case(PIER, el_centro_1940(), initial=InitialState(0.1), duration=1.0)
-    assert own_bounds.met_rocking(leaning) is None
+def test_of_a_release_the_first_seconds_are_taken_and_of_what_stands_nothing() -> None:
+    release = released(0.5, 0.5, 8.0)
+    first = own_bounds.in_motion(release)
+    assert first is not None
+    assert (first.length, first.initial, first.motion) == (2.0, release.initial, None)
+    assert own_bounds.in_motion(Case(PIER, duration=1.0)) is None
+
+
+@pytest.mark.parametrize("spin", [0.5, 0.05, 0.0])
+def test_a_release_that_passes_upright_gives_no_alarm_and_finds_a_wrong_model(spin: float) -> None:
+    case = dataclasses.replace(released(0.5, spin, 4.0), name=f"release, {spin:g} rad/s")
+    runs = [Run("mujoco", support) for support in ("recess", "flat")]
+    assert not [f for f in found(case, *runs) if f.failed]
+    wrong = [f for f in found(case, *runs, models=LargerModels) if f.failed]
+    assert len([f for f in wrong if f.name.endswith("first seconds")]) == 2
 
 
 def test_twice_the_step_or_half_of_it() -> None:

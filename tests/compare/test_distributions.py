@@ -27,7 +27,7 @@ from rockwobble.compare.metrics.distributions import (
     ratio_within_reach,
     signed_rank_p,
 )
-from rockwobble.compare.metrics.order_statistics import Interval, end_index, quantile_interval
+from rockwobble.compare.metrics.order_statistics import Interval, end_index, quantile_interval, share_interval
 
 ROUNDING = 1e-12
 COUNT = 22  # far-field pairs of FEMA P-695
@@ -144,6 +144,19 @@ def test_intervals_of_other_quantiles_have_their_coverage(share, shape):
     }[shape][min(share, 1.0 - share) if share < 0.5 else round(1.0 - share, 2)]
     truth = truth if share < 0.5 else -truth
     assert COVERAGE[0] <= coverage(list(drawn), share, truth) <= COVERAGE[1]
+
+
+@pytest.mark.parametrize("total", [22, 100])
+def test_the_interval_of_a_share_has_its_coverage(total):
+    found = [share_interval(count, total) for count in range(total + 1)]
+    assert all(each.low <= each.value <= each.high for each in found)
+    for share in np.linspace(0.001, 0.999, 333):
+        chances = binom.pmf(np.arange(total + 1), total, share)
+        inside = np.array([each.low <= share <= each.high for each in found])
+        # exact, not drawn: at least what is promised
+        assert chances[inside].sum() >= 0.95
+    assert share_interval(0, 22).high == pytest.approx(1.0 - 0.025 ** (1.0 / 22.0), rel=1e-12)
+    assert math.isnan(share_interval(0, 0).value)
 
 
 def test_an_interval_ends_where_the_binomial_distribution_says():

@@ -6,10 +6,8 @@ import numpy as np
 import pytest
 
 from rockwobble.compare.comparison.external.clock import fitted_delays
-from rockwobble.compare.comparison.external.difference import AZIMUTH, difference
+from rockwobble.compare.comparison.external.difference import AZIMUTH, Part, difference, explains
 from rockwobble.compare.comparison.external.frame import Frame, fitted_frames
-from rockwobble.compare.comparison.external.mistake import explains
-from rockwobble.compare.comparison.external.part import Part
 from rockwobble.compare.traces.motion import Motion
 from rockwobble.models import Cylinder
 

@@ -130,6 +130,24 @@ def test_what_was_finished_before_an_interruption_is_kept_and_counted(tmp_path):
     assert unfinished(tmp_path) == []
 
 
+@pytest.mark.parametrize("place", [40, 60])  # in the data; the footer has no checksum
+def test_a_damaged_file_is_no_finished_task(tmp_path, place):
+    with table_cache(tmp_path) as cache:
+        run_tasks(squared, [1, 2], workers=1, cache=cache)
+    path = tmp_path / CACHE / "study" / f"{2:032d}.parquet"
+    content = bytearray(path.read_bytes())
+    content[place] ^= 1  # a single bit
+    path.write_bytes(content)
+    RAN.clear()
+    with table_cache(tmp_path) as cache:
+        run_tasks(counted, [1, 2], workers=1, cache=cache)
+    assert RAN == [2]
+
+
+def test_a_single_task_has_a_process_of_its_own_where_it_is_asked_for():
+    assert run_tasks(os.getpgid, [0], workers=2) != [os.getpgid(0)] == run_tasks(os.getpgid, [0])
+
+
 def test_a_lost_task_is_not_kept(tmp_path):
     with table_cache(tmp_path) as cache:
         found = run_tasks(killed, [1, 2], workers=2, cache=cache)

@@ -7,16 +7,16 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import CaseSweep, Grid, SweepIncompleteError, sweep
+from rockwobble.compare import CaseSweep, Grid, SweepIncompleteError, read_sweep, sweep
+from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.task import Lost
 from rockwobble.compare.storage.manifest import read_results
-from rockwobble.compare.storage.parquet_file import read_about
 from rockwobble.compare.studies.sweep import study
+from rockwobble.compare.studies.sweep.study import KIND
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 SIZES, SCALES = [0.5, 2.0, 6.0, 20.0], [0.4, 1.0, 2.5, 6.0, 8.0]
-CHUNKS = "finished/sweep"
 SHORT = GroundMotion(el_centro_1940().acceleration[:500], el_centro_1940().time_step, "short")
 
 
@@ -26,7 +26,7 @@ def grid(**changes) -> Grid:
 
 
 def files(folder) -> dict[str, int]:
-    return {path.name: path.stat().st_ino for path in (folder / CHUNKS).glob("*.parquet")}
+    return {path.name: path.stat().st_ino for path in (folder / CACHE / KIND).glob("*.parquet")}
 
 
 def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
@@ -68,10 +68,10 @@ def test_a_grid_that_grows_keeps_what_is_there(tmp_path):
     before = set(files(tmp_path).values())
     events = []
     table = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append)
-    assert events[0].found == 4
+    assert (events[0].found, events[0].total) == (4, 8)
     assert before < set(files(tmp_path).values())
     pd.testing.assert_frame_equal(table, sweep(grid(), workers=1), check_exact=True)
-    pd.testing.assert_frame_equal(table, read_results(tmp_path, "sweep").table("sweep"), check_exact=True)
+    pd.testing.assert_frame_equal(table, read_sweep(tmp_path), check_exact=True)
 
 
 def test_chunks_of_another_sweep_go_only_when_this_one_is_complete(tmp_path):
@@ -79,30 +79,31 @@ def test_chunks_of_another_sweep_go_only_when_this_one_is_complete(tmp_path):
     other = set(files(tmp_path))
 
     def interrupt(event):
-        if event.state == "finished":
+        if event.done > event.found:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
         sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5, progress=interrupt)
     assert len(files(tmp_path)) == len(other) + 1
-    sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5)
+    table = sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5)
     assert not other & set(files(tmp_path))
+    pd.testing.assert_frame_equal(table, read_sweep(tmp_path), check_exact=True)
 
 
-def test_a_chunk_whose_process_dies_again_and_again_leaves_the_others_finished(monkeypatch, tmp_path):
-    run_tasks, asked = study.run_tasks, {}
+def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeypatch):
+    run_tasks = study.run_tasks
 
-    def lossy(function, tasks, **options):
-        asked.update(options)
-        return [*run_tasks(function, tasks[1:], **options), Lost("killed")]
+    def losing(*args, **options):
+        assert options["tries"] == 3
+        found = run_tasks(*args, **options)
+        return [Lost("killed"), *found[1:]]
 
-    monkeypatch.setattr(study, "run_tasks", lossy)
+    monkeypatch.setattr(study, "run_tasks", losing)
     with pytest.raises(SweepIncompleteError, match=r"1 of 8 chunks ended their processes 3 times.*killed"):
         sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
-    assert len(files(tmp_path)) == 7
-    assert asked["tries"] == 3
-    # what a worker elsewhere must have, too
-    assert {"numba", "numpy", "python", "code of reduced"} <= set(asked["makers"]())
+    assert len(files(tmp_path)) == 8
+    with pytest.raises(ValueError, match="does not hold results"):
+        read_sweep(tmp_path)
 
 
 def test_each_input_of_a_chunk_is_in_its_key():
@@ -140,20 +141,29 @@ def test_cases_with_engines_and_models(tmp_path):
     assert table.peak_tilt_over_alpha.tolist() == pytest.approx([0.3, 0.5, 0.3, 0.5], rel=1e-3)
     again = sweep(Suite(cases, [guided]), workers=1)
     pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
-    assert list(read_results(tmp_path, "sweep").manifest.about["cases"]) == ["0.3", "0.5"]
 
 
-def test_every_chunk_and_the_whole_say_what_made_them(tmp_path):
+def test_the_manifest_says_what_was_swept(tmp_path):
     table = sweep(grid(), out=tmp_path, workers=1, seeds={"records": 7}, command="rockwobble sweep")
-    for path in (tmp_path / CHUNKS).glob("*.parquet"):
-        about = read_about(path)
-        assert path.stem == about["inputs"]
-        assert {"numba", "numpy", "python", "code of reduced"} <= set(about["versions"])
-    results = read_results(tmp_path, "sweep")
-    assert (results.manifest.seeds, results.manifest.command) == ({"records": 7}, "rockwobble sweep")
-    assert results.manifest.headline["runs"] == len(table)
-    motions = results.table("motions")
-    assert np.array_equal(motions[["x", "y"]].to_numpy(), SHORT.acceleration)
+    made = read_results(tmp_path, KIND).manifest
+    assert (made.seeds, made.command) == ({"records": 7}, "rockwobble sweep")
+    assert made.headline == {"runs": 40, **table["outcome"].value_counts().to_dict()}
+    assert (made.about["semidiagonals"], made.about["runs"]) == (SIZES, 40)
+    motions = read_results(tmp_path, KIND).table("motions")
+    assert np.array_equal(motions[["acceleration_x", "acceleration_y"]], SHORT.acceleration)
+
+
+@pytest.mark.parametrize("where", [100, 300])  # in the data; the footer has no checksum
+def test_a_damaged_chunk_runs_again(tmp_path, where):
+    first = sweep(grid(), out=tmp_path, workers=1)
+    path = next((tmp_path / CACHE / KIND).glob("*.parquet"))
+    content = bytearray(path.read_bytes())
+    content[where] ^= 1  # a single bit
+    path.write_bytes(content)
+    events = []
+    again = sweep(grid(), out=tmp_path, workers=1, progress=events.append)
+    assert (events[-1].found, events[-1].total) == (1, 2)
+    pd.testing.assert_frame_equal(first, again, check_exact=True)
 
 
 @pytest.mark.parametrize(
@@ -171,6 +181,7 @@ def test_every_chunk_and_the_whole_say_what_made_them(tmp_path):
         (lambda: CaseSweep([], [Run(None, "recess")]), "at least one case"),
         (lambda: CaseSweep([Case(PIER, duration=1.0, name="a")] * 2, [Run(None, "recess")]), "got 'a' twice"),
         (lambda: sweep(grid(), chunk_size=0), "chunk_size must be at least 1"),
+        (lambda: read_sweep("/"), "does not hold results"),
     ],
 )
 def test_bad_input_gets_one_clear_line(make, words):

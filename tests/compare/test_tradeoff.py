@@ -41,9 +41,8 @@ def test_each_support_has_its_own_answer(turn: Problem) -> None:
     initial = turn.cases[0].initial
     assert initial is not None
     recess, flat, ring = (turn.references[support] for support in ("recess", "flat", "ring"))
-    assert recess.quantities[0] == pytest.approx(
-        [math.degrees(reduced.angle_of_turn(PIER, initial))], rel=1e-15
-    )
+    exact = math.degrees(reduced.angle_of_turn(PIER, initial))
+    assert recess.quantities[0] == pytest.approx([exact], rel=1e-15)
     assert (recess.doubt, recess.source) == (0.0, "exact")
     assert flat.source == "tight"
     assert 0.0 < flat.doubt < CONVERGED

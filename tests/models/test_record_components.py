@@ -22,9 +22,21 @@ def at2(step: float, count: int) -> str:
 
 
 def test_cut_to_the_shortest_component(write: Write) -> None:
-    x, y, z = (write(columns(0.01, count), name) for name, count in (("x", 9), ("y", 7), ("z", 8)))
-    assert read_record(x, y, z).acceleration.shape == (7, 3)
-    assert read_record(x, z).acceleration.shape == (8, 2)
+    # a tail of rest, and a sample or two of a long record
+    tail = "".join(f"{0.01 * i:.2f},0.001\n" for i in range(300, 400))
+    x = write(columns(0.01, 300) + "\n" + tail, "x")
+    y, z = write(columns(0.01, 300), "y"), write(columns(0.01, 298), "z")
+    assert read_record(x, y).acceleration.shape == (300, 2)
+    assert read_record(y, y, z).acceleration.shape == (298, 3)
+
+
+def test_half_a_component_is_no_record(write: Write) -> None:
+    x, y = write(columns(0.01, 300), "x"), write(columns(0.01, 150), "y")
+    message = (
+        r"must be equally long, got 300 samples in x and 150 in another: what would be left out has 100 %"
+    )
+    with pytest.raises(ValueError, match=message):
+        read_record(x, y)
 
 
 def test_each_file_has_its_own_place_format_and_unit(write: Write) -> None:

@@ -22,7 +22,7 @@ from .targets import PACKAGES
 _COMPILED = "reduced"  # the folder of the compiled kernels
 _ENTRY = "kernel"  # the decorator of an entry point that is kept on disk, see reduced/_compile.py
 _LEFT_OUT = shutil.ignore_patterns(
-    ".git", ".venv", "*.egg-info", ".*_cache", "rockwobble-out", "dist", "build", "*.part"
+    ".git", ".venv", "*.egg-info", ".*_cache", "rockwobble-*", "dist", "build", "*.part"
 )
 
 

@@ -31,7 +31,8 @@ window.addEventListener("load", () => setTimeout(() => {
   const wider = document.documentElement.scrollWidth - document.documentElement.clientWidth;
   if (wider > 0) found.push(`the page scrolls sideways by ${wider} pixels`);
   for (const asked of performance.getEntriesByType("resource")) {
-    if (!/^(data|blob|about):/.test(asked.name)) found.push(`asks for ${asked.name}`);
+    const own = /^(data|blob|about):/.test(asked.name) || (window.home && asked.name.startsWith(window.home));
+    if (!own) found.push(`asks for ${asked.name}`);
   }
   if (window.lookFurther) window.lookFurther(found);
   window.parent.postMessage([window.name, plots.length, ...found].join("\n"), "*");

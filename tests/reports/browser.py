@@ -1,15 +1,17 @@
 """Pages looked at in Chromium, as wide as a screen and as a phone: what a reader would stumble over.
 
-A page must not ask for anything outside of itself: no name of a host resolves here.
+A page must not ask for anything outside of itself, or of its `window.home` where it is one of a site: no name
+of a host resolves here.
 """
 
 from __future__ import annotations
 
 import html
+import itertools
 import re
 import shutil
 import subprocess
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import pytest
@@ -49,7 +51,10 @@ _OUTER = """<!doctype html><body>
   document.body.dataset[name] = lines.join("\\n");
 });</script>
 """
-_FRAME = '<iframe name="{name}" src="page.html" width="{width}" height="900" style="border:0"></iframe>'
+_FRAME = (
+    '<iframe name="{name}{place}" src="page{place}.html" width="{width}" height="900" style="border:0">'
+    "</iframe>"
+)
 
 
 def complaints(
@@ -70,25 +75,43 @@ def complaints(
     widths : iterable of str, optional
         Of `WIDTHS`, by name.
     """
+    (wrong,) = complaints_of_all([page], folder, figures=figures, further=further, widths=widths).values()
+    return wrong
+
+
+def complaints_of_all(
+    pages: Sequence[str],
+    folder: Path,
+    *,
+    figures: int,
+    further: str = "",
+    widths: Iterable[str] = tuple(WIDTHS),
+) -> dict[int, list[str]]:
+    """Return what is wrong with each of several pages, by its place; see `complaints`.
+
+    What the browser itself complains of is among that of the last.
+    """
     inside = f"<script>{further}\n{_LOOK}</script></body>"
-    (folder / "page.html").write_text(inside.join(page.rsplit("</body>", 1)))
-    frames = [_FRAME.format(name=name, width=WIDTHS[name]) for name in widths]
+    frames = []
+    for place, page in enumerate(pages):
+        (folder / f"page{place}.html").write_text(inside.join(page.rsplit("</body>", 1)))
+        frames += [_FRAME.format(place=place, name=name, width=WIDTHS[name]) for name in widths]
     # a window narrower than 500 pixels is not to be had, a frame is
     (folder / "outer.html").write_text(_OUTER + "".join(frames))
     command = [str(CHROMIUM), *_OPTIONS, f"--user-data-dir={folder / 'profile'}"]
     command += [f"--virtual-time-budget={_PATIENCE}", "--dump-dom", (folder / "outer.html").as_uri()]
     done = subprocess.run(command, capture_output=True, text=True, timeout=_DEADLINE, check=True)
-    wrong = []
-    for name in widths:
-        said = re.search(rf'data-{name}="([^"]*)"', done.stdout)
+    wrong: dict[int, list[str]] = {place: [] for place in range(len(pages))}
+    for place, name in itertools.product(wrong, widths):
+        said = re.search(rf'data-{name}{place}="([^"]*)"', done.stdout)
         if said is None:
-            wrong.append(f"{name}: the page did not come to its end")
+            wrong[place].append(f"{name}: the page did not come to its end")
             continue
         drawn, *lines = html.unescape(said.group(1)).splitlines()
-        wrong += [f"{name}: {line}" for line in lines]
+        wrong[place] += [f"{name}: {line}" for line in lines]
         if int(drawn) != figures:
-            wrong.append(f"{name}: {drawn} figures, expected {figures}")
-    wrong += [
+            wrong[place].append(f"{name}: {drawn} figures, expected {figures}")
+    wrong[len(pages) - 1] += [
         line for line in done.stderr.splitlines() if "CONSOLE" in line and not any(h in line for h in _HINTS)
     ]
     return wrong

@@ -11,18 +11,12 @@ from browser import complaints, needs_chromium
 from rockwobble import compare
 from rockwobble.compare import Comparison
 from rockwobble.compare.studies.advice import advise
-from rockwobble.compare.studies.extremes import read_extremes
-from rockwobble.compare.studies.tradeoff import read_tradeoff
-from rockwobble.compare.studies.validity import read_validity
 from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
+from rockwobble.reports.pages import extremes, tradeoff, validity
 from rockwobble.reports.pages.advice.page import advice_page
 from rockwobble.reports.pages.comparison import report
 from rockwobble.reports.pages.comparison.report import comparison_page, view_page
 from rockwobble.reports.pages.ensemble.page import ensemble_page
-from rockwobble.reports.pages.extremes.page import extremes_page
-from rockwobble.reports.pages.tradeoff.page import tradeoff_page
-from rockwobble.reports.pages.validity.page import validity_page
-from rockwobble.reports.pages.validity.sections import sections_of
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 # of a player: moved, it must say where it is
@@ -42,11 +36,6 @@ window.addEventListener("load", () => setTimeout(() => document.getElementById("
 """
 
 
-def validity() -> str:
-    found = read_validity(PUBLISHED / "validity")
-    return validity_page(sections_of(dict(found.tables)), found)
-
-
 def advice() -> str:
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940(), name="El Centro")
     return advice_page(advise(case, count=20), "rockwobble advise")
@@ -60,9 +49,9 @@ def ensemble() -> str:
 
 
 PAGES: dict[str, tuple[Callable[[], str], int]] = {
-    "validity": (validity, 45),
-    "tradeoff": (lambda: tradeoff_page(read_tradeoff(PUBLISHED / "tradeoff")), 6),
-    "extremes": (lambda: extremes_page(read_extremes(PUBLISHED / "extremes")), 0),
+    "validity": (lambda: validity.stored_page(PUBLISHED / "validity").html(), 38),
+    "tradeoff": (lambda: tradeoff.stored_page(PUBLISHED / "tradeoff").html(), 18),
+    "extremes": (lambda: extremes.stored_page(PUBLISHED / "extremes").html(), 0),
     "advice": (advice, 4),
     "ensemble": (ensemble, 2),
 }

@@ -1,29 +1,36 @@
-"""`rockwobble spectrum` from the outside."""
+"""`rockwobble spectrum` from the outside, and the words and picture of its page."""
 
 from __future__ import annotations
 
+import dataclasses
+import io
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from rich.console import Console
 
 from rockwobble import reduced
-from rockwobble.models import el_centro_1940
+from rockwobble.compare.storage.manifest import Manifest, read_results
+from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast
+from rockwobble.compare.studies.spectrum.result import KIND, OverturningSpectrum, safe_islands, spectrum_of
+from rockwobble.compare.studies.spectrum.series import PLANAR_X, SERIES, SPATIAL
+from rockwobble.compare.studies.spectrum.study import overturning_spectrum
+from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.reports.cli.main import main
+from rockwobble.reports.figures.heat import Heat
+from rockwobble.reports.figures.spectrum import spectrum_picture
+from rockwobble.reports.figures.svg import svg
+from rockwobble.reports.pages.registry import redrawn
+from rockwobble.reports.pages.spectrum import spectrum_page
 
 # the factors on the record differ by a rounding, grown by a few passes
 SAME_RUN = 1e-6
+SVG_LIMIT = 500_000  # bytes; the smallest page that a slow line still loads at once
 SMALL = ["--sizes", "6", "--intensities", "8", "--largest", "20", "--strongest", "9"]
-FILES = {
-    "spectrum.md",
-    "spectrum.svg",
-    "spectrum.parquet",
-    "lowest.parquet",
-    "islands.parquet",
-    "contrast.parquet",
-    "checked.parquet",
-}
+PAGES = {"spectrum.md", "spectrum.html", "spectrum.svg"}
+TABLES = {"spectrum", "record", "lowest", "islands", "contrast", "checked"}
 
 
 def call(*arguments: str) -> int:
@@ -33,41 +40,34 @@ def call(*arguments: str) -> int:
     return ended.value.code
 
 
-def test_it_prints_a_table_and_sentences_and_writes_what_it_names(tmp_path: Path, capsys):
+def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, capsys):
     (tmp_path / "kept.txt").write_text("mine")
     assert call(*SMALL, "--tan-alpha", "0.2", "--out", str(tmp_path)) == 0
-    printed = capsys.readouterr().out
-    assert "R = 0.5 to 20 m" in printed
-    assert "alpha = 11.31 deg" in printed
-    assert "Planar analysis is unconservative in" in " ".join(printed.split())
-    assert {path.name for path in tmp_path.iterdir()} == FILES | {"kept.txt"}
-    for name in FILES:
-        assert name in printed
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "R = 20 m" in printed
+    assert "Planar analysis is unconservative in" in printed
+    assert "in steps down to 0.015 where the tilt changes fast" in printed
+    written = PAGES | {f"{name}.parquet" for name in TABLES} | {"manifest.json"}
+    assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt"}
+    assert all(name in printed for name in written)
 
-    cells = pd.read_parquet(tmp_path / "spectrum.parquet")
-    assert len(cells) == 3 * 6 * 8
-    space = cells[cells["series"] == "3d"]
+    found = spectrum_of(read_results(tmp_path, KIND))
+    sizes, levels = np.linspace(0.5, 20.0, 6), np.linspace(1.0, 9.0, 8)
+    assert np.array_equal(found.semidiagonals, sizes)
     peaks = reduced.peak_tilts(
-        np.linspace(0.5, 20.0, 6),
-        0.2,
-        el_centro_1940(),
-        np.linspace(1.0, 9.0, 8) * 9.81 * 0.2 / el_centro_1940().peak,
-        rtol=1e-8,
+        sizes, 0.2, el_centro_1940(), levels * 9.81 * 0.2 / el_centro_1940().peak, rtol=1e-8
     )
-    assert space["peak_tilt"].to_numpy().reshape(6, 8) == pytest.approx(peaks, rel=SAME_RUN)
+    assert found.peak_tilt[SPATIAL] == pytest.approx(peaks, rel=SAME_RUN)
     lowest = pd.read_parquet(tmp_path / "lowest.parquet")
-    assert len(lowest) == 3 * 6
-    assert lowest["search_step"].tolist() == [0.01] * 18
     assert lowest["confirmed"].any()
     assert (lowest["intensity"] <= lowest["on_grid"].fillna(np.inf)).sum() >= 6
-    assert "in steps of 0.01, down to a sixteenth of it" in " ".join(printed.split())
+    assert redrawn(KIND, tmp_path) == {name: (tmp_path / name).read_bytes() for name in PAGES}
     page = (tmp_path / "spectrum.md").read_text()
-    assert "(spectrum.svg)" in page
-    assert f"numpy {np.__version__}" in page
     assert page.splitlines()[0] == "# Overturning spectrum: El Centro 1940, tan α = 0.2"
+    assert f"numpy {np.__version__}" in page
 
 
-def test_any_record_will_do(tmp_path: Path, capsys):
+def test_any_record_will_do(tmp_path: Path):
     time = np.arange(0.0, 3.0, 0.02)
     for name, phase in (("x.csv", 0.0), ("y.csv", 1.0)):
         rows = "\n".join(f"{t:.2f}, {0.3 * np.sin(5.0 * t + phase) * (t < 2.0):.6f}" for t in time)
@@ -87,7 +87,7 @@ def test_any_record_will_do(tmp_path: Path, capsys):
         (["--smallest", "3", "--largest", "2"], "must be positive and increasing, got 3 and 2"),
         (["--smallest", "-1"], "must be positive and increasing, got -1 and 30"),
         (["--weakest", "nan"], "must be positive and increasing, got nan and 12"),
-        (["--model", "planar"], "--model must be one of recess, flat, got 'planar'"),
+        (["--support", "ring"], "--support must be one of recess, flat, got 'ring'"),
         (["--search-step", "0"], "--search-step must be at least 1e-05 and finite, got 0"),
         (["--search-step", "inf"], "--search-step must be at least 1e-05 and finite, got inf"),
         (["--tan-alpha", "0"], "tan_alpha must be positive"),
@@ -104,3 +104,109 @@ def test_bad_input_is_one_line_and_writes_nothing(arguments, words, tmp_path, mo
     assert captured.err.count("\n") == 1
     assert captured.out == ""
     assert [path.name for path in tmp_path.iterdir()] == ["taken"]
+
+
+@pytest.fixture(scope="module")
+def spectrum() -> OverturningSpectrum:
+    return overturning_spectrum(
+        0.1,
+        el_centro_1940(),
+        semidiagonals=np.linspace(0.5, 30.0, 12),
+        intensities=np.linspace(1.0, 12.0, 12),
+        search_step=0.2,
+    )
+
+
+def said(found: OverturningSpectrum, checked: pd.DataFrame | None = None, **columns: object) -> str:
+    """Return the words of the page of a spectrum; `columns` stand in the table of the lowest."""
+    lowest = found.lowest_frame().assign(**({"confirmed": True} | columns))
+    tables = {"lowest": lowest, "islands": safe_islands(found), "contrast": planar_contrast(found)}
+    tables["checked"] = pd.DataFrame({"agrees": [True], "sensitive": [False]}) if checked is None else checked
+    manifest = Manifest(kind=KIND, command="rockwobble spectrum", versions={"numpy": "2"})
+    console = Console(file=io.StringIO(), width=100_000)
+    spectrum_page(found, tables, manifest).show(console)
+    return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]
+
+
+def test_the_headline_counts_what_is_missed(spectrum):
+    falls = {name: spectrum.overturned(name) for name in SERIES}
+    planar = falls["planar_x"] | falls["planar_y"]
+    missed = 100.0 * (falls[SPATIAL] & ~planar).mean()
+    overcalled = 100.0 * (planar & ~falls[SPATIAL]).mean()
+    assert 1.0 < missed < 10.0
+    assert 1.0 < overcalled < 10.0
+    words = said(spectrum)
+    assert f"overturns in {100.0 * falls[SPATIAL].mean():.0f} % of 144 cells" in words
+    assert f"unconservative in {missed:.1f} % of the cells" in words
+    assert f"conservative in {overcalled:.1f} %" in words
+    assert "not probabilities" in words
+
+
+def test_failed_cells_are_counted_and_left_out(spectrum):
+    tilt = spectrum.peak_tilt[PLANAR_X].copy()
+    tilt[3, 4] = tilt[5, 6] = np.nan
+    words = said(dataclasses.replace(spectrum, peak_tilt={**spectrum.peak_tilt, PLANAR_X: tilt}))
+    assert "of 142 cells" in words
+    assert "could not be solved and are left out: 2." in words
+    every = {**spectrum.peak_tilt, PLANAR_X: np.full_like(tilt, np.nan)}
+    assert "No cell could be solved." in said(dataclasses.replace(spectrum, peak_tilt=every))
+
+
+def test_a_spectrum_without_overturning_says_how_it_was_searched(spectrum):
+    still = {name: np.zeros_like(tilt) for name, tilt in spectrum.peak_tilt.items()}
+    none = {name: np.full_like(lowest, np.nan) for name, lowest in spectrum.lowest.items()}
+    words = said(dataclasses.replace(spectrum, peak_tilt=still, lowest=none))
+    assert "overturns in 0 % of 144 cells" in words
+    assert "searched from the threshold of uplift up (1 g tan α in 3D), in steps down to 0.2" in words
+    assert "stands again" not in words
+
+
+def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
+    none = dataclasses.replace(spectrum, below={name: np.zeros(12) for name in SERIES})
+    found = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())
+    words = said(none, on_grid=none.lowest_frame()["intensity"] + 0.5)  # less than a step of the grid, 1
+    # 0 of 60 draws: below 1 - 0.025^(1/60)
+    assert "of 60 intensities drawn at random below the lowest in 3D 0 overturned" in words
+    assert "less than 6 % of what lies below does (95 %)" in words
+    assert f"Of {found} sizes that overturn in 3D 0 do so more than a step of the grid below" in words
+    assert "All overturn again at a tolerance of 1e-9." in words
+    confirmed = np.ones(36, dtype=bool)
+    confirmed[[0, 3]] = False
+    sizes = spectrum.semidiagonals[[0, 3]]
+    words = said(none, confirmed=confirmed)
+    assert (
+        f"2 of the lowest intensities, with R from {sizes[0]:.3g} to {sizes[1]:.3g} m, are a matter" in words
+    )
+
+
+def test_the_check_tells_chance_from_error(spectrum):
+    cells = {"agrees": [True, False, False], "sensitive": [False, True, False]}
+    words = said(spectrum, pd.DataFrame(cells))
+    assert "Of 3 cells" in words
+    assert "1 agree to 2 % of the peak tilt, 1 are a matter of chance" in words
+    assert "changes as much), 1 do not." in words
+
+
+def test_the_picture_is_small_and_says_why_a_cell_has_no_tilt(spectrum):
+    picture = spectrum_picture(spectrum)
+    drawn = svg(picture)
+    assert len(drawn) < SVG_LIMIT
+    assert drawn == svg(picture)
+    space = next(layer for layer in picture.panels[0].layers if isinstance(layer, Heat))
+    fell, still, failed = (gap.cells for gap in space.gaps)
+    assert np.array_equal(fell.T, spectrum.overturned(SPATIAL))
+    assert np.array_equal(np.isnan(space.values), fell | still | failed)
+
+
+@pytest.mark.parametrize("still", [0, 1])
+def test_a_record_of_one_component_has_a_picture_and_a_page(still):
+    acceleration = np.array(el_centro_1940().acceleration)
+    acceleration[:, still] = 0.0
+    motion = GroundMotion(acceleration, 0.01, "one component")
+    found = overturning_spectrum(
+        0.1, motion, semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0
+    )
+    assert not found.peak_tilt[SERIES[1 + still]].any()
+    assert svg(spectrum_picture(found))
+    # the planar run is the 3D run
+    assert "unconservative in 0 % of the cells" in said(found)

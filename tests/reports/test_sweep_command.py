@@ -22,7 +22,7 @@ def call(*arguments: str) -> int:
         (["--semidiagonal", "a"], "--semidiagonal must be a number, a list such as 1,2,6 or a range"),
         (["--scale", "1:2"], "--scale must be a number"),
         (["--tan-alpha", "1:2:1"], "--tan-alpha must be a number"),
-        (["--model", "flat"], "models must be of recess, flat, planar, got 'flat'"),
+        (["--model", "glued"], "models must be of recess, flat, planar, got 'glued'"),
         (["--record-x", "a.at2"], "each record needs both horizontal components"),
         (["--units", "g"], "--record-z and --units belong to a record"),
         (["no-such-suite"], "no-such-suite"),

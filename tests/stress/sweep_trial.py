@@ -15,15 +15,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.sweep.grid import Grid
-from rockwobble.compare.studies.sweep.study import sweep
+from rockwobble.compare.studies.sweep.study import KIND, sweep
 from rockwobble.models import el_centro_1940
 
 if TYPE_CHECKING:
     import pandas as pd
 
-CHUNKS = "finished/sweep"  # folder of those that are finished
 # some tens of milliseconds of work: most kills fall into the middle of several chunks
 CHUNK_SIZE = 40
 # of Dask, which takes some milliseconds for each: the killed worker is in the middle of one
@@ -89,12 +89,12 @@ def killed_sweep(folder: Path, *, sizes: int, kills: int, seed: int, workers: in
         process.kill()
         process.wait()
         process.stdout.close()
-        now = {path.name: path.stat().st_ino for path in (folder / CHUNKS).glob("*.parquet")}
+        now = {path.name: path.stat().st_ino for path in (folder / CACHE / KIND).glob("*.parquet")}
         repeated += sum(now.get(name) != inode for name, inode in finished.items())
         finished = now
         counts.append(len(finished))
     table = sweep(trial_grid(sizes), out=folder, chunk_size=CHUNK_SIZE, workers=workers)
-    now = {path.name: path.stat().st_ino for path in (folder / CHUNKS).glob("*.parquet")}
+    now = {path.name: path.stat().st_ino for path in (folder / CACHE / KIND).glob("*.parquet")}
     repeated += sum(now.get(name) != inode for name, inode in finished.items())
     return Kills(table=table, chunks=tuple(counts), repeated=repeated)
 
@@ -103,7 +103,7 @@ def swept(folder: str, sizes: int, workers: int | None) -> None:
     """Sweep the grid of a trial and say when the first chunk is finished; the body of a killed process."""
 
     def tell(event: Progress) -> None:
-        if event.state == "finished":
+        if event.done > event.found:
             print(event.done, flush=True)
 
     sweep(trial_grid(sizes), out=folder, chunk_size=CHUNK_SIZE, workers=workers, progress=tell)
@@ -140,7 +140,7 @@ def _address(scheduler_file: Path) -> str:
 def dask_sweep_with_a_death(
     folder: Path, *, sizes: int, chunk_size: int = CHUNK_SIZE
 ) -> tuple[pd.DataFrame, int]:
-    """Sweep on three Dask workers and kill one in the middle; return the table and the runs done by then."""
+    """Sweep on three Dask workers and kill one in the middle; return table and chunks done by then."""
     killed_at: list[int] = []
     with dask_cluster(3) as (address, processes):
 

@@ -20,20 +20,10 @@ _WORST = 10.0
 
 
 def fitted_delays(reference: Motion, motion: Motion, *, start: float, scale: float) -> list[float]:
-    """Return the offsets that bring the tilt of a motion closest to that of the reference.
+    """Return the offsets [s] that bring the tilt of a motion closest to that of the reference.
 
-    Parameters
-    ----------
-    reference, motion : Motion
-    start : float
-        Uplift or release of the reference [s].
-    scale : float
-        Time scale of rocking, sqrt(R/g) [s].
-
-    Returns
-    -------
-    list of float
-        To be added to the times of the motion [s]; the smallest first.
+    The smallest first, to be added to the times of the motion; the reference uplifts or is released at
+    `start` [s], and `scale` is the time scale of rocking, sqrt(R/g) [s].
     """
     found: list[float] = []
     for window in _WINDOWS:

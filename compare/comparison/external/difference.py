@@ -18,7 +18,6 @@ from rockwobble.models import Cylinder
 from ...metrics.agreement import AGREEMENT
 from ...metrics.contact import TILTED
 from ...traces.motion import Motion, on_samples_of
-from .part import Part
 
 Mask = NDArray[np.bool_]
 
@@ -34,24 +33,46 @@ ABOVE_NOISE = 5.0
 _OF_BOTH_DIRECTIONS = 1.4
 # samples without which azimuth and path are not compared
 _FEWEST = 5
+# what is left of a difference that is explained, of the difference
+_LEFT = 1.0 / 3.0
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """One quantity, compared.
+
+    Attributes
+    ----------
+    first_time : float
+        The first difference above the bound, in the time of the run [s]; NaN where it does not differ.
+    size : float
+        Root mean square of the difference; alpha for the tilt, rad for the azimuth, b for the path.
+    bound : float
+        What the size may be, in its unit; of the tilt, what each difference may be.
+    """
+
+    first_time: float
+    size: float
+    bound: float
+
+    @property
+    def differs(self) -> bool:
+        """Whether there is a difference above the bound."""
+        return math.isfinite(self.first_time)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Difference:
     """A motion held against a reference.
 
-    Parameters
+    Attributes
     ----------
-    start, end : float
-        Of the agreement of the tilts, in the time of the run [s].
-    covered : float
-        Up to when azimuth and path are compared [s].
-    agreed_motion : float
-        Integral of the tilt of the reference over the agreement [rad s].
-    agreed_peak : float
-        Its largest tilt there [rad].
-    tilt : Part
-    azimuth, path : Part or None
+    start, end, covered : float
+        Of the agreement of the tilts, and up to when azimuth and path are compared, in the time of the
+        run [s].
+    agreed_motion, agreed_peak : float
+        Integral [rad s] and largest value [rad] of the tilt of the reference over the agreement.
+    tilt, azimuth, path : Part or None
         None where they are not known, or the cylinder does not lean enough while the tilts agree.
     """
 
@@ -61,8 +82,8 @@ class Difference:
     agreed_motion: float
     agreed_peak: float
     tilt: Part
-    azimuth: Part | None
-    path: Part | None
+    azimuth: Part | None = None
+    path: Part | None = None
 
     @property
     def differs_in(self) -> tuple[str, ...]:
@@ -76,35 +97,24 @@ class Difference:
         return max(0.0, self.end - self.start)
 
 
-def difference(reference: Motion, motion: Motion, *, cylinder: Cylinder, start: float) -> Difference:
-    """Hold a motion against a reference.
+def explains(before: Part, after: Part | None) -> bool:
+    """Whether a difference is gone, and not only just."""
+    return after is not None and not after.differs and after.size <= _LEFT * before.size
 
-    Parameters
-    ----------
-    reference, motion : Motion
-    cylinder : Cylinder
-    start : float
-        Uplift or release of the reference [s].
-    """
+
+def difference(reference: Motion, motion: Motion, *, cylinder: Cylinder, start: float) -> Difference:
+    """Hold a motion against a reference that uplifts or is released at `start` [s]."""
     model, trial = on_samples_of(reference, motion)
     if not len(model.time):
-        nothing = Part(first_time=start, size=math.inf, bound=AGREEMENT)
+        none = Part(first_time=start, size=math.inf, bound=AGREEMENT)
         return Difference(
-            start=start,
-            end=start,
-            covered=start,
-            agreed_motion=0.0,
-            agreed_peak=0.0,
-            tilt=nothing,
-            azimuth=None,
-            path=None,
+            start=start, end=start, covered=start, agreed_motion=0.0, agreed_peak=0.0, tilt=none
         )
     start = max(start, float(model.time[0]))
     tilt, end = _tilt(model, trial, cylinder.alpha)
     covered = start + _BEFORE_PARTING * (end - start) if tilt.differs else end
     # to the sample: rounding must not take the last one away
-    within = model.time <= covered + 1e-9
-    agreed = model.time <= end + 1e-9
+    within, agreed = model.time <= covered + 1e-9, model.time <= end + 1e-9
     return Difference(
         start=start,
         end=end,
@@ -113,7 +123,7 @@ def difference(reference: Motion, motion: Motion, *, cylinder: Cylinder, start: 
         agreed_peak=float(model.tilt[agreed].max(initial=0.0)),
         tilt=tilt,
         azimuth=_azimuth(model, trial, within),
-        path=_path(model, trial, within, cylinder),
+        path=_path(model, trial, within, cylinder.base_radius),
     )
 
 
@@ -125,9 +135,7 @@ def allowance(noise: float, alpha: float) -> float:
 
 def leans(model: Motion, trial: Motion, within: Mask) -> Mask:
     """Return the samples at which an azimuth is compared: both lean far enough."""
-    if not within.any():
-        return within
-    least = max(TILTED * float(model.tilt[within].max()), ABOVE_NOISE * trial.noise)
+    least = max(TILTED * float(model.tilt[within].max(initial=0.0)), ABOVE_NOISE * trial.noise)
     counts: Mask = within & (model.tilt > least) & (trial.tilt > least)
     return counts
 
@@ -135,10 +143,10 @@ def leans(model: Motion, trial: Motion, within: Mask) -> Mask:
 def _tilt(model: Motion, trial: Motion, alpha: float) -> tuple[Part, float]:
     apart = np.abs(trial.tilt - model.tilt) / alpha
     bound = AGREEMENT + allowance(trial.noise, alpha)
-    beyond = np.flatnonzero(apart > bound)
-    first = float(model.time[beyond[0]]) if len(beyond) else math.nan
-    part = Part(first_time=first, size=float(np.sqrt(np.mean(apart**2))), bound=bound)
-    return part, first if len(beyond) else float(model.time[-1])
+    beyond = model.time[apart > bound]
+    first, size = float(beyond[0]) if len(beyond) else math.nan, float(np.sqrt(np.mean(apart**2)))
+    end = first if len(beyond) else float(model.time[-1])
+    return Part(first_time=first, size=size, bound=bound), end
 
 
 def _azimuth(model: Motion, trial: Motion, within: Mask) -> Part | None:
@@ -147,33 +155,30 @@ def _azimuth(model: Motion, trial: Motion, within: Mask) -> Part | None:
     counts = leans(model, trial, within)
     if np.count_nonzero(counts) < _FEWEST:
         return None
-    apart = np.abs(np.angle(trial.lean[counts] * model.lean[counts].conj()))
-    weight = np.abs(trial.lean[counts] * model.lean[counts])
+    product = trial.lean[counts] * model.lean[counts].conj()
+    apart, weight = np.abs(np.angle(product)), np.abs(product)
     size = math.sqrt(float(np.sum(weight * apart**2) / np.sum(weight)))
     # the mean of few samples scatters itself, and noise is not the same in both directions
-    blurred = (
-        _OF_BOTH_DIRECTIONS
-        * trial.noise
-        / math.sqrt(float(np.mean(weight)))
-        * (1.0 + 3.0 / math.sqrt(2.0 * len(apart)))
-    )
-    bound = math.hypot(AZIMUTH, blurred)
-    if size <= bound:
-        return Part(first_time=math.nan, size=size, bound=bound)
-    beyond = np.flatnonzero(apart > AZIMUTH + ABOVE_NOISE * trial.noise / np.sqrt(weight))
-    return Part(first_time=float(model.time[counts][beyond[0] if len(beyond) else 0]), size=size, bound=bound)
+    few = 1.0 + 3.0 / math.sqrt(2.0 * len(apart))
+    blurred = _OF_BOTH_DIRECTIONS * trial.noise / math.sqrt(float(np.mean(weight))) * few
+    beyond = apart > AZIMUTH + ABOVE_NOISE * trial.noise / np.sqrt(weight)
+    return _part(model.time[counts], size, math.hypot(AZIMUTH, blurred), beyond)
 
 
-def _path(model: Motion, trial: Motion, within: Mask, cylinder: Cylinder) -> Part | None:
+def _path(model: Motion, trial: Motion, within: Mask, radius: float) -> Part | None:
     if model.path is None or trial.path is None or np.count_nonzero(within) < _FEWEST:
         return None
-    apart = np.linalg.norm(trial.path[within] - model.path[within], axis=1) / cylinder.base_radius
+    apart = np.linalg.norm(trial.path[within] - model.path[within], axis=1) / radius
     size = float(np.sqrt(np.mean(apart**2)))
-    beside = float(np.sqrt(np.mean(np.sum(model.path[within, :2] ** 2, axis=1))))
+    beside = float(np.sqrt(np.mean(np.sum(model.path[within, :2] ** 2, axis=1)))) / radius
     # of three coordinates, and of samples that are few
-    blurred = math.sqrt(3.0) * trial.path_noise * (1.0 + 3.0 / math.sqrt(6.0 * len(apart)))
-    bound = math.hypot(PATH, AZIMUTH * beside / cylinder.base_radius, blurred / cylinder.base_radius)
-    if size <= bound:
-        return Part(first_time=math.nan, size=size, bound=bound)
-    beyond = np.flatnonzero(apart > bound + ABOVE_NOISE * trial.path_noise / cylinder.base_radius)
-    return Part(first_time=float(model.time[within][beyond[0] if len(beyond) else 0]), size=size, bound=bound)
+    few = 1.0 + 3.0 / math.sqrt(6.0 * len(apart))
+    noise = trial.path_noise / radius
+    bound = math.hypot(PATH, AZIMUTH * beside, math.sqrt(3.0) * noise * few)
+    return _part(model.time[within], size, bound, apart > bound + ABOVE_NOISE * noise)
+
+
+def _part(time: NDArray[np.float64], size: float, bound: float, beyond: Mask) -> Part:
+    """A mean that is above its bound differs from the first sample that is beyond its own, if one is."""
+    first = float(time[np.argmax(beyond)]) if size > bound else math.nan
+    return Part(first_time=first, size=size, bound=bound)

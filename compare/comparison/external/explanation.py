@@ -16,9 +16,8 @@ from rockwobble.models import Case, Trace
 from ...traces.motion import Motion
 from ...traces.trajectory import external_motion, measurement, trajectory_of
 from .clock import fitted_delays
-from .difference import Difference, difference
-from .frame import Frame, fitted_frames
-from .mistake import Mistake, explains, mistake_of
+from .difference import Difference, difference, explains
+from .frame import Frame, Mistake, fitted_frames
 from .path import explain_path, lean_of_path
 
 # how much more motion must agree without the mistake, and how far it must lean while it does, in bounds
@@ -32,16 +31,9 @@ _DEGREES = math.degrees(1.0)
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Explanation:
-    """What explains a difference.
+    """The mistakes that explain a difference all together, if any, and what is left without them.
 
-    Parameters
-    ----------
-    mistakes : tuple of Mistake
-        All of them together; empty where nothing explains it.
-    alternatives : tuple of Mistake
-        Each explains the azimuth just as well as the mistake of the axes among those.
-    left : Difference
-        What is left without the mistakes.
+    Each of the alternatives explains the azimuth just as well as the mistake of the axes among those.
     """
 
     mistakes: tuple[Mistake, ...]
@@ -50,17 +42,7 @@ class Explanation:
 
 
 def explain(trajectory: Trace, reference: Motion, case: Case, *, start: float) -> Explanation:
-    """Look for the mistakes that make a trajectory differ from a model.
-
-    Parameters
-    ----------
-    trajectory : Trace
-    reference : Motion
-        Of the model.
-    case : Case
-    start : float
-        Uplift or release of the reference [s].
-    """
+    """Look for the mistakes that make a trajectory differ from a model that moves from `start` [s] on."""
 
     def hold(motion: Motion) -> Difference:
         return difference(reference, motion, cylinder=case.cylinder, start=start)
@@ -93,8 +75,8 @@ def explain(trajectory: Trace, reference: Motion, case: Case, *, start: float) -
         frames = turns(motion, found)
         if frames:
             frame, *others = frames
-            alternatives = tuple(mistake_of(other, "azimuth") for other in others)
-            mistakes.append(mistake_of(frame, "azimuth"))
+            alternatives = tuple(other.mistake("azimuth") for other in others)
+            mistakes.append(frame.mistake("azimuth"))
         else:
             for mistake, other in _in_other_units(trajectory, case):
                 left = hold(other)

@@ -43,14 +43,33 @@ _MIRRORS = {
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class Mistake:
+    """One likely mistake.
+
+    Attributes
+    ----------
+    code : str
+        "time_offset" (value: to be added to the times [s]), "angle_unit" (value: the angles are too large by
+        this factor), "turned" (by value [deg], counter-clockwise), "turned_back" (by half a turn),
+        "x_reversed", "y_reversed", "axes_exchanged", "axes_exchanged_reversed", "mirrored" (value: azimuth
+        of the line [deg]), "length_unit" (value: too large by this factor), "z_reversed", "origin" (value:
+        its distance from the right one [m]).
+    concerns : str
+        "time", "tilt", "azimuth", "tilt and azimuth", "path", or "axes", which are azimuth and path.
+    value : float
+        NaN where there is none to tell.
+    """
+
+    code: str
+    concerns: str
+    value: float = math.nan
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Frame:
     """What brings a trajectory into the axes of the model: y reversed if mirrored, then a turn.
 
-    Parameters
-    ----------
-    angle : float
-        Of the turn, counter-clockwise, in (-pi, pi] [rad].
-    mirrored : bool
+    The angle is counter-clockwise, in (-pi, pi] [rad].
     """
 
     angle: float = 0.0
@@ -75,29 +94,26 @@ class Frame:
             return -math.degrees(self.angle)
         return 0.5 * math.degrees(self.angle) if self.code == "mirrored" else math.nan
 
+    def mistake(self, concerns: str) -> Mistake:
+        """Return the mistake that it takes back."""
+        return Mistake(code=self.code, concerns=concerns, value=self.value)
+
 
 def fitted_frames(reference: Motion, motion: Motion, *, start: float, end: float) -> list[Frame]:
     """Return the turn and the mirroring that bring the lean of a motion closest to that of the reference.
 
-    Parameters
-    ----------
-    reference, motion : Motion
-    start, end : float
-        Of the time in which they are compared [s].
-
-    Returns
-    -------
-    list of Frame
-        Those that are the same in each part of that time. A part is a quarter of it, or lies between two
-        passes by the upright position: a difference that comes with a pass is none of the axes.
+    Only those that are the same in each part of the time from start to end [s]. A part is a quarter of it,
+    or lies between two passes by the upright position: a difference that comes with a pass is none of the
+    axes.
     """
     model, trial = on_samples_of(reference, motion)
     if model.lean is None or trial.lean is None:
         return []
-    counts = leans(model, trial, (model.time >= start) & (model.time <= end + 1e-9))
+    within = (model.time >= start) & (model.time <= end + 1e-9)
+    counts = leans(model, trial, within)
     if np.count_nonzero(counts) < _FEWEST:
         return []
-    moves = np.flatnonzero((model.time >= start) & (model.time <= end + 1e-9) & (np.abs(model.lean) > 0.0))
+    moves = np.flatnonzero(within & (np.abs(model.lean) > 0.0))
     swings = np.split(moves, np.searchsorted(moves, _minima(model.tilt[moves[0] : moves[-1] + 1]) + moves[0]))
     small = _SMALL * float(reference.tilt.max())
     found = []

@@ -9,11 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from ...traces.motion import Motion, on_samples_of
-from .difference import Difference
-from .frame import Frame
-from .mistake import Mistake, explains, mistake_of
+from .difference import Difference, explains
+from .frame import Frame, Mistake
 
 _LENGTH_UNITS = (1e3, 1e2, 1e-2, 1e-3)
+Trial = tuple[Frame, bool, float, bool]  # axes, z down, unit, another origin
 
 
 def explain_path(
@@ -25,40 +25,25 @@ def explain_path(
     fits: Sequence[Frame],
     hold: Callable[[Motion], Difference],
 ) -> tuple[Frame, list[Mistake], Motion]:
-    """Return the fewest mistakes that explain a path.
+    """Return the fewest mistakes that explain a path, and the motion with the path without them.
 
-    Parameters
-    ----------
-    reference, motion : Motion
-    before : Difference
-        Of the two.
-    axes : Frame
-        What is wrong with the axes of the lean: that, or nothing, is expected of the path, too.
-    fits : sequence of Frame
-        What else may be wrong with the axes.
-    hold : callable
-        Difference of a motion and the reference.
-
-    Returns
-    -------
-    Frame
-        What is wrong with the axes.
-    list of Mistake
-        Those and others; empty where none explains the path.
-    Motion
-        The motion with the path without them.
+    What is wrong with the axes of the lean, `axes`, or nothing is expected of the path, too; `fits` is what
+    else may be wrong with them. `hold` gives the difference of a motion and the reference, which is `before`
+    for this one. What is wrong with the axes is returned first.
     """
     part = before.path
     if part is None or not (part.differs or axes.code):
         return Frame(), [], motion
     expected = (Frame(), axes)
-    tried = sorted(
-        itertools.product(
-            dict.fromkeys((*expected, *fits)), (False, True), (1.0, *_LENGTH_UNITS), (False, True)
-        ),
-        key=lambda one: _count(one[0] not in expected, *one[1:]),
-    )
-    for _, alike in itertools.groupby(tried, key=lambda one: _count(one[0] not in expected, *one[1:])):
+
+    def count(one: Trial) -> float:
+        frame, down, unit, moved = one
+        # a constant offset has three numbers to fit: it comes after what has none
+        return (frame not in expected) + down + (unit != 1.0) + 1.5 * moved
+
+    frames = dict.fromkeys((*expected, *fits))
+    tried = sorted(itertools.product(frames, (False, True), (1.0, *_LENGTH_UNITS), (False, True)), key=count)
+    for _, alike in itertools.groupby(tried, key=count):
         passing = []
         for frame, mistakes, trial in _trials(reference, motion, before.covered, alike):
             left = hold(trial).path
@@ -72,14 +57,14 @@ def explain_path(
 
 
 def _trials(
-    reference: Motion, motion: Motion, end: float, tried: Iterator[tuple[Frame, bool, float, bool]]
+    reference: Motion, motion: Motion, end: float, tried: Iterator[Trial]
 ) -> Iterator[tuple[Frame, list[Mistake], Motion]]:
     for frame, down, unit, moved in tried:
         path = frame.apply(motion).path
         assert path is not None
         path = path / unit * np.array([1.0, 1.0, -1.0 if down else 1.0])
         trial = replace(motion, path=path, path_noise=motion.path_noise / unit)
-        mistakes = [mistake_of(frame, "path")] if frame.code else []
+        mistakes = [frame.mistake("path")] if frame.code else []
         mistakes += [Mistake(code="z_reversed", concerns="path")] if down else []
         mistakes += [Mistake(code="length_unit", concerns="path", value=unit)] if unit != 1.0 else []
         if moved:
@@ -90,11 +75,6 @@ def _trials(
             trial = replace(trial, path=path - origin)
             mistakes.append(Mistake(code="origin", concerns="path", value=float(np.linalg.norm(origin))))
         yield frame, mistakes, trial
-
-
-def _count(other_axes: bool, down: bool, unit: float, moved: bool) -> float:
-    # a constant offset has three numbers to fit: it comes after what has none
-    return other_axes + down + (unit != 1.0) + 1.5 * moved
 
 
 def lean_of_path(motion: Motion) -> Motion:

@@ -14,7 +14,7 @@ from rockwobble.models import Trace
 
 from ...traces.trajectory import measurement
 from ...traces.uplift import CONFIDENCE
-from .part import Part
+from .difference import Part
 
 
 def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None, Part | None]:

@@ -12,10 +12,9 @@ from rockwobble.models import Case, Trace
 
 from ...traces.motion import motion_of
 from ...traces.trajectory import external_motion, measurement
-from .difference import Difference, difference
+from .difference import Difference, Part, difference
 from .explanation import Explanation, explain
-from .mistake import Mistake
-from .part import Part
+from .frame import Mistake
 from .uplift_difference import uplift_differences
 
 # columns of the summary that only external trajectories have: unit, meaning
@@ -52,14 +51,12 @@ _TEXTS = (
 class Verdict:
     """An external trajectory held against a model.
 
-    Parameters
+    Attributes
     ----------
-    difference : Difference
     explanation : Explanation or None
         None where nothing differs.
     not_compared : tuple of str
-        Of "azimuth" and "path", each with its reason: "not given", or "too little motion" while the tilts
-        agree.
+        Azimuth or path with the reason: "not given", or "too little motion" while the tilts agree.
     uplift_time, uplift_direction : Part or None
         Difference and its uncertainty as size and bound [s], [rad]; None at a release, or where one of the
         two does not uplift.
@@ -124,15 +121,7 @@ def _columns_of(name: str, mistakes: tuple[Mistake, ...]) -> dict[str, str]:
 
 
 def judge(trajectory: Trace, reference: Trace, case: Case) -> Verdict:
-    """Hold an external trajectory against a model.
-
-    Parameters
-    ----------
-    trajectory : Trace
-    reference : Trace
-        Response of the model.
-    case : Case
-    """
+    """Hold an external trajectory of a case against the trace of a model."""
     model, motion = motion_of(reference), external_motion(trajectory)
     start = reference.uplift_time if math.isfinite(reference.uplift_time) else 0.0
     found = difference(model, motion, cylinder=case.cylinder, start=start)

@@ -90,7 +90,7 @@ def overturning_spectrum(
         run = partial(
             reduced.peak_tilts,
             tan_alpha=tan_alpha,
-            motion=motion.scaled(unit),
+            motion=motion,
             rtol=rtol,
             rest_tilt=rest_tilt,
             gravity=gravity,
@@ -100,8 +100,8 @@ def overturning_spectrum(
             search_lowest, levels, start=start[name], step=search_step, alpha=math.atan(tan_alpha)
         )
         with stages.stage(TITLES[name]):
-            peaks[name] = run(sizes, scales=levels, workers=workers)
-            at = partial(_at_level, run, sizes)
+            peaks[name] = run(sizes, scales=unit * levels, workers=workers)
+            at = partial(_at_level, run, sizes, unit)
             found = run_searches([search(known) for known in peaks[name]], at, workers=workers)
             probes = [probe_below(start[name], levels[-1], each, (index, i)) for i, each in enumerate(found)]
             probed = np.array(run_searches(probes, at, workers=workers))
@@ -122,8 +122,8 @@ def overturning_spectrum(
     )
 
 
-def _at_level(run: Callable[..., Array], sizes: Array, group: list[int], level: float) -> Array:
-    return run(sizes[group], scales=[level], workers=1)[:, 0]
+def _at_level(run: Callable[..., Array], sizes: Array, unit: float, group: list[int], level: float) -> Array:
+    return run(sizes[group], scales=[unit * level], workers=1)[:, 0]
 
 
 def _axis(name: str, values: ArrayLike) -> Array:

@@ -5,17 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
 from ...runs.choice import require_runnable, run_labels
 from ...runs.execution import Job, job_fingerprint, makers_of, run_job
 from ...storage.fingerprint import fingerprint
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 # An engine's run takes seconds, a reduced one milliseconds.
 _REDUCED_CHUNK_SIZE, _ENGINE_CHUNK_SIZE = 200, 1
@@ -46,20 +44,14 @@ class CaseChunk:
         """Versions and code on which the results depend."""
         return makers_of(self.jobs[0])
 
-    @property
-    def name(self) -> str:
-        """What it is, for whoever waits."""
-        return self.jobs[0].name + (f" and {len(self.jobs) - 1} more" if len(self.jobs) > 1 else "")
-
     def key(self) -> str:
         """Return the hash of all that the results depend on."""
         return fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in self.jobs])
 
-    def run(self) -> pd.DataFrame:
-        """Return one row for each run."""
-        import pandas as pd
-
-        return pd.DataFrame([_row(job, run_job(job)) for job in self.jobs])
+    def run(self) -> dict[str, Any]:
+        """Return the columns of the results, one row for each run."""
+        rows = [_row(job, run_job(job)) for job in self.jobs]
+        return {name: [row[name] for row in rows] for name in rows[0]}
 
 
 @dataclass(frozen=True, slots=True, eq=False, init=False)
@@ -100,6 +92,11 @@ class CaseSweep:
         """Number of runs."""
         return len(self.cases) * len(self.runs)
 
+    @property
+    def kind(self) -> str:
+        """What this is, for people."""
+        return "cases and runs"
+
     def chunks(self, size: int | None = None) -> Iterator[CaseChunk]:
         """Cut the runs into chunks, in the order of the table: method by method."""
         for run, label in zip(self.runs, run_labels(self.runs), strict=True):
@@ -110,9 +107,14 @@ class CaseSweep:
                 )
 
     def describe(self) -> dict[str, Any]:
-        """Return cases and runs, for a manifest; SI units and radians."""
-        cases = {case.name: describe_case(case) for case in self.cases}
-        return {"cases": cases, "runs of each": list(run_labels(self.runs))}
+        """Return cases and methods, for a file; SI units and radians."""
+        return {
+            "cases": {case.name: describe_case(case) for case in self.cases},
+            "runs of each": [
+                {"label": label, **run_to_plain(run)}
+                for run, label in zip(self.runs, run_labels(self.runs), strict=True)
+            ],
+        }
 
 
 def _row(job: Job, trace: Trace) -> dict[str, Any]:

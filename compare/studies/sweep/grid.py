@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -15,9 +15,6 @@ from rockwobble.models import GroundMotion
 from ...metrics.tilt import overturned
 from ...storage.fingerprint import fingerprint
 from ...storage.provenance import reduced_makers
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 MODELS = ("recess", "flat", "planar")
 # The runs of a chunk take about a second together: little is lost with it, and keeping it takes a few
@@ -43,25 +40,27 @@ class GridChunk:
         return len(self.semidiagonals) * len(self.scales)
 
     @property
-    def makers(self) -> dict[str, str]:
-        """Versions and code on which the results depend."""
-        return reduced_makers()
-
-    @property
     def name(self) -> str:
         """What it is, for whoever waits."""
-        return f"{self.label}, {self.model}, tan alpha {self.tan_alpha:g}"
+        where = f"tan alpha {self.tan_alpha:g}, R from {self.semidiagonals[0]:g} m, scale from"
+        return f"{self.label}, {self.model}, {where} {self.scales[0]:g}"
 
     def key(self) -> str:
         """Return the hash of all that the results depend on."""
-        motion = self.motion.acceleration, self.motion.time_step, self.label
-        inputs = (self.model, self.tan_alpha, self.semidiagonals, self.scales, self.options)
-        return fingerprint((motion, inputs, self.makers))
+        return fingerprint(
+            {
+                "motion": (self.motion.acceleration, self.motion.time_step, self.label),
+                "model": self.model,
+                "tan_alpha": self.tan_alpha,
+                "semidiagonals": self.semidiagonals,
+                "scales": self.scales,
+                "options": self.options,
+                "made with": reduced_makers(),
+            }
+        )
 
-    def run(self) -> pd.DataFrame:
-        """Return one row for each run."""
-        import pandas as pd
-
+    def run(self) -> dict[str, Any]:
+        """Return the columns of the results, one row for each run."""
         from rockwobble import reduced
 
         peaks = reduced.peak_tilts(
@@ -73,18 +72,16 @@ class GridChunk:
             **{**reduced.MODELS[self.model], **self.options},
         ).ravel()
         sizes, scales = np.meshgrid(self.semidiagonals, self.scales, indexing="ij")
-        return pd.DataFrame(
-            {
-                "motion": self.label,
-                "model": self.model,
-                "tan_alpha": self.tan_alpha,
-                "semidiagonal": sizes.ravel(),
-                "scale": scales.ravel(),
-                "peak_tilt": peaks,
-                "peak_tilt_over_alpha": peaks / math.atan(self.tan_alpha),
-                "outcome": [_outcome(float(peak)) for peak in peaks],
-            }
-        )
+        return {
+            "motion": [self.label] * self.rows,
+            "model": [self.model] * self.rows,
+            "tan_alpha": np.full(self.rows, self.tan_alpha),
+            "semidiagonal": sizes.ravel(),
+            "scale": scales.ravel(),
+            "peak_tilt": peaks,
+            "peak_tilt_over_alpha": peaks / math.atan(self.tan_alpha),
+            "outcome": [_outcome(float(peak)) for peak in peaks],
+        }
 
 
 @dataclass(frozen=True, slots=True, eq=False, init=False)
@@ -129,7 +126,7 @@ class Grid:
         models: Sequence[str] = ("recess",),
         **options: Any,
     ) -> None:
-        labels = [_label(motion) for motion in motions]
+        labels = [motion.name or "record" for motion in motions]
         _require_different("motions", labels)
         _require_different("models", models)
         for model in models:
@@ -149,6 +146,11 @@ class Grid:
         axes = (self.semidiagonals, self.tan_alphas, self.scales, self.motions, self.models)
         return math.prod(len(axis) for axis in axes)
 
+    @property
+    def kind(self) -> str:
+        """What this is, for people."""
+        return "grid of reduced runs"
+
     def chunks(self, size: int | None = None) -> Iterator[GridChunk]:
         """Cut the grid into chunks of about `size` runs, in the order of the table."""
         size = size or _CHUNK_SIZE
@@ -158,7 +160,7 @@ class Grid:
                     for sizes, scales in self._blocks(size):
                         yield GridChunk(
                             motion=motion,
-                            label=_label(motion),
+                            label=motion.name or "record",
                             model=model,
                             tan_alpha=tan_alpha,
                             semidiagonals=sizes,
@@ -167,23 +169,25 @@ class Grid:
                         )
 
     def describe(self) -> dict[str, Any]:
-        """Return the axes and options, for a manifest; SI units."""
-        axes = {
-            name: list(getattr(self, name)) for name in ("semidiagonals", "tan_alphas", "scales", "models")
+        """Return the axes and options, for a file; SI units."""
+        return {
+            "semidiagonals": self.semidiagonals,
+            "tan_alphas": self.tan_alphas,
+            "scales": self.scales,
+            "motions": [
+                {
+                    "name": motion.name or "record",
+                    "time_step": motion.time_step,
+                    "samples": len(motion.acceleration),
+                    "components": motion.acceleration.shape[1],
+                    "peak": motion.peak,
+                    "fingerprint": fingerprint((motion.acceleration, motion.time_step)),
+                }
+                for motion in self.motions
+            ],
+            "models": self.models,
+            "options": self.options,
         }
-        return axes | {"motions": [_label(motion) for motion in self.motions], "options": self.options}
-
-    def motion_frame(self) -> pd.DataFrame:
-        """Return the samples of the motions: motion, time [s], x, y, z [m/s^2], NaN where there is none."""
-        import pandas as pd
-
-        tables = [
-            pd.DataFrame(dict(zip("xyz", motion.acceleration.T, strict=False))).assign(
-                motion=_label(motion), time=np.arange(len(motion.acceleration)) * motion.time_step
-            )
-            for motion in self.motions
-        ]
-        return pd.concat(tables, ignore_index=True)
 
     def _blocks(self, size: int) -> Iterator[tuple[tuple[float, ...], tuple[float, ...]]]:
         # whole rows of scales where they fit, because a row shares what depends on the size alone
@@ -209,10 +213,6 @@ class Grid:
                 raise ValueError(
                     f"the options of a grid are {allowed}, got {', '.join(self.options)}"
                 ) from None
-
-
-def _label(motion: GroundMotion) -> str:
-    return motion.name or "record"
 
 
 def _outcome(peak: float) -> str:

@@ -2,23 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
-from itertools import chain
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING
 
-from rockwobble.models import Case, Run, Suite
+import numpy as np
 
-from ...runs.cache import open_cache
+from rockwobble.models import Case, GroundMotion, Run, Suite
+
+from ...runs.cache import open_table_cache
 from ...runs.progress import ProgressCallback
 from ...runs.scheduler import run_tasks
 from ...runs.task import Lost
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import made_now, write_results
-from ...storage.parquet_file import pack, read
-from .cases import CaseSweep
-from .grid import Grid
+from ...storage.manifest import made_now, read_results, write_results
+from ...storage.provenance import engine_makers, reduced_makers
+from .cases import CaseChunk, CaseSweep
+from .grid import Grid, GridChunk
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,34 +28,7 @@ if TYPE_CHECKING:
 KIND = "sweep"
 # a chunk whose process died is tried this often: the process may have been ended from outside
 _TRIES = 3
-_RECESS = Run(None, "recess")
-
-
-class Chunk(Protocol):
-    """Some of the runs of a sweep."""
-
-    @property
-    def rows(self) -> int:
-        """Number of runs."""
-        ...
-
-    @property
-    def name(self) -> str:
-        """What it is, for whoever waits."""
-        ...
-
-    @property
-    def makers(self) -> dict[str, str]:
-        """Versions and code on which the results depend."""
-        ...
-
-    def key(self) -> str:
-        """Return the hash of all that the results depend on."""
-        ...
-
-    def run(self) -> pd.DataFrame:
-        """Return one row for each run."""
-        ...
+Chunk = GridChunk | CaseChunk
 
 
 class SweepIncompleteError(RuntimeError):
@@ -81,16 +56,16 @@ def sweep(
     Parameters
     ----------
     plan : Grid, CaseSweep, Suite or iterable of Case
-        A grid of peak tilts; cases with runs; a suite stands for its cases with its runs, cases alone are run
-        with the recess model.
+        A grid of peak tilts; cases with methods; a suite stands for its cases with its runs, cases alone
+        are run with the recess model.
     out : str or Path, optional
-        Folder of the sweep: sweep.parquet, the chunks in finished/sweep, and a manifest. One that holds
-        another sweep keeps its chunks until this one is complete.
+        Folder of the sweep: sweep.parquet is the table, motions.parquet the ground motions of a grid. The
+        chunks of another sweep stay there until this one is complete.
     scheduler : str, optional
         Address of a Dask scheduler, such as "tcp://10.0.0.1:8786"; its workers must have the same
         versions. Default: processes on this machine.
     workers : int, optional
-        Number of those processes; 1 runs everything in this one.
+        Number of those processes; 1 runs everything in this one. Default: one for each processor.
     chunk_size : int, optional
         Runs in a chunk. Default: about a second of computing. The hash of a chunk depends on it.
     seeds : mapping, optional
@@ -98,7 +73,7 @@ def sweep(
     progress : callable, optional
         Told of the start and the end of each chunk.
     command : str, optional
-        That asked for the sweep, for the manifest.
+        That asks for it, to be kept with the results.
 
     Returns
     -------
@@ -119,95 +94,103 @@ def sweep(
     >>> sweep(grid, workers=1)[["semidiagonal", "scale", "outcome"]].values.tolist()
     [[2.0, 1.0, 'rocked'], [2.0, 3.0, 'overturned'], [6.0, 1.0, 'rocked'], [6.0, 3.0, 'overturned']]
     """
+    import pandas as pd
+
     whole = _plan(plan)
     if chunk_size is not None and chunk_size < 1:
         raise ValueError(f"chunk_size must be at least 1, got {chunk_size!r}")
     chunks: list[Chunk] = list(whole.chunks(chunk_size))
-    keeping = (
-        nullcontext() if out is None else open_cache(out, KIND, name=_key, pack=_packed, unpack=_unpacked)
-    )
-    with keeping as cache:
-        results = run_tasks(
+    # in a mixed order the runs that take long are spread evenly, and so the time left can be predicted
+    order = np.random.default_rng(0).permutation(len(chunks)).tolist()
+    with nullcontext() if out is None else open_table_cache(out, KIND, _key) as cache:
+        found = run_tasks(
             run_chunk,
-            chunks,
+            [chunks[index] for index in order],
             workers=workers,
             scheduler=scheduler,
-            cost=_rows,
-            label=_name,
+            label=lambda chunk: chunk.name,
             progress=progress,
             cache=cache,
             tries=_TRIES,
-            makers=_Makers(chunks),
+            makers=partial(_makers, whole),
         )
-        table = _table(results)
-    if out is not None:
-        motions = {"motions": whole.motion_frame()} if isinstance(whole, Grid) else {}
-        manifest = made_now(
-            KIND,
-            inputs=fingerprint([chunk.key() for chunk in chunks]),
-            command=command,
-            seeds=seeds,
-            headline={
-                "runs": len(table),
-                **{str(k): int(v) for k, v in table["outcome"].value_counts().items()},
-            },
-            about=whole.describe(),
+        lost = [each.why for each in found if isinstance(each, Lost)]
+        if lost:
+            raise SweepIncompleteError(
+                f"{len(lost)} of {len(chunks)} chunks ended their processes {_TRIES} times, all others are "
+                f"finished; the last words: {lost[0]}"
+            )
+        by_place = dict(zip(order, found, strict=True))
+        tables = [by_place[index] for index in range(len(chunks))]
+        table: pd.DataFrame = pd.concat(
+            [each for each in tables if not isinstance(each, Lost)], ignore_index=True
         )
-        write_results(out, manifest, {"sweep": table} | motions)
+        if out is not None:
+            about = {"plan": whole.kind, "runs": whole.rows, **whole.describe()}
+            made = made_now(
+                KIND,
+                inputs=fingerprint([chunk.key() for chunk in chunks]),
+                command=command,
+                seeds=seeds,
+                headline={"runs": len(table)}
+                | {str(k): int(n) for k, n in table["outcome"].value_counts().items()},
+                about=about,
+            )
+            write_results(out, made, {"sweep": table, **_motions(whole)})
     return table
 
 
+def read_sweep(folder: str | Path) -> pd.DataFrame:
+    """Return the table of the sweep in a folder.
+
+    Raises
+    ------
+    ValueError
+        If there is none, or a file is damaged.
+    """
+    return read_results(folder, KIND).table(KIND)
+
+
 def run_chunk(chunk: Chunk) -> pd.DataFrame:
-    """Run a chunk where this is called."""
-    return chunk.run()
+    """Return the table of a chunk, one row for each run."""
+    import pandas as pd
+
+    return pd.DataFrame(chunk.run())
 
 
-class _Makers:
-    """Versions and code that any of the chunks depends on, as they are where it is called."""
-
-    def __init__(self, chunks: Sequence[Chunk]) -> None:
-        # one of each: those of a method are alike
-        self._chunks = list({tuple(chunk.makers): chunk for chunk in chunks}.values())
-
-    def __call__(self) -> dict[str, str]:
-        return dict(chain.from_iterable(chunk.makers.items() for chunk in self._chunks))
-
-
-def _plan(plan: Grid | CaseSweep | Suite | Iterable[Case]) -> Grid | CaseSweep:
-    if isinstance(plan, Grid | CaseSweep):
-        return plan
-    if isinstance(plan, Suite):
-        return CaseSweep(plan.cases, plan.runs or (_RECESS,))
-    return CaseSweep(plan, (_RECESS,))
+def _makers(plan: Grid | CaseSweep) -> dict[str, str]:
+    """Return versions and code on which any of the runs depends."""
+    engines = () if isinstance(plan, Grid) else {run.engine for run in plan.runs if run.engine}
+    return reduced_makers() | (engine_makers(*sorted(engines)) if engines else {})
 
 
 def _key(chunk: Chunk) -> str:
     return chunk.key()
 
 
-def _name(chunk: Chunk) -> str:
-    return chunk.name
+def _plan(plan: Grid | CaseSweep | Suite | Iterable[Case]) -> Grid | CaseSweep:
+    if isinstance(plan, Grid | CaseSweep):
+        return plan
+    recess = (Run(None, "recess"),)
+    if isinstance(plan, Suite):
+        return CaseSweep(plan.cases, plan.runs or recess)
+    return CaseSweep(plan, recess)
 
 
-def _rows(chunk: Chunk) -> float:
-    return float(chunk.rows)
-
-
-def _packed(chunk: Chunk, table: pd.DataFrame) -> bytes:
-    return pack(table, {"kind": f"task of {KIND}", "inputs": chunk.key(), "versions": chunk.makers})
-
-
-def _unpacked(_: Chunk, path: Path) -> pd.DataFrame:
-    return read(path)[0]
-
-
-def _table(results: Sequence[pd.DataFrame | Lost]) -> pd.DataFrame:
+def _motions(plan: Grid | CaseSweep) -> dict[str, pd.DataFrame]:
+    """Return the table of the motions of a grid; a component that one does not have is missing, not zero."""
     import pandas as pd
 
-    lost = [result for result in results if isinstance(result, Lost)]
-    if lost:
-        raise SweepIncompleteError(
-            f"{len(lost)} of {len(results)} chunks ended their processes {_TRIES} times, all others are "
-            f"finished; the last words: {lost[0].why}"
-        )
-    return pd.concat([result for result in results if not isinstance(result, Lost)], ignore_index=True)
+    if not isinstance(plan, Grid):
+        return {}
+    return {"motions": pd.concat([_samples(motion) for motion in plan.motions], ignore_index=True)}
+
+
+def _samples(motion: GroundMotion) -> pd.DataFrame:
+    import pandas as pd
+
+    samples = motion.acceleration
+    columns = {f"acceleration_{axis}": np.full(len(samples), np.nan) for axis in "xyz"}
+    columns |= {f"acceleration_{axis}": column for axis, column in zip("xyz", samples.T, strict=False)}
+    time = np.arange(len(samples)) * motion.time_step
+    return pd.DataFrame({"motion": motion.name or "record", "time": time, **columns})

@@ -11,12 +11,13 @@ import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from math import cos, sin
 from typing import Any, Literal
 
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion
+from rockwobble.models import Case, GroundMotion
 from rockwobble.reduced.solution import Solution
 
 from .problem import TIGHT, Array, Problem
@@ -51,28 +52,21 @@ class Rates:
 
 def start_of(case: Case, *, compiled: bool) -> Rates:
     """Return the equations of a case from its release, or from just after its uplift."""
-    motion = case.motion or GroundMotion(np.zeros((2, 2)), case.length)
-    # a sample more than the run is long: the last stage of a solver stands at its end
-    samples = np.vstack([motion.acceleration[:, :2], np.zeros((2, 2))])
     begin = _departure(case) if case.initial is None else _INSTANT
     reach = reduced.simulate(dataclasses.replace(case, duration=begin), rtol=TIGHT)
     assert isinstance(reach.source, Solution)
-    function: Callable[..., Any]
-    if compiled:
-        import numba
-
-        function = _rates(case.cylinder, samples, 1.0 / motion.time_step, jit=numba.njit)
-    else:
-        rows = [tuple(row) for row in samples.tolist()]
-        function = _rates(case.cylinder, rows, 1.0 / motion.time_step)
+    function = rates_of(case, compiled=compiled)
     return Rates(function=function, start=begin, end=case.length, state=reach.source.states[-1, :4])
 
 
-def _rates(
-    cylinder: Cylinder, samples: Any, per_second: float, jit: Callable[[Any], Any] = lambda plain: plain
-) -> Callable[..., Any]:
-    from math import cos, sin
-
+def rates_of(case: Case, *, compiled: bool) -> Callable[..., Any]:
+    """Return the equations of a case, (t, y) -> y', as plain Python or compiled."""
+    motion = case.motion or GroundMotion(np.zeros((2, 2)), case.length)
+    # a sample more than the run is long: the last stage of a solver stands at its end
+    padded = np.vstack([motion.acceleration[:, :2], np.zeros((2, 2))])
+    # numbers of Python are quicker than those of an array, where nothing compiles
+    samples: Any = padded if compiled else [tuple(row) for row in padded.tolist()]
+    per_second, cylinder = 1.0 / motion.time_step, case.cylinder
     b, h = cylinder.base_radius, cylinder.half_height
     I1, I2, g = (3.0 * b * b + 4.0 * h * h) / 12.0, 0.5 * b * b, 9.81
     A, J, C, E = I1 + h * h + b * b, I1 + h * h, I2 + b * b, h * b
@@ -95,7 +89,11 @@ def _rates(
         acceleration -= g * (b * c - h * s) + (b * s + h * c) * (ax * cp + ay * sp)
         return [omega, acceleration / A, phi_rate, lever * (ax * sp - ay * cp)]
 
-    found: Callable[..., Any] = jit(rates)
+    if not compiled:
+        return rates
+    import numba
+
+    found: Callable[..., Any] = numba.njit(rates)
     return found
 
 

@@ -169,8 +169,3 @@ def refuse(context: typer.Context, names: set[str], why: str) -> None:
 
 
 PROBLEM = frozenset(field.name for field in fields(Problem))
-
-
-def case_from_options(**given: Any) -> Case:
-    """Return the case that options state, see `Problem.case`."""
-    return Problem(**given).case()

@@ -90,13 +90,9 @@ def _stacked(bars: Sequence[Bar], name: str) -> Picture:
     for part, (words, style, hatch) in PARTS.items():
         starts, ends = ends, ends + np.array([part_shares(bar.budget)[part] for bar in bars])
         colours = [style.colour if bar.worth else pale(style.colour) for bar in bars]
-        layers.append(
-            Bars(places=places, start=starts, end=ends, colours=colours, name=words, hatch=hatch)
-        )
+        layers.append(Bars(places=places, start=starts, end=ends, colours=colours, name=words, hatch=hatch))
     whole = [f"{bar.budget.rms('whole'):.1e} α" for bar in bars]
-    layers += [
-        Text(x=1.02, y=place + 0.3, text=text) for place, text in zip(places, whole, strict=True)
-    ]
+    layers += [Text(x=1.02, y=place + 0.3, text=text) for place, text in zip(places, whole, strict=True)]
     shares = [(share, f"{share:g}") for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
     panel = Panel(
         x=Axis(label="share of the parts", unit="-", low=0.0, high=1.25, ticks=shares),

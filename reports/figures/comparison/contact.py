@@ -47,9 +47,7 @@ def _azimuth(view: CaseView) -> Panel:
         # azimuths are known up to whole turns: all start on the branch of the model
         branch = round(float(known[0]) - origin) if len(known) else 0
         width = 1.6 if label in view.runs else 0.9
-        layers.append(
-            Line(x=trace.time, y=turns - branch, name=label, style=view.styles[label], width=width)
-        )
+        layers.append(Line(x=trace.time, y=turns - branch, name=label, style=view.styles[label], width=width))
     return Panel(x=TIME, y=_TURNS, layers=layers, title="azimuth")
 
 

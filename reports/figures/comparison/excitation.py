@@ -24,7 +24,11 @@ def excitation_picture(view: CaseView, name: str) -> Picture | None:
         for component, (words, colour) in zip(motion.acceleration.T, _AXES, strict=False)
     ]
     words = f"uplift where |a| exceeds tan α = {threshold:g}"
-    layers: list[Layer] = [*lines, Rule(at=threshold, axis="y", text=words, side="right"), Rule(at=-threshold, axis="y")]
+    layers: list[Layer] = [
+        *lines,
+        Rule(at=threshold, axis="y", text=words, side="right"),
+        Rule(at=-threshold, axis="y"),
+    ]
     y = Axis(label="ground acceleration / g", unit="-", low=-peak, high=peak)
     return Picture(
         name=name,

@@ -74,8 +74,8 @@ def residual_picture(view: CaseView, name: str) -> Picture:
     return Picture(
         name=name,
         title="How the cylinder stands at the end",
-        caption="Distance of the base centre from its old place, and turn of the cylinder about its own axis. "
-        "The recess model has none of either.",
+        caption="Distance of the base centre from its old place, and turn of the cylinder about its own "
+        "axis. The recess model has none of either.",
         panels=[
             _bars(runs, moved, colours, Axis(label="displacement / b", unit="-", low=0.0), "b"),
             _bars(runs, twisted, colours, Axis(label="twist", unit="deg", low=0.0), "°"),

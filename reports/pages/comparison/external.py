@@ -15,7 +15,7 @@ from ..words import sentence
 if TYPE_CHECKING:
     import pandas as pd
 
-WORDS = "external.md.j2"
+WORDS = "comparison/external.md.j2"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -101,7 +101,8 @@ def external_rows(summary: pd.DataFrame) -> list[Row]:
             "towards": _degrees(row.uplift_direction_difference, row.uplift_direction_uncertainty),
             "towards_uncertainty": _degrees(
                 # beyond half a turn there is nothing left to tell
-                min(row.uplift_direction_uncertainty, math.pi), row.uplift_direction_uncertainty
+                min(row.uplift_direction_uncertainty, math.pi),
+                row.uplift_direction_uncertainty,
             ),
             "differs_in": row.differs_in or None,
             "likely_mistake": row.likely_mistake or None,

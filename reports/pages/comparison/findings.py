@@ -17,7 +17,7 @@ from .external import external_sentences, mistakes, scope, within
 if TYPE_CHECKING:
     import pandas as pd
 
-WORDS = "findings.md.j2"
+WORDS = "comparison/findings.md.j2"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
@@ -65,7 +64,7 @@ def comparison_page(comparison: Comparison, command: str = "", *, drawn: bool = 
     diverging = diverging_runs(summary, lengths) if many else []
     return Page(
         name="report",
-        template="comparison",
+        template="comparison/report",
         values={
             "many": many,
             "command": command,
@@ -136,7 +135,11 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
 def _thinned(pictures: Sequence[Picture]) -> list[Picture]:
     """Return the pictures with as many points as the page can hold, the same for every line."""
     curves = [
-        layer for picture in pictures for panel in picture.panels for layer in panel.layers if _is_curve(layer)
+        layer
+        for picture in pictures
+        for panel in picture.panels
+        for layer in panel.layers
+        if _is_curve(layer)
     ]
     points = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // max(1, len(curves))))
 
@@ -169,10 +172,14 @@ def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:
         for place, view in enumerate(views):
             groups.setdefault(group_of(view.case.name), []).append((place, view.case.name))
         found = {f"open-{place}": f'<template id="case-{place}">' for place in range(len(views))}
-        return {**found, "close": "</template>", "chooser": fragment("chooser.html.j2", groups=groups)}
+        return {
+            **found,
+            "close": "</template>",
+            "chooser": fragment("comparison/chooser.html.j2", groups=groups),
+        }
     specs = {f"player-{place}": playback(view) for place, view in enumerate(views)}
     return {
-        name: fragment("player.html.j2", name=name, spec=spec)
+        name: fragment("comparison/player.html.j2", name=name, spec=spec)
         for name, spec in specs.items()
         if spec is not None
     }
@@ -186,7 +193,7 @@ def view_page(comparison: Comparison, name: str, command: str = "") -> Page | No
         return None
     return Page(
         name="view",
-        template="view",
+        template="comparison/view",
         values={
             "name": name,
             "lines": describe(view.case),
@@ -194,5 +201,5 @@ def view_page(comparison: Comparison, name: str, command: str = "") -> Page | No
             "command": command,
             "versions": comparison.versions,
         },
-        blocks={"player": fragment("player.html.j2", name="player", spec=spec)},
+        blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},
     )

@@ -1,0 +1,18 @@
+"""What an installation can do, as claims with their evidence, and a fingerprint to tell it by."""
+
+from .certificate import Certificate, certify, read_certificate, verify
+from .claims import Claim, claims_of
+from .fingerprint import engine_method, reduced_method
+from .verdict import Answer
+
+__all__ = [
+    "Answer",
+    "Certificate",
+    "Claim",
+    "certify",
+    "claims_of",
+    "engine_method",
+    "read_certificate",
+    "reduced_method",
+    "verify",
+]

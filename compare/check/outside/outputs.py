@@ -1,0 +1,122 @@
+"""What a model of somebody else gives, and how it is called.
+
+A model is any callable `model(case, support)` that takes a `rockwobble.Case` and "recess" or "flat", and
+returns a mapping, a table or an object with
+
+========== ===== ==================================================================
+name       unit  meaning
+========== ===== ==================================================================
+time       s     (n,), rising
+tilt       rad   (n,), angle of the axis from the vertical
+azimuth    rad   (n,), optional: direction of the lean, also as rolling_angle
+energy     m2/s2 (n,), optional: relative to the ground, per unit mass, 0 standing
+========== ===== ==================================================================
+
+What it does not give is not checked, and the checks say so.
+"""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Case
+
+from ...traces.file import QUATERNION, read_columns
+
+Array = NDArray[np.float64]
+Model = Callable[[Case, str], Any]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Outputs:
+    """One motion, (n,) each; None where it is not told."""
+
+    time: Array
+    tilt: Array
+    azimuth: Array | None = None
+    energy: Array | None = None
+
+
+def load_model(name: str) -> Model:
+    """Return the callable that "module:function" names; modules of the working folder are found.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    module, _, function = name.partition(":")
+    if not (module and function):
+        raise ValueError(f"a model must be given as module:function, got {name!r}")
+    if str(Path.cwd()) not in sys.path:
+        sys.path.insert(0, str(Path.cwd()))
+    try:
+        found = getattr(importlib.import_module(module), function)
+    except (ImportError, AttributeError) as error:
+        raise ValueError(f"the model {name} cannot be imported: {error}") from error
+    if not callable(found):
+        raise ValueError(f"the model {name} must be callable, got {type(found).__name__}")  # noqa: TRY004 bad input
+    model: Model = found
+    return model
+
+
+def outputs_of(result: Any) -> Outputs:
+    """Return what a model gave.
+
+    Raises
+    ------
+    ValueError
+        If time or tilt is missing, or an array has another length or no finite numbers.
+    """
+    columns = {}
+    for name, others in (("time", ()), ("tilt", ()), ("azimuth", ("rolling_angle",)), ("energy", ())):
+        value = next((found for key in (name, *others) if (found := _taken(result, key)) is not None), None)
+        if value is not None:
+            columns[name] = np.asarray(value, dtype=np.float64)
+    for name in ("time", "tilt"):
+        if name not in columns:
+            raise ValueError(f"the model must return {name}, got {type(result).__name__} without it")
+        if columns[name].ndim != 1 or not np.isfinite(columns[name]).all():
+            raise ValueError(f"{name} must be finite numbers in one dimension, got {columns[name]!r:.60}")
+    if not (len(columns["time"]) > 1 and (np.diff(columns["time"]) > 0.0).all()):
+        raise ValueError("time must rise")
+    for name, column in columns.items():
+        if len(column) != len(columns["time"]):
+            raise ValueError(f"{name} must be as long as time, {len(columns['time'])}, got {len(column)}")
+    # an energy that is nowhere known is not told
+    told = {name: column for name, column in columns.items() if np.isfinite(column).any()}
+    return Outputs(**told)
+
+
+def _taken(result: Any, key: str) -> Any:
+    if isinstance(result, Mapping) or hasattr(result, "columns"):
+        return result.get(key)
+    return getattr(result, key, None)
+
+
+def read_outputs(path: Path, angle_unit: str | None = None) -> Outputs:
+    """Read the file of a trajectory, with tilt and azimuth or with quaternions.
+
+    Raises
+    ------
+    ValueError
+        If the file cannot be read, or has neither.
+    """
+    given = read_columns(path, angle_unit)
+    time = given.complete("time")
+    if set(QUATERNION) <= set(given.values):
+        w, x, y, z = (given.complete(name) for name in QUATERNION)
+        east, north, up = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), w * w - x * x - y * y + z * z
+        tilt, azimuth = np.arctan2(np.hypot(east, north), up), np.arctan2(north, east)
+        return Outputs(time=time, tilt=tilt, azimuth=azimuth)
+    if "tilt" not in given.values:
+        raise ValueError(f"{path.name} must have tilt, or qw, qx, qy and qz")
+    return Outputs(time=time, tilt=given.complete("tilt"), azimuth=given.values.get("azimuth"))

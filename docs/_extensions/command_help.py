@@ -1,0 +1,68 @@
+"""The help of a command as a page: what `rockwobble COMMAND --help` says, from the same source."""
+
+from __future__ import annotations
+
+import inspect
+from typing import Any, ClassVar
+
+import typer
+from docutils import nodes
+from mapping_table import table
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+from rockwobble.reports.cli.main import app as command_line
+
+GENERAL = "Options"
+
+
+class CommandHelp(SphinxDirective):
+    """`rockwobble-command:: NAME` gives what it does, its example, and its options in a table a group."""
+
+    required_arguments = 1
+    has_content = False
+    option_spec: ClassVar[dict[str, Any]] = {}
+
+    def run(self) -> list[nodes.Node]:
+        """Return the paragraphs and tables."""
+        commands: dict[str, Any] = typer.main.get_command(command_line).commands  # type: ignore[attr-defined]
+        name = self.arguments[0]
+        if name not in commands:
+            raise self.error(f"there is no command {name!r}; there are {', '.join(sorted(commands))}")
+        command = commands[name]
+        paragraphs = inspect.cleandoc(command.help or "").split("\n\n")
+        found: list[nodes.Node] = [_paragraph(words) for words in paragraphs]
+        example = (command.epilog or "").removeprefix("Example: ")
+        if example:
+            found.append(nodes.literal_block(example, example, language="sh"))
+        groups: dict[str, list[Any]] = {}
+        for parameter in command.params:
+            if not getattr(parameter, "hidden", False) and parameter.name != "help":
+                group = getattr(parameter, "rich_help_panel", None) or GENERAL
+                groups.setdefault(group, []).append(parameter)
+        for group, parameters in groups.items():
+            rows = [_row(each) for each in parameters]
+            found += [nodes.rubric("", group), table(("option", "default", "meaning"), (30, 15, 55), rows)]
+        return found
+
+
+def _paragraph(words: str) -> nodes.paragraph:
+    return nodes.paragraph("", " ".join(words.split()))
+
+
+def _row(parameter: Any) -> tuple[nodes.Node, nodes.Node, nodes.Node]:
+    argument = parameter.param_type_name == "argument"
+    names = [parameter.name.upper()] if argument else [*parameter.opts, *parameter.secondary_opts]
+    option = nodes.paragraph()
+    for index, name in enumerate(names):
+        option += [nodes.Text(", ")] * bool(index) + [nodes.literal(name, name)]
+    default = parameter.default() if callable(parameter.default) else parameter.default
+    nothing = default is None or default is False or default in ((), [], "")
+    shown = nodes.paragraph() if nothing else nodes.paragraph("", "", nodes.literal("", str(default)))
+    return option, shown, _paragraph(parameter.help or "")
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the directive."""
+    app.add_directive("rockwobble-command", CommandHelp)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,47 @@
+"""Tables of names, units and meanings, from the mappings that the code itself uses."""
+
+from __future__ import annotations
+
+import importlib
+from typing import Any
+
+from docutils import nodes
+from sphinx.application import Sphinx
+from sphinx.util.docutils import SphinxDirective
+
+
+def table(head: tuple[str, ...], widths: tuple[int, ...], rows: list[tuple[nodes.Node, ...]]) -> nodes.table:
+    """Return a table with one row of titles."""
+    group = nodes.tgroup("", *(nodes.colspec(colwidth=width) for width in widths), cols=len(head))
+    titles = tuple(nodes.paragraph("", word) for word in head)
+    for section, lines in ((nodes.thead(), [titles]), (nodes.tbody(), rows)):
+        for cells in lines:
+            section += nodes.row("", *(nodes.entry("", cell) for cell in cells))
+        group += section
+    return nodes.table("", group)
+
+
+class MappingTable(SphinxDirective):
+    """`mapping-table:: MODULE:NAME`, of a mapping from a name to its unit and meaning."""
+
+    required_arguments = 1
+
+    def run(self) -> list[nodes.Node]:
+        """Return the table."""
+        module, _, name = self.arguments[0].partition(":")
+        mapping: dict[str, tuple[str, str]] = getattr(importlib.import_module(module), name)
+        rows: list[tuple[nodes.Node, ...]] = [
+            (
+                nodes.paragraph("", "", nodes.literal(key, key)),
+                nodes.paragraph("", unit),
+                nodes.paragraph("", meaning.replace("`", "")),
+            )
+            for key, (unit, meaning) in mapping.items()
+        ]
+        return [table(("name", "unit", "meaning"), (30, 10, 60), rows)]
+
+
+def setup(app: Sphinx) -> dict[str, Any]:
+    """Register the directive."""
+    app.add_directive("mapping-table", MappingTable)
+    return {"parallel_read_safe": True, "parallel_write_safe": True}

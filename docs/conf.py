@@ -1,0 +1,74 @@
+"""How the site is built: `python -m sphinx -W --keep-going -n docs docs/_build/html`."""
+
+from __future__ import annotations
+
+import re
+import sys
+import warnings
+from importlib.metadata import version as version_of
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "_extensions"))
+_CITATION = (HERE.parent / "CITATION.cff").read_text(encoding="utf-8")
+
+project = "rockwobble"
+author = "The rockwobble developers"
+copyright = f"{author}, MIT license"  # noqa: A001 - the name that Sphinx reads
+version = release = version_of("rockwobble")
+
+extensions = [
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "numpydoc",
+    "myst_nb",
+    "sphinx_design",
+    "mathml",  # these four are in _extensions
+    "mapping_table",
+    "command_help",
+    "first_use",
+]
+exclude_patterns = ["_build", "_extensions", "figures", "scenes", "**.ipynb_checkpoints"]
+
+myst_enable_extensions = ["amsmath", "attrs_inline", "colon_fence", "deflist", "dollarmath"]
+myst_heading_anchors = 3
+nb_execution_mode = "force"
+nb_execution_raise_on_error = True
+nb_execution_timeout = 120  # [s] a notebook takes some seconds, the first one waits for the compiler
+nb_merge_streams = True
+# a figure is drawn once: SVG where the notebook gives it, a picture where not
+nb_mime_priority_overrides = [("html", "image/svg+xml", 5)]
+
+# a name is documented where a user imports it from
+add_module_names = False
+autodoc_member_order = "bysource"
+autodoc_typehints = "none"  # numpydoc says them with shapes and units
+autodoc_default_options = {"members": True}
+autosummary_generate = False
+numpydoc_show_class_members = False
+default_role = "literal"
+smartquotes_action = "qe"  # two dashes begin an option
+
+html_theme = "pydata_sphinx_theme"
+html_title = "rockwobble"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
+html_math_renderer = "mathml"
+html_show_sourcelink = False
+html_context = {"default_mode": "auto"}
+html_theme_options = {
+    "logo": {"text": "rockwobble"},
+    "navigation_depth": 2,
+    "show_toc_level": 2,
+    "footer_start": ["copyright"],
+    "footer_end": [],
+    "navbar_end": ["theme-switcher"],
+    "search_as_you_type": False,
+}
+# the one place that knows the address of the repository is CITATION.cff; until it does, nothing links there
+if found := re.search(r"^repository-code:\s*(\S+)", _CITATION, re.MULTILINE):
+    place = {"name": "Repository", "url": found.group(1), "icon": "fa-brands fa-git"}
+    html_theme_options["icon_links"] = [place]
+
+# the debugger of the notebooks' kernel warns that its files are frozen; no notebook is debugged here
+warnings.filterwarnings("ignore", message=".*frozen modules.*")

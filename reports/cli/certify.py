@@ -1,0 +1,89 @@
+"""`rockwobble certify` and `rockwobble verify`: what this installation can do, and whether it still does."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..console.terminal import interruptible, user_input
+
+# of the checks, those that make claims; with an engine, also those that need its runs
+_LAYERS = ("equations", "conserved", "exact", "rest", "invariance", "order", "residual")
+_ENGINE_LAYERS = ("traces", "agreement")
+Out = Annotated[Path, typer.Option("--out", help="File to write.")]
+Engine = Annotated[
+    str | None, typer.Option("--engine", help="Certify an engine. Default: the reduced models.")
+]
+TimeStep = Annotated[
+    float | None, typer.Option("--time-step", help="Of the engine, in s. Default: its own choice.")
+]
+Only = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--only",
+        metavar="LAYER",
+        help="Make claims of one layer of `rockwobble check`; may be repeated. Default: equations, "
+        "conserved, exact, rest, invariance, order, residual, and with --engine traces and agreement.",
+    ),
+]
+CertificateFile = Annotated[Path, typer.Argument(help="File that certify wrote.", show_default=False)]
+Json = Annotated[bool, typer.Option("--json", help="Print the answer as JSON.")]
+
+
+def certify(
+    out: Out = Path("certificate.json"),
+    engine: Engine = None,
+    time_step: TimeStep = None,
+    only: Only = None,
+) -> None:
+    """Write a certificate: claims with their evidence, and a fingerprint of twelve short cases.
+
+    A claim is verified (against exact solutions), cross-validated (between independent formulations) or
+    validated (against an experiment, by the hash of its data; there is none yet). Nothing is written where a
+    check fails.
+
+    Exit code 0 if it is written, 2 for bad input or a check that fails.
+    """
+    with interruptible(), user_input():
+        from rockwobble import reduced
+        from rockwobble.compare.certificate import certify as make
+        from rockwobble.compare.certificate import engine_method, reduced_method
+        from rockwobble.compare.certificate.certificate import write_certificate
+        from rockwobble.compare.check import LAYERS, Bench, run_checks
+        from rockwobble.models import read_suite
+
+        if time_step is not None and engine is None:
+            raise ValueError("--time-step belongs to --engine, got it alone")
+        layers = tuple(only or (*_LAYERS, *(_ENGINE_LAYERS if engine else ())))
+        for layer in layers:
+            if layer not in LAYERS:
+                raise ValueError(f"--only must be one of {', '.join(LAYERS)}, got {layer!r}")
+        if out.is_dir() or not out.absolute().parent.is_dir():
+            raise ValueError(f"--out must be a file in a folder that exists, got {out}")
+        method = reduced_method() if engine is None else engine_method(engine, time_step)
+        findings = run_checks(Bench(reduced=reduced, suite=read_suite("quick")), layers)
+        found = make(method, findings)
+        write_certificate(found, out)
+    print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")
+
+
+def verify(certificate: CertificateFile, as_json: Json = False) -> None:
+    """Answer in one word whether this installation still does what a certificate says.
+
+    same: every number repeats. chaotic: what differs does so after agreement must end, and distributions
+    agree. changed: something differs before that; the claim and the first term concerned are named.
+
+    Exit code 0 for same and chaotic, 1 for changed, 2 for bad input.
+    """
+    with interruptible(), user_input():
+        from rockwobble.compare.certificate import read_certificate
+        from rockwobble.compare.certificate import verify as answer_to
+
+        answer = answer_to(read_certificate(certificate))
+    print(json.dumps(asdict(answer), indent=1) if as_json else answer.words())
+    if answer.exit_code:
+        raise typer.Exit(answer.exit_code)

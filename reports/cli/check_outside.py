@@ -1,0 +1,76 @@
+"""`rockwobble check --model` and `--trajectory`: the findings on what somebody else made."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+if TYPE_CHECKING:
+    from rockwobble.compare.check import Finding
+
+_PANEL = "A model or a trajectory of somebody else"
+Model = Annotated[
+    str | None,
+    typer.Option(
+        "--model",
+        metavar="MODULE:FUNCTION",
+        help="Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
+        rich_help_panel=_PANEL,
+    ),
+]
+Trajectory = Annotated[
+    Path | None,
+    typer.Option(
+        "--trajectory",
+        help="Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite.",
+        rich_help_panel=_PANEL,
+    ),
+]
+Support = Annotated[
+    str, typer.Option("--support", help="What it models: recess or flat.", rich_help_panel=_PANEL)
+]
+Tolerance = Annotated[
+    float, typer.Option("--tolerance", help="How exact it claims to be.", rich_help_panel=_PANEL)
+]
+
+
+def outside_findings(
+    model: str | None, trajectory: Path | None, suite: str, support: str, tolerance: float
+) -> list[Finding]:
+    """Return what the checks find, a check that cannot run included.
+
+    Raises
+    ------
+    ValueError
+        If both are given, one cannot be read, or the suite has more than one case.
+    """
+    from rockwobble.compare.check.outside import check_model, check_trajectory, load_model, read_outputs
+    from rockwobble.models import read_suite
+
+    if model is not None and trajectory is not None:
+        raise ValueError("--model and --trajectory exclude each other, got both")
+    if model is not None:
+        return list(check_model(load_model(model), support=support, tolerance=tolerance))
+    assert trajectory is not None
+    cases = read_suite(suite).cases
+    if len(cases) != 1:
+        raise ValueError(f"--trajectory needs a --suite with one case, got {len(cases)} in {suite}")
+    given = read_outputs(trajectory)
+    return list(check_trajectory(given, cases[0], support=support, tolerance=tolerance))
+
+
+def print_outside(findings: list[Finding]) -> None:
+    """Print them layer by layer."""
+    from rich.console import Console
+
+    from rockwobble.compare.check import LAYERS
+
+    from ..pages.check import print_layer
+
+    console = Console()
+    for layer in LAYERS:
+        found = [finding for finding in findings if finding.layer == layer]
+        if found:
+            print_layer(console, layer, found)

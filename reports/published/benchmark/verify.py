@@ -1,0 +1,203 @@
+"""Is it still the same? One word for two fingerprints: same, chaotic or changed. Needs numpy only.
+
+    python verify.py CERTIFICATE OTHER_CERTIFICATE
+
+same: every number repeats as closely as the certificate says. chaotic: what differs does so after the time
+when agreement must end, and the peaks of many perturbed copies agree in distribution. changed: something
+differs before that, or in distribution; claim and term of the first such case are named. Exit code 0, 0
+and 1; 2 if a file cannot be read.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+SAME, CHAOTIC, CHANGED = "same", "chaotic", "changed"
+KIND = "rockwobble certificate"
+# Kolmogorov-Smirnov distance of two samples that chance exceeds once in a hundred times, over sqrt(1/n + 1/m)
+_ONE_PERCENT = 1.63
+
+
+@dataclass(frozen=True)
+class Answer:
+    """The word, and why.
+
+    Parameters
+    ----------
+    word : {"same", "chaotic", "changed"}
+    case, claim, term : str
+        Of the case that decides; empty where all are the same.
+    quantity : str
+        What differs there.
+    time : float
+        From when [s]; NaN where it has no time.
+    difference, allowed : float
+        How much there, and how much may be.
+    """
+
+    word: str
+    case: str = ""
+    claim: str = ""
+    term: str = ""
+    quantity: str = ""
+    time: float = math.nan
+    difference: float = math.nan
+    allowed: float = math.nan
+
+    @property
+    def exit_code(self) -> int:
+        """1 where it changed."""
+        return int(self.word == CHANGED)
+
+    def words(self) -> str:
+        """Return one line."""
+        if not self.case:
+            return self.word
+        at = f" from {self.time:.4g} s" if math.isfinite(self.time) else ""
+        size = (
+            f" by {self.difference:.2g}, allowed {self.allowed:.2g}" if math.isfinite(self.difference) else ""
+        )
+        return (
+            f"{self.word}: {self.quantity} of {self.case}{at}{size}; claim: {self.claim}; term: {self.term}"
+        )
+
+
+def compare(old: Iterable[Mapping[str, Any]], new: Iterable[Mapping[str, Any]]) -> Answer:
+    """Return the answer for two fingerprints; the entries of `new` are taken only up to the first change."""
+    answer = Answer(SAME)
+    for one, other in zip(old, new, strict=True):
+        found = compare_entries(one, other)
+        if found.word == CHANGED:
+            return found
+        if answer.word == SAME:
+            answer = found
+    return answer
+
+
+def compare_entries(old: Mapping[str, Any], new: Mapping[str, Any]) -> Answer:
+    """Return the answer for one case."""
+    about = {"case": old["name"], "claim": old["claim"], "term": old["term"]}
+    end = math.inf if old["agreement_time"] is None else old["agreement_time"]
+    if old["name"] != new["name"]:
+        return Answer(CHANGED, quantity="the case itself", **about)
+    for name in ("uplift_time", "uplift_direction"):
+        apart = _apart(old[name], new[name])
+        if apart > 10.0 * old["repeats"]:
+            return Answer(
+                CHANGED,
+                quantity=name,
+                difference=apart,
+                allowed=10.0 * old["repeats"],
+                time=math.nan,
+                **about,
+            )
+    first = _first_difference(old, new)
+    if first is not None and first[1] < end:
+        return Answer(
+            CHANGED, quantity=first[0], time=first[1], difference=first[2], allowed=first[3], **about
+        )
+    apart = _apart(old["peak_tilt"], new["peak_tilt"])
+    if end == math.inf:
+        allowed = 10.0 * max(old["allowed"]["tilt"])
+        if old["outcome"] != new["outcome"]:
+            return Answer(CHANGED, quantity=f"outcome {old['outcome']}, now {new['outcome']}", **about)
+        if apart > allowed:
+            return Answer(CHANGED, quantity="peak_tilt", difference=apart, allowed=allowed, **about)
+        return Answer(SAME)
+    if first is None and old["outcome"] == new["outcome"]:
+        return Answer(SAME)
+    old_peaks, new_peaks = (
+        np.array([p for p in one.get("peaks", ()) if p is not None]) for one in (old, new)
+    )
+    if not len(new_peaks):
+        return Answer(CHANGED, quantity="agreement time, which no longer ends", **about)
+    gap = largest_gap(old_peaks, new_peaks)
+    most = _ONE_PERCENT * math.sqrt(1.0 / len(old_peaks) + 1.0 / len(new_peaks))
+    time = first[1] if first else math.nan
+    word = CHAOTIC if gap <= most else CHANGED
+    return Answer(
+        word, quantity="distribution of the peaks", difference=gap, allowed=most, time=time, **about
+    )
+
+
+def _first_difference(
+    old: Mapping[str, Any], new: Mapping[str, Any]
+) -> tuple[str, float, float, float] | None:
+    """Return signal, time, difference and what is allowed where the first sample differs."""
+    found = []
+    for name, wanted in old["signals"].items():
+        got = new["signals"][name]
+        count = min(len(wanted), len(got))
+        for k in range(max(len(wanted), len(got))):
+            # a motion that ended is not there
+            apart = _apart(wanted[k], got[k]) if k < count else math.inf
+            allowed = old["allowed"][name][min(k, len(wanted) - 1)]
+            moved = k < count and abs(old["time"][k] - new["time"][k]) > 10.0 * old["repeats"]
+            if apart > allowed or moved:
+                found.append((old["time"][min(k, len(wanted) - 1)], name, apart, allowed))
+                break
+    if not found:
+        return None
+    time, name, apart, allowed = min(found)
+    return name, time, apart, allowed
+
+
+def _apart(one: float | None, other: float | None) -> float:
+    """Return a difference: none where neither is known, infinite where only one is."""
+    if one is None or other is None:
+        return 0.0 if one is other else math.inf
+    return abs(one - other)
+
+
+def largest_gap(first: np.ndarray, second: np.ndarray) -> float:
+    """Return the Kolmogorov-Smirnov distance of two samples."""
+    both = np.concatenate([first, second])
+    below = [np.searchsorted(np.sort(one), both, side="right") / len(one) for one in (first, second)]
+    return float(np.max(np.abs(below[0] - below[1])))
+
+
+def read(path: Path) -> dict[str, Any]:
+    """Return what a certificate says.
+
+    Raises
+    ------
+    ValueError
+        If it is no certificate.
+    """
+    try:
+        found = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise ValueError(f"{path} cannot be read: {error}") from None
+    if not isinstance(found, dict) or found.get("kind") != KIND:
+        raise ValueError(f"{path} is no certificate: its kind must be {KIND!r}")
+    return found
+
+
+def main(arguments: list[str]) -> int:
+    """Compare two certificates; return the exit code."""
+    if len(arguments) != 2:
+        print(__doc__)
+        return 2
+    try:
+        old, new = (read(Path(argument)) for argument in arguments)
+    except ValueError as error:
+        print(error, file=sys.stderr)
+        return 2
+    if old["method"] != new["method"]:
+        print(f"{CHANGED}: the method was {old['method']}, and is {new['method']}")
+        return 1
+    answer = compare(old["fingerprint"], new["fingerprint"])
+    print(answer.words())
+    return answer.exit_code
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

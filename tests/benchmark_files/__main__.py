@@ -1,0 +1,57 @@
+"""The command `python tests/benchmark_files`: write reports/published/benchmark, or parts of it.
+
+python tests/benchmark_files cases [CASE ...]       the references, and how well each is known
+python tests/benchmark_files results [ENGINE ...]   what check.py says of our models and engines, scoreboard
+"""
+
+from __future__ import annotations
+
+import argparse
+import subprocess
+import sys
+from pathlib import Path
+
+TESTS = Path(__file__).resolve().parents[1]
+ENGINES = ("rockwobble", "mujoco", "pybullet", "exudyn")
+
+
+def cases(names: list[str]) -> None:
+    """Write the cases, and print the largest bounds."""
+    from benchmark_files.definitions import definitions
+    from benchmark_files.references import reference
+    from benchmark_files.write import PUBLISHED, write
+
+    for definition in definitions():
+        if names and definition.name not in names:
+            continue
+        found = reference(definition)
+        write(definition, found, PUBLISHED / "cases" / definition.name)
+        worst = max((one["bound"] for one in found.quantities), default=0.0)
+        number = len(found.quantities)
+        print(f"{definition.name}: {number} quantities, largest bound {worst:.0e}; traces {found.bounds}")
+
+
+def results(names: list[str]) -> None:
+    """Write the results, and the scoreboard."""
+    from benchmark_files.engines import REDUCED, VARIANTS, results_of
+    from benchmark_files.write import PUBLISHED
+
+    for engine in names or ENGINES:
+        for variant in ("default",) if engine == REDUCED else VARIANTS:
+            results_of(engine, variant, PUBLISHED)
+    subprocess.run([sys.executable, str(PUBLISHED / "scoreboard.py")], check=True)
+
+
+def main() -> None:
+    """Do what is asked for."""
+    parser = argparse.ArgumentParser(prog="python tests/benchmark_files", description=__doc__)
+    parser.add_argument("part", choices=("cases", "results"))
+    parser.add_argument("names", nargs="*", help="default: all")
+    given = parser.parse_args()
+    {"cases": cases, "results": results}[given.part](given.names)
+
+
+if __name__ == "__main__":
+    sys.path[0] = str(TESTS)
+    sys.path.insert(1, str(TESTS / "reference"))
+    main()

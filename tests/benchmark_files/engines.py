@@ -1,0 +1,75 @@
+"""Results of the engines: each case that an engine can do, judged by check.py like anybody's.
+
+`results/NAME` holds one file a case and about.json: code, version, settings, computing time of a step.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Collection
+from pathlib import Path
+
+from rockwobble import multibody, reduced
+from rockwobble.models import Case, Trace
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+
+from .submission import cases_of, spacing, submit, tilt_and_azimuth
+
+# of the reduced model: its tolerance; of an engine: its time step over that of its defaults
+VARIANTS: dict[str, dict[str, float]] = {"default": {}, "quarter-step": {"step": 0.25}}
+REDUCED = "rockwobble"
+_LONG = 60.0  # [s] of all runs of a case: those with a finer step stay below
+
+
+def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = ()) -> None:
+    """Run the cases of a benchmark folder, the shortest first, and write what check.py says of them."""
+    target = folder / "results" / f"{engine}-{variant}"
+    target.mkdir(parents=True, exist_ok=True)
+    costs: list[float] = []
+    problems = {path: cases_of(path) for path in (folder / "cases").iterdir()}
+    lengths = {path: sum(case.length for case, _ in cases.values()) for path, cases in problems.items()}
+    for path in sorted(problems, key=lambda path: lengths[path]):
+        if (only and path.name not in only) or (variant != "default" and lengths[path] > _LONG):
+            continue
+        traces: dict[str, Trace] = {}
+        for name, (case, support) in problems[path].items():
+            try:
+                traces[name] = _simulate(engine, case, support, **VARIANTS[variant])
+            except ValueError as error:  # what an engine cannot do
+                print(f"{engine}, {path.name}, {name}: {error}")
+        if not traces:
+            continue
+        version = next(iter(traces.values())).version
+        words = variant.replace("-", " ")
+        costs += [t.wall_time * t.time_step / t.time[-1] for t in traces.values() if engine != REDUCED]
+        with tempfile.TemporaryDirectory() as scratch:
+            tables = {name: tilt_and_azimuth(trace) for name, trace in traces.items()}
+            file = submit(tables, Path(scratch) / "trajectory.csv")
+            command = [sys.executable, str(folder / "check.py"), path.name, str(file)]
+            command += ["--label", f"{engine} {version}, {words}", "--out", str(target / f"{path.name}.json")]
+            subprocess.run(command, check=False)
+        about = {
+            "code": engine,
+            "version": version,
+            "settings": words,
+            "seconds_a_step": statistics.median(costs) if costs else None,
+            "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
+        }
+        (target / "about.json").write_text(json.dumps(about, indent=1) + "\n")
+
+
+def _simulate(engine: str, case: Case, support: str, step: float = 1.0) -> Trace:
+    spaced = min(0.01, spacing(case))
+    if engine == REDUCED:
+        return reduced.simulate(case, support=support, sample_step=spaced)
+    if step == 1.0:
+        return multibody.simulate(case, engine=engine, support=support, sample_step=spaced)
+    default = REFERENCE_TIME_STEP * froude_scale(case.cylinder.semidiagonal, case.gravity).time
+    return multibody.simulate(
+        case, engine=engine, support=support, sample_step=spaced, time_step=step * default
+    )

@@ -1,0 +1,252 @@
+"""References of the cases: each number by two formulations that share nothing, and how far they are apart.
+
+The first is the reduced model, in angles and momenta, by its own integrator; the second is `second`, and
+where there is one a closed form or a quadrature is the third. A bound is ten times what they differ by.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from rigid_body import integrate
+from scipy.interpolate import BarycentricInterpolator
+from scipy.optimize import brentq
+from shaken_problems import Problem
+
+from rockwobble import reduced
+from rockwobble.models import Case
+from rockwobble.reduced.exact import free_response, steady_wobble_rate
+
+from .definitions import BenchmarkRun, Definition, G
+from .second import REST, Sampled, sampled
+
+Array = NDArray[np.float64]
+RTOL = 1e-13
+FIRST = "reduced model, rtol 1e-13"
+SECOND = "Newton-Euler in vectors, rtol 1e-13"
+SLIDING = "closed form of the sliding body"
+INTEGRATED = "integration of the sliding body, Dormand-Prince 8"
+_REACH = 5  # samples on each side of a root
+
+
+class Reference(NamedTuple):
+    """What stands in reference.json and reference.csv."""
+
+    quantities: list[dict[str, Any]]
+    columns: dict[str, Array]
+    bounds: dict[str, float]  # of the columns, in their own units
+
+
+def first(run: BenchmarkRun, spacing: float, end: float) -> Sampled:
+    """Return samples of the reduced model."""
+    case = Case(run.cylinder, run.motion, initial=run.initial, duration=end, gravity=G)
+    trace = reduced.simulate(case, support=run.model, rtol=RTOL, rest_tilt=REST, sample_step=spacing)
+    count = round(end / spacing) + 1
+    return Sampled(
+        *(column[:count] for column in (trace.time, trace.tilt, trace.tilt_rate, trace.rolling_angle))
+    )
+
+
+def reference(definition: Definition) -> Reference:
+    """Compute the reference of a case."""
+    if definition.name == "records-distribution":
+        return _peaks(definition)
+    traces = {run.name: _both(definition, run) for run in definition.runs}
+    quantities = []
+    for criterion in definition.criteria:
+        for run in definition.runs:
+            if criterion["kind"] == "quantity" and run.name in criterion.get("runs", traces):
+                name = criterion["name"]
+                known = (
+                    {}
+                    if name == "slide_time"
+                    else {
+                        by: measured(name, run, trace)
+                        for by, trace in zip((FIRST, SECOND), traces[run.name], strict=True)
+                    }
+                )
+                quantities.append(_quantity(name, run.name, {**_closed(name, run), **known}))
+    columns, bounds = _columns(definition, traces)
+    return Reference(quantities, columns, bounds)
+
+
+def _both(definition: Definition, run: BenchmarkRun) -> tuple[Sampled, Sampled]:
+    spacing = definition.step * run.time_unit
+    end = spacing * round(min(run.duration, definition.end or math.inf) / spacing)
+    # quantities far out need the whole run
+    whole = spacing * round(run.duration / spacing)
+    end = whole if any(c["name"].endswith("_100") for c in definition.criteria) else end
+    return first(run, spacing, end), sampled(run, spacing, end)
+
+
+def measured(name: str, run: BenchmarkRun, trace: Sampled) -> float:
+    """Return a quantity by roots of polynomials through the samples."""
+    kind, _, digits = name.rpartition("_")
+    time, alpha = trace.time, run.cylinder.alpha
+    if kind in ("turn", "period", "maximum"):
+        falls = np.flatnonzero((trace.tilt_rate[:-1] > 0.0) & (trace.tilt_rate[1:] <= 0.0))
+        falls = falls[falls > 0]  # a release is a maximum itself, to rounding
+        at = _root(time, trace.tilt_rate, int(falls[int(digits) - 1]))
+        if kind == "period":
+            return at / int(digits)
+        if kind == "maximum":
+            return _value(time, trace.tilt, at) / alpha
+        assert run.initial is not None
+        return (_value(time, trace.azimuth, at) - run.initial.rolling_angle) / int(digits)
+    if kind == "revolutions":
+        excess = trace.azimuth - trace.azimuth[0] - 2.0 * math.pi * int(digits)
+        return _root(time, excess, int(np.flatnonzero(excess > 0.0)[0]) - 1)
+    excess = trace.tilt - run.levels["lean_level"] * alpha
+    at = _root(time, excess, int(np.flatnonzero(excess > 0.0)[0]) - 1)
+    return at if name == "lean_time" else _value(time, trace.azimuth, at) % (2.0 * math.pi)
+
+
+def _around(time: Array, values: Array, i: int) -> Callable[[float], float]:
+    near = slice(max(0, i - _REACH + 1), i + _REACH + 1)
+    polynomial = BarycentricInterpolator(time[near] - time[i], values[near])
+    return lambda at: float(polynomial(at - time[i]))
+
+
+def _root(time: Array, values: Array, i: int) -> float:
+    return float(brentq(_around(time, values, i), time[i], time[i + 1], xtol=1e-15, rtol=1e-15))
+
+
+def _value(time: Array, values: Array, at: float) -> float:
+    return _around(time, values, int(np.searchsorted(time, at)) - 1)(at)
+
+
+def _closed(name: str, run: BenchmarkRun) -> dict[str, float]:
+    """Return what is known without any integration."""
+    kind = name.rpartition("_")[0]
+    if name == "slide_time":
+        return {SLIDING: _slide_time(run), INTEGRATED: _integrated_slide_time(run)}
+    if kind == "revolutions":
+        assert run.initial is not None
+        rate = float(steady_wobble_rate(run.cylinder, run.initial.tilt, gravity=G))
+        return {"closed form": 200.0 * math.pi / rate}
+    if run.support == "recess" and run.initial is not None:
+        exact = free_response(run.cylinder, run.initial, gravity=G)
+        known = {"turn": exact.angle_of_turn, "period": exact.period}
+        known["maximum"] = exact.maximum_tilt / run.cylinder.alpha
+        return {"quadrature": known[kind]}
+    return {}
+
+
+def _sliding(run: BenchmarkRun) -> tuple[float, float]:
+    """Return when it begins to slide [s], and the rate of its acceleration against the ground [m/s^3]."""
+    assert run.motion is not None
+    ramp, _, vertical = run.motion.acceleration[-1] / run.motion.duration
+    # mu (g + az) is the friction, in kinetic as in static contact
+    rate = ramp - run.friction * vertical
+    return run.friction * G / rate, rate
+
+
+def _slide_time(run: BenchmarkRun) -> float:
+    begin, rate = _sliding(run)
+    shift = run.levels["slide_level"] * run.cylinder.base_radius
+    return begin + (6.0 * shift / rate) ** (1.0 / 3.0)
+
+
+def _integrated_slide_time(run: BenchmarkRun) -> float:
+    """Return the same by integrating Coulomb friction of a body that is pushed by the ground."""
+    from scipy.integrate import solve_ivp
+
+    assert run.motion is not None
+    push = run.motion.acceleration[-1] / run.motion.duration
+    shift = run.levels["slide_level"] * run.cylinder.base_radius
+
+    def surplus(time: float) -> float:
+        return float(abs(push[0] * time) - run.friction * (G + push[2] * time))
+
+    def moved(time: float, y: Array) -> float:
+        return float(abs(y[0]) - shift)
+
+    begin = float(brentq(surplus, 0.0, run.duration, xtol=1e-15, rtol=1e-15))
+    found = solve_ivp(
+        lambda time, y: [y[1], -surplus(time)],
+        (begin, run.duration),
+        [0.0, 0.0],
+        method="DOP853",
+        rtol=1e-13,
+        atol=1e-16,
+        events=moved,
+        max_step=0.02,
+    )
+    return float(found.t_events[0][0])
+
+
+def _quantity(name: str, run: str, by: dict[str, float]) -> dict[str, Any]:
+    """Return the entry of reference.json; the first way that is known gives the value."""
+    values = list(by.values())
+    apart = max(values) - min(values)
+    unit = {"turn": "rad", "maximum": "alpha"}.get(name.rpartition("_")[0], "s")
+    unit = {"lean_azimuth": "rad", "peak_tilt": "alpha"}.get(name, unit)
+    bound = _rounded_up(10.0 * max(apart, 1e-14 * abs(values[0])))
+    return {"name": name, "run": run, "value": values[0], "unit": unit, "bound": bound, "certified": by}
+
+
+def _rounded_up(bound: float) -> float:
+    digit = 10.0 ** math.floor(math.log10(bound))
+    return float(f"{math.ceil(bound / digit) * digit:.0e}")
+
+
+def _columns(
+    definition: Definition, traces: dict[str, tuple[Sampled, Sampled]]
+) -> tuple[dict[str, Array], dict[str, float]]:
+    """Return the table of reference.csv, and how well its columns are known."""
+    named = definition.runs
+    shared = any(run.turned for run in named) or any(run.time_unit != 1.0 for run in named)
+    sliding = [run for run in named if "slide_level" in run.levels]
+    count = round(definition.end / definition.step) + 1 if definition.end else None
+    count = count or min(len(trace.time) for trace, _ in traces.values())
+    columns: dict[str, Array] = {"time": definition.step * np.arange(count)}
+    bounds = {"tilt": 0.0, "azimuth": 0.0}
+    for run in named:
+        if run in sliding:
+            continue
+        one, two = ((t.tilt[:count], np.nan_to_num(t.azimuth[:count])) for t in traces[run.name])
+        bounds["tilt"] = max(bounds["tilt"], float(np.abs(one[0] - two[0]).max()))
+        leans = one[0] > 1e-3 * run.cylinder.alpha
+        apart = np.abs(np.angle(np.exp(1j * (one[1] - two[1])[leans])))
+        bounds["azimuth"] = max(bounds["azimuth"], float(apart.max()))
+        label = "" if shared or len(named) == 1 else f":{run.name}"
+        if shared and "tilt" in columns:  # every run certifies the one that stands there
+            bounds["tilt"] = max(bounds["tilt"], float(np.abs(one[0] - columns["tilt"]).max()))
+            continue
+        columns[f"tilt{label}"] = one[0]
+        columns[f"azimuth{label}"] = np.where(one[0] > 0.0, one[1] - run.turned, 0.0)
+    if sliding:
+        columns |= {"tilt": np.zeros(count), "azimuth": np.zeros(count)}
+    for run in sliding:
+        begin, rate = _sliding(run)
+        columns[f"x:{run.name}"] = -rate * np.maximum(columns["time"] - begin, 0.0) ** 3 / 6.0
+        columns[f"y:{run.name}"] = np.zeros(count)
+    return columns, {name: _rounded_up(10.0 * max(bound, 1e-15)) for name, bound in bounds.items()}
+
+
+def _peaks(definition: Definition) -> Reference:
+    """Return the peak tilts of the records; for a sensitive record no bound can be small."""
+    quantities, rows = [], []
+    for index, run in enumerate(definition.runs):
+        assert run.motion is not None
+        case = Case(run.cylinder, run.motion, duration=run.duration, gravity=G)
+        trace = reduced.simulate(case, support=run.model, rtol=1e-12, rest_tilt=REST)
+        problem = Problem(run.cylinder, run.motion, run.model, None)
+        other = integrate(problem, rtol=1e-12, rest=REST)
+        alpha = run.cylinder.alpha
+        by = {
+            FIRST.replace("13", "12"): trace.peak_tilt / alpha,
+            SECOND.replace("13", "12"): other.peak / alpha,
+        }
+        one = _quantity("peak_tilt", run.name, by)
+        quantities.append(one)
+        highest = float(trace.time[int(np.argmax(trace.tilt))])
+        rows.append((highest, float(index + 1), one["value"], one["bound"]))
+    table = np.array(rows)
+    return Reference(
+        quantities, dict(zip(("time", "record", "peak_tilt", "bound"), table.T, strict=True)), {}
+    )

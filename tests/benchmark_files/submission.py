@@ -1,0 +1,104 @@
+"""A trajectory file of any model of ours, from what case.json says and nothing else."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
+
+Array = NDArray[np.float64]
+Simulate = Callable[[Case, str], Trace]  # of a case, on "recess" or "flat"
+Table = dict[str, Array]
+
+
+def cases_of(folder: Path) -> dict[str, tuple[Case, str]]:
+    """Return case and support of each run of a folder; "flat" where the motion is the same on both."""
+    given = json.loads((folder / "case.json").read_text())
+    found = {}
+    for run in given["runs"]:
+        start = run["start"]
+        body = Cylinder.from_dimensions(
+            base_radius=run["base_radius"],
+            height=run["height"],
+            mass_centre_height=run["mass_centre_height"],
+            transverse_inertia=run["transverse_inertia"],
+            axial_inertia=run["axial_inertia"],
+        )
+        initial = None
+        if start["tilt"]:
+            initial = InitialState(start["tilt"], start["tilt_rate"], start["azimuth"], start["azimuth_rate"])
+        case = Case(
+            body,
+            motion_of(run["motion"], folder),
+            initial=initial,
+            duration=run["duration"],
+            gravity=given["gravity"],
+            friction=run["friction"],
+            name=run["name"],
+        )
+        found[run["name"]] = case, "recess" if run["support"] == "recess" else "flat"
+    return found
+
+
+def motion_of(given: Mapping[str, Any], folder: Path) -> GroundMotion | None:
+    """Return the ground motion of a run."""
+    if given["kind"] == "still":
+        return None
+    if given["kind"] == "samples":
+        return GroundMotion(given["acceleration"], given["time"][1] - given["time"][0])
+    lines = (folder / given["file"]).read_text().splitlines()
+    titles = lines[0].split(",")
+    table = np.loadtxt(lines[1:], delimiter=",")
+    time = table[:, titles.index("time")]
+    columns = [table[:, titles.index(name)] for name in given["columns"]]
+    return GroundMotion(np.column_stack(columns), (time[-1] - time[0]) / (len(time) - 1))
+
+
+def tilt_and_azimuth(trace: Trace) -> Table:
+    """Return the columns of a file with tilt and azimuth, and the place."""
+    place = dict(zip("xyz", trace.centre_of_mass.T, strict=True))
+    return {"time": trace.time, "tilt": trace.tilt, "azimuth": np.nan_to_num(trace.rolling_angle), **place}
+
+
+def quaternions(trace: Trace) -> Table:
+    """Return the columns of a file with quaternions: a turn by the tilt, after one by the twist."""
+    half, azimuth, twist = 0.5 * trace.tilt, np.nan_to_num(trace.rolling_angle), 0.5 * trace.twist
+    lean = -np.sin(azimuth), np.cos(azimuth)
+    s, c = np.sin(half), np.cos(half)
+    return {
+        "time": trace.time,
+        "qw": c * np.cos(twist),
+        "qx": s * (lean[0] * np.cos(twist) + lean[1] * np.sin(twist)),
+        "qy": s * (lean[1] * np.cos(twist) - lean[0] * np.sin(twist)),
+        "qz": c * np.sin(twist),
+    }
+
+
+def positions(trace: Trace) -> Table:
+    """Return the columns of a file with the mass centre alone."""
+    return {"time": trace.time, **dict(zip("xyz", trace.centre_of_mass.T, strict=True))}
+
+
+def submit(tables: Mapping[str, Table], path: Path, *, titles: Mapping[str, str] | None = None) -> Path:
+    """Write one file with a column `run` of several tables, each name under a title of its own."""
+    lines = []
+    for run, table in tables.items():
+        if not lines:
+            lines.append(",".join(["run", *((titles or {}).get(name, name) for name in table)]))
+        lines += [
+            ",".join([run, *(f"{value:.13g}" for value in row)]) for row in zip(*table.values(), strict=True)
+        ]
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+def spacing(case: Case, samples: int = 2000) -> float:
+    """Return a sample step that suits the size of the body and the length of its run [s]."""
+    return min(0.01 * math.sqrt(case.cylinder.semidiagonal), case.length / samples)

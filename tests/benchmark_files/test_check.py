@@ -1,0 +1,250 @@
+"""check.py: right trajectories pass in every format, wrong ones do not, and mistakes are named."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from collections.abc import Callable
+from functools import cache
+
+import numpy as np
+import pytest
+
+from benchmark_files.conftest import Judge
+from benchmark_files.submission import (
+    Table,
+    cases_of,
+    positions,
+    quaternions,
+    spacing,
+    tilt_and_azimuth,
+)
+from benchmark_files.write import PUBLISHED
+from rockwobble import reduced
+from rockwobble.models import Trace
+
+CASES = sorted(path.name for path in (PUBLISHED / "cases").iterdir())
+SLIDING = "onset-of-slip"
+Form = Callable[[Trace], Table]
+
+
+@cache
+def traces(name: str, *, larger: float = 0.0, rtol: float = 1e-9) -> dict[str, Trace]:
+    """Every run of a case by the reduced model, perhaps of a body that is larger by a share."""
+    found = {}
+    for run, (case, support) in cases_of(PUBLISHED / "cases" / name).items():
+        body = case.cylinder
+        shape = {key: getattr(body, key) for key in ("height", "transverse_inertia", "axial_inertia")}
+        factors = {"height": 1.0 + larger}
+        scaled = {key: value * factors.get(key, (1.0 + larger) ** 2) for key, value in shape.items()}
+        size = body.semidiagonal * (1.0 + larger)
+        other = dataclasses.replace(body, semidiagonal=size, **scaled)
+        given = dataclasses.replace(case, cylinder=other)
+        step = min(spacing(case), 0.01)
+        found[run] = reduced.simulate(given, support=support, rtol=rtol, sample_step=step)
+    return found
+
+
+def tables(name: str, form: Form, **more: float) -> dict[str, Table]:
+    return {run: form(trace) for run, trace in traces(name, **more).items()}
+
+
+def with_sliding(found: dict[str, Table]) -> dict[str, Table]:
+    """The reduced model does not slide: as the closed form says, x'' = -(a_x - mu (g + a_z))."""
+    for run, (case, _) in cases_of(PUBLISHED / "cases" / SLIDING).items():
+        if not run.startswith("slides"):
+            continue
+        table, motion = found[run], case.motion
+        assert motion is not None
+        for key in ("tilt", "azimuth", "qx", "qy", "qz"):
+            if key in table:
+                table[key] = np.zeros_like(table[key])
+        slope = motion.acceleration[-1] / motion.duration
+        rate = slope[0] - case.friction * slope[2]
+        past = np.maximum(table["time"] - case.friction * case.gravity / rate, 0.0)
+        table |= {"x": -rate * past**3 / 6.0, "y": 0.0 * past}
+        table["z"] = np.full_like(past, case.cylinder.mass_centre_height)
+    return found
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_a_converged_solution_is_exact(judge: Judge, name: str) -> None:
+    found = tables(name, tilt_and_azimuth)
+    judged = judge(name, with_sliding(found) if name == SLIDING else found)
+    assert judged.verdict == "exact", judged.text
+    assert all(one["level"] == "exact" for one in judged.result["criteria"])
+    assert not judged.mistakes
+
+
+@pytest.mark.parametrize("form", [quaternions, positions])
+@pytest.mark.parametrize("name", ["turn-recess", "turn-flat", "uplift-directions"])
+def test_every_format_is_read(judge: Judge, name: str, form: Form) -> None:
+    judged = judge(name, tables(name, form))
+    assert judged.verdict == "exact", judged.text
+    # on flat ground positions do not tell where it leans
+    told = form is quaternions or name == "turn-recess"
+    assert ("not given" not in judged.text) == told
+
+
+@pytest.mark.parametrize("name", ["turn-flat", "turn-recess", "near-upright-pass", "scale-invariance"])
+def test_a_body_one_percent_too_large_fails_and_is_recognised(judge: Judge, name: str) -> None:
+    judged = judge(name, tables(name, tilt_and_azimuth, larger=0.01))
+    assert judged.verdict == "fail"
+    (said,) = judged.mistakes
+    found = re.fullmatch(r"it moves as a body of \+(.*) % in size \(R\)", said)
+    assert found
+    # a spin that was not scaled, too, adds a little
+    assert 1.0 <= float(found.group(1)) <= 1.2
+    # times go with the root of the size
+    assert 0.95 < judged.errors["period_1"] / (np.sqrt(1.01) - 1.0) < 1.3
+
+
+def test_under_shaking_a_body_one_percent_too_large_fails_and_no_mistake_explains_it(judge: Judge) -> None:
+    judged = judge("el-centro", tables("el-centro", tilt_and_azimuth, larger=0.01))
+    assert judged.verdict == "fail"
+    assert not judged.mistakes
+
+
+def explicit_euler(name: str, step: float) -> dict[str, Table]:
+    """The recess model by a rule of first order, with a step that is too coarse."""
+    from rockwobble.reduced.body import body_of
+    from rockwobble.reduced.equations import recess_rhs
+
+    found = {}
+    for run, (case, _) in cases_of(PUBLISHED / "cases" / name).items():
+        assert case.initial is not None
+        body, start = body_of(case.cylinder, case.gravity), case.initial
+        t = np.tan(0.5 * start.tilt)
+        inertia = np.sin(start.tilt) ** 2 * (body.J + (2.0 * body.E + body.C * t) * t)
+        state = np.array([start.tilt, 0.0, start.rolling_angle, inertia * start.rolling_rate])
+        rows = [state]
+        for _ in range(int(case.length / step)):
+            rates = recess_rhs(body, *state, 0.0, 0.0, 0.0)
+            state = state + step * np.array(rates)
+            rows.append(state)
+        tilt, _, azimuth, _ = np.array(rows).T
+        found[run] = {"time": step * np.arange(len(rows)), "tilt": tilt, "azimuth": azimuth}
+    return found
+
+
+def test_a_coarse_step_fails_and_no_mistake_is_invented(judge: Judge) -> None:
+    judged = judge("turn-recess", explicit_euler("turn-recess", 0.005))
+    assert judged.verdict == "fail"
+    assert not judged.mistakes
+
+
+MISTAKES: dict[str, tuple[Form, Callable[[Table], Table], str]] = {
+    "degrees": (
+        tilt_and_azimuth,
+        lambda t: t | {key: np.degrees(t[key]) for key in ("tilt", "azimuth")},
+        "angles are in degrees",
+    ),
+    "azimuth in degrees": (
+        tilt_and_azimuth,
+        lambda t: t | {"azimuth": np.degrees(t["azimuth"])},
+        "the azimuth is in degrees",
+    ),
+    "milliseconds": (tilt_and_azimuth, lambda t: t | {"time": 1e3 * t["time"]}, "times are in ms"),
+    "millimetres": (positions, lambda t: t | {key: 1e3 * t[key] for key in "xyz"}, "lengths are in mm"),
+    "left-handed": (tilt_and_azimuth, lambda t: t | {"azimuth": -t["azimuth"]}, "y is reversed: left-handed"),
+    "opposite": (tilt_and_azimuth, lambda t: t | {"azimuth": t["azimuth"] + np.pi}, "turned by 180"),
+    "swapped": (positions, lambda t: t | {"x": t["y"], "y": t["x"]}, "x and y are swapped: left-handed"),
+    "z down": (positions, lambda t: t | {"z": -t["z"]}, "z points down"),
+    "north, east, down": (
+        positions,
+        lambda t: t | {"x": t["y"], "y": t["x"], "z": -t["z"]},
+        "z points down; x and y are swapped",
+    ),
+    "scalar last": (
+        quaternions,
+        lambda t: t | {"qw": t["qx"], "qx": t["qy"], "qy": t["qz"], "qz": t["qw"]},
+        "scalar last",
+    ),
+    "inverse": (
+        quaternions,
+        lambda t: t | {key: -t[key] for key in ("qx", "qy", "qz")},
+        "the quaternion is inverse",
+    ),
+    "late": (tilt_and_azimuth, lambda t: t | {"time": t["time"] + 0.05}, "times are off by 0.05 s"),
+}
+
+
+@pytest.mark.parametrize("mistake", MISTAKES)
+def test_a_mistake_in_units_axes_or_clock_is_named(judge: Judge, mistake: str) -> None:
+    form, change, words = MISTAKES[mistake]
+    name = "turn-recess"
+    judged = judge(name, {run: change(form(trace)) for run, trace in traces(name).items()})
+    assert judged.verdict == "fail", judged.text
+    for part, said in zip(words.split("; "), judged.mistakes, strict=True):
+        assert part in said
+
+
+def test_two_mistakes_at_once_are_both_named(judge: Judge) -> None:
+    def change(table: Table) -> Table:
+        angles = {key: np.degrees(sign * table[key]) for key, sign in (("tilt", 1.0), ("azimuth", -1.0))}
+        return table | angles
+
+    found = {run: change(table) for run, table in tables("turn-flat", tilt_and_azimuth).items()}
+    judged = judge("turn-flat", found)
+    assert len(judged.mistakes) == 2
+    assert "degrees" in judged.mistakes[0]
+    assert "left-handed" in judged.mistakes[1]
+
+
+def test_units_in_the_header_are_no_mistake(judge: Judge) -> None:
+    found = tables("turn-flat", tilt_and_azimuth)
+    for table in found.values():
+        table |= {"time": 1e3 * table["time"], "tilt": np.degrees(table["tilt"])}
+    judged = judge("turn-flat", found, {"time": "time [ms]", "tilt": "Tilt (deg)"})
+    assert judged.verdict == "exact", judged.text
+
+
+def test_beyond_the_window_anything_may_happen(judge: Judge) -> None:
+    found = tables("turn-flat", tilt_and_azimuth)
+    for table in found.values():
+        table["azimuth"] = np.where(table["time"] > 3.05, 0.0, table["azimuth"])
+    assert judge("turn-flat", found).verdict == "exact"
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("time,tilt\n", "no samples"),
+        ("run,time,angle\nspin-1,0,0.1\n", "must name"),
+        ("run,time,tilt\nnobody,0,0.1\n", "must name"),
+        ("run,time [h],tilt\nspin-1,0,0.1\n", "the unit of time"),
+        ("run,time,tilt\nspin-1,0,a\n", "not a number"),
+        ("run,time,tilt\nspin-1,0,0.1\nspin-1,0,0.1\n", "must name"),
+    ],
+)
+def test_a_file_that_cannot_be_judged_is_rejected_with_its_reason(
+    judge: Judge, text: str, reason: str
+) -> None:
+    judged = judge("turn-flat", text)
+    assert judged.verdict == "rejected"
+    assert reason in judged.result["reason"]
+
+
+@pytest.mark.parametrize(
+    ("rows", "reason"),
+    [
+        (lambda run: [f"{run},0,0.1", f"{run},0,0.1"], "numbers that rise"),
+        (lambda run: [f"{run},0,", f"{run},1,0.1"], "a value in each row"),
+        (lambda run: [f"{run},{0.01 * i},0.1" for i in range(60)], "do not cover the window"),
+    ],
+)
+def test_samples_that_say_too_little_are_rejected(
+    judge: Judge, rows: Callable[[str], list[str]], reason: str
+) -> None:
+    names = ("spin-0.03", "spin-0.1", "spin-1")
+    lines = [line for name in names for line in rows(name)]
+    judged = judge("turn-flat", "\n".join(["run,time,tilt", *lines]) + "\n")
+    assert judged.verdict == "rejected"
+    assert reason in judged.result["reason"]
+
+
+def test_a_third_of_every_peak_does_not_fit_the_distribution(judge: Judge) -> None:
+    found = tables("records-distribution", tilt_and_azimuth)
+    assert judge("records-distribution", found).verdict == "exact"
+    weak = {run: table | {"tilt": table["tilt"] / 3.0} for run, table in found.items()}
+    assert judge("records-distribution", weak).verdict == "fail"

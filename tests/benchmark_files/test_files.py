@@ -1,0 +1,253 @@
+"""The files of the benchmark: whole, small, certified, and what their README says."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from benchmark_files.conftest import EXIT
+from benchmark_files.definitions import definitions
+from benchmark_files.references import reference
+from benchmark_files.submission import cases_of
+from benchmark_files.write import PUBLISHED, case_file
+from rockwobble import reduced
+from rockwobble.models import Case
+from rockwobble.reduced.exact import free_response, steady_wobble_rate
+
+jsonschema = pytest.importorskip("jsonschema")
+CASES = sorted(path.name for path in (PUBLISHED / "cases").iterdir())
+SHORT = ("turn-flat", "turn-recess", "uplift-directions", "near-upright-pass", "onset-of-slip")
+REFERENCE = Path(__file__).resolve().parents[1] / "reference"
+
+
+def read(case: str, name: str) -> Any:
+    return json.loads((PUBLISHED / "cases" / case / f"{name}.json").read_text())
+
+
+def table(case: str) -> dict[str, np.ndarray]:
+    path = PUBLISHED / "cases" / case / "reference.csv"
+    values = np.loadtxt(path, delimiter=",", skiprows=1)
+    return dict(zip(path.read_text().split("\n", 1)[0].split(","), values.T, strict=True))
+
+
+def test_there_are_ten_cases_as_defined() -> None:
+    assert sorted(one.name for one in definitions()) == CASES
+    assert len(CASES) == 10
+
+
+@pytest.mark.parametrize("case", CASES)
+@pytest.mark.parametrize("name", ["case", "accept", "reference"])
+def test_files_follow_their_schemas(case: str, name: str) -> None:
+    schema = json.loads((PUBLISHED / "schemas" / f"{name}.schema.json").read_text())
+    jsonschema.validate(read(case, name), schema, cls=jsonschema.Draft202012Validator)
+
+
+@pytest.mark.parametrize("path", sorted((PUBLISHED / "results").glob("*/*.json")), ids=lambda p: p.stem)
+def test_results_follow_their_schema(path: Path) -> None:
+    schema = json.loads((PUBLISHED / "schemas" / "result.schema.json").read_text())
+    found = json.loads(path.read_text())
+    if path.name == "about.json":
+        assert {"code", "version", "settings", "seconds_a_step"} <= set(found)
+    else:
+        jsonschema.validate(found, schema, cls=jsonschema.Draft202012Validator)
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_tables_are_small_and_begin_with_the_time(case: str) -> None:
+    path = PUBLISHED / "cases" / case / "reference.csv"
+    titles = next(csv.reader(path.read_text().splitlines()))
+    assert titles[0] == "time"
+    assert len(titles) <= 10
+    assert path.stat().st_size < 1_000_000
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_each_criterion_and_run_has_its_answer(case: str) -> None:
+    runs = [run["name"] for run in read(case, "case")["runs"]]
+    known = {(one["name"], one["run"]) for one in read(case, "reference")["quantities"]}
+    titles = set(table(case))
+    for one in read(case, "accept")["criteria"]:
+        assert one["pass"] > one["good"] >= one["exact"]
+        for run in one.get("runs", runs):
+            if one["kind"] == "trace":
+                column = "x" if one["name"] == "path" else "tilt"
+                assert {column, f"{column}:{run}"} & titles
+            else:
+                assert (one["name"], run) in known
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_each_number_is_certified_by_formulations_that_agree(case: str) -> None:
+    given = read(case, "reference")
+    quantities = given["quantities"]
+    loose = []
+    for one in quantities:
+        values = list(one["certified"].values())
+        assert len(values) >= 2
+        assert one["value"] in values
+        assert max(values) - min(values) <= 0.1 * one["bound"]
+        loose += [one] if one["bound"] > 1e-9 * max(1.0, abs(one["value"])) else []
+    for name, one in given["traces"].items():
+        assert one["bound"] < (1e-6 if name == "azimuth" else 1e-9)
+        assert len(set(one["certified_by"])) == 2
+    # only single peaks under records of that length are sensitive: their distribution is not
+    if case != "records-distribution":
+        assert not loose
+        return
+    ways = np.array([list(one["certified"].values()) for one in quantities]).T
+    shares = [np.searchsorted(np.sort(way), ways.ravel(), side="right") / len(way) for way in ways]
+    assert np.abs(shares[0] - shares[1]).max() < 1.5 / 22.0
+
+
+@pytest.mark.parametrize("case", SHORT)
+def test_the_files_are_what_is_computed_here(case: str) -> None:
+    definition = next(one for one in definitions() if one.name == case)
+    assert json.loads(json.dumps(case_file(definition))) == read(case, "case")
+    found = reference(definition)
+    stored = {(one["name"], one["run"]): one for one in read(case, "reference")["quantities"]}
+    for one in found.quantities:
+        old = stored[one["name"], one["run"]]
+        assert abs(one["value"] - old["value"]) <= old["bound"]
+    for name, column in table(case).items():
+        np.testing.assert_allclose(column, found.columns[name], rtol=0, atol=1e-8)
+
+
+def test_the_turns_are_those_of_the_table_made_outside_the_project() -> None:
+    lines = (REFERENCE / "finite_release.csv").read_text().splitlines()
+    rows = list(csv.DictReader(line for line in lines if not line.startswith("#")))
+    checked = 0
+    for support, case in (("rolling", "turn-flat"), ("recess", "turn-recess")):
+        known = {(one["name"], one["run"]): one["value"] for one in read(case, "reference")["quantities"]}
+        for row in rows:
+            if row["h_over_b"] != "2":
+                continue
+            run = f"spin-{float(row['phi_rate']):g}"
+            turn, period = float(row[f"{support}_turn_deg"]), float(row[f"{support}_period_s"])
+            assert math.degrees(known["turn_1", run]) == pytest.approx(turn, abs=1e-6)
+            assert known["period_1", run] == pytest.approx(period, abs=1e-6)
+            checked += 1
+    assert checked == 6
+
+
+def test_closed_forms_and_quadratures_are_met() -> None:
+    for case in ("turn-recess", "near-upright-pass"):
+        for run, (given, _) in cases_of(PUBLISHED / "cases" / case).items():
+            assert given.initial is not None
+            exact = free_response(given.cylinder, given.initial, gravity=given.gravity)
+            known = {
+                one["name"]: one["value"]
+                for one in read(case, "reference")["quantities"]
+                if one["run"] == run
+            }
+            assert known["turn_1"] == pytest.approx(exact.angle_of_turn, rel=1e-12)
+            assert known["period_1"] == pytest.approx(exact.period, rel=1e-12)
+    (given, _) = cases_of(PUBLISHED / "cases" / "steady-wobble")["wobble"]
+    assert given.initial is not None
+    rate = float(steady_wobble_rate(given.cylinder, given.initial.tilt, gravity=given.gravity))
+    (known,) = read("steady-wobble", "reference")["quantities"]
+    assert known["value"] == pytest.approx(200.0 * math.pi / rate, rel=1e-12)
+
+
+def test_a_start_as_a_rigid_body_is_the_start_in_angles() -> None:
+    """The contact point is on the original circle and has no velocity, and there is no twist rate."""
+    for case in CASES:
+        for run in read(case, "case")["runs"]:
+            start = run["start"]
+            if not start["tilt"]:
+                continue
+            w, x, y, z = start["quaternion"]
+            axis = np.array([2 * (x * z + w * y), 2 * (y * z - w * x), w * w - x * x - y * y + z * z])
+            assert math.hypot(w, x, y, z) == pytest.approx(1.0)
+            assert z == 0.0
+            assert math.atan2(axis[1], axis[0]) == pytest.approx(start["azimuth"])
+            assert math.acos(axis[2]) == pytest.approx(start["tilt"])
+            spin, centre = np.array(start["angular_velocity"]), np.array(start["position"])
+            down = np.array([0.0, 0.0, -1.0]) + axis[2] * axis
+            base = centre - run["mass_centre_height"] * axis
+            contact = base + run["base_radius"] * down / np.linalg.norm(down)
+            assert contact[2] == pytest.approx(0.0, abs=1e-12 * run["base_radius"])
+            assert np.hypot(*contact[:2]) == pytest.approx(run["base_radius"])
+            slip = np.array(start["velocity"]) + np.cross(spin, contact - centre)
+            assert np.abs(slip).max() < 1e-12
+            # z_world + z_body has no share of the angular velocity without a twist
+            assert spin @ (np.array([0.0, 0.0, 1.0]) + axis) == pytest.approx(0.0, abs=1e-12)
+
+
+def test_the_window_of_el_centro_ends_where_a_copy_no_longer_agrees() -> None:
+    ends = {
+        one["runs"][0]: one["window"][1] for one in read("el-centro", "accept")["criteria"] if "window" in one
+    }
+    for run, (case, support) in cases_of(PUBLISHED / "cases" / "el-centro").items():
+        assert case.motion is not None
+        longer = Case(case.cylinder, case.motion, duration=case.length, gravity=case.gravity)
+        copy = Case(case.cylinder, case.motion.scaled(1.001), duration=case.length, gravity=case.gravity)
+        one, other = (reduced.simulate(c, support=support, rtol=1e-11) for c in (longer, copy))
+        count = min(len(one.tilt), len(other.tilt))
+        beyond = np.abs(one.tilt[:count] - other.tilt[:count]) > 0.01 * case.cylinder.alpha
+        end = float(one.time[int(np.argmax(beyond))])
+        assert beyond.any()
+        assert ends[run] < end < ends[run] + 1.0
+
+
+def test_programs_are_short_and_need_numpy_only(copied: Path) -> None:
+    assert len((PUBLISHED / "check.py").read_text().splitlines()) < 400
+    for name in ("check", "verify", "scoreboard"):
+        code = (
+            "import sys; before = set(sys.modules); sys.path.insert(0, sys.argv[1]); "
+            "__import__(sys.argv[2]); "
+            "print(*sorted({m.partition('.')[0] for m in set(sys.modules) - before}))"
+        )
+        command = [sys.executable, "-I", "-c", code, str(copied), name]
+        loaded = set(subprocess.run(command, capture_output=True, text=True, check=True).stdout.split())
+        allowed = sys.stdlib_module_names | {name} | (set() if name == "scoreboard" else {"numpy"})
+        assert not {m for m in loaded - allowed if not m.startswith("_")}, name
+
+
+@pytest.mark.parametrize("path", sorted((PUBLISHED / "examples").iterdir()), ids=lambda path: path.stem)
+def test_examples_of_every_format_are_exact(path: Path, copied: Path, tmp_path: Path) -> None:
+    command = [sys.executable, "-I", str(copied / "check.py"), "turn-recess", str(path)]
+    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == EXIT["exact"]
+    result = json.loads((tmp_path / "result.json").read_text())
+    assert result["verdict"] == "exact", done.stdout
+    schema = json.loads((copied / "schemas" / "result.schema.json").read_text())
+    jsonschema.validate(result, schema, cls=jsonschema.Draft202012Validator)
+
+
+def test_the_scoreboard_is_made_of_the_results(copied: Path) -> None:
+    subprocess.run([sys.executable, "-I", str(copied / "scoreboard.py")], check=True)
+    for name in ("scoreboard.md", "scoreboard.html", "scoreboard.json"):
+        assert (copied / name).read_text() == (PUBLISHED / name).read_text(), name
+    page = (copied / "scoreboard.md").read_text()
+    for path in (PUBLISHED / "results").glob("*/about.json"):
+        about = json.loads(path.read_text())
+        assert f"{about['code']} {about['version']}, {about['settings']}" in page
+
+
+def test_a_result_by_other_references_is_refused(copied: Path, tmp_path: Path) -> None:
+    import shutil
+
+    other = tmp_path / "other"
+    shutil.copytree(copied, other)
+    path = next((other / "results").glob("*/turn-flat.json"))
+    path.write_text(path.read_text().replace('"reference_sha256": "', '"reference_sha256": "00')[:-1])
+    done = subprocess.run(
+        [sys.executable, "-I", str(other / "scoreboard.py")], capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 1
+    assert "judged by other references" in done.stderr
+
+
+def test_the_readme_names_every_case_and_level() -> None:
+    text = (PUBLISHED / "README.md").read_text()
+    assert all(f"| {case} |" in text for case in CASES)
+    assert "CC0" in text
+    assert "CC0 1.0 Universal" in (PUBLISHED / "LICENSE").read_text()

@@ -1,0 +1,205 @@
+"""Certificates: what repeats, what is chaotic, what changed, and what may be claimed."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from mutation.listed import mutations
+from mutation.mutant import mutated
+
+from rockwobble import reduced
+from rockwobble.compare.certificate import Claim, certify, claims_of, read_certificate, reduced_method, verify
+from rockwobble.compare.certificate.certificate import write_certificate
+from rockwobble.compare.certificate.fingerprint import entry, fingerprint
+from rockwobble.compare.certificate.short_cases import ShortCase, short_cases
+from rockwobble.compare.certificate.verdict import CHANGED, CHAOTIC, SAME, compare, compare_entries
+from rockwobble.compare.check.finding import Bound, Finding, at_most, not_run
+from rockwobble.models import Case, Trace
+
+ROOT = Path(__file__).resolve().parents[2]
+# of the faults in the sources of the recess model, each tenth: all of them take minutes in the interpreter
+FAULTS = [one for one in mutations() if one.faults][::10]
+
+
+@pytest.fixture(scope="module")
+def certificate() -> dict[str, Any]:
+    return certify(reduced_method(), [finding("exact", "period", 1e-13, 1e-12)])
+
+
+def finding(layer: str, name: str, value: float, bound: float) -> Finding:
+    return dataclasses.replace(at_most(name, value, Bound(bound, "a reason"), "the model"), layer=layer)
+
+
+def changed_by(change: Any) -> Any:
+    """The reduced method with a change to each case before it runs."""
+    method = reduced_method()
+
+    def simulate(short: ShortCase, case: Case) -> Trace:
+        return method.simulate(short, change(case))
+
+    return dataclasses.replace(method, simulate=simulate)
+
+
+def test_twelve_cases_have_names_claims_and_terms_of_their_own() -> None:
+    cases = short_cases()
+    assert len(cases) == 12
+    assert len({short.name for short in cases}) == len({short.term for short in cases}) == 12
+
+
+def test_it_is_the_same_here_and_in_a_file(certificate: dict[str, Any], tmp_path: Path) -> None:
+    write_certificate(certificate, tmp_path / "certificate.json")
+    answer = verify(read_certificate(tmp_path / "certificate.json"))
+    assert answer.word == SAME
+    assert answer.exit_code == 0
+
+
+def test_the_interpreter_without_a_compiler_gives_the_same(certificate: dict[str, Any]) -> None:
+    old = certificate["fingerprint"][:-1]  # the last needs minutes there
+    with mutated() as copy:
+        method = reduced_method(copy)
+        for one, short in zip(old, short_cases(), strict=False):
+            new = entry(short, method.simulate(short, short.case))
+            assert compare_entries(one, new).word == SAME, short.name
+            # rounding leaves four digits of what is allowed
+            for name, wanted in one["signals"].items():
+                apart = np.abs(np.array(wanted) - np.array(new["signals"][name]))
+                assert (apart < 1e-3 * np.array(one["allowed"][name])).all()
+
+
+@pytest.mark.parametrize("mutation", FAULTS, ids=lambda mutation: mutation.name)
+def test_a_fault_in_the_models_is_a_change_with_its_claim_and_term(
+    certificate: dict[str, Any], mutation: Any
+) -> None:
+    with mutated(*mutation.faults) as copy:
+        answer = verify(certificate, reduced_method(copy))
+    assert answer.word == CHANGED, mutation.name
+    assert answer.claim
+    assert answer.term
+    assert answer.exit_code == 1
+
+
+def test_only_the_last_case_is_chaotic_and_keeps_the_peaks_of_copies(certificate: dict[str, Any]) -> None:
+    *others, last = certificate["fingerprint"]
+    assert all(one["agreement_time"] is None and "peaks" not in one for one in others)
+    assert last["agreement_time"] < 9.0
+    assert len(last["peaks"]) == 16
+
+
+def test_a_difference_after_the_agreement_time_is_chaotic_if_the_peaks_are_alike(
+    certificate: dict[str, Any],
+) -> None:
+    # as another version would: by less than the accuracy of the method
+    other = changed_by(
+        lambda case: (
+            case if case.motion is None else dataclasses.replace(case, motion=case.motion.scaled(1.0 + 3e-11))
+        )
+    )
+    answer = verify(certificate, other)
+    assert answer.word == CHAOTIC
+    assert answer.case == "close-passes"
+    assert answer.time >= certificate["fingerprint"][-1]["agreement_time"]
+    assert answer.exit_code == 0
+
+
+def test_other_peaks_after_the_agreement_time_are_a_change(certificate: dict[str, Any]) -> None:
+    last = certificate["fingerprint"][-1]
+    late = np.array(last["time"]) >= last["agreement_time"]
+    signals = {
+        name: [value + 10.0 * far for value, far in zip(values, late.tolist(), strict=True)]
+        for name, values in last["signals"].items()
+    }
+    alike, other = last | {"signals": signals}, [3.0 * peak for peak in last["peaks"]]
+    assert compare_entries(last, alike).word == CHAOTIC
+    answer = compare_entries(last, alike | {"peaks": other})
+    assert answer.word == CHANGED
+    assert answer.quantity == "distribution of the peaks"
+
+
+def test_the_first_change_is_named_and_nothing_after_it_runs(certificate: dict[str, Any]) -> None:
+    seen = []
+
+    def entries() -> Any:
+        for one in certificate["fingerprint"]:
+            seen.append(one["name"])
+            signals = dict(one["signals"])
+            if one["name"] == "rolling":
+                signals["force_y"] = [value + 1e-3 for value in signals["force_y"]]
+            yield one | {"signals": signals}
+
+    answer = compare(certificate["fingerprint"], entries())
+    assert (answer.word, answer.case, answer.quantity) == (CHANGED, "rolling", "force_y")
+    assert answer.difference == pytest.approx(1e-3)
+    assert seen == ["tilting", "rolling"]
+
+
+def test_a_motion_that_ends_earlier_is_a_change(certificate: dict[str, Any]) -> None:
+    one = certificate["fingerprint"][0]
+    shorter = {name: values[:-5] for name, values in one["signals"].items()}
+    assert compare_entries(one, one | {"signals": shorter}).word == CHANGED
+
+
+def test_the_copy_in_the_published_folder_reads_certificates_with_numpy_alone(
+    certificate: dict[str, Any], tmp_path: Path
+) -> None:
+    published = ROOT / "reports" / "published" / "benchmark" / "verify.py"
+    assert published.read_text() == (ROOT / "compare" / "certificate" / "verdict.py").read_text()
+    off = json.loads(json.dumps(certificate))
+    off["fingerprint"][2]["signals"]["tilt"][5] += 1e-3
+    write_certificate(certificate, tmp_path / "one.json")
+    write_certificate(off, tmp_path / "other.json")
+
+    def run(*names: str) -> subprocess.CompletedProcess[str]:
+        paths = [str(tmp_path / name) for name in names]
+        command = [sys.executable, "-I", str(published), *paths]
+        return subprocess.run(command, capture_output=True, text=True, check=False)
+
+    same, changed, bad = run("one.json", "one.json"), run("one.json", "other.json"), run("one.json", "none")
+    assert (same.returncode, same.stdout.strip()) == (0, "same")
+    assert changed.returncode == 1
+    assert changed.stdout.startswith("changed: tilt of near-pass")
+    assert bad.returncode == 2
+
+
+def test_what_is_not_validated_cannot_be_called_so() -> None:
+    about = {"quantity": "q", "domain": "d", "bound": 1.0, "measured": 0.5, "unit": "", "evidence": "e"}
+    Claim(**about, status="validated", data_sha256="0" * 64)
+    for status, digest in (("validated", ""), ("validated", "paper"), ("verified", "0" * 64)):
+        with pytest.raises(ValueError, match="SHA-256"):
+            Claim(**about, status=status, data_sha256=digest)
+    with pytest.raises(ValueError, match="must hold"):
+        Claim(**about | {"measured": 2.0}, status="verified")
+
+
+def test_findings_become_claims_and_what_did_not_run_is_said() -> None:
+    found = [
+        finding("exact", "period", 1e-13, 1e-12),
+        finding("agreement", "peak", 1e-3, 1e-2),
+        finding("records", "files", 0.0, 0.0),
+        not_run("peak, pybullet", "pybullet", "not installed here"),
+    ]
+    claims, not_covered = claims_of(found)
+    assert [claim.status for claim in claims] == ["verified", "cross-validated"]
+    assert "peak, pybullet: not installed here" in not_covered
+    assert any("no experiment" in point for point in not_covered)
+    with pytest.raises(ValueError, match="nothing is certified"):
+        claims_of([finding("exact", "period", 1.0, 1e-12)])
+
+
+def test_a_file_that_is_no_certificate_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "other.json").write_text('{"kind": "something"}')
+    with pytest.raises(ValueError, match="no certificate"):
+        read_certificate(tmp_path / "other.json")
+
+
+def test_the_fingerprint_is_of_the_model_that_is_installed() -> None:
+    one = next(fingerprint(reduced_method()))
+    short = short_cases()[0]
+    trace = reduced.simulate(short.case, support=short.support, sample_step=short.case.length / 40)
+    assert one["signals"]["tilt"][-1] == pytest.approx(trace.tilt[-1] / trace.case.cylinder.alpha, rel=1e-11)

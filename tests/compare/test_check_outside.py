@@ -1,0 +1,176 @@
+"""`rockwobble check --model` and `--trajectory`: right models pass, wrong ones fail where they are wrong."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare.check import FAILED, NOT_RUN, PASSED, Finding
+from rockwobble.compare.check.outside import (
+    Outputs,
+    check_model,
+    check_trajectory,
+    load_model,
+    read_outputs,
+)
+from rockwobble.models import Case, Cylinder, InitialState, Trace
+
+
+def ours(case: Case, support: str) -> Trace:
+    return reduced.simulate(case, support=support, rtol=1e-9, sample_step=case.length / 1000)
+
+
+def without(*names: str) -> Callable[[Case, str], dict[str, Any]]:
+    def model(case: Case, support: str) -> dict[str, Any]:
+        trace = ours(case, support)
+        columns = {"time": trace.time, "tilt": trace.tilt, "azimuth": trace.rolling_angle}
+        columns["energy"] = trace.energy
+        return {name: column for name, column in columns.items() if name not in names}
+
+    return model
+
+
+def outcomes(findings: list[Finding], outcome: str) -> set[str]:
+    return {finding.name for finding in findings if finding.outcome == outcome}
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+def test_our_own_model_passes_every_check_tightly(support: str) -> None:
+    found = list(check_model(ours, support=support, tolerance=1e-5))
+    assert len(found) == 11
+    assert outcomes(found, PASSED) == {finding.name for finding in found}
+
+
+def test_what_a_model_does_not_return_is_listed_and_the_rest_is_checked() -> None:
+    found = list(check_model(without("azimuth", "energy")))
+    assert outcomes(found, NOT_RUN) == {
+        "angle of turn",
+        "energy of a release",
+        "another azimuth",
+        "the mirror image",
+    }
+    # a tilt alone is held against the tilt
+    assert not outcomes(found, FAILED), [f for f in found if f.failed]
+    assert len(outcomes(found, PASSED)) == 7
+
+
+def heavier(case: Case, support: str) -> Trace:
+    body = case.cylinder
+    return ours(
+        dataclasses.replace(case, cylinder=dataclasses.replace(body, semidiagonal=1.01 * body.semidiagonal)),
+        support,
+    )
+
+
+def left_handed(case: Case, support: str) -> dict[str, Any]:
+    trace = ours(case, support)
+    azimuth = trace.rolling_angle if case.motion is None else -trace.rolling_angle
+    return {"time": trace.time, "tilt": trace.tilt, "azimuth": azimuth}
+
+
+def fixed_tolerance(case: Case, support: str) -> dict[str, Any]:
+    trace = ours(case, support)
+    return {"time": trace.time, "tilt": trace.tilt + 1e-2 * trace.time / case.cylinder.semidiagonal**2}
+
+
+def lossy(case: Case, support: str) -> dict[str, Any]:
+    trace = ours(case, support)
+    return {
+        "time": trace.time,
+        "tilt": trace.tilt * np.exp(-0.02 * trace.time),
+        "azimuth": trace.rolling_angle,
+    }
+
+
+def restless(case: Case, support: str) -> dict[str, Any]:
+    trace = ours(case, support)
+    return {"time": trace.time, "tilt": np.maximum(trace.tilt, 1e-3)}
+
+
+@pytest.mark.parametrize(
+    ("model", "fails", "holds"),
+    [
+        (heavier, {"period of a release", "lean under El Centro, 12 s"}, {"another azimuth"}),
+        (left_handed, {"lean under El Centro, 12 s"}, {"angle of turn", "the mirror image"}),
+        (fixed_tolerance, {"four times the size, half as fast"}, set()),
+        (lossy, {"tilt that it returns to", "tilt of a steady wobble"}, {"another azimuth"}),
+        (restless, {"tilt where it must stand"}, {"period of a release"}),
+    ],
+)
+def test_a_wrong_model_fails_where_it_is_wrong(
+    model: Callable[[Case, str], Any], fails: set[str], holds: set[str]
+) -> None:
+    found = list(check_model(model))
+    assert fails <= outcomes(found, FAILED)
+    assert holds <= outcomes(found, PASSED)
+
+
+def test_a_model_that_cannot_do_a_case_is_told_and_the_others_run() -> None:
+    def only_releases(case: Case, support: str) -> Trace:
+        if case.initial is None:
+            raise NotImplementedError("it must be released")
+        return ours(case, support)
+
+    found = list(check_model(only_releases))
+    notes = {finding.name: finding.note for finding in found if finding.outcome == NOT_RUN}
+    assert notes == dict.fromkeys(
+        ["standing", "uplift", "El Centro"], "NotImplementedError: it must be released"
+    )
+    assert len(outcomes(found, PASSED)) == 8
+
+
+@pytest.mark.parametrize(
+    ("result", "reason"),
+    [
+        ({"tilt": [0.1, 0.2]}, "must return time"),
+        ({"time": [0.0, 1.0], "tilt": [0.1, math.nan]}, "finite numbers"),
+        ({"time": [0.0, 0.0], "tilt": [0.1, 0.1]}, "time must rise"),
+        ({"time": [0.0, 1.0], "tilt": [0.1]}, "as long as time"),
+    ],
+)
+def test_what_is_no_motion_is_told(result: dict[str, Any], reason: str) -> None:
+    found = list(check_model(lambda case, support: result))
+    assert all(finding.outcome == NOT_RUN and reason in finding.note for finding in found)
+
+
+def test_a_model_is_found_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "my_rocking.py").write_text("def model(case, support):\n    return {}\n")
+    monkeypatch.chdir(tmp_path)
+    assert load_model("my_rocking:model")(None, "recess") == {}  # type: ignore[arg-type]
+    for name, reason in (("my_rocking", "module:function"), ("my_rocking:other", "cannot be imported")):
+        with pytest.raises(ValueError, match=reason):
+            load_model(name)
+
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+RELEASE = Case(PIER, initial=InitialState(0.5 * PIER.alpha, 0.0, 0.3, 0.5), duration=5.0)
+
+
+def test_a_trajectory_is_held_against_its_case_as_far_as_one_motion_tells(tmp_path: Path) -> None:
+    trace = ours(RELEASE, "recess")
+    path = tmp_path / "mine.csv"
+    lines = ["time [s], tilt [deg], azimuth [deg]"]
+    rows = zip(trace.time, np.degrees(trace.tilt), np.degrees(trace.rolling_angle), strict=True)
+    path.write_text(
+        "\n".join([*lines, *(", ".join(f"{value:.12g}" for value in row) for row in rows)]) + "\n"
+    )
+    found = list(check_trajectory(read_outputs(path), RELEASE, tolerance=1e-6))
+    assert outcomes(found, PASSED) == {"tilt at release", "lean up to 5 s", "peak tilt"}
+    assert outcomes(found, NOT_RUN) == {
+        "energy",
+        *(f"checks of the layer {layer}" for layer in ("exact", "invariance", "order")),
+    }
+
+
+def test_a_trajectory_of_another_body_fails() -> None:
+    trace = heavier(RELEASE, "recess")
+    given = Outputs(time=trace.time, tilt=trace.tilt, azimuth=trace.rolling_angle)
+    found = list(check_trajectory(given, RELEASE))
+    assert outcomes(found, FAILED) == {"lean up to 5 s"}

@@ -1,0 +1,116 @@
+"""Every public name, command and key has its place in the reference; notebooks are kept without output."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import re
+from pathlib import Path
+
+import pytest
+import typer
+
+import rockwobble
+from rockwobble import compare
+from rockwobble.models import Case, Cylinder, InitialState, Run
+from rockwobble.models.suites.tables import TABLES
+from rockwobble.reports.cli.main import app
+
+DOCS = Path(__file__).parents[2] / "docs"
+API = DOCS / "reference" / "api"
+PACKAGES = ["models", "reduced", "multibody", "compare", "compare.check"]
+NOTEBOOKS = sorted((DOCS / "notebooks").glob("*.ipynb"))
+
+
+def documented() -> set[str]:
+    """Full names that the pages of the reference document."""
+    names = set()
+    for page in API.glob("*.rst"):
+        module = ""
+        for line in page.read_text(encoding="utf-8").splitlines():
+            if found := re.match(r"\.\. currentmodule:: (\S+)", line):
+                module = found.group(1)
+            elif found := re.match(r"\.\. auto(?:class|function|exception|data):: (\S+)", line):
+                names.add(f"{module}.{found.group(1)}")
+    return names
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_public_name_is_documented(package: str) -> None:
+    public = {
+        f"rockwobble.{package}.{name}" for name in importlib.import_module(f"rockwobble.{package}").__all__
+    }
+    assert public
+    assert public - documented() == set()
+
+
+def test_nothing_is_documented_that_is_not_there() -> None:
+    missing = []
+    for name in documented():
+        module, _, last = name.rpartition(".")
+        if not hasattr(importlib.import_module(module), last):
+            missing.append(name)
+    assert missing == []
+
+
+def test_every_name_at_the_top_is_on_the_first_page() -> None:
+    page = (API / "index.md").read_text(encoding="utf-8")
+    assert [name for name in rockwobble.__all__ if f"`rw.{name}`" not in page] == []
+
+
+def test_every_command_has_its_help_on_a_page() -> None:
+    shown = "".join(
+        page.read_text(encoding="utf-8") for page in (DOCS / "reference" / "commands").glob("*.md")
+    )
+    commands = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    assert set(re.findall(r"\{rockwobble-command\} (\S+)", shown)) == set(commands)
+
+
+def test_every_key_of_a_suite_file_is_on_its_page() -> None:
+    page = (DOCS / "reference" / "suite-file.md").read_text(encoding="utf-8")
+    keys = [key for name, table in TABLES.items() if name for key in table.model_fields]
+    assert len(keys) > 40
+    assert [key for key in keys if f"`{key}`" not in page] == []
+
+
+def test_every_file_of_a_comparison_and_key_of_its_manifest_is_on_its_page(tmp_path: Path) -> None:
+    page = (DOCS / "reference" / "results.md").read_text(encoding="utf-8")
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=0.1)
+    compare.compare(case, runs=[Run(None, "flat")], workers=1, out=tmp_path)
+    written = [path.name for path in tmp_path.iterdir()]
+    keys = list(json.loads((tmp_path / "manifest.json").read_text(encoding="utf-8")))
+    columns = compare.simulate(case).to_frame().columns
+    assert len(written) > 4
+    assert len(keys) > 8
+    missing = [name for name in [*written, *keys, *columns] if f"`{name}`" not in page]
+    assert [name for name in missing if f"## {name}" not in page] == []
+
+
+@pytest.mark.parametrize("notebook", NOTEBOOKS, ids=lambda path: path.stem)
+def test_notebooks_are_short_ask_a_question_and_hold_no_output(notebook: Path) -> None:
+    cells = json.loads(notebook.read_text(encoding="utf-8"))["cells"]
+    first = "".join(cells[0]["source"])
+    assert first.startswith("# ")
+    assert re.search(r"^\*\*[^*]+\?\*\*$", first, re.MULTILINE), "it opens with the question that it answers"
+    assert len(cells) <= 24
+    code = [cell for cell in cells if cell["cell_type"] == "code"]
+    assert [cell["id"] for cell in code if cell["outputs"] or cell["execution_count"] is not None] == []
+
+
+def test_there_are_six_notebooks() -> None:
+    assert [path.name[:2] for path in NOTEBOOKS] == ["01", "02", "03", "04", "05", "06"]
+
+
+def test_one_version_is_said_everywhere() -> None:
+    said = {
+        "pyproject.toml": r'^version = "([^"]+)"',
+        "CITATION.cff": r"^version: (\S+)",
+        "CHANGELOG.md": r"^## \[(\d[^\]]*)\]",
+    }
+    found = {}
+    for name, pattern in said.items():
+        first = re.search(pattern, (DOCS.parent / name).read_text(encoding="utf-8"), re.MULTILINE)
+        assert first, name
+        found[name] = first.group(1)
+    assert len(set(found.values())) == 1, found

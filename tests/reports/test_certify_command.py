@@ -1,0 +1,128 @@
+"""`rockwobble certify`, `verify`, `check --model` and `check --trajectory`, and the item of pytest."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from rockwobble.reports.cli.main import main
+
+pytest_plugins = ["pytester"]
+Run = Callable[..., int]
+
+
+@pytest.fixture
+def run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Run:
+    monkeypatch.chdir(tmp_path)
+
+    def call(*arguments: str) -> int:
+        with pytest.raises(SystemExit) as ending:
+            main(list(arguments))
+        return int(ending.value.code or 0)
+
+    return call
+
+
+@pytest.fixture(scope="module")
+def certificate(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("certified") / "certificate.json"
+    with pytest.raises(SystemExit) as ending:
+        main(["certify", "--only", "conserved", "--out", str(path)])
+    assert not ending.value.code
+    return path
+
+
+def changed(certificate: Path, folder: Path) -> Path:
+    found = json.loads(certificate.read_text())
+    found["fingerprint"][5]["signals"]["tilt"][30] += 1e-5
+    path = folder / "changed.json"
+    path.write_text(json.dumps(found))
+    return path
+
+
+def test_a_certificate_says_what_holds_and_what_is_open(certificate: Path) -> None:
+    found = json.loads(certificate.read_text())
+    assert len(found["fingerprint"]) == 12
+    assert {claim["status"] for claim in found["claims"]} == {"verified"}
+    assert all(claim["measured"] <= claim["bound"] for claim in found["claims"])
+    assert any("no experiment" in point for point in found["not_covered"])
+    assert {"python", "numpy", "rockwobble"} <= set(found["versions"])
+
+
+def test_verify_answers_with_one_word_and_its_exit_code(
+    run: Run, certificate: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run("verify", str(certificate)) == 0
+    assert capsys.readouterr().out.strip() == "same"
+    assert run("verify", str(changed(certificate, tmp_path)), "--json") == 1
+    answer = json.loads(capsys.readouterr().out)
+    assert answer["word"] == "changed"
+    assert answer["quantity"] == "tilt"
+    assert answer["term"]
+    assert run("verify", "nowhere.json") == 2
+
+
+def test_bad_input_is_said_before_anything_runs(run: Run) -> None:
+    assert run("certify", "--time-step", "1e-4") == 2
+    assert run("certify", "--only", "none") == 2
+    assert run("certify", "--out", "no/such/folder/certificate.json") == 2
+    assert run("check", "--model", "nothing") == 2
+    assert run("check", "--model", "a:b", "--trajectory", "c.csv") == 2
+    assert run("check", "--model", "a:b", "--only", "exact") == 2
+
+
+def test_pytest_has_an_item_for_the_certificate(pytester: pytest.Pytester, certificate: Path) -> None:
+    result = pytester.runpytest_inprocess("--rockwobble-certificate", str(certificate))
+    result.assert_outcomes(passed=1)
+    other = changed(certificate, pytester.path)
+    result = pytester.runpytest_inprocess("--rockwobble-certificate", str(other))
+    result.assert_outcomes(failed=1)
+    result.stdout.fnmatch_lines(["*changed: tilt of*"])
+
+
+MODEL = """
+from rockwobble import reduced
+
+def good(case, support):
+    trace = reduced.simulate(case, support=support, sample_step=case.length / 1000)
+    return {"time": trace.time, "tilt": trace.tilt, "azimuth": trace.rolling_angle}
+
+def wrong(case, support):
+    return {**good(case, support), "tilt": 1.01 * good(case, support)["tilt"]}
+"""
+
+
+def test_a_model_of_somebody_else_is_checked(
+    run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "rocking_of_mine.py").write_text(MODEL)
+    assert run("check", "--model", "rocking_of_mine:good", "--json", "good.json") == 0
+    assert "the model returns no energy" in capsys.readouterr().out
+    assert run("check", "--model", "rocking_of_mine:wrong") == 1
+    assert "FAILED" in capsys.readouterr().out
+    found = json.loads((tmp_path / "good.json").read_text())
+    assert "period of a release" in json.dumps(found)
+
+
+def test_a_trajectory_of_somebody_else_is_checked(
+    run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "one.suite.toml").write_text(
+        '[[runs]]\nengine = "mujoco"\nsupport = "recess"\n[[cases]]\nname = "release"\n'
+        "cylinder = { semidiagonal = 6, tan_alpha = 0.2 }\n"
+        "release = { tilt_over_alpha = 0.5, rolling_rate = 0.5 }\nduration = 5\n"
+    )
+    from rockwobble import reduced
+    from rockwobble.models import read_suite
+
+    (case,) = read_suite(str(tmp_path / "one.suite.toml")).cases
+    trace = reduced.simulate(case)
+    rows = zip(trace.time, trace.tilt, trace.rolling_angle, strict=True)
+    lines = ["time,tilt [rad],azimuth [rad]", *(",".join(map(repr, map(float, row))) for row in rows)]
+    (tmp_path / "mine.csv").write_text("\n".join(lines) + "\n")
+    assert run("check", "--trajectory", "mine.csv", "--suite", "one.suite.toml") == 0
+    assert "one motion does not tell" in capsys.readouterr().out
+    assert run("check", "--trajectory", "mine.csv") == 2  # of the suite that ships, which case?
