@@ -54,11 +54,11 @@ def run(engine: str, support: str, **changes: Any) -> Trace:
 def describes_itself(engine: str, support: str) -> None:
     """Version, supports and settings are plain values."""
     backend = find_engine(engine)
-    _hold(bool(backend.version()), "the version is empty")
-    _hold(support in backend.supports, f"supports are {backend.supports}")
-    _hold(isinstance(backend.uplifts, bool), f"uplifts is {backend.uplifts!r}, not True or False")
+    hold(bool(backend.version()), "the version is empty")
+    hold(support in backend.supports, f"supports are {backend.supports}")
+    hold(isinstance(backend.uplifts, bool), f"uplifts is {backend.uplifts!r}, not True or False")
     settings = backend.settings({}, _scene(support))
-    _hold(json.loads(json.dumps(settings)) == settings, f"settings are not plain values: {settings}")
+    hold(json.loads(json.dumps(settings)) == settings, f"settings are not plain values: {settings}")
 
 
 def refuses_what_it_does_not_know(engine: str, support: str) -> None:
@@ -75,29 +75,29 @@ def steps_one_by_one(engine: str, support: str) -> None:
     settings = backend.settings({}, scene)
     still = np.zeros((60, 3))
     with backend.open(scene, settings) as whole, backend.open(scene, settings) as separated:
-        _hold(0.0 <= whole.hold_centre <= 1.0, f"hold_centre is {whole.hold_centre}")
+        hold(0.0 <= whole.hold_centre <= 1.0, f"hold_centre is {whole.hold_centre}")
         together = whole.advance(still)
         parts = [separated.advance(still[:1]), separated.advance(still[1:23]), separated.advance(still[23:])]
-        _hold(whole.warnings() == "", f"it warned of {whole.warnings()!r} in a sound run")
+        hold(whole.warnings() == "", f"it warned of {whole.warnings()!r} in a sound run")
     for name, width in (("position", 3), ("quaternion", 4), ("velocity", 3), ("angular_velocity", 3)):
         values: Array = getattr(together, name)
-        _hold(values.shape == (60, width), f"{name} of 60 steps has the shape {values.shape}")
+        hold(values.shape == (60, width), f"{name} of 60 steps has the shape {values.shape}")
         joined = np.vstack([getattr(part, name) for part in parts])
-        _small(joined - values, CHUNKS, f"{name} depends on how many steps one call takes")
-    _small(np.linalg.norm(together.quaternion, axis=1) - 1.0, CHUNKS, "the quaternion has not the norm 1")
+        small(joined - values, CHUNKS, f"{name} depends on how many steps one call takes")
+    small(np.linalg.norm(together.quaternion, axis=1) - 1.0, CHUNKS, "the quaternion has not the norm 1")
     moved = np.diff(together.position, axis=0) / scene.time_step
-    _small(together.velocity[1:] - moved, 1e-4, "the velocity of a step is not its displacement over h")
+    small(together.velocity[1:] - moved, 1e-4, "the velocity of a step is not its displacement over h")
 
 
 def keeps_the_time_grid(engine: str, support: str) -> None:
     """Samples are multiples of the sample step and the exact end, and every field is finite."""
     found = run(engine, support, duration=0.1037, sample_step=0.02)
     expected = np.append(0.02 * np.arange(6), 0.1037)
-    _hold(np.array_equal(found.time, expected), f"the samples are at {found.time}")
+    hold(np.array_equal(found.time, expected), f"the samples are at {found.time}")
     fields = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "energy", "centre_of_mass")
     for name in fields:
-        _hold(bool(np.isfinite(getattr(found, name)).all()), f"{name} is not finite")
-    _hold(found.outcome == "completed", f"the outcome is {found.outcome}: {found.facts}")
+        hold(bool(np.isfinite(getattr(found, name)).all()), f"{name} is not finite")
+    hold(found.outcome == "completed", f"the outcome is {found.outcome}: {found.facts}")
 
 
 def starts_as_stated(engine: str, support: str) -> None:
@@ -107,42 +107,42 @@ def starts_as_stated(engine: str, support: str) -> None:
     with backend.open(scene, backend.settings({}, scene)) as stepper:
         first = stepper.advance(np.zeros((1, 3)))
     moved = scene.start.position + scene.time_step * scene.start.velocity
-    _small(
+    small(
         first.position[0] - moved, FALL * scene.time_step**2, "the first step does not go on from the start"
     )
     found = run(engine, support, initial=initial, duration=0.02)
     for name in ("tilt", "tilt_rate", "rolling_angle", "rolling_rate"):
         stated = getattr(initial, name)
-        _small((getattr(found, name)[0] - stated) / stated, START, f"{name} does not start at {stated}")
-    _small(found.twist[0], 1e-12, "the twist does not start at 0")
+        small((getattr(found, name)[0] - stated) / stated, START, f"{name} does not start at {stated}")
+    small(found.twist[0], 1e-12, "the twist does not start at 0")
     foot = PIER.base_radius * np.array([math.cos(-2.0), math.sin(-2.0)])
-    _small(found.contact_point[0] - foot, 1e-6 * PIER.base_radius, "it does not start on the base circle")
+    small(found.contact_point[0] - foot, 1e-6 * PIER.base_radius, "it does not start on the base circle")
 
 
 def repeats_bit_for_bit(engine: str, support: str) -> None:
     """The same run gives the same bits."""
     first, second = (run(engine, support, motion=_shaking(), duration=0.5) for _ in range(2))
-    _hold(np.array_equal(first.tilt, second.tilt), "two runs of the same differ")
+    hold(np.array_equal(first.tilt, second.tilt), "two runs of the same differ")
 
 
 def is_the_same_at_every_size(engine: str, support: str) -> None:
     """A hundredth of the length takes a tenth of the time (Froude)."""
-    small = dataclasses.replace(PIER, semidiagonal=PIER.semidiagonal / 100.0)
+    reduced = dataclasses.replace(PIER, semidiagonal=PIER.semidiagonal / 100.0)
     faster = dataclasses.replace(RELEASE, rolling_rate=10.0 * RELEASE.rolling_rate)
     first = run(engine, support)
     second = run(
-        engine, support, cylinder=small, initial=faster, duration=PASS / 10.0, sample_step=0.01 / 10.0
+        engine, support, cylinder=reduced, initial=faster, duration=PASS / 10.0, sample_step=0.01 / 10.0
     )
-    _small((second.tilt - first.tilt) / PIER.alpha, SIZE, "the tilt depends on the size")
+    small((second.tilt - first.tilt) / PIER.alpha, SIZE, "the tilt depends on the size")
 
 
 def does_not_tell_left_from_right(engine: str, support: str) -> None:
     """The mirror image of a problem has the mirror image as its answer."""
     mirrored = dataclasses.replace(RELEASE, rolling_rate=-RELEASE.rolling_rate)
     first, second = run(engine, support), run(engine, support, initial=mirrored)
-    _small(second.tilt - first.tilt, SYMMETRY, "the tilt of the mirror image differs")
-    _small(second.rolling_angle + first.rolling_angle, TURNED, "the mirror image turns otherwise")
-    _small(second.twist + first.twist, TURNED, "the mirror image twists otherwise")
+    small(second.tilt - first.tilt, SYMMETRY, "the tilt of the mirror image differs")
+    small(second.rolling_angle + first.rolling_angle, TURNED, "the mirror image turns otherwise")
+    small(second.twist + first.twist, TURNED, "the mirror image twists otherwise")
 
 
 def does_not_know_the_axes(engine: str, support: str) -> None:
@@ -150,14 +150,14 @@ def does_not_know_the_axes(engine: str, support: str) -> None:
     turned = dataclasses.replace(RELEASE, rolling_angle=1.234)
     first = run(engine, support, motion=_shaking())
     second = run(engine, support, motion=_shaking().rotated(1.234), initial=turned)
-    _small(second.tilt - first.tilt, SYMMETRY, "the tilt of the turned problem differs")
-    _small(second.rolling_angle - 1.234 - first.rolling_angle, TURNED, "the turned problem turns otherwise")
+    small(second.tilt - first.tilt, SYMMETRY, "the tilt of the turned problem differs")
+    small(second.rolling_angle - 1.234 - first.rolling_angle, TURNED, "the turned problem turns otherwise")
 
 
 def keeps_its_energy(engine: str, support: str) -> None:
     """Free response neither gains nor loses energy."""
     found = run(engine, support)
-    _small(
+    small(
         np.ptp(found.energy) / _energy_scale(), ENERGY, "energy of the free response over its scale changes"
     )
 
@@ -165,9 +165,9 @@ def keeps_its_energy(engine: str, support: str) -> None:
 def takes_the_work_of_the_ground(engine: str, support: str) -> None:
     """Under excitation the energy changes by the work of the body force -a, and by nothing else."""
     found = run(engine, support, motion=_shaking())
-    _small(found.energy_error / _energy_scale(), ENERGY, "energy less work over its scale changes")
+    small(found.energy_error / _energy_scale(), ENERGY, "energy less work over its scale changes")
     change = float(np.ptp(found.energy)) / _energy_scale()
-    _hold(change > 0.1, f"the excitation changes the energy by no more than {change:.1e} of its scale")
+    hold(change > 0.1, f"the excitation changes the energy by no more than {change:.1e} of its scale")
 
 
 def keeps_momentum_or_rolls(engine: str, support: str) -> None:
@@ -175,9 +175,9 @@ def keeps_momentum_or_rolls(engine: str, support: str) -> None:
     found = run(engine, support)
     if support == "recess":
         momentum = np.array([_inertia(tilt)[0] for tilt in found.tilt]) * found.rolling_rate
-        _small(momentum / momentum[0] - 1.0, MOMENTUM, "L = B phi' over its start is not conserved")
-        _small(found.twist, 1e-4, "the guide lets the cylinder twist")
-    _small(found.slip / PIER.base_radius, SLIP, "slip over b")
+        small(momentum / momentum[0] - 1.0, MOMENTUM, "L = B phi' over its start is not conserved")
+        small(found.twist, 1e-4, "the guide lets the cylinder twist")
+    small(found.slip / PIER.base_radius, SLIP, "slip over b")
 
 
 def wobbles_steadily(engine: str, support: str) -> None:
@@ -187,15 +187,15 @@ def wobbles_steadily(engine: str, support: str) -> None:
     pull = 2.0 * REFERENCE_GRAVITY * (b * math.cos(tilt) - h * math.sin(tilt))
     rate = math.sqrt(pull / _inertia(tilt)[1])
     found = run(engine, support, initial=InitialState(tilt, rolling_rate=rate), duration=1.0)
-    _small((found.tilt - tilt) / PIER.alpha, STEADY, "the tilt of a steady wobble over alpha changes")
+    small((found.tilt - tilt) / PIER.alpha, STEADY, "the tilt of a steady wobble over alpha changes")
 
 
 def overturns(engine: str, support: str) -> None:
     """A fall ends with the side on the ground, as data."""
     found = run(engine, support, initial=InitialState(1.5 * PIER.alpha, rolling_rate=0.1), duration=10.0)
-    _hold(found.outcome == "overturned", f"a falling cylinder ended as {found.outcome}: {found.facts}")
-    _hold(found.tilt[-1] == found.peak_tilt == 0.5 * math.pi, f"it ended at {found.tilt[-1]} rad")
-    _hold(bool((np.diff(found.time) > 0.0).all()), "time does not rise")
+    hold(found.outcome == "overturned", f"a falling cylinder ended as {found.outcome}: {found.facts}")
+    hold(found.tilt[-1] == found.peak_tilt == 0.5 * math.pi, f"it ended at {found.tilt[-1]} rad")
+    hold(bool((np.diff(found.time) > 0.0).all()), "time does not rise")
 
 
 def uplifts_when_due(engine: str, support: str) -> None:
@@ -206,12 +206,12 @@ def uplifts_when_due(engine: str, support: str) -> None:
         return
     below = GroundMotion([[0.0, 0.0], [0.8 * limit, 0.0]], 0.4)
     waiting = run(engine, support, initial=None, motion=below, duration=None)
-    _hold(waiting.outcome == "rest", f"below the threshold the outcome is {waiting.outcome}")
+    hold(waiting.outcome == "rest", f"below the threshold the outcome is {waiting.outcome}")
     ramp = GroundMotion([[0.0, 0.0], [2.0 * limit, 0.0]], 0.8)
     found = run(engine, support, initial=None, motion=ramp, duration=None)
-    _small(found.uplift_time - 0.4, UPLIFT_TIME, "it does not uplift at 0.4 s")
+    small(found.uplift_time - 0.4, UPLIFT_TIME, "it does not uplift at 0.4 s")
     off = math.remainder(found.uplift_direction - math.pi, 2.0 * math.pi)
-    _small(off, UPLIFT_DIRECTION, "it does not uplift against the acceleration")
+    small(off, UPLIFT_DIRECTION, "it does not uplift against the acceleration")
 
 
 Check = Callable[[str, str], None]
@@ -240,15 +240,17 @@ FLAT: tuple[Check, ...] = (
 """What holds where the rim rolls without loss: recess and flat."""
 
 
-def _hold(condition: bool, otherwise: str) -> None:
+def hold(condition: bool, otherwise: str) -> None:
+    """Raise an AssertionError that says `otherwise`."""
     # not by the statement, which python -O leaves out
     if not condition:
         raise AssertionError(otherwise)
 
 
-def _small(values: Any, limit: float, otherwise: str) -> None:
+def small(values: Any, limit: float, otherwise: str) -> None:
+    """Raise an AssertionError with the largest of `values`, where it exceeds the limit."""
     largest = float(np.max(np.abs(values)))
-    _hold(largest <= limit, f"{otherwise}: by {largest:.2e}, allowed is {limit:.0e}")
+    hold(largest <= limit, f"{otherwise}: by {largest:.2e}, allowed is {limit:.0e}")
 
 
 def _refused(arguments: dict[str, Any], named: str) -> None:
@@ -257,7 +259,7 @@ def _refused(arguments: dict[str, Any], named: str) -> None:
         simulate(Case(PIER), **given)
     except ValueError as error:
         text = str(error)
-        _hold("\n" not in text and named in text, f"it is refused in other words than one line: {text!r}")
+        hold("\n" not in text and named in text, f"it is refused in other words than one line: {text!r}")
     else:
         raise AssertionError(f"it is not refused: {arguments}")
 

@@ -156,6 +156,29 @@ def axis_of(quaternion: Array) -> Array:
     return axis.T
 
 
+def turning(before: Array, quaternion: Array) -> Array:
+    """Return the rotation vectors (n, 3), world axes, from each orientation to the next.
+
+    From `before` (4,) to the first of the quaternions (n, 4), scalar first, and so on.
+    """
+    earlier = np.vstack([before, quaternion[:-1]])
+    w0, v0, w1, v1 = earlier[:, :1], earlier[:, 1:], quaternion[:, :1], quaternion[:, 1:]
+    real = w1 * w0 + np.einsum("ij,ij->i", v1, v0)[:, None]
+    imaginary = w0 * v1 - w1 * v0 - np.cross(v1, v0)
+    # the shorter way, whichever sign the engine gave the quaternion
+    imaginary, real = imaginary * np.where(real < 0.0, -1.0, 1.0), np.abs(real)
+    size = np.linalg.norm(imaginary, axis=1)[:, None]
+    factor = np.where(size > 0.0, 2.0 * np.arctan2(size, real) / np.where(size > 0.0, size, 1.0), 2.0)
+    return np.asarray(factor * imaginary)
+
+
+def about_vertical(vectors: Array, angle: Array | float) -> Array:
+    """Return vectors (n, 3) turned about the vertical by one angle or by angles (n,) [rad]."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    x, y, z = vectors.T
+    return np.column_stack([cosine * x - sine * y, sine * x + cosine * y, z])
+
+
 def tilt_of(quaternion: Array) -> Array:
     """Return the tilts, shape (n,) [rad], of quaternions (n, 4), scalar first."""
     ax, ay, az = axis_of(quaternion).T

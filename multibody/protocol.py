@@ -47,13 +47,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .body import Body
+from .facts import EngineFacts
 from .start import Start
 
 Array = NDArray[np.float64]
 
 Settings = Mapping[str, Any]
 
-MEMBERS = ("supports", "uplifts", "version", "settings", "open")  # of an Engine
+MEMBERS = ("supports", "uplifts", "facts", "version", "settings", "open")  # of an Engine
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
@@ -160,6 +161,11 @@ class Engine(Protocol):
     @property
     def uplifts(self) -> bool:
         """Whether it can start from a cylinder that stands; otherwise a run needs a release with a tilt."""
+        ...
+
+    @property
+    def facts(self) -> EngineFacts:
+        """What is known of it beforehand; `EngineFacts()` where nothing was measured."""
         ...
 
     def version(self) -> str:

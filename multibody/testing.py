@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .contract import FLAT, GENERAL, Check
+from .contract_sweep import uplifts_in_every_direction
 from .engines.registry import find_engine
 
 
@@ -53,8 +54,10 @@ def contract_checks(engine: str) -> tuple[ContractCheck, ...]:
     supports = find_engine(engine).supports
     rules = {support: (*GENERAL, *(FLAT if support in ("recess", "flat") else ())) for support in supports}
     checks = (ContractCheck(engine, support, rule) for support in supports for rule in rules[support])
-    # a new process takes as long as all the rest, and what an engine prints does not depend on the support
-    return (*checks, ContractCheck(engine, supports[0], leaves_no_trace))
+    # a new process takes as long as all the rest, and what an engine prints does not depend on the support;
+    # nor does what it stands on
+    once = (leaves_no_trace, *((uplifts_in_every_direction,) if find_engine(engine).uplifts else ()))
+    return (*checks, *(ContractCheck(engine, supports[0], rule) for rule in once))
 
 
 def check_engine(engine: str, checks: Iterable[ContractCheck] | None = None) -> None:

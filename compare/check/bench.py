@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace
+from rockwobble.multibody.engines.registry import standard_engines
 
 from ..runs.choice import installed_engines, run_labels
 from ..runs.execution import Job, simulate_all
@@ -21,7 +22,7 @@ from .finding import Finding, not_run
 Array = NDArray[np.float64]
 
 # the engines that every installation is meant to have, and whose accuracy at the default step is known
-ENGINES = ("mujoco", "pybullet")
+ENGINES = standard_engines()
 
 
 def _as_given(run: Run) -> Run:

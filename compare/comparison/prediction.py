@@ -17,14 +17,14 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.multibody.engines.registry import engine_facts
 
 from ..metrics.agreement import agreement_time
 from ..traces.pair import FloatArray, make_pair
@@ -40,10 +40,6 @@ _TRIAL = 1e-6
 # and the largest that still is a copy
 _LARGEST = 1e-2
 
-# RMS of the tilt error in that first second after a release, over alpha tan^2(alpha), and after an uplift
-# from rest, over alpha, at a step of 1e-4 s (first order in the step), as measured by halving the step
-_AFTER_RELEASE: Mapping[str, float] = MappingProxyType({"mujoco": 2e-6, "pybullet": 1.5e-5})
-_AFTER_UPLIFT: Mapping[str, float] = MappingProxyType({"mujoco": 2.5e-5, "pybullet": 4e-5})
 _SMALLEST_ERROR = 1e-9  # [alpha] no engine is better than its contact
 
 _HALF_A_TURN = 1e-9  # [rad] rounding of half a turn: motion with spin takes longer than a sample for it
@@ -74,18 +70,17 @@ def estimated_error(case: Case, engine: str | None, time_step: float) -> float:
     ----------
     case : Case
     engine : str or None
-        One that nothing is known of counts as the better of those that are; a reduced model has none.
+        One that nothing is known of counts as one of the better, see `EngineFacts`; a reduced model has none.
     time_step : float
         [s]
     """
     if engine is None:
         return _SMALLEST_ERROR
+    facts = engine_facts(engine)
     step = time_step / time_scale(case) / _REFERENCE_STEP
-    if case.initial is not None and case.initial.tilt > 0.0:
-        error = _AFTER_RELEASE.get(engine, min(_AFTER_RELEASE.values())) * case.cylinder.tan_alpha**2
-    else:
-        error = _AFTER_UPLIFT.get(engine, min(_AFTER_UPLIFT.values()))
-    return max(error * step, _SMALLEST_ERROR)
+    released = case.initial is not None and case.initial.tilt > 0.0
+    error = facts.release_error * case.cylinder.tan_alpha**2 if released else facts.uplift_error
+    return max(error * math.pow(step, facts.order), _SMALLEST_ERROR)
 
 
 def measured_error(case: Case, budget: ErrorBudget) -> float:

@@ -2,14 +2,6 @@
 
 A budget needs the engine's limit for a vanishing step. Each run is repeated at half and a quarter of its
 step, and where the limit is still uncertain at an eighth and so on; none longer than its traces agree.
-
-A cylinder that starts from rest stands on a polygon in both engines. MuJoCo turns its corners under the load,
-and its uplift is of first order in the step. Bullet keeps four contacts, wherever the base has leaned before:
-it uplifts with a lean of 1e-8 rad in a direction of chance, which no step removes. So its finer runs are
-held upright until the load is on the rim, and turned about the vertical until that is opposite to the x axis:
-upright, Bullet finds its first contact there, and is soon rid of it. Ground that is the same in every
-direction knows no difference, and the chance becomes part of the numerics, where it belongs. The direction is
-that of the engine's own run.
 """
 
 from __future__ import annotations
@@ -18,23 +10,18 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.multibody.engines.registry import engine_facts
 
 from ..runs.execution import SAMPLE_STEP, Job
 from .error_budget import COVERED, WORTH_EXPLAINING, Limit, common_count, extrapolated
 
 # of the step of the run: always two, and one more where the limit is uncertain
 _ALWAYS, _AT_MOST = 2, 3
-# Engines whose uplift has an error that is a power series in the step
-_SMOOTH_UPLIFT = frozenset({"mujoco"})
-# What an engine needs besides a finer step to uplift without chance
-_FINER_SETTINGS: Mapping[str, Mapping[str, Any]] = MappingProxyType({"pybullet": {"held_standing": True}})
 # uncertainty of a limit, over the whole difference, that asks for a finer step
 _UNCERTAIN = 0.1
 
@@ -68,12 +55,8 @@ class Refined:
     @property
     def smooth(self) -> bool:
         """Whether the error of the run is a power series in the step: from rest not in every engine."""
-        return _released(self.case) or self.run.engine in _SMOOTH_UPLIFT
-
-    @property
-    def finer_smooth(self) -> bool:
-        """Whether that of the finer runs is."""
-        return self.smooth or self.run.engine in _FINER_SETTINGS
+        assert self.run.engine is not None  # only runs of engines are refined
+        return _released(self.case) or engine_facts(self.run.engine).smooth_uplift
 
 
 def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str, str], Limit]:
@@ -105,15 +88,10 @@ def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str,
 
 
 def finer_case(refined: Refined) -> Case:
-    """Return the problem of the finer runs: as long as needed, and turned where it starts from rest."""
+    """Return the problem of the finer runs: as long as needed."""
     case = refined.case
     end = min(case.length, math.ceil(refined.end / SAMPLE_STEP - 1e-6) * SAMPLE_STEP)
-    motion, direction = case.motion, refined.trajectory.uplift_direction
-    uplifts = not _released(case) and math.isfinite(direction)
-    if motion is not None and uplifts and refined.run.engine in _FINER_SETTINGS:
-        # elsewhere the error of an uplift may have no order, and a flat landing loses too little
-        motion = motion.rotated(math.pi - direction)
-    return dataclasses.replace(case, motion=motion, duration=max(end, SAMPLE_STEP))
+    return dataclasses.replace(case, duration=max(end, SAMPLE_STEP))
 
 
 def _released(case: Case) -> bool:
@@ -123,10 +101,9 @@ def _released(case: Case) -> bool:
 def _job(refined: Refined, level: int) -> Job:
     run = refined.run
     step = refined.trajectory.time_step * 0.5**level
-    more = {} if _released(refined.case) else _FINER_SETTINGS.get(run.engine or "", {})
     return Job(
         case=finer_case(refined),
-        run=Run(run.engine, run.support, step, **{**more, **run.settings}),
+        run=Run(run.engine, run.support, step, **run.settings),
         label=f"{refined.label}, step/{2**level}",
     )
 
@@ -141,12 +118,12 @@ def _limit(refined: Refined, traces: Sequence[Trace]) -> Limit | None:
     if count == 0 or not all(np.isfinite(tilt).all() for tilt in tilts):
         return None
     steps = [trace.time_step for trace in used]
-    return extrapolated(used[0].time[:count], tilts, steps, smooth=refined.finer_smooth)
+    return extrapolated(used[0].time[:count], tilts, steps, smooth=refined.smooth)
 
 
 def _is_uncertain(refined: Refined, traces: Sequence[Trace]) -> bool:
     limit = _limit(refined, traces)
-    if limit is None or not refined.finer_smooth:
+    if limit is None or not refined.smooth:
         return False
     # the stretch that the budget covers, from the uplift on: before it there is nothing to err in
     uplift = refined.trajectory.uplift_time

@@ -7,7 +7,7 @@ from typing import Any
 
 from rockwobble.models import Case, InitialState, Run
 from rockwobble.multibody import BrokenEngineError, available_engines
-from rockwobble.multibody.engines.registry import find_engine, standard_engines
+from rockwobble.multibody.engines.registry import engine_packages, find_engine, standard_engines
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 from rockwobble.multibody.scene.guard import check_time_step
 from rockwobble.multibody.scene_of_case import resolved_settings
@@ -35,7 +35,7 @@ def reserved_engines() -> dict[str, str]:
     """Return the installed engines that a default run leaves out, and why.
 
     A default run takes the engines that serve any case: those with each support and with uplift. The
-    others run where they are named.
+    others run where they are named, as do those of ours that are an extra.
     """
     reasons = {name: _reservation(name) for name in installed_engines()}
     return {name: reason for name, reason in reasons.items() if reason}
@@ -49,7 +49,9 @@ def _reservation(name: str) -> str:
         return str(error)
     lacks = [f"no {support} support" for support in SUPPORTS if support not in engine.supports]
     lacks += [] if engine.uplifts else ["no uplift"]
-    return f"{name} has {' and '.join(lacks)}" if lacks else ""
+    if lacks:
+        return f"{name} has {' and '.join(lacks)}"
+    return f"{name} is an extra" if name in engine_packages() and name not in standard_engines() else ""
 
 
 def require_runnable(case: Case, run: Run) -> None:

@@ -13,6 +13,7 @@ from typing import Any, Literal
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.lost_trace import lost_trace
+from rockwobble.multibody.engines.registry import engine_facts
 
 from ..storage.fingerprint import fingerprint
 from ..storage.parquet_file import pack, read
@@ -214,10 +215,9 @@ def job_fingerprint(job: Job) -> str:
 
 
 def _cost(job: Job) -> float:
-    """Rough computing time of a job, in steps of MuJoCo."""
+    """Rough computing time of a job [s]."""
     if job.run.engine is None:
         return math.inf  # may compile
-    per_step = 1.0 if job.run.engine == "mujoco" else 3.0
     step = job.run.time_step or 1e-4
     # the usual search ends at half of the default step
-    return job.case.length / (2.5e-5 if step == "auto" else step) * per_step
+    return job.case.length / (2.5e-5 if step == "auto" else step) * engine_facts(job.run.engine).step_time

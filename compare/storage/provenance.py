@@ -11,8 +11,9 @@ from functools import cache
 from pathlib import Path
 
 from rockwobble.models.cpus import usable_cpus
+from rockwobble.multibody.engines.registry import engine_packages
 
-PACKAGES = ("rockwobble", "numpy", "scipy", "numba", "pandas", "pyarrow", "mujoco", "pybullet", "exudyn")
+PACKAGES = ("rockwobble", "numpy", "scipy", "numba", "pandas", "pyarrow", *engine_packages().values())
 _REDUCED = ("rockwobble", "numpy", "numba")
 
 
@@ -67,7 +68,8 @@ def reduced_makers() -> dict[str, str]:
 
 def engine_makers(*engines: str) -> dict[str, str]:
     """Return versions and code on which the runs of engines depend."""
-    return _makers(("rockwobble", "numpy", *engines), "multibody")
+    packages = engine_packages()
+    return _makers(("rockwobble", "numpy", *(packages.get(name, name) for name in engines)), "multibody")
 
 
 def _makers(packages: tuple[str, ...], folder: str) -> dict[str, str]:

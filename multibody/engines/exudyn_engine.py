@@ -15,10 +15,14 @@ from typing import Any
 
 import numpy as np
 
+from ..facts import EngineFacts
 from ..kinematics import axis_of
 from ..protocol import Array, Scene, Settings, Stepper, Steps
 from ..start import Start
 from .exudyn_settings import ExudynSettings
+from .scene_counts import SceneCounts
+
+_FACTS = EngineFacts(title="Exudyn", step_time=4e-5, order=2.0)
 
 
 class ExudynEngine:
@@ -33,6 +37,11 @@ class ExudynEngine:
     def uplifts(self) -> bool:
         """The joint knows the rim only, not the base."""
         return False
+
+    @property
+    def facts(self) -> EngineFacts:
+        """Both of its rules are of second order."""
+        return _FACTS
 
     def version(self) -> str:
         """Version of the package."""
@@ -103,6 +112,10 @@ class _ExudynStepper:
     def warnings(self) -> str:
         """Return why the run cannot go on, if it cannot."""
         return self._warning
+
+    def counts(self) -> SceneCounts:
+        """Return what a step solves: the joint, three constraints on the velocity of one point."""
+        return SceneCounts(degrees_of_freedom=6, contacts=0, constraint_rows=3)
 
     def _check_apex(self, rows: Array) -> None:
         """Give up the rows (n, 14) from the one on that has jumped over upright."""

@@ -8,20 +8,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..facts import EngineFacts
 from ..kinematics import axis_of
 from ..protocol import Array, Scene, Settings, Stepper, Steps, Wall
 from ..scene.ring_geometry import check_start
 from ..scene.ring_settings import RingSettings, take_ring
-from ..start import Start
 from .mujoco_scene import compile_scene
+from .mujoco_start import set_start, to_world
 from .scene_counts import SceneCounts
 from .settings import MujocoSettings
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]
 
-_SECANT_STEPS = 30
-_STILL = 1e-9  # [m/s^2] acceleration left of the rim at the start
 _STANDING_BLOCK = 20  # steps between two looks at whether a standing cylinder has uplifted
 # Lean from which the rim carries a cylinder better than the corners of its prisms do [rad]. Below it the
 # rounding of the rim's depth, 1e-16 b/lean, makes the rim hop; and the longer the base rolls on corners,
@@ -29,10 +28,37 @@ _STANDING_BLOCK = 20  # steps between two looks at whether a standing cylinder h
 _RISEN = 1e-7
 # the same over the depth of a single corner under the weight, over b: what stands leans by up to a sixteenth
 _RISEN_DEPTHS = 1000.0
-_LOADED = 0.5  # of b, eccentricity of the load from which prisms follow it
+# of that lean: from there it has a direction, which a corner follows instead of the load
+_LEANS = 0.1
+# of b, eccentricities of the load: from the first a corner follows it, from the second at every step, and on
+# the four corners of the first prism alone
+_LOADED, _OPENING = 0.5, 0.99
+_LAST_PRISMS, _OUT_OF_REACH = 1, 1e-3  # [-], [m]
 # A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
 # under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
 _ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # of b, [rad]
+
+_FACTS = EngineFacts(
+    title="MuJoCo",
+    step_time=1.2e-5,
+    release_error=2e-6,
+    uplift_error=2.5e-5,
+    smooth_uplift=True,  # its corners turn under the load
+    contact_time="contact_time_constant",
+    alternatives={
+        **{
+            f"integrator {name}": {"integrator": name}
+            for name in ("implicitfast", "implicit", "RK4", "discrete")
+        },
+        "pyramidal cone": {"cone": "pyramidal"},
+    },
+    standing_alternatives={
+        (f"standing on {corners} corners" if corners else "standing without prisms"): {
+            "standing_corners": corners
+        }
+        for corners in (0, 4, 12, 24, 48)
+    },
+)
 
 
 class MujocoEngine:
@@ -47,6 +73,11 @@ class MujocoEngine:
     def uplifts(self) -> bool:
         """The base is in contact as well as the rim."""
         return True
+
+    @property
+    def facts(self) -> EngineFacts:
+        """Measured by halving the step."""
+        return _FACTS
 
     def version(self) -> str:
         """Version of the package."""
@@ -102,8 +133,9 @@ class _MujocoStepper:
         names = [self._model.geom(index).name for index in range(self._model.ngeom)]
         self._prisms = [index for index, name in enumerate(names) if name.startswith("prism")]
         self._model.geom_sameframe[self._prisms] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # they will turn
+        self._middle = 0.5 * scene.body.height - scene.body.mass_centre_height  # of the outline [m]
         self._warned: list[str] = []
-        _set_start(self._model, self._data, scene, self._staggered)
+        set_start(self._model, self._data, scene, self._staggered)
         kind = mujoco.mjtState.mjSTATE_FULLPHYSICS
         self._state = np.empty(mujoco.mj_stateSize(self._model, kind))
         mujoco.mj_getState(self._model, self._data, self._state, kind)
@@ -119,9 +151,8 @@ class _MujocoStepper:
         blocks, walls = [], []
         done = 0
         while done < len(acceleration):
-            if self._standing:
-                self._follow_load(acceleration[done : done + _STANDING_BLOCK].mean(axis=0))
-            end = done + _STANDING_BLOCK if self._standing else len(acceleration)
+            held = self._follow_load(acceleration[done : done + _STANDING_BLOCK]) if self._standing else 0
+            end = done + held if self._standing else len(acceleration)
             block, sensors = self._roll(acceleration[done:end])
             blocks.append(block)
             walls.append(sensors)
@@ -179,22 +210,34 @@ class _MujocoStepper:
         self._state = rows[-1].copy()
         return rows, sensors[0]
 
-    def _follow_load(self, acceleration: Array) -> None:
-        """Turn the prisms about the axis until a corner is under the load; leave them after the uplift."""
+    def _follow_load(self, acceleration: Array) -> int:
+        """Turn the prisms about the axis until a corner is under the load; leave them after the uplift.
+
+        Return for how many steps they stay so: for one where the base opens.
+        """
         body, corners = self._scene.body, self._settings.standing_corners
-        push = float(np.hypot(acceleration[0], acceleration[1])) * body.mass_centre_height
-        eccentricity = push / (body.base_radius * self._scene.gravity)
-        lean = float(np.hypot(*axis_of(self._state[None, 4:8])[0, :2]))
-        if lean > (self._risen if eccentricity > _ON_RIM else max(self._risen, _RISEN_ANYHOW)):
+        push = np.hypot(acceleration[:, 0], acceleration[:, 1]) * body.mass_centre_height
+        eccentricity = push / (body.base_radius * (self._scene.gravity + acceleration[:, 2]))
+        opens = bool(eccentricity.max() > _OPENING)
+        axis = axis_of(self._state[None, 4:8])[0, :2]
+        lean = float(np.hypot(*axis))
+        if lean > (self._risen if eccentricity[0] > _ON_RIM else max(self._risen, _RISEN_ANYHOW)):
             self._leave_prisms()
-        if not self._standing or eccentricity < _LOADED:
-            return
+        if not self._standing or eccentricity.max() < _LOADED:
+            return len(acceleration)
+        load = -acceleration[0] if opens else -acceleration.mean(axis=0)
         # the first corner of a prism is an eighth of a turn from its x axis
-        first = np.arctan2(-acceleration[1], -acceleration[0]) - 0.25 * np.pi
+        at = axis if lean > _LEANS * self._risen else load
+        first = np.arctan2(at[1], at[0]) - 0.25 * np.pi
         half = 0.5 * (first + 2.0 * np.pi / corners * np.arange(corners // 4))
         self._model.geom_quat[self._prisms] = np.outer(np.cos(half), [1, 0, 0, 0]) + np.outer(
             np.sin(half), [0, 0, 0, 1]
         )
+        # neighbours that share the load of the last corner would let the base lean before it opens
+        self._model.geom_pos[self._prisms[_LAST_PRISMS:], 2] = self._middle + (
+            _OUT_OF_REACH if opens else 0.0
+        )
+        return 1 if opens else len(acceleration)
 
     def _leave_prisms(self) -> None:
         """Go on without what only a standing cylinder needs: its corners cost time and brush the ground."""
@@ -225,62 +268,3 @@ def _depth(scene: Scene, settings: MujocoSettings) -> float:
 def _wall(sensors: Array) -> Wall:
     """From the sensors (n, 5) of the scene: number of contacts, net force of the mass of 1 kg, distance."""
     return Wall(sensors[:, 0] > 0.0, np.linalg.norm(sensors[:, 1:4], axis=1), -sensors[:, 4])
-
-
-def to_world(quaternion: Array, vector: Array) -> Array:
-    """Turn vectors (n, 3) from body to world axes by quaternions (n, 4), scalar first."""
-    w, x, y, z = quaternion.T
-    a, b, c = vector.T
-    # v + w t + q x t with t = 2 q x v
-    along_x, along_y, along_z = 2.0 * (y * c - z * b), 2.0 * (z * a - x * c), 2.0 * (x * b - y * a)
-    turned = np.empty((3, len(vector)))
-    turned[0] = a + w * along_x + (y * along_z - z * along_y)
-    turned[1] = b + w * along_y + (z * along_x - x * along_z)
-    turned[2] = c + w * along_z + (x * along_y - y * along_x)
-    return turned.T
-
-
-def _set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, staggered: bool) -> None:
-    """Put the cylinder at its loaded penetration, and its velocity half a step back if it is `staggered`."""
-    import mujoco
-
-    start = scene.start
-    inverse = start.quaternion * np.array([1.0, -1.0, -1.0, -1.0])
-    data.qpos[:3], data.qpos[3:] = start.position, start.quaternion
-    data.qvel[:3] = start.velocity
-    data.qvel[3:] = to_world(inverse[None], start.angular_velocity[None])[0]
-
-    def rim_acceleration(depth: float) -> float:
-        data.qpos[2] = start.position[2] - depth
-        data.qacc_warmstart[:] = 0.0
-        mujoco.mj_forward(model, data)
-        return _rim_acceleration(data, scene)
-
-    # contact is a spring under a given load, so the secant is nearly exact
-    before, depth = 1e-7, 2e-7
-    value_before, value = rim_acceleration(before), rim_acceleration(depth)
-    for _ in range(_SECANT_STEPS):
-        if abs(value) < _STILL or value == value_before:
-            break
-        before, depth = depth, depth - value * (depth - before) / (value - value_before)
-        value_before, value = value, rim_acceleration(depth)
-    if staggered and not start.standing:
-        data.qvel[:] -= 0.5 * model.opt.timestep * data.qacc
-
-
-def _rim_acceleration(data: mujoco.MjData, scene: Scene) -> float:
-    """Second derivative of the height of the lowest point of the base [m/s^2]."""
-    start: Start = scene.start
-    rise = float(data.qacc[2])
-    if start.standing:
-        return rise
-    b, h = scene.body.base_radius, scene.body.mass_centre_height
-    axis = to_world(start.quaternion[None], np.array([[0.0, 0.0, 1.0]]))[0]
-    angular = to_world(start.quaternion[None], np.asarray(data.qacc[3:])[None])[0]
-    rate = np.cross(start.angular_velocity, axis)
-    curve = np.cross(angular, axis) + np.cross(start.angular_velocity, rate)
-    # height = z - h cos(theta) - b sin(theta), with cos(theta) the third component of the axis
-    sine, cosine = float(np.hypot(axis[0], axis[1])), float(axis[2])
-    tilt_rate = -rate[2] / sine
-    tilt_curve = -(curve[2] + cosine * tilt_rate**2) / sine
-    return float(rise - h * curve[2] - b * (cosine * tilt_curve - sine * tilt_rate**2))

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import importlib
 import importlib.util
+import platform
+import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import TYPE_CHECKING, cast
 
+from ..facts import EngineFacts
 from ..protocol import MEMBERS, Engine
 
 if TYPE_CHECKING:
@@ -35,9 +38,12 @@ class _Entry:
     package: str
     factory: str  # module:callable, relative to this folder
     remedy: str
+    module: str = ""  # to import, where it is not called as the package
     standard: bool = True  # comes with every installation of this package, where it has a wheel
 
 
+# of PyBullet; elsewhere DART takes its place in a default run
+_WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
     {
         "mujoco": _Entry("mujoco", ".mujoco_engine:MujocoEngine", "pip install 'mujoco>=4.0,<5'"),
@@ -45,6 +51,13 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             "pybullet",
             ".pybullet_engine:PybulletEngine",
             "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
+            standard=_WHEEL,
+        ),
+        "dart": _Entry(
+            "dartpy", ".dart_engine:DartEngine", "pip install 'rockwobble[dart]'", standard=not _WHEEL
+        ),
+        "drake": _Entry(
+            "drake", ".drake_engine:DrakeEngine", "pip install 'rockwobble[drake]'", "pydrake", standard=False
         ),
         "exudyn": _Entry(
             "exudyn", ".exudyn_engine:ExudynEngine", "pip install 'rockwobble[exudyn]'", standard=False
@@ -63,10 +76,14 @@ def standard_engines() -> tuple[str, ...]:
     return tuple(name for name, entry in _ENGINES.items() if entry.standard)
 
 
+def own_engines() -> tuple[str, ...]:
+    """Return the names of our engines whose packages are installed here, without importing them."""
+    return tuple(name for name, entry in _ENGINES.items() if _is_here(entry))
+
+
 def available_engines() -> tuple[str, ...]:
-    """Return the names of the engines whose packages are installed here, without importing them."""
-    ours = (name for name, entry in _ENGINES.items() if importlib.util.find_spec(entry.package))
-    return (*ours, *_declared())
+    """Return the names of all engines that are installed here: ours, then those of other packages."""
+    return (*own_engines(), *_declared())
 
 
 def find_engine(name: str) -> Engine:
@@ -87,8 +104,34 @@ def find_engine(name: str) -> Engine:
         if name not in declared:
             raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")
         return _load(name, declared[name])
-    if importlib.util.find_spec(entry.package) is None:
+    if not _is_here(entry):
         raise EngineNotInstalledError(f"engine {name!r} is not installed here: {entry.remedy}")
+    return _made(entry)
+
+
+def engine_facts(name: str) -> EngineFacts:
+    """Return what is known of the engine called `name`, installed or not.
+
+    Raises
+    ------
+    ValueError
+        If there is no such engine; BrokenEngineError if it is of another package and does not load.
+    """
+    entry = _ENGINES.get(name)
+    return find_engine(name).facts if entry is None else _made(entry).facts
+
+
+def engine_packages() -> dict[str, str]:
+    """Return the package of each of our engines, by the name of the engine."""
+    return {name: entry.package for name, entry in _ENGINES.items()}
+
+
+def _is_here(entry: _Entry) -> bool:
+    return importlib.util.find_spec(entry.module or entry.package) is not None
+
+
+def _made(entry: _Entry) -> Engine:
+    # our modules import the package of an engine only where it is used
     module, factory = entry.factory.split(":")
     return cast(Engine, getattr(importlib.import_module(module, __package__), factory)())
 

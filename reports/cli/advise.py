@@ -94,8 +94,8 @@ def advise(
                 progress=tell,
             )
         held = f"Support: {support}, friction {'not given' if friction is None else f'{friction:g}'}"
-        problem = [*describe(found.case), f"{held}; reduced model: {found.model}"]
-        facts = {"problem": problem, **found.facts()}
+        asked = [*describe(found.case), f"{held}; reduced model: {found.model}"]
+        facts = {"problem": asked, **found.facts()}
         jobs = [job_fingerprint(Job(case=case, run=each)) for each in (found.model, run) if each is not None]
         manifest = made_now(
             KIND,

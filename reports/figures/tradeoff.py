@@ -31,17 +31,11 @@ _PANELS = {
     ("ring", "methods"): "ring, against itself at half its finest step",
     ("recess", "scipy"): "scipy's solvers, recess",
     ("recess", "rest threshold"): "rest threshold, recess",
-    ("recess", "integrator"): "integrators of MuJoCo, recess",
-    ("recess", "contact"): "time constant of MuJoCo's contact, recess",
+    ("recess", "integrator"): "integrators, recess",
+    ("recess", "contact"): "time constant of contact, recess",
 }
 _BASE = "recess model"
-# what the variants of a panel are variants of
-_HELD_AGAINST = {
-    "scipy": _BASE,
-    "rest threshold": _BASE,
-    "integrator": "mujoco recess",
-    "contact": "mujoco recess",
-}
+_OF_MODEL, _OF_ENGINES = ("scipy", "rest threshold"), ("integrator", "contact")  # panels of variants
 
 
 def tradeoff_pictures(found: Tradeoff) -> list[Picture]:
@@ -60,8 +54,9 @@ def _picture(found: Tradeoff, problem: str) -> Picture:
         chosen = points[(points["support"] == support) & (points["panel"] == name)]
         if chosen.empty:
             continue
-        if name in _HELD_AGAINST:
-            chosen = pd.concat([points[points["line"] == _HELD_AGAINST[name]], chosen])
+        plain = [_BASE] if name in _OF_MODEL else []  # what the variants are variants of
+        plain += [f"{engine} {support}" for engine in chosen["family"].unique() if name in _OF_ENGINES]
+        chosen = pd.concat([points[points["line"].isin(plain)], chosen])
         described = found.problems[
             (found.problems["problem"] == problem) & (found.problems["support"] == support)
         ].iloc[0]

@@ -9,8 +9,9 @@ import numpy as np
 import pytest
 
 from rockwobble.compare.runs.execution import simulate_run
-from rockwobble.compare.studies.extremes import EXTREMES, FINE, Condition, conditions, judge, verdict
+from rockwobble.compare.studies.extremes import EXTREMES, FINE, Condition, conditions, judge, methods, verdict
 from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
+from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 PLANAR, RECESS = Run(None, "flat", plane=0.0), Run(None, "recess")
 ENGINE, RING = Run("mujoco", "recess"), Run("mujoco", "ring")
@@ -111,3 +112,15 @@ def test_only_a_diagnostic_that_explains_an_error_and_is_no_later_flags_it(
     assert found.error > FINE
     assert found.begins == 0.0
     assert np.isinf(found.until)
+
+
+def test_methods_are_the_three_models_and_each_support_of_each_engine() -> None:
+    found = methods()
+    assert len({str(run) for run in found}) == len(found)
+    engines = {run.engine for run in found} - {None}
+    assert engines == set(own_engines())
+    assert all(
+        {run.support for run in found if run.engine == name} == set(find_engine(name).supports)
+        for name in own_engines()
+    )
+    assert sum(run.engine is None for run in found) == 3

@@ -7,7 +7,7 @@ import pytest
 from rockwobble import multibody
 from rockwobble.compare.studies.tradeoff.scene_cost import scene_costs
 
-ENGINES = [name for name in ("mujoco", "pybullet") if name in multibody.available_engines()]
+ENGINES = multibody.available_engines()
 
 
 @pytest.mark.parametrize("engine", ENGINES)
@@ -25,7 +25,8 @@ def test_every_scene_is_counted(engine: str) -> None:
     }
     assert len(counts) == len(table)
     # a rim stands on one point, with a normal and two directions of friction
-    assert counts["flat", "released"] == counts["recess", "released"] == (1, 3)
+    contacts = {key: value for key, value in counts.items() if key[1] == "released"}
+    assert set(contacts.values()) == {(0, 3) if engine == "exudyn" else (1, 3)}  # a joint has no contact
     if engine == "mujoco":
         # the plane carries the cylinder itself on three points, and a prism on four
         for corners in (4, 12, 48):
@@ -37,7 +38,7 @@ def test_every_scene_is_counted(engine: str) -> None:
 
 
 def test_bad_input_is_refused() -> None:
-    with pytest.raises(ValueError, match="engine must be one of mujoco, pybullet, got 'chrono'"):
+    with pytest.raises(ValueError, match="engine must be one of mujoco, pybullet"):
         scene_costs(["chrono"])
     with pytest.raises(ValueError, match="rounds and steps must be positive, got 0 and 5"):
         scene_costs(rounds=0, steps=5)

@@ -13,7 +13,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
 # RMS(difference)/RMS(tilt) from uplift to 15 s at h = 1e-4 s: 1.7e-4 and 3.1e-4 in MuJoCo, 2.6e-4 and 8.3e-4
 # in Bullet. The budget is twice that: any other step, setting or version lands elsewhere in that range.
-TRACE = {"mujoco": 6e-4, "pybullet": 1.5e-3}
+TRACE = {"mujoco": 1e-4, "pybullet": 1e-4, "dart": 1e-4, "drake": 1e-3}
 # of the step: 0.07 over sixteen bodies and records; 2 would do
 UPLIFT_STEPS, UPLIFT_ANGLE = 0.2, np.radians(0.01)
 
@@ -84,7 +84,7 @@ def test_uplift(case: int, solve_forced: Callable[..., Any]) -> None:
 
 def test_an_engine_that_tips_early_is_seen(pier: Cylinder, monkeypatch: pytest.MonkeyPatch) -> None:
     motion = el_centro_1940().scaled(2.0)
-    turned, many = (multibody.simulate(Case(pier, motion, duration=2.0), standing_corners=n) for n in (4, 48))
+    turned, many = (multibody.simulate(Case(pier, motion, duration=2.0), standing_corners=n) for n in (8, 48))
     assert turned.uplift_time == pytest.approx(many.uplift_time, abs=UPLIFT_STEPS * many.time_step)
     # four corners that stay where they are: between two of them the base tips at cos(45 deg) of the load
     monkeypatch.setattr("rockwobble.multibody.engines.mujoco_engine._LOADED", np.inf)
@@ -93,8 +93,8 @@ def test_an_engine_that_tips_early_is_seen(pier: Cylinder, monkeypatch: pytest.M
 
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
-def test_an_uplift_under_a_turning_load_is_of_first_order(
-    pier: Cylinder, solve_forced: Callable[..., Any], support: str
+def test_an_uplift_under_a_turning_load_leaves_next_to_no_error(
+    engine: str, pier: Cylinder, solve_forced: Callable[..., Any], support: str
 ) -> None:
     record = el_centro_1940()
     # from 0.19 s before the uplift, whose direction turns by 6 rad/s
@@ -102,35 +102,12 @@ def test_an_uplift_under_a_turning_load_is_of_first_order(
     exact = solve_forced(pier, motion, 0.25, rolls_out=support == "flat")
     errors = []
     for step in (1e-4, 5e-5):
-        run = multibody.simulate(Case(pier, motion, duration=0.25), support=support, time_step=step)
-        errors.append((run.tilt[-1] - np.interp(0.25, exact.time, exact.tilt)) / pier.alpha)
-    # 4.9e-7 and 1.9e-7 of alpha guided; corners that stay where they are leave 1e-6 at every step
-    assert abs(errors[0]) < 7e-7
-    assert abs(errors[1]) < 0.6 * abs(errors[0])
-
-
-def test_held_until_its_load_is_on_the_rim_bullet_uplifts_without_chance(
-    pier: Cylinder, solve_forced: Callable[..., Any]
-) -> None:
-    record = el_centro_1940()
-    motion = GroundMotion(record.acceleration[190:240], record.time_step)
-    exact = solve_forced(pier, motion, 0.25, rolls_out=True)
-    # the uplift opposite to the x axis, along which Bullet finds its first contact
-    turned = motion.rotated(np.pi - exact.uplift_direction)
-    errors = []
-    for step in (1e-4, 5e-5):
         run = multibody.simulate(
-            Case(pier, turned, duration=0.25),
-            engine="pybullet",
-            support="flat",
-            time_step=step,
-            held_standing=True,
+            Case(pier, motion, duration=0.25), engine=engine, support=support, time_step=step
         )
-        assert run.uplift_time == pytest.approx(exact.uplift_time, abs=UPLIFT_STEPS * step)
-        assert run.tilt[run.time < run.uplift_time - step].max() == 0.0
         errors.append((run.tilt[-1] - np.interp(0.25, exact.time, exact.tilt)) / pier.alpha)
-    # 1.4e-5 and 7e-6 of alpha, to a few thousandths; by chance it is anywhere between 1e-6 and 3e-5
-    assert errors[1] / errors[0] == pytest.approx(0.5, abs=0.02)
+    # 4e-8 and 7e-8 of alpha were measured; corners that turn every 20 steps leave 5e-7, fixed ones 1e-6
+    assert np.abs(errors).max() < 1.5e-7
 
 
 def test_vertical_motion(pier: Cylinder, solve_forced: Callable[..., Any]) -> None:
@@ -153,8 +130,7 @@ def test_open_ground_follows_the_rolling_model(pier: Cylinder, solve_forced: Cal
 def test_step_load_uplifts_at_once(engine: str, pier: Cylinder) -> None:
     pulse = GroundMotion([[3.0, 4.0], [3.0, 4.0], [0.0, 0.0]], 0.2)
     run = multibody.simulate(Case(pier, pulse), engine=engine)
-    # within a step in MuJoCo; in Bullet the four contacts of standing take over from one another
-    assert run.uplift_time <= {"mujoco": 1, "pybullet": 5}[engine] * run.time_step
+    assert run.uplift_time <= run.time_step
     assert run.uplift_direction == pytest.approx(np.arctan2(-4.0, -3.0), abs=1e-3)
 
 

@@ -23,7 +23,11 @@ def test_contract(check: ContractCheck) -> None:
 def test_our_engines_are_declared_as_anybody_would_declare_them() -> None:
     project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
     declared = project["entry-points"][GROUP]
-    assert tuple(declared) == engine_names()[: len(declared)] == ("mujoco", "pybullet", "exudyn")
+    assert (
+        tuple(declared)
+        == engine_names()[: len(declared)]
+        == ("mujoco", "pybullet", "dart", "drake", "exudyn")
+    )
     assert {point.name: point.value for point in entry_points(group=GROUP)} == declared
     for name in available_engines():
         assert declared[name] == f"{type(find_engine(name)).__module__}:{type(find_engine(name)).__name__}"

@@ -19,7 +19,7 @@ from rockwobble.multibody.testing import ContractCheck, check_engine, leaves_no_
 SOURCE = """
 import contextlib, dataclasses, random
 import numpy as np
-from rockwobble.multibody.mujoco_engine import MujocoEngine
+from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
 
 class Wrapped:
     def __init__(self, stepper, change):
@@ -116,7 +116,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
 
 def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(install: Install) -> None:
     install(sound="external_engine:Sound")
-    assert multibody.engine_names() == ("mujoco", "pybullet", "exudyn", "sound")
+    assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn", "sound")
     assert multibody.available_engines()[-1] == "sound"
     release = InitialState(PIER.alpha / 2, rolling_rate=0.5)
     run = multibody.simulate(Case(PIER, initial=release, duration=0.5), engine="sound", support="flat")
@@ -141,7 +141,7 @@ def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(insta
 )
 def test_a_fault_is_found(install: Install, fault: str, rule: Callable[[str, str], None], words: str) -> None:
     install(faulty=f"external_engine:{fault}")
-    with pytest.raises(AssertionError, match=f"faulty free {rule.__name__}: {words}"):
+    with pytest.raises(AssertionError, match=f"faulty flat {rule.__name__}: {words}"):
         check_engine("faulty", [ContractCheck("faulty", "flat", rule)])
 
 
@@ -151,7 +151,7 @@ def test_a_fault_is_found(install: Install, fault: str, rule: Callable[[str, str
         ("external_engine:Missing", "does not load: AttributeError: "),
         ("no_such_module:Engine", "does not load: ModuleNotFoundError: No module named 'no_such_module'"),
         ("external_engine:fails", "does not load: RuntimeError: no licence"),
-        ("external_engine:Half", "is no engine: it has no uplifts, settings, open"),
+        ("external_engine:Half", "is no engine: it has no uplifts, facts, settings, open"),
         ("not an object reference", "does not load: "),
     ],
 )
@@ -180,5 +180,5 @@ def test_a_name_that_two_packages_claim_is_nobodys(install: Install) -> None:
 
 def test_our_names_are_taken(install: Install) -> None:
     install(mujoco="external_engine:fails")
-    assert multibody.engine_names() == ("mujoco", "pybullet", "exudyn")
+    assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn")
     assert type(find_engine("mujoco")).__module__ == "rockwobble.multibody.engines.mujoco_engine"

@@ -127,12 +127,6 @@ def test_first_contact_is_when_the_geometry_says() -> None:
     case = Case(SQUAT, initial=fall, duration=1.0)
     ring = {"ring_clearance": clearance, "ring_inclination": inclination}
     run = multibody.simulate(case, support="ring", sample_step=0.001, **ring)
-        Case(SQUAT, initial=fall, duration=1.0),
-        support="ring",
-        sample_step=0.001,
-        ring_clearance=clearance,
-        ring_inclination=inclination,
-    )
     first = run.first("wall_contact")
     touching = float(np.interp(first, run.time, run.tilt))
     assert touching > tilt

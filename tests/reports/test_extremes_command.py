@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from rockwobble.compare.storage.manifest import made_now
 from rockwobble.compare.studies import extremes as study
-from rockwobble.compare.studies.extremes import KIND, METHODS, Extremes, Verdict, measure_extremes
+from rockwobble.compare.studies.extremes import KIND, Extremes, Verdict, measure_extremes
 from rockwobble.compare.studies.extremes import study as scan
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.extremes import extremes_page
@@ -69,7 +69,7 @@ def test_what_is_not_fine_is_one_line_for_what_the_same_thing_limits() -> None:
 def test_a_second_scan_repeats_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cheap = [each for each in scan.conditions() if each.value in ("0.001 s", "R = 0.01 m")]
     monkeypatch.setattr(scan, "conditions", lambda **_: cheap)
-    monkeypatch.setattr(scan, "METHODS", METHODS[:2])
+    monkeypatch.setattr(scan, "methods", lambda: scan.MODELS[:2])
     first = measure_extremes(tmp_path, workers=1)
     assert list(first.table["verdict"]) == ["fine"] * 4
     monkeypatch.setattr(scan, "judge", None)

@@ -127,9 +127,6 @@ def _shaken(bench: Bench, run: Run) -> Iterator[Finding]:
 
 def _uplift(bench: Bench, engine: str) -> Iterator[Finding]:
     run = bench.adjust(Run(engine, "recess"))
-    if engine == "pybullet":
-        # its base rocks on four contacts before: what is checked is where the uplift is found
-        run = Run(engine, run.support, run.time_step, **{**run.settings, "held_standing": True})
     trace = simulate_run(RAMP, run, sample_step=0.05)
     if trace.outcome == "failed":
         yield _failed(f"{engine}, ramp", trace)

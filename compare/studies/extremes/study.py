@@ -9,8 +9,8 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockwobble import multibody
 from rockwobble.models import Run
+from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 from ...runs.cache import open_table_cache
 from ...runs.progress import ProgressCallback
@@ -26,18 +26,14 @@ if TYPE_CHECKING:
     import pandas as pd
 
 KIND = "extremes"
-METHODS = (
-    Run(None, "flat", plane=0.0),
-    Run(None, "recess"),
-    Run(None, "flat"),
-    Run("mujoco", "recess"),
-    Run("mujoco", "flat"),
-    Run("mujoco", "ring"),
-    Run("pybullet", "recess"),
-    Run("pybullet", "flat"),
-    Run("exudyn", "flat"),
-)
+MODELS = (Run(None, "flat", plane=0.0), Run(None, "recess"), Run(None, "flat"))
 Task = tuple[str, str, int]  # extreme and value of a condition, and the place of a method
+
+
+def methods() -> tuple[Run, ...]:
+    """Return the reduced models, and each support of each of our engines that is installed."""
+    engines = (Run(name, support) for name in own_engines() for support in find_engine(name).supports)
+    return (*MODELS, *engines)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -80,12 +76,11 @@ def measure_extremes(
     """
     import pandas as pd
 
-    known = multibody.available_engines()
+    tried = methods()
     tasks = [
         (condition.extreme, condition.value, place)
         for condition in conditions(quick=quick)
-        for place, run in enumerate(METHODS)
-        if run.engine is None or run.engine in known
+        for place in range(len(tried))
     ]
     # an engine may read whatever of the package, and what is looked at takes minutes: any change repeats all
     inputs = {"code": code_digests(), "versions": package_versions()}
@@ -94,7 +89,7 @@ def measure_extremes(
             measure_task,
             tasks,
             workers=workers,
-            label=lambda task: f"{task[0]} {task[1]}, {METHODS[task[2]]}",
+            label=lambda task: f"{task[0]} {task[1]}, {tried[task[2]]}",
             progress=progress,
             cache=cache,
         )
@@ -123,7 +118,7 @@ def read_extremes(folder: str | Path) -> Extremes:
 
 def measure_task(task: Task) -> pd.DataFrame:
     """Return the row of one condition and method."""
-    return row(task, judge(_condition(task), METHODS[task[2]]))
+    return row(task, judge(_condition(task), methods()[task[2]]))
 
 
 def row(task: Task, found: Verdict) -> pd.DataFrame:
@@ -131,7 +126,7 @@ def row(task: Task, found: Verdict) -> pd.DataFrame:
     import pandas as pd
 
     extreme, value, place = task
-    named = {"extreme": extreme, "value": value, "method": str(METHODS[place])}
+    named = {"extreme": extreme, "value": value, "method": str(methods()[place])}
     return pd.DataFrame([named | dataclasses.asdict(found)])
 
 

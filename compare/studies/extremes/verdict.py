@@ -31,6 +31,7 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.models import Diagnostic, Run, Trace
 from rockwobble.models.diagnostic import FAILURES
+from rockwobble.multibody.engines.registry import engine_facts
 
 from ...runs.choice import own_model
 from ...runs.execution import simulate_run
@@ -85,7 +86,7 @@ def judge(condition: Condition, run: Run) -> Verdict:
     """Run a condition by a method, and return what is found."""
     if run.engine is None and condition.only_engines:
         return Verdict(verdict="n/a")
-    if math.isfinite(condition.contact) and run.engine != "mujoco":
+    if math.isfinite(condition.contact) and not _contact_time(run):
         return Verdict(verdict="n/a")
     try:
         return _reduced(condition, run) if run.engine is None else _engine(condition, run)
@@ -135,7 +136,7 @@ def _reduced(condition: Condition, run: Run) -> Verdict:
 def _engine(condition: Condition, run: Run) -> Verdict:
     case = condition.case
     step = _STEP * condition.time_step * unit_time(case)
-    settings = {} if math.isnan(condition.contact) else {"contact_time_constant": condition.contact * step}
+    settings = {} if math.isnan(condition.contact) else {_contact_time(run): condition.contact * step}
     plain = condition.time_step == 1.0 and not settings
     run = Run(run.engine, run.support, None if plain else step, **settings)
     trace = simulate_run(case, run, sample_step=condition.sample_step)
@@ -168,6 +169,11 @@ def _engine(condition: Condition, run: Run) -> Verdict:
     if until <= reference.time[1]:
         return replace(found, verdict="no reference", error=math.nan)
     return replace(found, verdict="no reference") if error <= FINE and not limit else found
+
+
+def _contact_time(run: Run) -> str:
+    """The setting that is the time of a run's contact; "" without one."""
+    return "" if run.engine is None else engine_facts(run.engine).contact_time
 
 
 def _tighter(run: Run, rtol: float) -> Run:

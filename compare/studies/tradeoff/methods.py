@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble import multibody, reduced
+from rockwobble import reduced
 from rockwobble.models import Case, Run, Trace
-from rockwobble.multibody.engines.registry import find_engine
+from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
 
 from ...runs.execution import simulate_run
 from .problem import FINE_REST_TILT, Array, Problem
@@ -23,6 +23,7 @@ BASE_LINE = "recess model"
 _TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
 # what a held contact time constant is: that of the default settings at a step of 1e-3 s [s]
 _HELD = 2e-3
+_CHEAP = 2e-5  # [s] of a step: of such an engine the finest steps are worth their time
 _SUPPORTS = ("recess", "flat", "ring")
 
 
@@ -137,27 +138,29 @@ def _by_scipy(
 
 
 def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
-    for engine in multibody.available_engines():
+    for engine in own_engines():
         known = find_engine(engine)
         if problem.name != "turn" and not known.uplifts:
             continue
         for support in (each for each in _SUPPORTS if each in known.supports and each in problem.references):
-            all_steps = engine == "mujoco" and support != "ring"
+            all_steps = known.facts.step_time < _CHEAP and support != "ring"
             steps = problem.steps if all_steps else problem.few_steps
             yield from _line(problem, f"{engine} {support}", "methods", engine, support, steps, {})
-    if "mujoco" not in multibody.available_engines() or problem.name == "peaks":
-        return
-    integrators = ("RK4",) if quick else ("implicitfast", "implicit", "RK4", "discrete")
-    for name in integrators:
-        yield from _line(
-            problem, name, "integrator", "mujoco", "recess", problem.few_steps, {"integrator": name}
-        )
-    held = {"contact_time_constant": _HELD}
-    yield from _line(problem, f"in {_HELD:g} s", "contact", "mujoco", "recess", problem.few_steps, held)
+        if problem.name != "peaks" and known.facts.contact_time:
+            yield from _variants(problem, engine, quick)
+
+
+def _variants(problem: Problem, engine: str, quick: bool) -> Iterator[Method]:
+    """Other integrators and other contact than the default, in a recess."""
+    facts, steps = engine_facts(engine), problem.few_steps
+    for given in facts.alternatives.values():
+        name = given.get("integrator")
+        if name == "RK4" or (name and not quick):
+            yield from _line(problem, name, "integrator", engine, "recess", steps, given)
+    held = {facts.contact_time: _HELD}
+    yield from _line(problem, f"in {_HELD:g} s", "contact", engine, "recess", steps, held)
     for count in (20.0,) if quick else (4.0, 20.0):
-        yield from _line(
-            problem, f"in {count:g} steps", "contact", "mujoco", "recess", problem.few_steps, {}, count
-        )
+        yield from _line(problem, f"in {count:g} steps", "contact", engine, "recess", steps, {}, count)
 
 
 def _line(
@@ -171,7 +174,9 @@ def _line(
     contact_steps: float = math.nan,
 ) -> Iterator[Method]:
     for step in steps:
-        contact = {"contact_time_constant": contact_steps * step} if math.isfinite(contact_steps) else {}
+        contact = (
+            {engine_facts(engine).contact_time: contact_steps * step} if math.isfinite(contact_steps) else {}
+        )
         yield Method(
             line=line,
             family=engine,

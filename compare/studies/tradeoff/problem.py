@@ -20,8 +20,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble import multibody, reduced
+from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace, el_centro_1940
+from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 from ...runs.execution import simulate_run
 from ..ensemble.members import synthetic_motions, with_motions
@@ -80,7 +81,7 @@ class Problem:
     distance : callable
         (quantities of all cases, those of the reference) -> error, [deg] in "turn", else [alpha].
     references : mapping
-        By support: "recess", "flat", and "ring" where MuJoCo is installed.
+        By support: "recess", "flat", and "ring" where an engine that has one is installed.
     """
 
     name: str
@@ -179,9 +180,10 @@ def _answered(problem: Problem) -> Problem:
         support: [Run(None, support, rtol=rtol, rest_tilt=FINE_REST_TILT) for rtol in (TIGHT, 10.0 * TIGHT)]
         for support in ("recess", "flat")
     }
-    if "mujoco" in multibody.available_engines():
-        finest = min(problem.few_steps)
-        pairs["ring"] = [Run("mujoco", "ring", step) for step in (0.5 * finest, finest)]
+    for engine in own_engines():
+        if "ring" in find_engine(engine).supports:
+            finest = min(problem.few_steps)
+            pairs["ring"] = [Run(engine, "ring", step) for step in (0.5 * finest, finest)]
     found = dict(problem.references)
     for support, runs in pairs.items():
         if support not in found:

@@ -16,17 +16,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
-from rockwobble.multibody import available_engines
+from rockwobble.multibody.engines.registry import find_engine, own_engines
 from rockwobble.multibody.engines.scene_counts import SceneCounts
 from rockwobble.multibody.scene_of_case import open_scene
 
 if TYPE_CHECKING:
     import pandas as pd
 
-ENGINES = ("mujoco", "pybullet")
 ROUNDS = 9
 STEPS = 2000  # that are timed, 0.2 s of the cylinder of 6 m
 _WARM_UP = 100  # steps before them: contact settles, the machine fetches the scene
+_WALLS = 8, 32, 128
 _PUSH = 0.1  # [m/s^2] of each component that a scene has; far from uplift
 
 _PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -62,33 +62,35 @@ def variants(engine: str) -> list[Variant]:
     Raises
     ------
     ValueError
-        If the engine has no such table.
+        If there is no such engine, or it is not installed.
     """
-    if engine not in ENGINES:
-        raise ValueError(f"engine must be one of {', '.join(ENGINES)}, got {engine!r}")
-    found = [
-        Variant(support="flat", option="released"),
-        Variant(support="recess", option="released"),
-        Variant(support="recess", option="ground motion x, y", components="xy"),
-        Variant(support="recess", option="ground motion x, y, z", components="xyz"),
+    backend = find_engine(engine)
+    supports, facts = backend.supports, backend.facts
+    # what changes is the main support of an engine: the recess, where it has one
+    main = "recess" if "recess" in supports else supports[0]
+    return [
+        *(Variant(support=name, option="released") for name in ("flat", "recess") if name in supports),
+        Variant(support=main, option="ground motion x, y", components="xy"),
+        Variant(support=main, option="ground motion x, y, z", components="xyz"),
+        *(
+            Variant(support=main, option=option, settings=given)
+            for option, given in facts.alternatives.items()
+        ),
+        *(
+            Variant(
+                support="ring",
+                option=f"{count} walls",
+                settings={"ring_facets": count, "ring_clearance": 0.1},
+            )
+            for count in _WALLS
+            if "ring" in supports
+        ),
+        *(
+            Variant(support=main, option=option, standing=True, components="xy", settings=given)
+            for option, given in (facts.standing_alternatives or {"standing": {}}).items()
+            if backend.uplifts
+        ),
     ]
-    if engine == "pybullet":
-        return [*found, Variant(support="recess", option="standing", standing=True, components="xy")]
-    found += [
-        Variant(support="recess", option=f"integrator {name}", settings={"integrator": name})
-        for name in ("implicitfast", "implicit", "RK4", "discrete")
-    ]
-    found.append(Variant(support="recess", option="pyramidal cone", settings={"cone": "pyramidal"}))
-    for count in (8, 32, 128):
-        walls = {"ring_facets": count, "ring_clearance": 0.1}
-        found.append(Variant(support="ring", option=f"{count} walls", settings=walls))
-    for corners in (0, 4, 12, 24, 48):
-        option = f"standing on {corners} corners" if corners else "standing without prisms"
-        settings = {"standing_corners": corners}
-        found.append(
-            Variant(support="recess", option=option, standing=True, components="xy", settings=settings)
-        )
-    return found
 
 
 def scene_costs(
@@ -103,7 +105,7 @@ def scene_costs(
     Parameters
     ----------
     engines : sequence of str, optional
-        Default: those of "mujoco" and "pybullet" that are installed.
+        Default: ours, as far as they are installed.
     rounds, steps : int
         Times that each scene is measured, and steps each time.
     tell : callable, optional
@@ -124,7 +126,7 @@ def scene_costs(
 
     if rounds < 1 or steps < 1:
         raise ValueError(f"rounds and steps must be positive, got {rounds} and {steps}")
-    names = engines or [name for name in ENGINES if name in available_engines()]
+    names = engines or own_engines()
     scenes = [(name, variant) for name in names for variant in variants(name)]
     times = np.empty((rounds, len(scenes)))
     counts: list[SceneCounts] = []

@@ -10,9 +10,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rockwobble.models import Case, Run
 
-# computing time of one step [s]: good enough to say how long; of the reduced models, of one sample
-_STEP_COSTS = {"mujoco": 1.2e-5, "pybullet": 3.6e-5}
-_SAMPLE_COST = 1e-5
+_SAMPLE_COST = 1e-5  # computing time of a sample of a reduced model [s]: good enough to say how long
 _WORTH_A_WORD = 20.0  # [s]
 # of one sample, in memory while it is written: 24 numbers, as an array, a table, CSV and Parquet
 _BYTES = 24 * 8 * 5
@@ -46,13 +44,14 @@ def require_memory(cases: Sequence[Case], runs: Sequence[Run]) -> None:
 
 def _seconds(case: Case, run: Run) -> float:
     from rockwobble.compare.runs.execution import SAMPLE_STEP
+    from rockwobble.multibody.engines.registry import engine_facts
     from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 
     if run.engine is None:
         return case.length / SAMPLE_STEP * _SAMPLE_COST
     default = REFERENCE_TIME_STEP * froude_scale(case.cylinder.semidiagonal, case.gravity).time
     step = run.time_step if isinstance(run.time_step, float) else default
-    return case.length / step * _STEP_COSTS.get(run.engine, max(_STEP_COSTS.values()))
+    return case.length / step * engine_facts(run.engine).step_time
 
 
 def _memory() -> float:

@@ -1,0 +1,203 @@
+"""DART: hard contact, a complementarity problem of velocities, stepped by a loop in Python.
+
+Contact has no stiffness to choose: after a step the rim's lowest point rests or moves away. What it needs:
+
+* That point sinks and rises by a curvature of its path that no velocity shows, second order in the step. The
+  ground takes it back by a velocity of its own, so that the rim stays as deep as it was: without it the rim
+  would hop through a gap for a fifth of the steps.
+* Where the centre of the base is below the ground, ODE's detector finds four corners along the axes of the
+  scene; where it is above, the lowest point, whose radius is off by 1e-16/lean^2. So the rim is kept at a
+  depth of 1e-6 m, and where there are corners the scene is turned about the vertical until one of them is
+  under the load, and then under the lean: ground that is the same in every direction knows no difference.
+* Dantzig's method bounds friction by what the load would be without it, and lets a squat rim slip; the
+  nonsmooth Gauss-Seidel method does not, and is exact for one contact. With four it takes hundreds of sweeps,
+  so it has the rim, and Dantzig's method what stands.
+* Rotation vectors below 1e-3 rad lose a sixth of their cube in each step. So the cylinder, which is round, is
+  turned about its axis by one radian.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..facts import EngineFacts
+from ..kinematics import about_vertical, turning
+from ..protocol import Array, Scene, Settings, Stepper, Steps
+from .dart_scene import DartScene, build, quaternions, rotation_vector
+from .dart_settings import DartSettings
+from .scene_counts import SceneCounts
+
+_LEANS = 1e-9  # [rad] from which a lean has a direction
+_OPEN = 1e-8  # [rad] lean at which the base is open; standing it stays below 5e-9
+# of b, eccentricities of the load: from the first the scene follows it, at the second the base may open
+_LOADED, _OPENING = 0.5, 0.99
+_REDUCTION, _FASTEST_REDUCTION = 0.01, 1e-3  # [-], [m/s] by which DART itself reduces a depth
+_SPIN = 1.0  # [rad] about the axis of the cylinder
+
+_FACTS = EngineFacts(
+    title="DART", step_time=1.6e-5, release_error=2e-5, uplift_error=5e-6, smooth_uplift=True
+)
+
+
+class DartEngine:
+    """DART 6: free joint, ground plane, contact found by ODE."""
+
+    @property
+    def supports(self) -> tuple[str, ...]:
+        """Supports that it has."""
+        return ("recess", "flat")
+
+    @property
+    def uplifts(self) -> bool:
+        """The base is in contact as well as the rim."""
+        return True
+
+    @property
+    def facts(self) -> EngineFacts:
+        """Measured by halving the step."""
+        return _FACTS
+
+    def version(self) -> str:
+        """Version of the package."""
+        from importlib.metadata import version
+
+        return version("dartpy")
+
+    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
+        """Return every setting; see `DartSettings`."""
+        resolved = DartSettings.resolve(given, scene.time_step * scene.unit_time)
+        return {name: getattr(resolved, name) for name in DartSettings.__dataclass_fields__}
+
+    @contextlib.contextmanager
+    def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
+        """Open the scene at its start; Python frees it when nothing refers to it any more."""
+        yield _DartStepper(scene, DartSettings(**settings))
+
+
+class _DartStepper:
+    def __init__(self, scene: Scene, settings: DartSettings) -> None:
+        self._scene, self._step, self._settings = scene, scene.time_step, settings
+        # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
+        stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
+        self._stiffness = stiffness if scene.support == "recess" else 0.0
+        self._dart: DartScene = build(scene, settings)
+        self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
+        self._open = False
+        start = scene.start
+        self._position, self._quaternion = start.position, start.quaternion
+        position = start.position - [0.0, 0.0, settings.depth]
+        velocity, spin = start.velocity, start.angular_velocity
+        self._put(start.quaternion, position, velocity, spin)
+        if not start.standing:
+            # leapfrog starts half a step back: a trial step shows the acceleration
+            self._dart.world.step()
+            after, spin_after = self._rates()
+            self._put(start.quaternion, position, 1.5 * velocity - 0.5 * after, 1.5 * spin - 0.5 * spin_after)
+
+    @property
+    def hold_centre(self) -> float:
+        """DART steps as leapfrog does."""
+        return 0.0
+
+    def advance(self, acceleration: Array) -> Steps:
+        """Take one step for each row of `acceleration`."""
+        rows = np.array(self._loop(acceleration.tolist()))
+        heading = rows[:, 6]
+        position = about_vertical(rows[:, 3:6], heading)
+        quaternion = quaternions(rows[:, :3], _SPIN)
+        quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
+        position[:, 2] += self._settings.depth
+        # the new velocity moves the pose, so poses give the velocities, and the loop is spared a call
+        velocity = np.diff(np.vstack([self._position, position]), axis=0) / self._step
+        spin = turning(self._quaternion, quaternion) / self._step
+        self._position, self._quaternion = position[-1], quaternion[-1]
+        return Steps(position, quaternion, velocity, spin)
+
+    def warnings(self) -> str:
+        """DART does not warn."""
+        return ""
+
+    def counts(self) -> SceneCounts:
+        """Return what the last step solved: a normal and two directions of friction for each contact."""
+        contacts = self._dart.world.getLastCollisionResult().getNumContacts()
+        return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
+
+    def _loop(self, acceleration: list[list[float]]) -> list[list[float]]:
+        """Step; return rotation vector, position and heading of the scene after each step."""
+        # local names, because this is a loop over steps in Python
+        dart, body = self._dart, self._scene.body
+        step, get, pull = dart.world.step, dart.joint.getPositions, dart.world.setGravity
+        torque, rise, stiffness = dart.cylinder.addExtTorque, dart.ground.setVelocity, -4.0 * self._stiffness
+        cosine, sine, root = math.cos, math.sin, math.sqrt
+        b, h, arm = body.base_radius, body.mass_centre_height, body.mass_centre_height / body.base_radius
+        excited, gravity, heading = bool(self._scene.components), self._scene.gravity, self._heading
+        turn_x, turn_y = cosine(heading), sine(heading)
+        spin_x, spin_y = cosine(0.5 * _SPIN), sine(0.5 * _SPIN)
+        target, gain = self._settings.depth, self._settings.depth_gain / self._step
+        reduction, fastest = _REDUCTION / self._step, _FASTEST_REDUCTION
+        rows: list[list[float]] = []
+        row = get().tolist()
+        for ax, ay, az in acceleration:
+            x, y, z, _, _, height = row
+            angle = root(x * x + y * y + z * z)
+            part, whole = sine(0.5 * angle) / angle, cosine(0.5 * angle)
+            # the quaternion without the turn of the cylinder about its axis
+            w, k = whole * spin_x + part * z * spin_y, part * z * spin_x - whole * spin_y
+            i, j = part * (x * spin_x - y * spin_y), part * (y * spin_x + x * spin_y)
+            axis_x, axis_y = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i)
+            lean = root(axis_x * axis_x + axis_y * axis_y)
+            depth = b * lean + h * (1.0 - 2.0 * (i * i + j * j)) - height
+            rise(2, gain * (depth - target) - min(reduction * max(depth, 0.0), fastest))
+            if b * lean < depth:
+                load = math.hypot(ax, ay) * arm / (gravity + az)
+                self._use_for(opening=lean > _OPEN or load > _OPENING)
+                if lean > _LEANS or load > _LOADED:
+                    # a load pushes against the acceleration
+                    along = math.atan2(axis_y, axis_x) + heading if lean > _LEANS else math.atan2(-ay, -ax)
+                    self._turn(along)
+                    heading, turn_x, turn_y = along, cosine(along), sine(along)
+                    x, y, z, _, _, height = get().tolist()
+                    i, j = part * (x * spin_x - y * spin_y), part * (y * spin_x + x * spin_y)
+                    axis_x, axis_y = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i)
+            elif not self._open:
+                self._use_for(opening=True)
+            if excited:
+                pull([-ax * turn_x - ay * turn_y, ax * turn_y - ay * turn_x, -az - gravity])
+            if stiffness and k:
+                # along the vertical plus the axis, proportional to the twist
+                pair = 0.5 * stiffness * math.atan2(k, w)
+                torque([pair * axis_x, pair * axis_y, pair * (2.0 - 2.0 * (i * i + j * j))])
+            step()
+            row = get().tolist()
+            rows.append([*row, heading])
+        return rows
+
+    def _use_for(self, *, opening: bool) -> None:
+        """Take the solver for a base that is open, or about to open; or for one that stands."""
+        if opening != self._open:
+            self._open = opening
+            self._dart.use(self._dart.rim_solver if opening else self._dart.flat_solver)
+
+    def _turn(self, heading: float) -> None:
+        """Turn the x axis of the scene into an azimuth [rad]: its vectors turn back."""
+        back = np.array([self._heading - heading])
+        self._heading = heading
+        row = self._dart.joint.getPositions()
+        quaternion = quaternions(row[None, :3], _SPIN)[0]
+        position, velocity, spin, quaternion[1:] = (
+            about_vertical(each[None], back)[0] for each in (row[3:], *self._rates(), quaternion[1:])
+        )
+        self._put(quaternion, position, velocity, spin)
+
+    def _rates(self) -> tuple[Array, Array]:
+        return self._dart.cylinder.getLinearVelocity(), self._dart.cylinder.getAngularVelocity()
+
+    def _put(self, quaternion: Array, position: Array, velocity: Array, spin: Array) -> None:
+        self._dart.joint.setPositions(np.concatenate([rotation_vector(quaternion, _SPIN), position]))
+        self._dart.joint.setLinearVelocity(velocity)
+        self._dart.joint.setAngularVelocity(spin)

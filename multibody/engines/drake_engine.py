@@ -1,0 +1,215 @@
+"""Drake: point contact in discrete time, solved as a convex problem with a lagged friction cone.
+
+Its cylinder finds one contact on the ground, on which a flat base does not stand. So the rim has four points
+besides, spheres of a millionth of its radius. As fixed corners they would be a polygon: while the
+base is nearly flat the scene is turned about the vertical until one of them is under the load, and then under
+the lean.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+
+from ..facts import EngineFacts
+from ..kinematics import about_vertical, axis_of, turning
+from ..protocol import Array, Scene, Settings, Stepper, Steps
+from ..scene.friction import body_friction
+from .drake_settings import DrakeSettings
+from .scene_counts import SceneCounts
+
+_POINTS = 4
+_POINT_SIZE = 1e-6  # of b: a sphere this small reaches out of the rim by 1e-6 theta^2/2
+# [rad] lean up to which a point carries the rim: on the contact found for the cylinder itself the rim gains
+# energy at leans of 1e-4 to 1e-3 rad, and under El Centro the guard ends the run
+_FLAT = 0.01
+_LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
+_LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
+
+_FACTS = EngineFacts(title="Drake", step_time=8e-5, release_error=2e-4, uplift_error=5e-5, smooth_uplift=True)
+
+
+class DrakeEngine:
+    """Drake: multibody plant in discrete time, half space, cylinder with points on its rim."""
+
+    @property
+    def supports(self) -> tuple[str, ...]:
+        """Supports that it has."""
+        return ("recess", "flat")
+
+    @property
+    def uplifts(self) -> bool:
+        """The points of the rim carry a flat base."""
+        return True
+
+    @property
+    def facts(self) -> EngineFacts:
+        """Measured by halving the step."""
+        return _FACTS
+
+    def version(self) -> str:
+        """Version of the package."""
+        from importlib.metadata import version
+
+        return version("drake")
+
+    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
+        """Return every setting; see `DrakeSettings`."""
+        resolved = DrakeSettings.resolve(given, scene.time_step * scene.unit_time)
+        return {name: getattr(resolved, name) for name in DrakeSettings.__dataclass_fields__}
+
+    @contextlib.contextmanager
+    def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
+        """Open the scene at its start; Python frees it when nothing refers to it any more."""
+        yield _DrakeStepper(scene, DrakeSettings(**settings))
+
+
+class _DrakeStepper:
+    def __init__(self, scene: Scene, settings: DrakeSettings) -> None:
+        from pydrake.systems.analysis import Simulator
+
+        self._scene, self._step = scene, scene.time_step
+        # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
+        stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
+        self._stiffness = stiffness if scene.support == "recess" else 0.0
+        with _quiet():
+            diagram, self._plant = _build(scene, settings)
+            root = diagram.CreateDefaultContext()
+            self._context = self._plant.GetMyMutableContextFromRoot(root)
+            self._simulator = Simulator(diagram, root)
+            self._simulator.Initialize()
+        self._input = self._plant.get_applied_generalized_force_input_port()
+        self._count = 0
+        self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
+        start = scene.start
+        self._depth = scene.gravity / settings.contact_stiffness
+        self._position, self._quaternion = start.position, start.quaternion
+        place = np.concatenate([start.quaternion, start.position - [0.0, 0.0, self._depth]])
+        velocity = np.concatenate([start.angular_velocity, start.velocity])
+        self._put(place, velocity)
+        if not start.standing:
+            # leapfrog starts half a step back: a trial step shows the acceleration
+            self._advance_once(np.zeros(6))
+            after = self._plant.GetVelocities(self._context)
+            self._put(place, 1.5 * velocity - 0.5 * after)
+
+    @property
+    def hold_centre(self) -> float:
+        """The new velocity moves the pose, as in leapfrog."""
+        return 0.0
+
+    def advance(self, acceleration: Array) -> Steps:
+        """Take one step for each row of `acceleration`."""
+        rows = np.array([self._one(each) for each in acceleration])
+        quaternion, position, heading = rows[:, :4].copy(), rows[:, 4:7], rows[:, 7]
+        quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
+        position = about_vertical(position, heading)
+        position[:, 2] += self._depth
+        velocity = np.diff(np.vstack([self._position, position]), axis=0) / self._step
+        spin = turning(self._quaternion, quaternion) / self._step
+        self._position, self._quaternion = position[-1], quaternion[-1]
+        return Steps(position, quaternion, velocity, spin)
+
+    def warnings(self) -> str:
+        """Drake raises where it cannot go on."""
+        return ""
+
+    def counts(self) -> SceneCounts:
+        """Return what the last step solved: a normal and two directions of friction for each contact."""
+        port = self._plant.get_contact_results_output_port()
+        contacts = port.Eval(self._context).num_point_pair_contacts()
+        return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
+
+    def _one(self, acceleration: Array) -> Array:
+        """Take one step; return quaternion, position and heading of the scene."""
+        place = self._plant.GetPositions(self._context)
+        axis = axis_of(place[None, :4])[0]
+        lean, body = float(np.hypot(axis[0], axis[1])), self._scene.body
+        if lean < _FLAT:
+            push = float(np.hypot(acceleration[0], acceleration[1])) * body.mass_centre_height
+            load = push / (body.base_radius * (self._scene.gravity + acceleration[2]))
+            if lean > _LEANS:
+                self._turn(place, self._heading + math.atan2(axis[1], axis[0]))
+            elif load > _LOADED:
+                self._turn(place, math.atan2(-acceleration[1], -acceleration[0]))
+        force = np.zeros(6)
+        force[3:] = about_vertical(-acceleration[None], -self._heading)[0]
+        if self._stiffness:
+            w, x, y, z = self._plant.GetPositions(self._context)[:4]
+            # along the vertical plus the axis, proportional to the twist
+            pair = -4.0 * self._stiffness * math.atan2(z, w)
+            force[:3] = pair * np.array([x * z + w * y, y * z - w * x, 1.0 - x * x - y * y])
+        self._advance_once(force)
+        return np.append(self._plant.GetPositions(self._context), self._heading)
+
+    def _advance_once(self, force: Array) -> None:
+        self._input.FixValue(self._context, force)
+        self._count += 1
+        self._simulator.AdvanceTo(self._count * self._step)
+
+    def _turn(self, place: Array, heading: float) -> None:
+        """Turn the x axis of the scene into an azimuth [rad]: its vectors turn back."""
+        angle, self._heading = self._heading - heading, heading
+        velocity = self._plant.GetVelocities(self._context)
+        turned = [place[1:4], place[4:], velocity[:3], velocity[3:]]
+        vector, position, spin, speed = about_vertical(np.array(turned), angle)
+        self._put(np.concatenate([place[:1], vector, position]), np.concatenate([spin, speed]))
+
+    def _put(self, place: Array, velocity: Array) -> None:
+        self._plant.SetPositions(self._context, place)
+        self._plant.SetVelocities(self._context, velocity)
+
+
+def _build(scene: Scene, settings: DrakeSettings) -> tuple[Any, Any]:
+    """Make ground and cylinder; return the diagram and its plant."""
+    from pydrake.geometry import AddContactMaterial, Cylinder, HalfSpace, ProximityProperties, Sphere
+    from pydrake.math import RigidTransform
+    from pydrake.multibody import plant as plants
+    from pydrake.multibody.tree import RotationalInertia, SpatialInertia
+    from pydrake.systems.framework import DiagramBuilder
+
+    shape = scene.body
+    builder = DiagramBuilder()
+    plant, _ = plants.AddMultibodyPlantSceneGraph(builder, scene.time_step)
+    kinds = plants.DiscreteContactApproximation
+    names = {"lagged": kinds.kLagged, "similar": kinds.kSimilar, "tamsi": kinds.kTamsi, "sap": kinds.kSap}
+    plant.set_discrete_contact_approximation(names[settings.approximation])
+    transverse, axial = shape.transverse_inertia, shape.axial_inertia
+    inertia = RotationalInertia(transverse, transverse, axial)
+    origin: Any = np.zeros(3)
+    body = plant.AddRigidBody("cylinder", SpatialInertia.MakeFromCentralInertia(1.0, origin, inertia))
+    friction, _ = body_friction(scene.friction, "pair")
+    contact = ProximityProperties()
+    # two bodies in series are half as stiff as each
+    cone = plants.CoulombFriction(friction, friction)
+    AddContactMaterial(settings.dissipation, 2.0 * settings.contact_stiffness, cone, contact)
+    middle: Any = np.array([0.0, 0.0, 0.5 * shape.height - shape.mass_centre_height])
+    size = _POINT_SIZE * shape.base_radius
+    plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform(), HalfSpace(), "ground", contact)
+    outline = Cylinder(shape.base_radius, shape.height)
+    plant.RegisterCollisionGeometry(body, RigidTransform(middle), outline, "outline", contact)
+    for index in range(_POINTS):
+        azimuth = 2.0 * math.pi * index / _POINTS
+        x, y = shape.base_radius * math.cos(azimuth), shape.base_radius * math.sin(azimuth)
+        place: Any = np.array([x, y, size - shape.mass_centre_height])
+        plant.RegisterCollisionGeometry(body, RigidTransform(place), Sphere(size), f"point {index}", contact)
+    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -scene.gravity])
+    plant.Finalize()
+    return builder.Build(), plant
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep a warning that no half space touches a deformable body off the standard error."""
+    logger = logging.getLogger("drake")
+    level = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
