@@ -2,8 +2,9 @@
 
 Bullet finds one contact in a step and keeps four, wherever the base has leaned before: a cylinder that stands
 on them leans by 1e-8 rad in a direction of chance, and uplifts at 0.98 of its load in some. So it is held
-upright until the load is on its rim. From there until it leans by 1e-7 rad it has a point of its rim for a
-contact, to which the scene is turned: the lowest point runs about the rim faster than a step could follow.
+upright until friction does not hold it any more, and it slides on those four; or until the load is on its
+rim. From there until it leans by 1e-7 rad it has a point of its rim for a contact, to which the scene is
+turned: the lowest point runs about the rim faster than a step could follow.
 """
 
 from __future__ import annotations
@@ -100,6 +101,7 @@ class _PybulletStepper:
         self._overshoot = settings.friction_damping - 1.0
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._held = self._standing
+        self._friction = scene.friction
         start = scene.start
         self._position = start.position
         self._quaternion = start.quaternion
@@ -125,6 +127,11 @@ class _PybulletStepper:
         quaternions: list[Any] = []
         headings: list[float] = []
         while self._standing and len(positions) < len(acceleration):
+            if self._held and self._slides(acceleration[len(positions)]):
+                self._let_go()
+                still = np.zeros(3)
+                self._put(self._position, np.roll(self._quaternion, -1), still, still)
+                break
             place, turn = self._stand(acceleration[len(positions)])
             positions.append(place)
             quaternions.append(turn)
@@ -163,15 +170,24 @@ class _PybulletStepper:
         vectors = about_vertical(np.array([place, (x, y, z), *velocities]), self._heading - towards)
         self._heading = towards
         if lean > _RISEN:
-            bullet.removeBody(self._body, client)
-            self._body = self._make(standing=False)
-            self._standing = False
+            self._let_go()
         self._put(vectors[0], np.append(vectors[1], w), vectors[2], vectors[3])
         pull = about_vertical(-acceleration[None] - [0.0, 0.0, self._gravity], -towards)[0]
         bullet.setGravity(*pull.tolist(), client)
         bullet.stepSimulation(client)
         place, turn = bullet.getBasePositionAndOrientation(self._body, client)
         return place, turn
+
+    def _slides(self, acceleration: Array) -> bool:
+        """Whether friction does not hold a cylinder that stands."""
+        push = math.hypot(acceleration[0], acceleration[1])
+        return push > self._friction * float(self._gravity + acceleration[2])
+
+    def _let_go(self) -> None:
+        """Go on with the cylinder in place of the point of its rim; its pose is still to be set."""
+        self._bullet.removeBody(self._body, self._client)
+        self._body = self._make(standing=False)
+        self._standing = False
 
     def _put(self, position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
         """Give the body a pose, with the scalar last as Bullet has it, and velocities."""

@@ -40,6 +40,13 @@ class CaseChunk:
         return len(self.jobs)
 
     @property
+    def name(self) -> str:
+        """What it is, for whoever waits."""
+        first = self.jobs[0]
+        more = f" and {self.rows - 1} more" if self.rows > 1 else ""
+        return f"{first.case.name}, {first.run}{more}"
+
+    @property
     def makers(self) -> dict[str, str]:
         """Versions and code on which the results depend."""
         return makers_of(self.jobs[0])
