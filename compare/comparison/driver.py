@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas as pd
 
 from rockwobble.models import Case, Run, Suite, Trace
 
@@ -20,9 +22,6 @@ from .error_budget import ErrorBudget
 from .prediction import Simulate, estimated_error, measured_error, predict
 from .result import KIND, Comparison
 from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 def compare(
@@ -199,6 +198,4 @@ def _row(
 
 
 def _table(rows: list[dict[str, Any]]) -> pd.DataFrame:
-    import pandas as pd
-
     return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS)).astype({"diverged": bool, "agreed_passes": int})

@@ -15,17 +15,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, Trace
 
 from ..metrics.agreement import Agreement
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -123,8 +121,6 @@ class ErrorBudget:
 
     def to_frame(self) -> pd.DataFrame:
         """Return the samples as a table, in units of alpha."""
-        import pandas as pd
-
         names = ("time", "whole", "model_form", "numerics", "unexplained", "limit_error")
         return pd.DataFrame({name: getattr(self, name) for name in names})
 

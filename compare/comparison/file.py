@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.traces.trace_file import case_from_plain, case_to_plain
 
 from ..storage.manifest import Results
 from .error_budget import ErrorBudget, Limit
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 ABOUT = "comparison.json"
 _SEPARATOR = "\n"  # in no name of a case or a run: these are single lines
@@ -68,8 +66,6 @@ def _header(case: Case) -> dict[str, Any] | None:
 
 def load_fields(stored: Results) -> ComparisonFields:
     """Return what the stored comparison is made of; see `Comparison.load`."""
-    import pandas as pd
-
     try:
         rest = plain_json.loads(stored.content(ABOUT))
         excitation = dict(iter(stored.table("excitation").groupby("case", sort=False)))

@@ -7,9 +7,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
 
@@ -17,9 +18,6 @@ from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Manifest, made_now, read_results, write_results
 from .error_budget import ErrorBudget
 from .file import ABOUT, load_fields, plain_fields
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 KIND = "comparison"
 
@@ -140,8 +138,6 @@ class Comparison:
         return str(self.summary[[*names, "diverged", "diagnostics"]].to_html(index=False))
 
     def _stacked(self) -> pd.DataFrame:
-        import pandas as pd
-
         tables = []
         for (case, label), trace in self.traces.items():
             if not len(trace.time):  # its process died
@@ -154,8 +150,6 @@ class Comparison:
         return whole
 
     def _budget(self) -> pd.DataFrame:
-        import pandas as pd
-
         tables = []
         for key, budget in self.budgets.items():
             table = budget.to_frame()
@@ -166,8 +160,6 @@ class Comparison:
         return whole
 
     def _passes(self) -> pd.DataFrame:
-        import pandas as pd
-
         tables = [
             trace.passes.assign(case=case, run=label)
             for (case, label), trace in self.traces.items()
@@ -177,8 +169,6 @@ class Comparison:
         return passes.set_index(["case", "run"]).reset_index()
 
     def _excitation(self) -> pd.DataFrame:
-        import pandas as pd
-
         tables = []
         for name, case in self.cases.items():
             if case.motion is None:

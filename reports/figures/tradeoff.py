@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from .palette import DARK, GREY, ORDER, SYMBOLS, Style
 from .picture import Axis, Line, Panel, Picture, Rule
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from rockwobble.compare.studies.tradeoff import Tradeoff
 
 TITLES = {
@@ -44,8 +43,6 @@ def tradeoff_pictures(found: Tradeoff) -> list[Picture]:
 
 
 def _picture(found: Tradeoff, problem: str) -> Picture:
-    import pandas as pd
-
     points = found.points[(found.points["problem"] == problem) & (found.points["error"] > 0.0)]
     time = _axis("time / that of the recess model", "-", points["ratio"])
     error = _axis(*ERRORS[problem], points["error"])

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.compare.metrics.distributions import MARGIN
 from rockwobble.compare.studies.validity import limits_of, read_validity
@@ -19,8 +20,6 @@ from ..figures.validity import METHODS, validity_pictures
 from .page import Page
 
 if TYPE_CHECKING:
-    import pandas as pd
-
     from rockwobble.compare.studies.validity import Validity
 
 
@@ -64,8 +63,6 @@ def stored_page(folder: Path) -> Page:
 
 def limits_table(found: Validity) -> pd.DataFrame:
     """Return every number of every limit: limit, number, value."""
-    import pandas as pd
-
     rows = [
         {"limit": limit, "number": number, "value": value}
         for limit, numbers in limits_of(found.tables).items()

@@ -7,9 +7,10 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
 
@@ -21,9 +22,6 @@ from .grades import Grade, grade_engine, grade_intensity, grade_overturning, gra
 from .members import COPIES, answers, fall_of
 from .scales import BESIDE, Lowest, planar_chances
 from .trust import Trust, Verification
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 KIND = "advice"
 OTHER = "other support"  # group of the copies on the other support
@@ -236,8 +234,6 @@ class Advice:
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """Return the tables by name; tilts of the traces in alpha."""
-        import pandas as pd
-
         alpha = self.case.cylinder.alpha
         engine = self.engine_trace
         return {

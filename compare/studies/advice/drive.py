@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940
 
@@ -74,8 +75,6 @@ def advise(
     >>> found.trust.kind, found.grades["overturning"]
     ('statistics', 'care')
     """
-    import pandas as pd
-
     if run is not None:
         support = run.support
         require_runnable(case, run)

@@ -6,7 +6,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas as pd
 
 from rockwobble.models import Case, Run, Suite, Trace
 
@@ -17,9 +19,6 @@ from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Results
 from .members import perturbed_starts
 from .tables import contrast_table, method_table
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 KIND = "ensemble"
 MODELS = (Run(None, "recess"), Run(None, "flat"))
@@ -162,8 +161,6 @@ def _runs(case_or_members: Case | Suite | Sequence[Case], runs: Iterable[Run] | 
 
 
 def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
-    import pandas as pd
-
     rows = []
     for job, result in zip(jobs, results, strict=True):
         rows.append(

@@ -7,7 +7,8 @@ from collections import Counter
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import pandas as pd
 
 from rockwobble.models import Run
 from rockwobble.multibody.engines.registry import find_engine, own_engines
@@ -21,9 +22,6 @@ from ...storage.manifest import Manifest, made_now, read_results
 from ...storage.provenance import code_digests, package_versions
 from .conditions import Condition, conditions
 from .verdict import Verdict, judge
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 KIND = "extremes"
 MODELS = (Run(None, "flat", plane=0.0), Run(None, "recess"), Run(None, "flat"))
@@ -74,8 +72,6 @@ def measure_extremes(
     command : str, optional
         That asked for it.
     """
-    import pandas as pd
-
     tried = methods()
     tasks = [
         (condition.extreme, condition.value, place)
@@ -123,8 +119,6 @@ def measure_task(task: Task) -> pd.DataFrame:
 
 def row(task: Task, found: Verdict) -> pd.DataFrame:
     """Return a verdict as a table of one row."""
-    import pandas as pd
-
     extreme, value, place = task
     named = {"extreme": extreme, "value": value, "method": str(methods()[place])}
     return pd.DataFrame([named | dataclasses.asdict(found)])

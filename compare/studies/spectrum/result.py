@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import GroundMotion
@@ -16,9 +16,6 @@ from ...metrics.tilt import overturned
 from ...storage.manifest import Results
 from .search import PROBES, lowest_on_grid
 from .series import SERIES, SPATIAL, intensity_unit
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 KIND = "overturning spectrum"
@@ -112,8 +109,6 @@ class OverturningSpectrum:
         Columns: series, semidiagonal [m], intensity [-], scale [-], peak_acceleration [m/s^2] (of what
         drives the series), peak_tilt [rad], peak_tilt_over_alpha [-], overturned.
         """
-        import pandas as pd
-
         sizes, intensities = np.meshgrid(self.semidiagonals, self.intensities, indexing="ij")
         _, scales = np.meshgrid(self.semidiagonals, self.scales, indexing="ij")
         tables = [
@@ -141,8 +136,6 @@ class OverturningSpectrum:
         searched_from and search_step [-]; probed and overturned_below, intensities drawn below and how many
         of them overturned.
         """
-        import pandas as pd
-
         tables = []
         for series in SERIES:
             lowest = self.lowest[series]
@@ -168,8 +161,6 @@ class OverturningSpectrum:
 
 def record_frame(motion: GroundMotion) -> pd.DataFrame:
     """Return the samples of a ground motion, one column for each component [m/s^2]."""
-    import pandas as pd
-
     return pd.DataFrame(dict(zip("xyz", motion.acceleration.T, strict=False)))
 
 
@@ -200,8 +191,6 @@ def safe_islands(spectrum: OverturningSpectrum) -> pd.DataFrame:
     cylinder stands [-], closed, whether a higher one overturns it again. A failed run ends an island, and
     neither opens one nor closes it.
     """
-    import pandas as pd
-
     rows = []
     for series in SERIES:
         tilts, fell = spectrum.peak_tilt[series], spectrum.overturned(series)

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockwobble import reduced
 from rockwobble.models import GroundMotion
 
 from ...metrics.tilt import overturned
@@ -61,8 +62,6 @@ class GridChunk:
 
     def run(self) -> dict[str, Any]:
         """Return the columns of the results, one row for each run."""
-        from rockwobble import reduced
-
         peaks = reduced.peak_tilts(
             self.semidiagonals,
             self.tan_alpha,
@@ -201,8 +200,6 @@ class Grid:
         """Let `reduced.peak_tilts` look at the options here, not first in another process."""
         if not self.options:
             return
-        from rockwobble import reduced
-
         for model in self.models:
             try:
                 reduced.peak_tilts(

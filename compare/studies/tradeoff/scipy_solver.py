@@ -14,7 +14,9 @@ from dataclasses import dataclass
 from math import cos, sin
 from typing import Any, Literal
 
+import numba
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion
@@ -91,8 +93,6 @@ def rates_of(case: Case, *, compiled: bool) -> Callable[..., Any]:
 
     if not compiled:
         return rates
-    import numba
-
     found: Callable[..., Any] = numba.njit(rates)
     return found
 
@@ -109,8 +109,6 @@ def _departure(case: Case) -> float:
 
 def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: float) -> Array:
     """Return what a problem asks, by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
-    from scipy.integrate import solve_ivp
-
     step, reference = problem.sample_step, problem.references["recess"].quantities[0]
     times = step * np.arange(math.ceil(rates.start / step), math.floor(rates.end / step) + 2)
     times = times[: int(np.searchsorted(times, rates.end + 1e-9))]

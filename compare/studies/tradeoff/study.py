@@ -8,9 +8,9 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case
 
@@ -20,9 +20,6 @@ from .conclusions import engine_factors
 from .methods import Answer, Method, methods_for
 from .problem import Problem, problems, sampling_distance
 from .scene_cost import scene_costs
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 KIND = "tradeoff"
 # a run shorter than this is repeated, so that a tick of the clock does not show [s]
@@ -76,8 +73,6 @@ def measure_tradeoff(
     command : str, optional
         That asked for it.
     """
-    import pandas as pd
-
     before = _load()
     scene_rounds = 3 if quick else 9
     asked = list(problems(quick=quick))
@@ -132,8 +127,6 @@ def read_tradeoff(folder: str | Path) -> Tradeoff:
 
 
 def _described(problem: Problem) -> pd.DataFrame:
-    import pandas as pd
-
     many = len(problem.cases) > 1
     return pd.DataFrame(
         {
@@ -149,8 +142,6 @@ def _described(problem: Problem) -> pd.DataFrame:
 
 
 def _points(problem: Problem, methods: list[Method], tell: Callable[[], None]) -> pd.DataFrame:
-    import pandas as pd
-
     visits = list(problem.cases) if len(problem.cases) > 1 else list(problem.cases) * ROUNDS
     answers: list[list[Answer]] = [[] for _ in methods]
     seconds = np.full((len(visits), len(methods)), np.nan)

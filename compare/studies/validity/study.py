@@ -7,7 +7,8 @@ import inspect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import pandas as pd
 
 from ...runs.cache import open_table_cache
 from ...runs.progress import ProgressCallback
@@ -21,9 +22,6 @@ from .extent import Extent
 from .limits import limits_of
 from .part import Inputs, Part
 from .parts import PARTS, part_named
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 KIND = "validity"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
@@ -77,8 +75,6 @@ def measure_all(
     RuntimeError
         If a process ended in a task; what was finished is kept.
     """
-    import pandas as pd
-
     tasks: list[Task] = [(part.name, dict(inputs)) for part in parts for inputs in part.tasks(extent)]
     with open_table_cache(folder, KIND, name=task_name) as cache:
         found = run_tasks(
@@ -108,8 +104,6 @@ def measure_all(
 
 def measure_task(task: Task) -> pd.DataFrame:
     """Return the rows of one task."""
-    import pandas as pd
-
     name, inputs = task
     return pd.DataFrame(part_named(name).measure(**inputs))
 
