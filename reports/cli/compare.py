@@ -5,20 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
+import rockwobble as rw
+
+from ..console.progress import shown_progress
 from ..console.terminal import FAILED, complain, interruptible, user_input
+from ..pages.case_words import describe
 from ..pages.provenance import command_line
 from .inputs import options
+from .inputs.estimate import require_memory, time_needed
 from .inputs.method_values import settings
 from .inputs.problem import Problem, states_problem
 from .inputs.suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
-
-if TYPE_CHECKING:
-    from rockwobble.compare import External
-    from rockwobble.models import Case, Run
 
 
 @states_problem
@@ -53,12 +54,6 @@ def compare(
     kept = f"the finished runs are kept in {out}, the same command goes on"
     with interruptible(kept if suite else "nothing was written"):
         with user_input():
-            from rockwobble.compare import compare as held_against_models
-            from rockwobble.compare import require_runnable, require_writable, with_settings
-            from rockwobble.models import Suite
-
-            from .inputs.estimate import require_memory
-
             if suite is not None:
                 refuse_problem_options(context, suite)
                 cases, runs = _suite(suite, engine, support, time_step)
@@ -66,11 +61,11 @@ def compare(
                 cases = [problem.case()]
                 runs = _runs(engine, support, time_step, alone=bool(trajectory))
             if setting:
-                runs = list(with_settings(cases[0], runs, settings(setting)))
-            require_writable(out)
+                runs = list(rw.compare.with_settings(cases[0], runs, settings(setting)))
+            rw.compare.require_writable(out)
             for each in cases:
                 for run in runs:
-                    require_runnable(each, run)
+                    rw.compare.require_runnable(each, run)
             require_memory(cases, runs)
             external = _external(
                 trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
@@ -79,11 +74,9 @@ def compare(
             print(line)
         if not engine and suite is None:
             _say_what_is_left_out(support or [])
-        from ..console.progress import shown_progress
-
         with user_input(), shown_progress() as tell:
-            comparison = held_against_models(
-                Suite(cases, runs),
+            comparison = rw.compare.compare(
+                rw.Suite(cases, runs),
                 runs=runs,
                 progress=tell,
                 external=external,
@@ -103,31 +96,26 @@ def compare(
 
 def _suite(
     name: str, engines: list[str] | None, supports: list[str] | None, time_step: Any
-) -> tuple[list[Case], list[Run]]:
-    from rockwobble.models import read_suite
-
-    suite = read_suite(name)
+) -> tuple[list[rw.Case], list[rw.Run]]:
+    suite = rw.read_suite(name)
     runs, missing = without_missing(chosen_runs(suite, engines, supports, time_step), engines)
     for engine in missing:
         complain(f"{engine} is not installed here and is left out")
     return list(suite.cases), runs
 
 
-def _runs(engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool) -> list[Run]:
-    from rockwobble.compare import default_runs
-    from rockwobble.models import Run
-
+def _runs(
+    engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool
+) -> list[rw.Run]:
     if engines == ["none"] and alone:
         return []
     return [
-        Run(run.engine, run.support, time_step) for run in default_runs(engines or None, supports or None)
+        rw.Run(run.engine, run.support, time_step)
+        for run in rw.compare.default_runs(engines or None, supports or None)
     ]
 
 
-def _echo(suite: str | None, cases: Sequence[Case], runs: Sequence[Run]) -> list[str]:
-    from ..pages.case_words import describe
-    from .inputs.estimate import time_needed
-
+def _echo(suite: str | None, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> list[str]:
     if suite is not None:
         return list(describe_suite(suite, cases, runs))
     return [*describe(cases[0]), *time_needed(cases, runs)]
@@ -135,13 +123,11 @@ def _echo(suite: str | None, cases: Sequence[Case], runs: Sequence[Run]) -> list
 
 def _external(
     paths: list[Path] | None,
-    cases: Sequence[Case],
+    cases: Sequence[rw.Case],
     angles: str | None,
     offset: float,
     noise_deg: float | None,
-) -> list[External]:
-    from rockwobble.compare import External, read_trajectory
-
+) -> list[rw.External]:
     if not paths:
         if angles is not None or offset or noise_deg is not None:
             raise ValueError("--trajectory-angles, -offset and -noise-deg need a --trajectory")
@@ -149,17 +135,16 @@ def _external(
     if len(cases) > 1:
         raise ValueError(f"--trajectory belongs to one case, got a suite of {len(cases)}")
     noise = None if noise_deg is None else math.radians(noise_deg)
-    external = [External(path=path, angle_unit=angles, time_offset=offset, noise=noise) for path in paths]
+    external = [rw.External(path=path, angle_unit=angles, time_offset=offset, noise=noise) for path in paths]
     for each in external:  # whatever is wrong with a file is said before anything runs
-        read_trajectory(each, cases[0])
+        rw.compare.read_trajectory(each, cases[0])
     return external
 
 
 def _say_what_is_left_out(supports: list[str]) -> None:
-    from rockwobble.compare import missing_engines
     from rockwobble.compare.runs.choice import unsupported
 
-    for name in missing_engines():
+    for name in rw.compare.missing_engines():
         complain(f"{name} is not installed here and is left out")
     for reason in unsupported(supports):
         complain(reason)

@@ -7,7 +7,12 @@ from typing import Annotated
 
 import typer
 
+from rockwobble.compare.storage.files import require_writable
+
+from ..console.progress import shown_progress
+from ..console.results import show_and_write
 from ..console.terminal import FAILED, interruptible, user_input
+from ..pages.provenance import command_line
 from .inputs import options
 
 Quick = Annotated[
@@ -35,15 +40,10 @@ def extremes(
     """
     with interruptible("what was run so far is kept, and the next call goes on from there"):
         with user_input():
-            from rockwobble.compare.storage.files import require_writable
-
             require_writable(out)
         from rockwobble.compare.studies.extremes import KIND, measure_extremes
 
-        from ..console.progress import shown_progress
-        from ..console.results import show_and_write
         from ..pages.extremes import extremes_page
-        from ..pages.provenance import command_line
 
         with user_input(), shown_progress() as tell:
             found = measure_extremes(out, quick=quick, workers=workers, progress=tell, command=command_line())

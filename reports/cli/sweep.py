@@ -4,17 +4,17 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+import rockwobble as rw
+
+from ..console.progress import shown_progress
 from ..console.terminal import FAILED, INTERRUPTED, complain, user_input
+from ..pages.provenance import command_line
 from .inputs import options
 from .results.show import show
-
-if TYPE_CHECKING:
-    from rockwobble.compare import CaseSweep, Grid
-    from rockwobble.models import GroundMotion
 
 _GRID, _WORK = "Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT", "Work"
 _MOST_VALUES = 100_000
@@ -101,17 +101,15 @@ def sweep(
     Writes sweep.parquet, one row for each run; rockwobble show prints what it holds.
     """
     with user_input():
-        from rockwobble.compare import require_writable
-
         if suite is None:
-            plan: Grid | CaseSweep = _grid(
+            plan: rw.compare.Grid | rw.compare.CaseSweep = _grid(
                 semidiagonal, tan_alpha, scale, _motions(record_x, record_y, record_z, units), model
             )
         else:
             if record_x or record_y or record_z or units:
                 raise ValueError(f"the records of a suite stand in its file, got options besides {suite}")
             plan = _suite(suite, model)
-        require_writable(out)
+        rw.compare.require_writable(out)
     for line in _echo(plan):
         print(line)
     _run(plan, out, scheduler, workers, chunk)
@@ -120,17 +118,15 @@ def sweep(
 
 
 def _run(
-    plan: Grid | CaseSweep, out: Path, scheduler: str | None, workers: int | None, chunk: int | None
+    plan: rw.compare.Grid | rw.compare.CaseSweep,
+    out: Path,
+    scheduler: str | None,
+    workers: int | None,
+    chunk: int | None,
 ) -> None:
-    from rockwobble.compare import SweepIncompleteError
-    from rockwobble.compare import sweep as run
-
-    from ..console.progress import shown_progress
-    from ..pages.provenance import command_line
-
     try:
         with user_input(), shown_progress("chunks") as tell:
-            run(
+            rw.compare.sweep(
                 plan,
                 out=out,
                 scheduler=scheduler,
@@ -139,7 +135,7 @@ def _run(
                 progress=tell,
                 command=command_line(),
             )
-    except SweepIncompleteError as error:
+    except rw.compare.SweepIncompleteError as error:
         complain(str(error))
         raise typer.Exit(FAILED) from None
     except KeyboardInterrupt:
@@ -148,11 +144,9 @@ def _run(
 
 
 def _grid(
-    sizes: str, slendernesses: str, scales: str, motions: list[GroundMotion], models: list[str] | None
-) -> Grid:
-    from rockwobble.compare import Grid
-
-    return Grid(
+    sizes: str, slendernesses: str, scales: str, motions: list[rw.GroundMotion], models: list[str] | None
+) -> rw.compare.Grid:
+    return rw.compare.Grid(
         semidiagonals=values("--semidiagonal", sizes),
         tan_alphas=values("--tan-alpha", slendernesses),
         scales=values("--scale", scales),
@@ -161,17 +155,15 @@ def _grid(
     )
 
 
-def _suite(name: str, models: list[str] | None) -> CaseSweep:
-    from rockwobble import reduced
-    from rockwobble.compare import CaseSweep, default_runs
-    from rockwobble.models import Run, read_suite
-
+def _suite(name: str, models: list[str] | None) -> rw.compare.CaseSweep:
     for model in models or ():
-        if model not in reduced.MODELS:
-            raise ValueError(f"--model must be of {', '.join(reduced.MODELS)}, got {model!r}")
-    suite = read_suite(name)
-    chosen = [Run(None, **{"support": "recess", **reduced.MODELS[model]}) for model in models or ()]
-    return CaseSweep(suite.cases, (*chosen, *(suite.runs or (() if models else default_runs()))))
+        if model not in rw.reduced.MODELS:
+            raise ValueError(f"--model must be of {', '.join(rw.reduced.MODELS)}, got {model!r}")
+    suite = rw.read_suite(name)
+    chosen = [rw.Run(None, **{"support": "recess", **rw.reduced.MODELS[model]}) for model in models or ()]
+    return rw.compare.CaseSweep(
+        suite.cases, (*chosen, *(suite.runs or (() if models else rw.compare.default_runs())))
+    )
 
 
 def values(option: str, text: str) -> list[float]:
@@ -200,32 +192,27 @@ def values(option: str, text: str) -> list[float]:
 
 def _motions(
     x: list[Path] | None, y: list[Path] | None, z: list[Path] | None, units: str | None
-) -> list[GroundMotion]:
-    from rockwobble.models import el_centro_1940, read_record
-
+) -> list[rw.GroundMotion]:
     x, y, z = x or [], y or [], z or []
     if not x and not y:
         if z or units:
             raise ValueError(
                 "--record-z and --units belong to a record, give --record-x and --record-y as well"
             )
-        return [el_centro_1940()]
+        return [rw.el_centro_1940()]
     if len(x) != len(y) or len(z) not in (0, len(x)):
         raise ValueError(
             f"each record needs both horizontal components, and all a vertical one or none: "
             f"got {len(x)}, {len(y)} and {len(z)} files"
         )
     ups: list[Path | None] = list(z) if z else [None] * len(x)
-    return [read_record(east, north, up, units=units) for east, north, up in zip(x, y, ups, strict=True)]
+    return [rw.read_record(east, north, up, units=units) for east, north, up in zip(x, y, ups, strict=True)]
 
 
-def _echo(plan: Grid | CaseSweep) -> list[str]:
-    from rockwobble.compare import Grid
-    from rockwobble.models import Cylinder
-
-    if isinstance(plan, Grid):
+def _echo(plan: rw.compare.Grid | rw.compare.CaseSweep) -> list[str]:
+    if isinstance(plan, rw.compare.Grid):
         ends = [
-            Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+            rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(plan.semidiagonals), max(plan.semidiagonals))
             for tan_alpha in (min(plan.tan_alphas), max(plan.tan_alphas))
         ]

@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from rockwobble.models import Case, Run
+import rockwobble as rw
 
 _SAMPLE_COST = 1e-5  # computing time of a sample of a reduced model [s]: good enough to say how long
 _WORTH_A_WORD = 20.0  # [s]
@@ -16,14 +14,14 @@ _WORTH_A_WORD = 20.0  # [s]
 _BYTES = 24 * 8 * 5
 
 
-def time_needed(cases: Sequence[Case], runs: Sequence[Run], *, always: bool = False) -> Iterator[str]:
+def time_needed(cases: Sequence[rw.Case], runs: Sequence[rw.Run], *, always: bool = False) -> Iterator[str]:
     """Yield a line that says how long it may take; none where that is not worth a word."""
     seconds = sum(_seconds(case, run) for case in cases for run in runs)
     if always or seconds > _WORTH_A_WORD:
         yield f"Computing time: {_words(seconds)}{', shared by the cores' if always else ''}"
 
 
-def require_memory(cases: Sequence[Case], runs: Sequence[Run]) -> None:
+def require_memory(cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> None:
     """Refuse runs whose samples do not fit into the memory of this machine.
 
     Raises
@@ -42,7 +40,7 @@ def require_memory(cases: Sequence[Case], runs: Sequence[Run]) -> None:
         )
 
 
-def _seconds(case: Case, run: Run) -> float:
+def _seconds(case: rw.Case, run: rw.Run) -> float:
     from rockwobble.compare.runs.execution import SAMPLE_STEP
     from rockwobble.multibody.engines.registry import engine_facts
     from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
