@@ -12,8 +12,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import math
-import os
-import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -22,13 +20,12 @@ import numpy as np
 from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
-from ..scene.friction import body_friction
+from .pybullet_scene import make_cylinder, make_ground, quiet
 from .scene_counts import SceneCounts
-from .settings import PybulletSettings
+from .settings.pybullet import PybulletSettings
 
 _LEANS = 1e-7  # [rad] a cylinder that leans less has no lowest point to speak of
 _RESIDUAL = 1e-10  # of an iteration, squared [m^2/s^2]; what a standing cylinder leaves is far below
-_POINT_SIZE = 1e-6  # of b
 _RISEN = 1e-7  # [rad] lean from which the rim carries the cylinder as well as the point does
 _HAS_DIRECTION = 1e-9  # [rad]
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
@@ -75,7 +72,7 @@ class PybulletEngine:
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
         """Open the scene at its start, in a client that is closed whatever happens."""
-        with _quiet():
+        with quiet():
             import pybullet
 
             client = pybullet.connect(pybullet.DIRECT)
@@ -84,7 +81,7 @@ class PybulletEngine:
         try:
             yield _PybulletStepper(pybullet, client, scene, PybulletSettings(**settings))
         finally:
-            with _quiet():
+            with quiet():
                 pybullet.disconnect(client)
 
 
@@ -96,8 +93,8 @@ class _PybulletStepper:
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
         self._stiffness = stiffness if scene.support == "recess" else 0.0
         self._standing = scene.start.standing
-        self._ground = _ground(pybullet, client, scene, settings)
-        self._make = functools.partial(_cylinder, pybullet, client, scene, settings)
+        self._ground = make_ground(pybullet, client, scene, settings)
+        self._make = functools.partial(make_cylinder, pybullet, client, scene, settings)
         self._body = self._make(standing=self._standing)
         self._lengths = scene.body.base_radius, scene.body.mass_centre_height
         self._iterations, self._unsolved = settings.iterations, False
@@ -261,84 +258,3 @@ class _PybulletStepper:
             for island in report
         )
         return positions, quaternions
-
-
-def _ground(bullet: Any, client: int, scene: Scene, settings: PybulletSettings) -> int:
-    """Set the parameters of the engine and make the ground; return its number."""
-    bullet.setPhysicsEngineParameter(
-        fixedTimeStep=scene.time_step,
-        numSubSteps=0,
-        numSolverIterations=settings.iterations,
-        solverResidualThreshold=settings.solver_residual,
-        contactSlop=settings.contact_slop,
-        contactERP=settings.contact_erp,
-        physicsClientId=client,
-    )
-    bullet.setGravity(0.0, 0.0, -scene.gravity, client)
-    plane = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
-    ground = bullet.createMultiBody(0.0, plane, physicsClientId=client)
-    bullet.changeDynamics(
-        ground,
-        -1,
-        lateralFriction=body_friction(scene.friction, "product")[1],
-        restitution=0.0,
-        collisionMargin=settings.collision_margin,
-        physicsClientId=client,
-    )
-    return int(ground)
-
-
-def _cylinder(bullet: Any, client: int, scene: Scene, settings: PybulletSettings, *, standing: bool) -> int:
-    """Make the cylinder, or the point on its rim from which it rises; return its number."""
-    shape = scene.body
-    if standing:
-        size = _POINT_SIZE * shape.base_radius
-        outline = bullet.createCollisionShape(
-            bullet.GEOM_SPHERE,
-            radius=size,
-            collisionFramePosition=[shape.base_radius, 0.0, size - shape.mass_centre_height],
-            physicsClientId=client,
-        )
-    else:
-        above = 0.5 * shape.height - shape.mass_centre_height
-        # a shape with a frame becomes a compound, which costs time: only where the outline needs it
-        frame = {"collisionFramePosition": [0.0, 0.0, above]} if above else {}
-        outline = bullet.createCollisionShape(
-            bullet.GEOM_CYLINDER,
-            radius=shape.base_radius,
-            height=shape.height,
-            physicsClientId=client,
-            **frame,
-        )
-    body = bullet.createMultiBody(1.0, outline, physicsClientId=client)
-    transverse, axial = shape.transverse_inertia, shape.axial_inertia
-    bullet.changeDynamics(
-        body,
-        -1,
-        lateralFriction=body_friction(scene.friction, "product")[0],
-        restitution=0.0,
-        collisionMargin=settings.collision_margin,
-        localInertiaDiagonal=[transverse, transverse, axial],
-        linearDamping=0.0,
-        angularDamping=0.0,
-        activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
-        physicsClientId=client,
-    )
-    return int(body)
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep what Bullet prints from C, its build time and the like, off both standard streams."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    kept = [os.dup(stream) for stream in (1, 2)]
-    try:
-        with open(os.devnull, "w") as nowhere:  # noqa: PTH123 - a descriptor is what is needed
-            for stream in (1, 2):
-                os.dup2(nowhere.fileno(), stream)
-        yield
-    finally:
-        for stream, original in zip((1, 2), kept, strict=True):
-            os.dup2(original, stream)
-            os.close(original)
