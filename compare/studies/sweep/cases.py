@@ -40,6 +40,12 @@ class CaseChunk:
         return len(self.jobs)
 
     @property
+    def name(self) -> str:
+        """What it is, for whoever waits."""
+        more = f" and {self.rows - 1} more" if self.rows > 1 else ""
+        return f"{self.jobs[0].name}{more}"
+
+    @property
     def makers(self) -> dict[str, str]:
         """Versions and code on which the results depend."""
         return makers_of(self.jobs[0])
