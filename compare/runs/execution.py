@@ -184,8 +184,8 @@ def open_trace_cache(
         table = trace.to_frame()
         return pack(table if samples else table.iloc[-1:], about)
 
-    def unpacked(job: Job, path: Path) -> Trace:
-        table, about = read(path)
+    def unpacked(job: Job, content: bytes) -> Trace:
+        table, about = read(content)
         return dataclasses.replace(Trace.from_plain(about["trace"], table, job.case), run=job.run)
 
     return open_cache(folder, kind, name=job_fingerprint, pack=packed, unpack=unpacked)

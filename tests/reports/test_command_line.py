@@ -81,7 +81,7 @@ BAD = {
     ),
     "unknown engine": (
         ["--engine", "bullet"],
-        "engine must be one of mujoco, pybullet, exudyn, got 'bullet'",
+        "engine must be one of mujoco, pybullet, dart, drake, exudyn, got 'bullet'",
     ),
     "no uplift": (
         ["--engine", "exudyn", "--support", "flat"],

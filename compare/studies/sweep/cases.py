@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.traces.trace_file import run_to_plain
+from rockwobble.models.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
 from ...runs.choice import require_runnable, run_labels
@@ -42,9 +42,8 @@ class CaseChunk:
     @property
     def name(self) -> str:
         """What it is, for whoever waits."""
-        first = self.jobs[0]
         more = f" and {self.rows - 1} more" if self.rows > 1 else ""
-        return f"{first.case.name}, {first.run}{more}"
+        return f"{self.jobs[0].name}{more}"
 
     @property
     def makers(self) -> dict[str, str]:
