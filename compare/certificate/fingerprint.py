@@ -13,6 +13,7 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from random import Random
+from types import ModuleType
 from typing import Any, Literal
 
 import numpy as np
@@ -54,7 +55,7 @@ class Method:
     simulate: Callable[[ShortCase, Case], Trace]
 
 
-def reduced_method(module: Any = reduced) -> Method:
+def reduced_method(module: ModuleType = reduced) -> Method:
     """Return the reduced models at their default tolerance; of a copy of the package, for its tests."""
 
     def simulate(short: ShortCase, case: Case) -> Trace:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
@@ -19,6 +18,7 @@ from ..storage.provenance import package_versions
 from ..traces.trajectory import External, read_trajectories
 from .case_budgets import case_budgets
 from .error_budget import ErrorBudget
+from .external.verdict import Row
 from .prediction import Simulate, estimated_error, measured_error, predict
 from .result import KIND, Comparison
 from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
@@ -169,7 +169,7 @@ def _row(
     budget: ErrorBudget | None,
     copy_of: Simulate,
     until: float | None,
-) -> dict[str, Any]:
+) -> Row:
     reference, own, trial = (found[case.name, each] for each in (name, str(own_model(run)), label))
     if not len(trial.time) or not len(reference.time):
         return lost_row(case, name, reference, label, trial)
@@ -197,5 +197,5 @@ def _row(
     )
 
 
-def _table(rows: list[dict[str, Any]]) -> pd.DataFrame:
+def _table(rows: list[Row]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS)).astype({"diverged": bool, "agreed_passes": int})

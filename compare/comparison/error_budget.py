@@ -15,7 +15,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -226,7 +225,7 @@ def common_count(times: Sequence[Array]) -> int:
     return int(different[0]) if len(different) else count
 
 
-def findings(summary: Any) -> Any:
+def findings(summary: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of a summary in which too much stays unexplained, the worst first.
 
     Rows whose whole difference is below 1e-4 alpha are not worth it.

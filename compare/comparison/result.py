@@ -180,7 +180,7 @@ class Comparison:
         return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame({"case": [], "time": []})
 
 
-def describe_case(case: Case) -> dict[str, Any]:
+def describe_case(case: Case) -> dict[str, object]:
     """Return the numbers that state a case, for a file or a page; SI units and radians."""
     cylinder, motion, initial = case.cylinder, case.motion, case.initial
     return {
@@ -217,7 +217,7 @@ def _number(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _inputs(case: Case) -> dict[str, Any]:
+def _inputs(case: Case) -> dict[str, object]:
     """What a case depends on, without the names of it and its motion."""
     motion = case.motion
     return {

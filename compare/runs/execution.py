@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -186,7 +186,9 @@ def open_trace_cache(
 
     def unpacked(job: Job, content: bytes) -> Trace:
         table, about = read(content)
-        return dataclasses.replace(Trace.from_plain(about["trace"], table, job.case), run=job.run)
+        facts = about["trace"]
+        assert isinstance(facts, Mapping)
+        return dataclasses.replace(Trace.from_plain(facts, table, job.case), run=job.run)
 
     return open_cache(folder, kind, name=job_fingerprint, pack=packed, unpack=unpacked)
 

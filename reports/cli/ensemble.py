@@ -105,7 +105,7 @@ def ensemble(
             )
         manifest = made_now(
             KIND,
-            inputs=found.about["inputs"],
+            inputs=str(found.about["inputs"]),
             command=command_line(),
             seeds={"ensemble": seed},
             headline={

@@ -21,7 +21,7 @@ CASE = Case(PIER, duration=20.0, name="made")
 def made(time: Array, tilt: Array, *, energy: Array | None = None, **fields: Any) -> Trace:
     """Return a trace with tilts (n,) at times (n,); fields that are not given are zero, or unknown."""
     none, flat, space = (np.zeros(size) for size in (len(time), (len(time), 2), (len(time), 3)))
-    given: dict[str, Any] = {
+    given: dict[str, object] = {
         "case": CASE,
         "run": RECESS,
         "version": "1",

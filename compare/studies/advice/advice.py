@@ -80,7 +80,7 @@ class Advice:
     verification: Verification | None
     trust: Trust
     form: Contrast | None
-    vertical: Mapping[str, Any] | None
+    vertical: Mapping[str, object] | None
     records: str
     perturbation: float
     seed: int

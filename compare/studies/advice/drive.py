@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -145,7 +144,7 @@ def advise(
     )
 
 
-def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -> dict[str, Any] | None:
+def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -> dict[str, object] | None:
     """Return what the vertical component of ground motion changes in the largest tilt, copy by copy.
 
     Of the record itself or, where it has none, of El Centro 1940 as strong: what it usually changes.

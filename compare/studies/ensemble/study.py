@@ -6,7 +6,6 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
@@ -50,7 +49,7 @@ class Ensemble:
     members: pd.DataFrame
     methods: pd.DataFrame
     contrasts: pd.DataFrame
-    about: Mapping[str, Any]
+    about: Mapping[str, object]
 
 
 def ensemble(
@@ -107,7 +106,7 @@ def ensemble(
     >>> found.methods[["method", "runs", "failed"]].values.tolist()
     [['recess model', 5, 0], ['flat-ground model', 5, 0]]
     """
-    about: dict[str, Any] = {"seed": seed}
+    about: dict[str, object] = {"seed": seed}
     if isinstance(case_or_members, Case):
         members = perturbed_starts(case_or_members, size, perturbation=perturbation, seed=seed)
         about |= {"members": f"starts of {case_or_members.name}, perturbed by {100.0 * perturbation:g} %"}
@@ -132,12 +131,14 @@ def ensemble(
     return ensemble_of(table, about)
 
 
-def ensemble_of(members: pd.DataFrame, about: Mapping[str, Any]) -> Ensemble:
+def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
     """Return the ensemble of a table of members, and of what `Ensemble.about` says of them."""
+    methods = about["methods"]
+    assert isinstance(methods, Mapping)
     return Ensemble(
         members=members,
-        methods=method_table(members, about["methods"]),
-        contrasts=contrast_table(members, about["methods"]),
+        methods=method_table(members, methods),
+        contrasts=contrast_table(members, methods),
         about=about,
     )
 

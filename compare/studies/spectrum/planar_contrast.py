@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -100,7 +99,7 @@ def size_bands(semidiagonals: Array) -> Array:
     return np.arange(first, max(last, first + 1) + 1, dtype=np.float64) * width
 
 
-def _row(spectrum: OverturningSpectrum, group: NDArray[np.intp]) -> dict[str, Any]:
+def _row(spectrum: OverturningSpectrum, group: NDArray[np.intp]) -> dict[str, object]:
     known = ~spectrum.failed()[group]
     space, x, y = (spectrum.overturned(name)[group][known] for name in (SPATIAL, PLANAR_X, PLANAR_Y))
     tilt, tilt_x, tilt_y = (spectrum.peak_tilt[name][group][known] for name in (SPATIAL, PLANAR_X, PLANAR_Y))

@@ -34,7 +34,7 @@ class GridChunk:
     tan_alpha: float
     semidiagonals: tuple[float, ...]
     scales: tuple[float, ...]
-    options: Mapping[str, Any]  # of `reduced.peak_tilts`
+    options: Mapping[str, object]  # of `reduced.peak_tilts`
 
     @property
     def rows(self) -> int:
@@ -61,7 +61,7 @@ class GridChunk:
             }
         )
 
-    def run(self) -> dict[str, Any]:
+    def run(self) -> dict[str, object]:
         """Return the columns of the results, one row for each run."""
         peaks = reduced.peak_tilts(
             self.semidiagonals,
@@ -114,7 +114,7 @@ class Grid:
     scales: tuple[float, ...]
     motions: tuple[GroundMotion, ...]
     models: tuple[str, ...]
-    options: Mapping[str, Any]
+    options: Mapping[str, object]
 
     def __init__(
         self,
@@ -170,7 +170,7 @@ class Grid:
                             options=self.options,
                         )
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Return the axes and options, for a file; SI units."""
         return {
             "semidiagonals": self.semidiagonals,
@@ -240,10 +240,10 @@ def _axis(name: str, values: ArrayLike, *, above_zero: bool) -> tuple[float, ...
     return numbers
 
 
-def _require_different(name: str, values: Sequence[Any]) -> None:
+def _require_different(name: str, values: Sequence[object]) -> None:
     if not values:
         raise ValueError(f"{name} must hold at least one, got none")
-    seen: set[Any] = set()
+    seen: set[object] = set()
     for value in values:
         if value in seen:
             raise ValueError(f"{name} must differ, got {value!r} twice")

@@ -81,7 +81,7 @@ def measure_all(
             measure_task,
             tasks,
             workers=workers,
-            cost=lambda task: part_named(task[0]).cost(task[1]),
+            cost=lambda task: part_named(task[0]).cost(**task[1]),
             label=lambda task: part_named(task[0]).title,
             progress=progress,
             cache=cache,
