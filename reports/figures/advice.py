@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
 
 from .palette import GREY, Style, model_style, run_styles
 from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Rule, ecdf
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar, x alone", PLANAR_Y: "planar, y alone"}
 GROUPS = {

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
+from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.distributions import MARGIN
 from rockwobble.compare.studies.ensemble.tables import pairs
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
 from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf
-
-if TYPE_CHECKING:
-    from rockwobble.compare import Ensemble
 
 # beyond the largest ratio, and at least beyond the margin
 _ROOM = 1.25

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+from matplotlib.figure import Figure
+
+from rockwobble.models import Trace
 
 from .palette import GREY, ORDER, Style
 from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
 from .svg import figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rockwobble.models import Trace
 
 _PATH = Style(colour=ORDER[0])
 _CIRCLE = Style(colour=GREY, dash="dash")

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import pandas as pd
 
+from rockwobble.compare.studies.tradeoff import Tradeoff
+
 from .palette import DARK, GREY, ORDER, SYMBOLS, Style
 from .picture import Axis, Line, Panel, Picture, Rule
-
-if TYPE_CHECKING:
-    from rockwobble.compare.studies.tradeoff import Tradeoff
 
 TITLES = {
     "turn": "Angle of turn in free response",

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
+from rockwobble.compare.studies.validity.limits import Tables
 from rockwobble.compare.studies.validity.limits.distributions import CONTRASTS, POINT, ratios
 from rockwobble.compare.studies.validity.limits.numbers import Array, column
 from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
@@ -15,11 +16,6 @@ from rockwobble.compare.studies.validity.rings import FREE
 from .palette import DARK, GREY, ORDER, Style, mark_styles
 from .picture import Axis, Line, Panel, Picture, Rule, ecdf
 from .validity_maps import map_pictures
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockwobble.compare.studies.validity.limits import Tables
 
 # of a method, in words
 METHODS = {

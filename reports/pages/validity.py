@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.distributions import MARGIN
-from rockwobble.compare.studies.validity import limits_of, read_validity
+from rockwobble.compare.studies.validity import Validity, limits_of
 from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.limits.engine import damping
@@ -18,9 +16,6 @@ from rockwobble.compare.studies.validity.rings import FREE
 
 from ..figures.validity import METHODS, validity_pictures
 from .page import Page
-
-if TYPE_CHECKING:
-    from rockwobble.compare.studies.validity import Validity
 
 
 def validity_page(found: Validity) -> Page:
@@ -48,17 +43,6 @@ def validity_page(found: Validity) -> Page:
         "about": found.made,
     }
     return Page(name="validity", template="validity", values=values, pictures=validity_pictures(tables))
-
-
-def stored_page(folder: Path) -> Page:
-    """Return the report of what is stored in `folder`.
-
-    Raises
-    ------
-    ValueError
-        If it cannot be read.
-    """
-    return validity_page(read_validity(folder))
 
 
 def limits_table(found: Validity) -> pd.DataFrame:

@@ -4,22 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from rockwobble.compare import AGREEMENT, make_pair
+from rockwobble.compare import AGREEMENT, Comparison, make_pair
 
 from ..palette import Style
 from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
 from ..svg import figure
 from ..thinning import envelope
 from .view import CaseView, case_views
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rockwobble.compare import Comparison
 
 # smaller differences are drawn here: a logarithm has no zero [alpha]
 SMALLEST = 1e-7
