@@ -127,7 +127,12 @@ class Run:
         time_step: TimeStep = None,
         **settings: Any,
     ) -> None:
-        if time_step is not None and time_step not in WAYS_TO_A_STEP:
+        if isinstance(time_step, str):
+            if time_step not in WAYS_TO_A_STEP:
+                raise ValueError(
+                    f'time_step must be a number [s], "auto" or "extrapolated", got {time_step!r}'
+                )
+        elif time_step is not None:
             time_step = require_positive("time_step", time_step, "s")
         object.__setattr__(self, "engine", engine)
         object.__setattr__(self, "support", support)

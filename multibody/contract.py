@@ -94,8 +94,7 @@ def keeps_the_time_grid(engine: str, support: str) -> None:
     found = run(engine, support, duration=0.1037, sample_step=0.02)
     expected = np.append(0.02 * np.arange(6), 0.1037)
     hold(np.array_equal(found.time, expected), f"the samples are at {found.time}")
-    fields = ("tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "energy", "centre_of_mass")
-    for name in fields:
+    for name in ("tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "energy", "centre_of_mass"):
         hold(bool(np.isfinite(getattr(found, name)).all()), f"{name} is not finite")
     hold(found.outcome == "completed", f"the outcome is {found.outcome}: {found.facts}")
 
@@ -254,9 +253,8 @@ def small(values: Any, limit: float, otherwise: str) -> None:
 
 
 def _refused(arguments: dict[str, Any], named: str) -> None:
-    given: dict[str, Any] = {"initial": RELEASE, "duration": 0.01, **arguments}
     try:
-        simulate(Case(PIER), **given)
+        run(**{"initial": RELEASE, "duration": 0.01, **arguments})
     except ValueError as error:
         text = str(error)
         hold("\n" not in text and named in text, f"it is refused in other words than one line: {text!r}")

@@ -27,9 +27,8 @@ from .scheduler import run_tasks
 from .task import Lost
 
 SAMPLE_STEP = 0.01
-# [s] at the reference size: the usual search ends at half of the default step, and all three runs at twice the
-# default and coarser together
-_EQUAL_STEPS = {"auto": 2.5e-5, "extrapolated": FINEST / 1.75}
+# [s] at the reference size: the usual search ends at half of the default step
+_EQUAL_STEPS: dict[str | None, float] = {"auto": 2.5e-5, "extrapolated": FINEST / 1.75}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -22,8 +22,8 @@ def compile_scene(
 ) -> mujoco.MjModel:
     """Return the compiled model of `scene`: its file, with what the case does not need taken out.
 
-    The prisms that carry the cylinder are there only while it is `standing`, and then its rim is not; the walls
-    only of a `ring`.
+    The prisms that carry the cylinder are there only while it is `standing`, and then its rim is not; the
+    walls only of a `ring`.
     """
     import mujoco
 

@@ -32,7 +32,7 @@ class MujocoSettings:
         0.999 a standing cylinder has leant by the time it uplifts, which adds 2e-5 to the error under El
         Centro at 2e-4 s.
     rolling_impedance : float
-        The same of the rim, once the cylinder leans; its friction stays as hard as `impedance` says. The rim's
+        The same of the rim, once the cylinder leans; its friction stays as hard as `impedance` says. Its
         lowest point sinks and rises by a curvature of its path that no velocity shows, and where it rises by
         more than the rim has sunk in, contact is lost for a step, and with it friction. At 0.9999 that lets
         the rim slip by 1e-5 m under El Centro on (10 m, 0.1), and twice that on (6 m, 0.2) doubled, where

@@ -10,7 +10,7 @@ release, and wherever the rim only rolls, it is 1 and the formula 2 x(h) - x(2 h
 passes of upright take over, in which a step of h is a share of a short time, and their error is of order 2.
 
 It means something as far as the runs agree: to the last pass before two of them part by 1 % of alpha, and no
-further than the estimated error stays below the difference of the two finest runs. Beyond that the trace is
+further than a halving moves the extrapolation by less than it moves the run. Beyond that the trace is
 the finest run, and a diagnostic says from when on. What contact did (force, slip, walls) is that of the
 finest run throughout: no power series of the step.
 """
@@ -38,10 +38,9 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 EXTRAPOLATED = "extrapolated"
-FINEST = 2e-4  # [s] at the reference size: all three together cost less than one run at the default step
+FINEST = 1.75e-4  # [s] at the reference size: all three together cost one run at the default step
 _RUNS = 3
 _FIRST_OR_SECOND = 1.5  # order between the two
-_SAMPLED = ("tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 _LATE = ("rolling_rate", "energy", "energy_error")
 _ONE_TURN = math.pi  # [rad] two rolling angles further apart went past upright on different sides
 
@@ -96,12 +95,12 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
     count = int(np.searchsorted(finest.time[: common_count(runs)], until, side="right"))
     tilts = [run.tilt[:count] for run in runs]
     order = _order(tilts)
-    error = np.abs(limit(tilts[1:], order) - limit(tilts[:-1], order)) / (2.0 ** (order + 1) - 1.0)
-    good = _meaningful(error, np.abs(tilts[-1] - tilts[-2]))
+    moved = np.abs(limit(tilts[1:], order) - limit(tilts[:-1], order))
+    good = _meaningful(moved, np.abs(tilts[-1] - tilts[-2]))
     whole = good == len(finest.time)
     if good == 0:
         return _noted(finest, Diagnostic(code="not_extrapolated", time=0.0, detail="no_closer"))
-    end, left = float(finest.time[good - 1]), float(error[:good].max())
+    end, left = float(finest.time[good - 1]), float(moved[:good].max()) / (2.0 ** (order + 1) - 1.0)
     facts = [Diagnostic(code="extrapolated", duration=end, size=left / alpha, bound=order)]
     if not whole:
         why = "no_closer" if good < count else "parted"
@@ -121,9 +120,9 @@ def _order(tilts: Sequence[Array]) -> int:
     return 1 if first < 2.0**_FIRST_OR_SECOND * second or second == 0.0 else 2
 
 
-def _meaningful(error: Array, difference: Array) -> int:
-    """Return up to which sample the estimated error stays below the difference of the finest runs."""
-    holds = np.maximum.accumulate(error) <= np.maximum.accumulate(difference)
+def _meaningful(moved: Array, difference: Array) -> int:
+    """Return up to which sample a halving moves the extrapolation by less than the run itself."""
+    holds = np.maximum.accumulate(moved) <= np.maximum.accumulate(difference)
     return int(np.flatnonzero(holds)[-1]) + 1 if holds.any() else 0
 
 
@@ -138,15 +137,22 @@ def _merged(pair: Sequence[Trace], order: int, good: int) -> Trace:
     # a tilt is never negative, and rolling angles on two sides of upright have no limit between them
     apart = np.abs(pair[0].rolling_angle[:good] - fine.rolling_angle[:good]) > _ONE_TURN
     kept = (limit([run.tilt[:good] for run in pair], order) < 0.0) | apart
-    sampled = {name: _samples([getattr(run, name) for run in pair], order, good, kept) for name in _SAMPLED}
-    late = {name: _samples([getattr(run, name) for run in pair], order, good, kept) for name in _LATE}
+
+    def sampled(name: str) -> Array:
+        return _samples([getattr(run, name) for run in pair], order, good, kept)
+
     end = float(fine.time[good - 1])
     extrema = [run.extrema[run.extrema[:, 0] <= end] for run in pair]
     peaks_alike = whole and pair[0].outcome == fine.outcome
     return replace(
         fine,
-        **sampled,
-        source=Known({**fine.late, **late}, fine.assumptions),
+        tilt=sampled("tilt"),
+        tilt_rate=sampled("tilt_rate"),
+        rolling_angle=sampled("rolling_angle"),
+        twist=sampled("twist"),
+        contact_point=sampled("contact_point"),
+        centre_of_mass=sampled("centre_of_mass"),
+        source=Known({**fine.late, **{name: sampled(name) for name in _LATE}}, fine.assumptions),
         passes=_passes([run.passes for run in pair], order, end),
         extrema=np.vstack([_rows(extrema, order), fine.extrema[len(extrema[-1]) :]]),
         peak_tilt=_number(pair, "peak_tilt", order) if peaks_alike else fine.peak_tilt,

@@ -77,8 +77,8 @@ _WORDS: Mapping[str, Callable[[Diagnostic], str]] = MappingProxyType(
             f"{fact.bound:.0f}: within {fact.size:.1e} alpha, by estimate"
         ),
         "not_extrapolated": lambda fact: (
-            f"{'from ' + _s(fact.time) + ' on ' if fact.time > 0.0 else ''}it is not extrapolated in the time "
-            f"step, but the run at the finest: {_NOT_EXTRAPOLATED.get(fact.detail, fact.detail)}"
+            f"it is not extrapolated{_from(fact) if fact.time > 0.0 else ''}, but the run at the finest time "
+            f"step: {_NOT_EXTRAPOLATED.get(fact.detail, fact.detail)}"
         ),
         "side": lambda fact: (
             f"it passed through upright itself, first{_at(fact)}: the ground had moved in one plane, and the "
