@@ -66,7 +66,9 @@ def reduced_method(module: ModuleType = reduced) -> Method:
     return Method(run=Run(None, "recess"), accuracy=1e-10, repeats=1e-9, simulate=simulate)
 
 
-def engine_method(engine: str, time_step: float | Literal["auto"] | None = None, **settings: Any) -> Method:
+def engine_method(
+    engine: str, time_step: float | Literal["auto", "extrapolated"] | None = None, **settings: Any
+) -> Method:
     """Return an engine, at its defaults where nothing else is asked for."""
 
     def simulate(short: ShortCase, case: Case) -> Trace:

@@ -55,7 +55,7 @@ class Described(TypedDict):
     """A method."""
 
     engine: str | None
-    time_step: float | Literal["auto"] | None
+    time_step: float | Literal["auto", "extrapolated"] | None
     settings: dict[str, float | int | str | bool | None]
 
 

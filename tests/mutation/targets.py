@@ -123,7 +123,7 @@ GROUPS = (
     Group(
         name="traces of engines",
         patterns=(
-            "multibody/auto_step.py",
+            "multibody/time_step/*.py",
             "multibody/recording/forces.py",
             "multibody/scene/guard.py",
             "multibody/kinematics.py",

@@ -41,15 +41,12 @@ def require_memory(cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> None:
 
 
 def _seconds(case: rw.Case, run: rw.Run) -> float:
-    from rockwobble.compare.runs.execution import SAMPLE_STEP
+    from rockwobble.compare.runs.execution import SAMPLE_STEP, equal_step
     from rockwobble.multibody.engines.registry import engine_facts
-    from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 
     if run.engine is None:
         return case.length / SAMPLE_STEP * _SAMPLE_COST
-    default = REFERENCE_TIME_STEP * froude_scale(case.cylinder.semidiagonal, case.gravity).time
-    step = run.time_step if isinstance(run.time_step, float) else default
-    return case.length / step * engine_facts(run.engine).step_time
+    return case.length / equal_step(case, run) * engine_facts(run.engine).step_time
 
 
 def _memory() -> float:
