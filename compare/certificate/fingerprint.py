@@ -14,13 +14,14 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from random import Random
 from types import ModuleType
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, GroundMotion, Run, Trace
+from rockwobble.models.case import TimeStep
 
 from .short_cases import G, ShortCase, short_cases
 from .verdict import Entry, Sample
@@ -66,9 +67,7 @@ def reduced_method(module: ModuleType = reduced) -> Method:
     return Method(run=Run(None, "recess"), accuracy=1e-10, repeats=1e-9, simulate=simulate)
 
 
-def engine_method(
-    engine: str, time_step: float | Literal["auto", "extrapolated"] | None = None, **settings: Any
-) -> Method:
+def engine_method(engine: str, time_step: TimeStep | None = None, **settings: Any) -> Method:
     """Return an engine, at its defaults where nothing else is asked for."""
 
     def simulate(short: ShortCase, case: Case) -> Trace:

@@ -21,6 +21,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, Trace
+from rockwobble.models.shown import Brief
 
 from ..metrics.agreement import Agreement
 
@@ -47,8 +48,8 @@ BUDGET_COLUMNS = (
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Limit:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Limit(Brief):
     """An engine extrapolated in its time step.
 
     Parameters
@@ -72,8 +73,8 @@ class Limit:
     order: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ErrorBudget:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ErrorBudget(Brief):
     """Signed parts of a tilt difference, in units of alpha.
 
     Parameters

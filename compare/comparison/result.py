@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import ClassVar
 
 import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
+from rockwobble.models.shown import Shown
 
 from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Manifest, made_now, read_results, write_results
@@ -23,7 +23,7 @@ KIND = "comparison"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Comparison:
+class Comparison(Shown):
     """Runs held against reference models, or against one another.
 
     Parameters
@@ -45,6 +45,7 @@ class Comparison:
         That asked for what was loaded.
     """
 
+    _figures: ClassVar[str] = "comparison.tilt"
     summary: pd.DataFrame
     cases: Mapping[str, Case]
     traces: Mapping[tuple[str, str], Trace]
@@ -123,15 +124,9 @@ class Comparison:
         }
         return tables | ({"budget": self._budget()} if self.budgets else {})
 
-    def plot(self, case: str | None = None) -> Any:
-        """Return a matplotlib figure of one case, the first by default, drawn by `rockwobble.reports`."""
-        # by name: a result does not depend on who draws it
-        picture = importlib.import_module("rockwobble.reports.figures.comparison.tilt")
-        return picture.draw(self, next(iter(self.cases)) if case is None else case)
-
-    def __repr__(self) -> str:
+    def _said(self) -> dict[str, str]:
         diverged = int(self.summary["diverged"].sum())
-        return f"Comparison({len(self.cases)} cases, {len(self.summary)} rows, {diverged} diverged)"
+        return {"cases": str(len(self.cases)), "rows": str(len(self.summary)), "diverged": str(diverged)}
 
     def _repr_html_(self) -> str:
         names = ["case", "run", "reference", "outcome", "peak_tilt", "tilt_rms_relative", "agreement_time"]

@@ -12,8 +12,8 @@ import rockwobble as rw
 from ..console.progress import shown_progress
 from ..console.results import show_and_write
 from ..console.terminal import FAILED, complain, interruptible, user_input
-from ..pages.case_words import describe
 from ..pages.provenance import command_line
+from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.problem import Problem, given_options, states_problem
 

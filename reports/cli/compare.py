@@ -13,8 +13,8 @@ import rockwobble as rw
 
 from ..console.progress import shown_progress
 from ..console.terminal import FAILED, complain, interruptible, user_input
-from ..pages.case_words import describe
 from ..pages.provenance import command_line
+from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_memory, time_needed
 from .inputs.method_values import settings

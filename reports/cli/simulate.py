@@ -13,8 +13,8 @@ import rockwobble as rw
 
 from ..console.progress import shown_progress
 from ..console.terminal import FAILED, complain, interruptible, user_input
-from ..pages.case_words import describe
 from ..pages.provenance import command_line
+from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_memory, time_needed
 from .inputs.method_values import restitution, settings
@@ -106,7 +106,7 @@ def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model:
 
 
 def _run(job: rw.compare.Job) -> rw.Trace:
-    from ..pages.diagnostic_words import sentences
+    from ..pages.words.diagnostics import sentences
 
     with user_input(), shown_progress() as tell:
         # in a process of its own, so that Ctrl-C also stops an engine in the middle of a long call
@@ -123,7 +123,7 @@ def _print_result(trace: rw.Trace, label: str) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from ..pages.diagnostic_words import sentences
+    from ..pages.words.diagnostics import sentences
 
     table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
     for name, value in _facts(trace).items():

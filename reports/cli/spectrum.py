@@ -13,8 +13,8 @@ import rockwobble as rw
 from ..console.progress import shown_progress
 from ..console.results import show_and_write
 from ..console.terminal import interruptible, user_input
-from ..pages.case_words import describe
 from ..pages.provenance import command_line
+from ..pages.words.cases import describe
 from .inputs import options
 
 if TYPE_CHECKING:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -23,6 +24,11 @@ _MOST_TICKS = 7
 _DOTS, _BEYOND = Style(colour=ORDER[0], dash="none", symbol="circle"), ORDER[1]
 _MEDIAN = Style(colour=DARK, dash="none", symbol="diamond")
 _LINE = 0.5  # inch for a pair of methods
+
+
+def pictures(found: Ensemble) -> dict[str, Callable[[], Picture]]:
+    """Return what makes the picture of an ensemble, by name."""
+    return {"ensemble": partial(ensemble_picture, found)}
 
 
 def main_pairs(found: Ensemble) -> list[dict[str, Any]]:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
 from rockwobble.compare.studies.spectrum.result import Array, OverturningSpectrum, safe_islands
@@ -15,6 +18,11 @@ NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-so
 _OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
 _HEIGHT = 3.4
 _ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: islands side by side
+
+
+def pictures(spectrum: OverturningSpectrum) -> dict[str, Callable[[], Picture]]:
+    """Return what makes the picture of a spectrum, by name."""
+    return {"spectrum": partial(spectrum_picture, spectrum)}
 
 
 def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:

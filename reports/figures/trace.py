@@ -2,22 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
-from matplotlib.figure import Figure
 
 from rockwobble.models import Trace
 
 from .palette import GREY, ORDER, Style
 from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
-from .svg import figure
 
 _PATH = Style(colour=ORDER[0])
 _CIRCLE = Style(colour=GREY, dash="dash")
 
 
-def draw(trace: Trace) -> Figure:
-    """Return a matplotlib figure of a motion."""
-    return figure(trace_picture(trace))
+def pictures(trace: Trace) -> dict[str, Callable[[], Picture]]:
+    """Return what makes the picture of a motion, by name."""
+    return {"trace": partial(trace_picture, trace)}
 
 
 def trace_picture(trace: Trace) -> Picture:

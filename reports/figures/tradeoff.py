@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 import pandas as pd
 
@@ -34,9 +37,16 @@ _BASE = "recess model"
 _OF_MODEL, _OF_ENGINES = ("scipy", "rest threshold"), ("integrator", "contact")  # panels of variants
 
 
+def pictures(found: Tradeoff) -> dict[str, Callable[[], Picture]]:
+    """Return what makes the picture of each problem, by its name."""
+    return {
+        name: partial(_picture, found, name) for name in TITLES if (found.points["problem"] == name).any()
+    }
+
+
 def tradeoff_pictures(found: Tradeoff) -> list[Picture]:
     """Return a picture for each problem; its panels share their axes, and no line has a family of its own."""
-    return [_picture(found, name) for name in TITLES if (found.points["problem"] == name).any()]
+    return [make() for make in pictures(found).values()]
 
 
 def _picture(found: Tradeoff, problem: str) -> Picture:

@@ -26,7 +26,7 @@ from ..figures.interactive import plots
 from ..figures.picture import Picture
 from ..figures.svg import svg
 from .table import Row, Table, columns_of, number
-from .words import FILTERS
+from .words.sentences import FILTERS
 
 Output = Literal["terminal", "markdown", "html"]
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")

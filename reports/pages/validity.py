@@ -14,7 +14,7 @@ from rockwobble.compare.studies.validity.limits.distributions import cells, cont
 from rockwobble.compare.studies.validity.limits.engine import damping
 from rockwobble.compare.studies.validity.rings import FREE
 
-from ..figures.validity import METHODS, validity_pictures
+from ..figures.validity.pictures import METHODS, validity_pictures
 from .page import Page
 
 

@@ -7,12 +7,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.shown import Shown
 
 from ...comparison.prediction import Prediction
 from ...metrics.distributions import Contrast
@@ -27,8 +28,8 @@ KIND = "advice"
 OTHER = "other support"  # group of the copies on the other support
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Advice:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Advice(Shown):
     """What was run for one case.
 
     Attributes
@@ -65,6 +66,7 @@ class Advice:
     seed : int
     """
 
+    _figures: ClassVar[str] = "advice"
     case: Case
     support: str
     friction_given: bool
@@ -84,6 +86,16 @@ class Advice:
     records: str
     perturbation: float
     seed: int
+
+    def _said(self) -> dict[str, str]:
+        tilt = "overturns" if self.overturned else f"{self.peak:.3g} alpha"
+        return {
+            "case": self.case.name,
+            "run": str(self.model),
+            "outcome": self.trace.outcome,
+            "largest tilt": tilt,
+            "grade": overall(self.grades.values()),
+        }
 
     @property
     def model(self) -> Run:

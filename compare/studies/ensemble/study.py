@@ -6,10 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 import pandas as pd
 
 from rockwobble.models import Case, Run, Suite, Trace
+from rockwobble.models.shown import Shown
 
 from ...runs.choice import default_runs, own_model, require_runnable, run_labels
 from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
@@ -23,8 +25,8 @@ KIND = "ensemble"
 MODELS = (Run(None, "recess"), Run(None, "flat"))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Ensemble:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Ensemble(Shown):
     """Peak tilts of many members by several methods.
 
     Parameters
@@ -46,10 +48,20 @@ class Ensemble:
         model of the support of each method, the seed, and the hash of all inputs.
     """
 
+    _figures: ClassVar[str] = "ensemble"
     members: pd.DataFrame
     methods: pd.DataFrame
     contrasts: pd.DataFrame
     about: Mapping[str, object]
+
+    def _said(self) -> dict[str, str]:
+        runs = self.methods[["runs", "overturned", "failed"]].sum()
+        return {
+            "members": f"{self.members['member'].nunique()}, {self.about.get('members', '')}",
+            "methods": ", ".join(self.methods["method"]),
+            "overturned": f"{runs['overturned']} of {runs['runs']} runs",
+            "failed": str(runs["failed"]),
+        }
 
 
 def ensemble(

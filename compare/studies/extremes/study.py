@@ -7,10 +7,12 @@ from collections import Counter
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import ClassVar
 
 import pandas as pd
 
 from rockwobble.models import Run
+from rockwobble.models.shown import Shown
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 from ...runs.cache import open_table_cache
@@ -34,8 +36,8 @@ def methods() -> tuple[Run, ...]:
     return (*MODELS, *engines)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Extremes:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Extremes(Shown):
     """What a scan found.
 
     Attributes
@@ -45,8 +47,13 @@ class Extremes:
     made : Manifest
     """
 
+    _figures: ClassVar[str] = "extremes"
     table: pd.DataFrame
     made: Manifest
+
+    def _said(self) -> dict[str, str]:
+        counts = Counter(self.table["verdict"])
+        return {"runs": str(len(self.table)), **{str(verdict): str(n) for verdict, n in counts.items()}}
 
 
 def measure_extremes(

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import GroundMotion
+from rockwobble.models.shown import Shown
 
 from ...metrics.tilt import overturned
 from ...storage.manifest import Results
@@ -22,8 +24,8 @@ KIND = "overturning spectrum"
 _FACTS = ("tan_alpha", "gravity", "support", "rest_tilt", "searched_from", "search_step")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class OverturningSpectrum:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class OverturningSpectrum(Shown):
     """Peak tilts of cylinders of one slenderness under one record, over size and intensity.
 
     Attributes
@@ -59,6 +61,7 @@ class OverturningSpectrum:
         Finest step of that search [-].
     """
 
+    _figures: ClassVar[str] = "spectrum"
     tan_alpha: float
     motion: GroundMotion
     gravity: float
@@ -71,6 +74,16 @@ class OverturningSpectrum:
     below: Mapping[str, Array]
     searched_from: Mapping[str, float]
     search_step: float
+
+    def _said(self) -> dict[str, str]:
+        sizes, levels = self.semidiagonals, self.intensities
+        return {
+            "record": self.motion.name or "record",
+            "tan alpha": f"{self.tan_alpha:g}",
+            "sizes": f"{len(sizes)} from {sizes[0]:g} to {sizes[-1]:g} m",
+            "intensities": f"{len(levels)} from {levels[0]:g} to {levels[-1]:g}",
+            "overturned": f"{int(self.overturned(SPATIAL).sum())} of {len(sizes) * len(levels)} cells",
+        }
 
     @property
     def alpha(self) -> float:

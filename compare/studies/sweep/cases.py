@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.shown import Brief
 from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
@@ -59,8 +60,8 @@ class CaseChunk:
         return {name: [row[name] for row in rows] for name in rows[0]}
 
 
-@dataclass(frozen=True, slots=True, eq=False, init=False)
-class CaseSweep:
+@dataclass(frozen=True, slots=True, eq=False, init=False, repr=False)
+class CaseSweep(Brief):
     """Every case with every method: runs of engines, and reduced models by name.
 
     Parameters

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble import reduced
 from rockwobble.models import GroundMotion
+from rockwobble.models.shown import Brief
 
 from ...metrics.tilt import overturned
 from ...storage.fingerprint import fingerprint
@@ -84,8 +85,8 @@ class GridChunk:
         }
 
 
-@dataclass(frozen=True, slots=True, eq=False, init=False)
-class Grid:
+@dataclass(frozen=True, slots=True, eq=False, init=False, repr=False)
+class Grid(Brief):
     """Every size with every slenderness, scale, motion and model, each run from rest for its peak tilt.
 
     Parameters

@@ -8,11 +8,13 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case
+from rockwobble.models.shown import Shown
 
 from ...runs.progress import Clock, ProgressCallback
 from ...storage.manifest import Manifest, made_now, read_results
@@ -30,8 +32,8 @@ ROUNDS = 3  # of a single case; an ensemble has as many as members
 _COSTS = {"turn": 1.0, "shaken": 4.0, "peaks": 3.0, "scenes": 0.5}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Tradeoff:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Tradeoff(Shown):
     """What was measured.
 
     Attributes
@@ -52,11 +54,20 @@ class Tradeoff:
     made : Manifest
     """
 
+    _figures: ClassVar[str] = "tradeoff"
     points: pd.DataFrame
     scenes: pd.DataFrame
     problems: pd.DataFrame
     load: tuple[float, float]
     made: Manifest
+
+    def _said(self) -> dict[str, str]:
+        low, high = engine_factors(self.points)
+        return {
+            "problems": ", ".join(dict.fromkeys(self.points["problem"])),
+            "points": str(len(self.points)),
+            "engine over recess model": f"{low:.3g} to {high:.3g} times the time",
+        }
 
 
 def measure_tradeoff(

@@ -7,8 +7,11 @@ import inspect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import ClassVar
 
 import pandas as pd
+
+from rockwobble.models.shown import Shown
 
 from ...runs.cache import open_table_cache
 from ...runs.progress import ProgressCallback
@@ -23,13 +26,13 @@ from .limits import limits_of
 from .part import Inputs, Part
 from .parts import PARTS, part_named
 
-KIND = "validity"
+KIND = "validity.pictures"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
 _ENDS = {"least": "least median", "largest": "largest median", "05": "5 %", "95": "95 %"}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Validity:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Validity(Shown):
     """What was measured.
 
     Attributes
@@ -41,9 +44,13 @@ class Validity:
     made : Manifest
     """
 
+    _figures: ClassVar[str] = "validity.pictures"
     tables: Mapping[str, pd.DataFrame]
     records: str
     made: Manifest
+
+    def _said(self) -> dict[str, str]:
+        return {"records": self.records} | {name: f"{len(table)} rows" for name, table in self.tables.items()}
 
 
 def measure_all(

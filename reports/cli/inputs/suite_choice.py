@@ -9,7 +9,7 @@ import typer
 
 import rockwobble as rw
 
-from ...pages.case_words import group_of
+from ...pages.words.cases import group_of
 from .estimate import time_needed
 from .problem import PROBLEM, refuse
 

@@ -12,8 +12,8 @@ import rockwobble as rw
 
 from ...console.progress import shown_progress
 from ...console.terminal import complain, interruptible, user_input
-from ...pages.case_words import describe
 from ...pages.provenance import command_line
+from ...pages.words.cases import describe
 from ..inputs import options
 from ..inputs.estimate import time_needed
 from ..inputs.method_values import settings

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from rockwobble.compare import AGREEMENT, Comparison, make_pair
 
 from ..palette import Style
 from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
-from ..svg import figure
 from ..thinning import envelope
 from .view import CaseView, case_views
 
@@ -24,10 +23,9 @@ _FALLS = 1.5  # [alpha] where tilts are cut if one goes farther
 _HEIGHT = 2.3  # [inch]
 
 
-def draw(comparison: Comparison, case: str) -> Figure:
-    """Return a matplotlib figure of one case."""
-    (view,) = (view for view in case_views(comparison) if view.case.name == case)
-    return figure(tilt_picture(view))
+def pictures(comparison: Comparison) -> dict[str, Callable[[], Picture]]:
+    """Return what makes the picture of each case, by its name."""
+    return {view.case.name: partial(tilt_picture, view) for view in case_views(comparison)}
 
 
 def tilt_picture(view: CaseView, name: str = "figure") -> Picture:

@@ -8,7 +8,7 @@ from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, findings
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
 from ...figures.comparison.view import rows_of
-from ..words import sentence
+from ..words.sentences import sentence
 from .findings import WORDS
 
 _LISTED = 10

@@ -12,7 +12,7 @@ from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
 from ...figures.comparison.view import rows_of
 from ..table import Row
-from ..words import sentence
+from ..words.sentences import sentence
 
 WORDS = "comparison/external.md.j2"
 

@@ -12,8 +12,8 @@ import pandas as pd
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
-from ..diagnostic_words import counted, failure, sentences
-from ..words import sentence
+from ..words.diagnostics import counted, failure, sentences
+from ..words.sentences import sentence
 from .external import external_sentences, mistakes, scope, within
 
 WORDS = "comparison/findings.md.j2"

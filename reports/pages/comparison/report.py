@@ -17,9 +17,9 @@ from ...figures.comparison.view import CaseView, case_views, own_rows
 from ...figures.picture import Layer, Line, Picture
 from ...figures.svg import svg
 from ...figures.thinning import kept_points
-from ..case_words import describe, group_of
 from ..page import Page
-from ..words import fragment
+from ..words.cases import describe, group_of
+from ..words.sentences import fragment
 from .budgets import budget_sentences, divergence_sentences
 from .external import external_rows
 from .findings import counted_remarks, finding_sentences, headline

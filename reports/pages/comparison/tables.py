@@ -11,8 +11,8 @@ import pandas as pd
 from rockwobble.compare import SUMMARY_COLUMNS
 
 from ...figures.comparison.view import own_rows, rows_of
-from ..case_words import group_of
 from ..table import Row
+from ..words.cases import group_of
 
 
 def main_rows(rows: pd.DataFrame) -> list[Row]:
