@@ -14,17 +14,18 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _FEW = 3  # so many items are shown themselves
-_MOST = 60  # characters of one field
+_MOST = 160  # characters of one field
 
 
 class Brief:
-    """A dataclass whose repr fits on a line: of what is long it says how much there is."""
+    """A dataclass whose repr fits on a line: of what is long it says how much there is, of None nothing."""
 
     __slots__ = ()
 
     def __repr__(self) -> str:
         fields = dataclasses.fields(self)  # type: ignore[arg-type]  # its subclasses are dataclasses
-        said = (f"{field.name}={_brief(getattr(self, field.name))}" for field in fields if field.repr)
+        given = {field.name: getattr(self, field.name) for field in fields if field.repr}
+        said = (f"{name}={_brief(value)}" for name, value in given.items() if value is not None)
         return f"{type(self).__name__}({', '.join(said)})"
 
 
@@ -32,7 +33,7 @@ def _brief(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, np.ndarray):
-        return f"array of {' x '.join(map(str, value.shape))}"
+        return f"array{value.shape}"
     many = isinstance(value, Mapping) or (isinstance(value, Sequence) and not isinstance(value, str))
     text = repr(value)
     if (many and len(value) > _FEW) or "\n" in text or len(text) > _MOST:
