@@ -42,6 +42,7 @@ FINEST = 1.75e-4  # [s] at the reference size: all three together cost one run a
 _RUNS = 3
 _FIRST_OR_SECOND = 1.5  # order between the two
 _LATE = ("rolling_rate", "energy", "energy_error")
+_OF_NO_ACCOUNT = 1e-6  # of alpha: where runs are that close, their orders mix, and it makes no difference
 _ONE_TURN = math.pi  # [rad] two rolling angles further apart went past upright on different sides
 
 
@@ -96,7 +97,7 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
     tilts = [run.tilt[:count] for run in runs]
     order = _order(tilts)
     moved = np.abs(limit(tilts[1:], order) - limit(tilts[:-1], order))
-    good = _meaningful(moved, np.abs(tilts[-1] - tilts[-2]))
+    good = _meaningful(moved, np.maximum(np.abs(tilts[-1] - tilts[-2]), _OF_NO_ACCOUNT * alpha))
     whole = good == len(finest.time)
     if good == 0:
         return _noted(finest, Diagnostic(code="not_extrapolated", time=0.0, detail="no_closer"))
