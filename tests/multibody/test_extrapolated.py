@@ -22,7 +22,7 @@ from rockwobble.models import (
 )
 from rockwobble.models.trace_source import Known
 from rockwobble.multibody.scene.guard import LARGEST_STEP
-from rockwobble.multibody.time_step.extrapolated import extrapolation, limit
+from rockwobble.multibody.time_step.extrapolated import extrapolation, to_zero_step
 
 ALPHA = 0.2
 # of alpha, after a release: what the second order leaves of an engine of first order
@@ -167,8 +167,8 @@ def test_a_failed_run_is_said() -> None:
 
 
 def test_the_limit_of_one_order() -> None:
-    assert limit([np.array([5.0]), np.array([3.0])], 1) == pytest.approx(1.0)
-    assert limit([np.array([5.0]), np.array([2.0])], 2) == pytest.approx(1.0)
+    assert to_zero_step([np.array([5.0]), np.array([3.0])], 1) == pytest.approx(1.0)
+    assert to_zero_step([np.array([5.0]), np.array([2.0])], 2) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(

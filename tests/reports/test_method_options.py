@@ -34,7 +34,7 @@ def test_settings_are_whole_numbers_numbers_or_words() -> None:
     [
         (
             ["--time-step", "fast"],
-            "Invalid value for '--time-step': must be a number [s] or \"auto\", got 'fast'",
+            "Invalid value for '--time-step': must be a number [s], \"auto\" or \"extrapolated\", got 'fast'",
         ),
         (["--time-step", "0.5"], "time_step must be at most 0.001 s for contact at this size"),
         (["--set", "ring_facets"], "--set must be NAME=VALUE, got 'ring_facets'"),
