@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, InitialState, Run, Trace
 from rockwobble.models.case import TimeStep
-from rockwobble.models.trace_source import Known
+from rockwobble.models.traces.trace_source import Known
 
 from .engines.ability import require_able
 from .engines.registry import find_engine

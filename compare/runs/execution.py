@@ -13,7 +13,7 @@ from typing import Any
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
-from rockwobble.models.lost_trace import lost_trace
+from rockwobble.models.traces.lost_trace import lost_trace
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 from rockwobble.multibody.time_step.extrapolated import FINEST
@@ -189,8 +189,8 @@ def open_trace_cache(
         table = trace.to_frame()
         return pack(table if samples else table.iloc[-1:], about)
 
-    def unpacked(job: Job, path: Path) -> Trace:
-        table, about = read(path)
+    def unpacked(job: Job, content: bytes) -> Trace:
+        table, about = read(content)
         return dataclasses.replace(Trace.from_plain(about["trace"], table, job.case), run=job.run)
 
     return open_cache(folder, kind, name=job_fingerprint, pack=packed, unpack=unpacked)

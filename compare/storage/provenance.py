@@ -20,12 +20,15 @@ _REDUCED = ("rockwobble", "numpy", "numba")
 def package_versions(packages: tuple[str, ...] = PACKAGES) -> dict[str, str]:
     """Return the versions of Python and of the packages and engines that results depend on."""
     versions = {"python": platform.python_version(), "platform": f"{platform.system()} {platform.machine()}"}
-    for package in packages:
-        try:
-            versions[package] = importlib.metadata.version(package)
-        except importlib.metadata.PackageNotFoundError:
-            versions[package] = "not installed"
-    return versions
+    return versions | {package: _version(package) for package in packages}
+
+
+@cache
+def _version(package: str) -> str:
+    try:
+        return importlib.metadata.version(package)
+    except importlib.metadata.PackageNotFoundError:
+        return "not installed"
 
 
 def processor() -> str:
@@ -40,7 +43,10 @@ def processor() -> str:
 
 @cache
 def commit() -> str:
-    """Return the commit of the checkout that this file is in, with "+" after changes; empty without one."""
+    """Return the commit of the checkout that this file is in; empty without one.
+
+    With "+" after changes of anything but published results, which code does not rest on.
+    """
     here = Path(__file__).resolve()
 
     def git(*arguments: str) -> str:
@@ -51,7 +57,8 @@ def commit() -> str:
 
     try:
         git("ls-files", "--error-unmatch", here.name)  # else the repository is one that we are installed in
-        return git("rev-parse", "HEAD") + ("+" if git("status", "--porcelain", "-uno") else "")
+        code = (":(top)", ":(top,exclude)reports/published")
+        return git("rev-parse", "HEAD") + ("+" if git("status", "--porcelain", "-uno", "--", *code) else "")
     except (OSError, subprocess.CalledProcessError):
         return ""
 

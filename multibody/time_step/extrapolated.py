@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Diagnostic, Trace
-from rockwobble.models.trace_source import Known
+from rockwobble.models.traces.trace_source import Known
 
 from ..scene.guard import LARGEST_STEP
 from .attempts import Attempt, Progress, closeness, common_count, part_of, shares

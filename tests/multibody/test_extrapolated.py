@@ -20,7 +20,7 @@ from rockwobble.models import (
     Trace,
     el_centro_1940,
 )
-from rockwobble.models.trace_source import Known
+from rockwobble.models.traces.trace_source import Known
 from rockwobble.multibody.scene.guard import LARGEST_STEP
 from rockwobble.multibody.time_step.extrapolated import extrapolation, to_zero_step
 
