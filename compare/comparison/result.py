@@ -82,9 +82,10 @@ class Comparison:
         whole = plain_fields(self.cases, self.traces, self.versions, self.until, self.budgets)
         files = {
             "summary.csv": self.summary.to_csv(index=False).encode(),
-            "matrix.csv": self.matrix().to_csv(index=False).encode(),
             ABOUT: (plain_json.dumps(whole, indent=1) + "\n").encode(),
         }
+        if len(matrix := self.matrix()):
+            files["matrix.csv"] = matrix.to_csv(index=False).encode()
         made = self.manifest(command or self.command)
         write_results(folder, made, self._tables(), files=files, pages=pages)
 

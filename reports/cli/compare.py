@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from ..console.provenance import command_line
 from ..console.terminal import FAILED, complain, interruptible, user_input
-from ..pages.provenance import command_line
 from .inputs import options
 from .inputs.method_values import settings
 from .inputs.problem import Problem, states_problem
