@@ -77,6 +77,9 @@ def main(arguments: list[str] | None = None) -> None:
         # one clear line, without the box that typer draws around it
         complain(error.format_message())
         sys.exit(BAD_INPUT)
+    except MemoryError:
+        complain("the memory of this machine does not suffice: give fewer runs, or shorter ones")
+        sys.exit(BAD_INPUT)
     except (typer.Abort, KeyboardInterrupt):
         complain("interrupted")
         sys.exit(INTERRUPTED)
