@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-import numpy as np
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
@@ -44,7 +43,7 @@ def _borrowed(typing: Any, array: Any) -> Any:
 
 # A view of an array that counts no references, for as long as the array itself is used later. Counting
 # takes a locked instruction each time the array is handed on: a tenth of a step.
-borrowed = cast("Callable[[NDArray[np.float64]], NDArray[np.float64]]", intrinsic(_borrowed))
+borrowed = cast("Callable[[NDArray[Any]], NDArray[Any]]", intrinsic(_borrowed))
 
 
 def in_memory(entry: Callable[..., Any]) -> bool:

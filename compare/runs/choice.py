@@ -11,7 +11,7 @@ from rockwobble.multibody.engines.registry import engine_packages, find_engine, 
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 from rockwobble.multibody.scene.guard import check_time_step
 from rockwobble.multibody.scene_of_case import resolved_settings
-from rockwobble.reduced.problem import require_solvable
+from rockwobble.multibody.simulation import STEP_SETTINGS
 
 SUPPORTS = ("recess", "flat")
 _LEAN = 1e-3  # of alpha: a tilt that fits into any ring
@@ -64,14 +64,17 @@ def require_runnable(case: Case, run: Run) -> None:
         the time step is too large for contact, or a setting is unknown or out of range.
     """
     if run.engine is None:
+        # loads the compiler, which who only imports this need not wait for
+        from rockwobble.reduced.problem import require_solvable
+
         require_solvable(case, **run.settings, support=run.support)
         return
     step = None if isinstance(run.time_step, str) else run.time_step
     if step is not None:
         check_time_step(step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
     settings = dict(run.settings)
-    if run.time_step == "auto":
-        settings.pop("step_tolerance", None)
+    for name in _step_settings(run):
+        settings.pop(name, None)
     resolved_settings(case, run.engine, run.support, settings, step)
 
 
@@ -106,8 +109,12 @@ def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
     )
     if run.engine is None:
         return ("plane", "restitution", "rtol", "rest_tilt")
-    steps = ("step_tolerance",) if run.time_step == "auto" else ()
-    return (*resolved_settings(start, run.engine, run.support, {}), *steps)
+    return (*resolved_settings(start, run.engine, run.support, {}), *_step_settings(run))
+
+
+def _step_settings(run: Run) -> tuple[str, ...]:
+    """Settings of the way to a time step that the run takes."""
+    return tuple(name for name, way in STEP_SETTINGS.items() if way == run.time_step)
 
 
 def default_runs(
@@ -167,7 +174,7 @@ def _finer(case: Case, run: Run) -> Run:
     step = run.time_step
     if not isinstance(step, float):
         step = REFERENCE_TIME_STEP * froude_scale(case.cylinder.semidiagonal, case.gravity).time
-    settings = {name: value for name, value in run.settings.items() if name != "step_tolerance"}
+    settings = {name: value for name, value in run.settings.items() if name not in STEP_SETTINGS}
     return Run(run.engine, run.support, 0.5 * step, **settings)
 
 

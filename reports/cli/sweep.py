@@ -13,7 +13,7 @@ from .inputs import options
 from .inputs.estimate import require_sweep
 from .inputs.grid import grid_of
 from .inputs.problem import refuse
-from .show import show
+from .results.show import show
 
 if TYPE_CHECKING:
     from rockwobble.compare import CaseSweep, Grid

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.trace_file import run_to_plain
+from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
 from ...runs.choice import require_runnable, run_labels

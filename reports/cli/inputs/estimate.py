@@ -99,15 +99,14 @@ def _all_seconds(cases: Sequence[Case], runs: Sequence[Run]) -> float:
 
 
 def _seconds(case: Case, run: Run) -> float:
-    from rockwobble.compare.runs.execution import SAMPLE_STEP
+    from rockwobble.compare.runs.execution import SAMPLE_STEP, equal_step
     from rockwobble.multibody.engines.registry import engine_facts
-    from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+    from rockwobble.multibody.scene.froude import froude_scale
 
     unit = froude_scale(case.cylinder.semidiagonal, case.gravity).time
     if run.engine is None:
         return case.length * (_SAMPLE_COST / SAMPLE_STEP + _UNIT_COST / unit)
-    step = run.time_step if isinstance(run.time_step, float) else REFERENCE_TIME_STEP * unit
-    return case.length / step * engine_facts(run.engine).step_time
+    return case.length / equal_step(case, run) * engine_facts(run.engine).step_time
 
 
 def _memory() -> float:

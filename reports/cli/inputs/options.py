@@ -103,14 +103,15 @@ Supports = Annotated[
     _of(_METHOD, "--support", f"{_SUPPORTS}; may be repeated. Default: recess and flat."),
 ]
 TimeStep = Annotated[
-    Any,  # a number, "auto" or None: typer knows no type for that, `time_step` makes it
+    Any,  # a number, a word or None: typer knows no type for that, `time_step` makes it
     _of(
         _METHOD,
         "--time-step",
         "Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size. auto "
-        "halves it until the tilt has settled, and says what error is left.",
+        "halves it until the tilt has settled, extrapolated gives what three steps tend to; both say what "
+        "error is left.",
         parser=time_step,
-        metavar="FLOAT|auto",
+        metavar="FLOAT|auto|extrapolated",
     ),
 ]
 Settings = Annotated[
