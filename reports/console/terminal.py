@@ -8,6 +8,7 @@ import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 import typer
@@ -81,7 +82,7 @@ def _open_standard_files() -> None:
 
 def _forgiving(stream: TextIO | None, name: str) -> TextIO:
     if stream is None:  # closed when Python started
-        return open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 - as long as the process
+        return Path(os.devnull).open("w", encoding="utf-8")
     if not isinstance(stream, io.TextIOWrapper):
         return stream
     if stream.isatty():

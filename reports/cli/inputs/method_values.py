@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import typer
 
-from rockwobble.models.case import WAYS_TO_A_STEP, TimeStep
+if TYPE_CHECKING:
+    from rockwobble.models.case import TimeStep
 
 
 def time_step(text: str) -> TimeStep:
@@ -18,6 +19,8 @@ def time_step(text: str) -> TimeStep:
     BadParameter
         If the text is neither.
     """
+    from rockwobble.models.case import WAYS_TO_A_STEP
+
     for way in WAYS_TO_A_STEP:
         if text == way:
             return way
