@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import Annotated, Any
 
@@ -71,6 +72,7 @@ def _root(
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; exit code 0 done, 1 a check failed, 2 bad input, 130 interrupted."""
     forgive_output()
+    os.environ["MPLBACKEND"] = "svg"  # pictures are files here, whatever a notebook has set
     try:
         code = app(arguments, prog_name="rockwobble", standalone_mode=False)
     except _USAGE_ERROR as error:
