@@ -29,6 +29,10 @@ from .runs.scheduler import run_tasks
 from .storage.files import replace_files, require_writable
 from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
 from .studies.ensemble.study import Ensemble, ensemble
+from .studies.fragility.intensity import MEASURES
+from .studies.fragility.limits import LIMITS
+from .studies.fragility.result import Fragility
+from .studies.fragility.study import fragility
 from .studies.sweep.cases import CaseSweep
 from .studies.sweep.grid import Grid
 from .studies.sweep.study import SweepIncompleteError, read_sweep, sweep
@@ -38,6 +42,8 @@ from .traces.trajectory import External, read_trajectory
 __all__ = [
     "AGREEMENT",
     "LARGEST_SHARE",
+    "LIMITS",
+    "MEASURES",
     "SUMMARY_COLUMNS",
     "TILTED",
     "WORTH_EXPLAINING",
@@ -46,6 +52,7 @@ __all__ = [
     "Ensemble",
     "ErrorBudget",
     "External",
+    "Fragility",
     "Grid",
     "Job",
     "Pair",
@@ -57,6 +64,7 @@ __all__ = [
     "ensemble",
     "far_field_motions",
     "findings",
+    "fragility",
     "installed_engines",
     "make_pair",
     "missing_engines",

@@ -21,7 +21,7 @@ _NAMES = {
         "rockwobble.models",
     ),
     **dict.fromkeys(
-        ("Comparison", "External", "ensemble", "simulate", "sweep"),
+        ("Comparison", "External", "ensemble", "fragility", "simulate", "sweep"),
         "rockwobble.compare",
     ),
 }

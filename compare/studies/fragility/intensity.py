@@ -1,8 +1,8 @@
 """Intensity measures of a ground motion of two components.
 
 Each is one number that grows in proportion with the motion, so a motion has a given intensity after one
-scaling. The resultant is the horizontal vector, whose size no turn of the axes changes; a geometric mean is of
-the two components as they are recorded.
+scaling. The resultant is the horizontal vector, whose size no turn of the axes changes; a geometric mean is
+of the two components as they are recorded.
 """
 
 from __future__ import annotations
@@ -54,7 +54,8 @@ MEASURES: Mapping[str, Measure] = MappingProxyType(
         "peak_velocity": Measure(
             title="p × peak velocity / g tan α",
             unit="-",
-            meaning="Largest resultant velocity times the frequency parameter p = sqrt(m g R/A), over g tan α.",
+            meaning="Largest resultant velocity times the frequency parameter p = sqrt(m g R/A) of rocking, "
+            "over g tan α.",
         ),
         "pga": Measure(
             title="PGA",
@@ -69,7 +70,8 @@ MEASURES: Mapping[str, Measure] = MappingProxyType(
         "sa": Measure(
             title="Sa",
             unit="g",
-            meaning="Largest resultant of the pseudo-accelerations of the two components at a period, 5 % damped.",
+            meaning="Largest resultant of the pseudo-accelerations of the two components at a period, "
+            "5 % damped.",
         ),
         "sa_mean": Measure(
             title="Sa, geometric mean",
@@ -137,8 +139,8 @@ def velocity(motion: GroundMotion) -> Array:
 def pseudo_acceleration(motion: GroundMotion, period: float) -> Array:
     """Return omega^2 times the displacement (n, 2) [m/s^2] of a damped oscillator over the time of the motion.
 
-    Exact for a ground acceleration that is linear between samples: N. C. Nigam and P. C. Jennings, Bull.
-    Seismol. Soc. Am. 59, 909-922, 1969. Coarse motions are sampled finer first, so that no peak is missed.
+    Exact for a ground acceleration that is linear between samples (N. C. Nigam and P. C. Jennings, Bull.
+    Seismol. Soc. Am. 59, 909-922, 1969). Coarse motions are sampled finer first: no peak is missed.
     """
     from scipy.signal import cont2discrete, lfilter
 
@@ -148,9 +150,8 @@ def pseudo_acceleration(motion: GroundMotion, period: float) -> Array:
     a = np.column_stack([np.interp(places, np.arange(count), motion.acceleration[:, i]) for i in (0, 1)])
     omega = 2.0 * math.pi / period
     # the first-order hold of the transfer from -a to omega^2 x
-    numerator, denominator, _ = cont2discrete(
-        ([omega**2], [1.0, 2.0 * DAMPING * omega, omega**2]), motion.time_step / parts, method="foh"
-    )
+    transfer = np.array([omega**2]), np.array([1.0, 2.0 * DAMPING * omega, omega**2])
+    numerator, denominator, _ = cont2discrete(transfer, motion.time_step / parts, method="foh")
     return np.asarray(lfilter(np.ravel(numerator), denominator, -a, axis=0), dtype=np.float64)
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from types import MappingProxyType
+from typing import Any
 
 from rockwobble.models import Run
 
@@ -77,9 +78,10 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
         raise ValueError("a fragility needs at least one method, got none")
     labels = iter(run_labels([method for method in chosen if isinstance(method, Run)]))
     found = [_method(method, restitution, labels) for method in chosen]
-    for method in found:
-        if sum(other.label == method.label for other in found) > 1:
-            raise ValueError(f"the methods must differ, got {method.label!r} twice")
+    names = [method.label for method in found]
+    for name in names:
+        if names.count(name) > 1:
+            raise ValueError(f"the methods must differ, got {name!r} twice")
     return tuple(found)
 
 
@@ -89,7 +91,7 @@ def _method(given: str | Run, restitution: float | str, labels: Iterable[str]) -
     if given == WORSE_PLANE:
         return Method(label=MODELS[given], run=None, of=tuple(MODELS[plane] for plane in _PLANES))
     if given in _PLANES:
-        loss = {} if restitution == 1.0 else {"restitution": restitution}
+        loss: dict[str, Any] = {} if restitution == 1.0 else {"restitution": restitution}
         return Method(label=MODELS[given], run=Run(None, "recess", plane=_PLANES[given], **loss))
     return Method(label=MODELS[given], run=Run(None, given))
 
