@@ -1,9 +1,10 @@
 """Lognormal fragility curves by maximum likelihood: one, or thousands at once.
 
 P(demand > limit | intensity) = Phi((ln intensity - ln median)/dispersion): a probit regression on the
-logarithm of the intensity (J. W. Baker, Earthq. Spectra 31, 579-599, 2015). Its log-likelihood is concave, so Newton's
-method with halved steps finds the maximum wherever there is one. There is none where the counts are
-separated: where no run exceeds the limit, where all do, or where all do above an intensity and none below.
+logarithm of the intensity (J. W. Baker, Earthq. Spectra 31, 579-599, 2015). Its log-likelihood is concave,
+so Newton's method with halved steps finds the maximum wherever there is one. There is none where the counts
+are separated: where no run exceeds the limit, where all do, or where all do above an intensity and none
+below.
 """
 
 from __future__ import annotations
@@ -134,7 +135,7 @@ def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> 
     expected = n * ndtr((x - centre) / dispersion)
     if len(x) > 2 * _GROUPS:
         place = np.minimum((np.cumsum(n) - 0.5 * n) / n.sum() * _GROUPS, _GROUPS - 1).astype(int)
-        n, k, expected = (np.bincount(place, each, _GROUPS) for each in (n, k, expected))
+        n, k, expected = (np.bincount(place, each, _GROUPS).astype(np.float64) for each in (n, k, expected))
     there = n > 0.0
     n, k, expected = n[there], k[there], expected[there]
     tiny = np.finfo(float).tiny
@@ -202,8 +203,8 @@ def _step(u: Array, n: Array, k: Array, a: Array, b: Array) -> tuple[Array, Arra
 
 
 def _highest(x: Array, where: NDArray[np.bool_]) -> Array:
-    return np.where(where, x, -math.inf).max(axis=1)
+    return np.asarray(np.where(where, x, -math.inf).max(axis=1), dtype=np.float64)
 
 
 def _lowest(x: Array, where: NDArray[np.bool_]) -> Array:
-    return np.where(where, x, math.inf).min(axis=1)
+    return np.asarray(np.where(where, x, math.inf).min(axis=1), dtype=np.float64)
