@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from ..console.terminal import interruptible, user_input
 from .inputs import options
 from .inputs.method_values import settings
+from .inputs.motion_set import DEFAULT_COUNT, motions_of
+from .inputs.several import cylinders_of, methods_of
 from .sweep import Scheduler, Workers, values
 
-if TYPE_CHECKING:
-    from rockwobble.models import Cylinder, GroundMotion, Run
-
 _MOTIONS, _LEVELS, _STATISTICS = "Ground motions", "Intensity", "Statistics"
-_SYNTHETIC = 100  # motions where the user does not say
 
 Cylinders = Annotated[
     list[str] | None,
@@ -39,7 +36,8 @@ Records = Annotated[
     Path | None,
     typer.Option(
         "--records",
-        help="A folder of records with a table records.csv: columns x and y (files), maybe z, name, units, scale.",
+        help="A folder of records with a table records.csv: columns x and y (files), maybe z, name, units "
+        "and scale.",
         rich_help_panel=_MOTIONS,
     ),
 ]
@@ -47,7 +45,7 @@ Synthetic = Annotated[
     int | None,
     typer.Option(
         "--synthetic",
-        help=f"So many made-up motions. Default, without records: {_SYNTHETIC}.",
+        help=f"So many made-up motions. Default, without records: {DEFAULT_COUNT}.",
         rich_help_panel=_MOTIONS,
     ),
 ]
@@ -55,8 +53,8 @@ MeasureName = Annotated[
     str,
     typer.Option(
         "--measure",
-        help="Intensity: peak_acceleration (over g tan alpha), peak_velocity (times p over g tan alpha), pga, pgv, "
-        "sa or sa_mean.",
+        help="Intensity: peak_acceleration (over g tan alpha), peak_velocity (times p over g tan alpha), "
+        "pga, pgv, sa or sa_mean.",
         rich_help_panel=_LEVELS,
     ),
 ]
@@ -82,8 +80,8 @@ Models = Annotated[
     list[str] | None,
     typer.Option(
         "--model",
-        help="Reduced model: recess, flat, planar-x, planar-y, worse-plane (of the two), or none; may be repeated. "
-        "Default: all.",
+        help="Reduced model: recess, flat, planar-x, planar-y, worse-plane (of the two), or none; may be "
+        "repeated. Default: all.",
         rich_help_panel="Method",
     ),
 ]
@@ -167,15 +165,16 @@ def fragility(
 ) -> None:
     """Say how probable it is that shaking of an intensity overturns a cylinder, by several methods.
 
-    Every motion is scaled to the same intensities and moves every cylinder by every method, so that methods
-    are compared motion by motion. Lognormal curves by maximum likelihood, with bands by resampling the motions.
+    Every motion is scaled to the same intensities and moves every cylinder by every method, so that
+    methods are compared motion by motion. Lognormal curves by maximum likelihood, with bands by
+    resampling the motions.
 
     Without options: the five reduced models of R = 6 m, tan alpha = 0.2 under made-up motions.
 
     Whatever ends it, the same command goes on where it stopped.
 
-    Writes fragility.html, the same as fragility.md with its figures, the tables as Parquet, and counts.csv and
-    counts.json, from which other tools can fit curves of their own.
+    Writes fragility.html, the same as fragility.md with its figures, the tables as Parquet, and
+    counts.csv and counts.json, from which other tools can fit curves of their own.
     """
     from .inputs.method_values import restitution as restitution_of
 
@@ -184,13 +183,14 @@ def fragility(
             from rockwobble import compare
 
             compare.require_writable(out)
-            bodies = _cylinders(cylinder, semidiagonal, tan_alpha)
-            motions, source = _motions(p695, records, synthetic, units, seed)
-            methods = _methods(bodies, model, engine, support, settings(settings_given), time_step)
-            states = None if limit is None else tuple(limit)
-            print(
-                f"Cylinders: {', '.join(f'{k} (R = {c.semidiagonal:g} m, tan alpha = {c.tan_alpha:g})' for k, c in bodies.items())}"
+            bodies = cylinders_of(cylinder, semidiagonal, tan_alpha)
+            motions, source = motions_of(p695, records, synthetic, units, seed)
+            methods = methods_of(
+                next(iter(bodies.values())), model, engine, support, settings(settings_given), time_step
             )
+            states = None if limit is None else tuple(limit)
+            for name, body in bodies.items():
+                print(f"{name}: R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}")
             print(f"Motions: {len(motions)}, {source}")
         from rockwobble.compare.studies.fragility.limits import DEFAULT_LIMITS
         from rockwobble.compare.studies.fragility.result import manifest_of
@@ -225,81 +225,6 @@ def fragility(
             )
         manifest = manifest_of(found, command_line())
         show_and_write(out, fragility_page(found, manifest), manifest, found.tables, count_files(found))
-
-
-def _cylinders(given: Sequence[str] | None, semidiagonal: float, tan_alpha: float) -> dict[str, Cylinder]:
-    from rockwobble.models import Cylinder
-
-    if not given:
-        body = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
-        return {f"R = {semidiagonal:g} m, tan α = {tan_alpha:g}": body}
-    found: dict[str, Cylinder] = {}
-    for text in given:
-        name, sign, numbers = (part.strip() for part in text.partition("="))
-        sizes = numbers.split(",")
-        try:
-            size, slenderness = map(float, sizes)
-        except ValueError:
-            name = ""
-        if not (name and sign):
-            raise ValueError(f"--cylinder must be NAME=R,TAN_ALPHA such as pier=6,0.2, got {text!r}")
-        if name in found:
-            raise ValueError(f"--cylinder {name} is given twice")
-        found[name] = Cylinder(semidiagonal=size, tan_alpha=slenderness)
-    return found
-
-
-def _motions(
-    p695: bool, records: Path | None, synthetic: int | None, units: str | None, seed: int
-) -> tuple[list[GroundMotion], str]:
-    """Return the ground motions and what they are."""
-    from rockwobble.compare import synthetic_motions
-    from rockwobble.compare.studies.fragility.motions import read_records, recorded_far_field
-
-    if p695 + (records is not None) + (synthetic is not None) > 1:
-        raise ValueError("the motions are those of --p695, of --records or --synthetic, got more than one")
-    if units is not None and records is None:
-        raise ValueError("--units belongs to --records")
-    if p695:
-        return recorded_far_field(), "far-field pairs of FEMA P-695"
-    if records is not None:
-        return read_records(records, units=units), f"records of {records.name}"
-    count = _SYNTHETIC if synthetic is None else synthetic
-    return synthetic_motions(count, peak=1.0, seed=seed), f"made-up ground motions, seed {seed}"
-
-
-def _methods(
-    bodies: dict[str, Cylinder],
-    models: Sequence[str] | None,
-    engines: Sequence[str] | None,
-    supports: Sequence[str] | None,
-    given: dict[str, object],
-    time_step: float | str | None,
-) -> list[str | Run]:
-    from rockwobble.compare import default_runs, with_settings
-    from rockwobble.compare.studies.fragility.methods import MODELS
-    from rockwobble.models import Case, Run, el_centro_1940
-    from rockwobble.multibody.engines.registry import find_engine
-
-    chosen = [] if models == ["none"] else list(models or MODELS)
-    if not engines:
-        if supports or given or time_step is not None:
-            raise ValueError("--support, --set and --time-step are for engines, give --engine as well")
-        return list(chosen)
-    runs: list[Run] = []
-    for name in engines:
-        able = [each for each in supports or () if each in find_engine(name).supports]
-        if supports and len(able) < len(supports):
-            lacks = [each for each in supports if each not in able]
-            if not able:
-                raise ValueError(f"{name} has no support {', '.join(lacks)}")
-            print(f"{name} has no support {', '.join(lacks)} and is left out there")
-        runs += default_runs([name], able or None)
-    if time_step is not None:
-        runs = [Run(run.engine, run.support, time_step) for run in runs]  # type: ignore[arg-type]
-    if given:
-        runs = list(with_settings(Case(next(iter(bodies.values())), el_centro_1940()), runs, given))
-    return [*chosen, *runs]
 
 
 def _levels(text: str) -> list[float]:

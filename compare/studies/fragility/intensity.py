@@ -137,7 +137,7 @@ def velocity(motion: GroundMotion) -> Array:
 
 
 def pseudo_acceleration(motion: GroundMotion, period: float) -> Array:
-    """Return omega^2 times the displacement (n, 2) [m/s^2] of a damped oscillator over the time of the motion.
+    """Return omega^2 times the displacement (n, 2) [m/s^2] of a damped oscillator during the motion.
 
     Exact for a ground acceleration that is linear between samples (N. C. Nigam and P. C. Jennings, Bull.
     Seismol. Soc. Am. 59, 909-922, 1969). Coarse motions are sampled finer first: no peak is missed.

@@ -6,6 +6,7 @@ overturned above that level may stand, so its curve lies to the left of the one 
 
 from __future__ import annotations
 
+import itertools
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,7 +32,7 @@ def island_table(blocks: Blocks, measure: str, weights: Array) -> pd.DataFrame:
 
     rows = []
     motions = len(blocks.motions)
-    for cylinder, method in blocks.runs:
+    for cylinder, method in itertools.product(blocks.cylinders, blocks.methods):
         sample = blocks.sample(cylinder, method, OVERTURNED, measure)
         if np.isnan(sample.y).all():
             continue

@@ -11,7 +11,7 @@ import numpy as np
 
 from ...metrics.order_statistics import Interval
 from .fit import FITTED, KINDS, Curves, goodness
-from .resampling import Array, bands, interval
+from .resampling import Array, Sample, bands, interval
 from .samples import Blocks
 
 if TYPE_CHECKING:
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 # of a curve: from half of the lowest intensity to twice the highest
 _POINTS, _BEYOND = 60, 2.0
 Key = tuple[str, str, str]  # cylinder, method, limit
+ALL = "all"  # cylinders
 
 
 def count_table(blocks: Blocks, limits: Sequence[str], measure: str) -> pd.DataFrame:
@@ -122,40 +123,54 @@ def contrast_table(
     """Return the ratio of the medians and the difference of the dispersions of every two methods.
 
     Of the same motions: a run that failed by one method leaves out that of the other, and both curves are of
-    the same resamples.
+    the same resamples. Rows of the cylinder "all" are geometric means of the ratios over the cylinders.
     """
     import pandas as pd
 
-    rows = []
-    for cylinder in blocks.cylinders:
-        own = [method for method in blocks.methods if (cylinder, method) in blocks.runs]
-        for limit, (against, method) in itertools.product(limits, itertools.combinations(own, 2)):
+    rows: list[dict[str, Any]] = []
+    for limit, (against, method) in itertools.product(limits, itertools.combinations(blocks.methods, 2)):
+        about = {"limit": limit, "method": method, "against": against}
+        found: list[tuple[Array, Array]] = []
+        for cylinder in blocks.cylinders:
             pair = [blocks.sample(cylinder, name, limit, measure) for name in (method, against)]
             unknown = np.isnan(pair[0].y) | np.isnan(pair[1].y)
             if unknown.all():
                 continue
             many = [drawn[cylinder, name, limit] for name in (method, against)]
             if unknown.any():
-                pair = [type(each)(x=each.x, y=np.where(unknown, np.nan, each.y)) for each in pair]
+                pair = [Sample(x=each.x, y=np.where(unknown, np.nan, each.y)) for each in pair]
                 many = [each.curves(weights) for each in pair]
-            rows.append(
-                {"cylinder": cylinder, "limit": limit, "method": method, "against": against}
-                | contrast_row([each.curves() for each in pair], many, len(blocks.motions), margin)
-            )
+            found.append((_differences([each.curves() for each in pair]), _differences(many)))
+            row = contrast_row(*found[-1], len(blocks.motions), margin)
+            rows.append({"cylinder": cylinder, **about, **row})
+        if len(found) == len(blocks.cylinders) > 1:
+            mean, means = (np.mean(each, axis=0) for each in zip(*found, strict=True))
+            rows.append({"cylinder": ALL, **about, **contrast_row(mean, means, len(blocks.motions), margin)})
     return pd.DataFrame(rows)
 
 
-def contrast_row(
-    found: Sequence[Curves], drawn: Sequence[Curves], motions: int, margin: float
-) -> dict[str, Any]:
-    """Return what tells two curves apart, of the same resamples."""
-    with np.errstate(invalid="ignore"):  # of two curves that are never reached there is no ratio
-        centre, many = (each[0].centre - each[1].centre for each in (found, drawn))
-        spread, spreads = (each[0].dispersion - each[1].dispersion for each in (found, drawn))
-    ratio = exponential(interval(float(centre[0]), many, motions))
+def _differences(pair: Sequence[Curves]) -> Array:
+    """Differences (2, B) of the logarithms of the medians, and of the dispersions, of two sets of curves."""
+    first, second = pair
+    with np.errstate(invalid="ignore"):  # of two curves that are never reached there is none
+        return np.array([first.centre - second.centre, first.dispersion - second.dispersion])
+
+
+def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, Any]:
+    """Return what tells two curves apart.
+
+    Parameters
+    ----------
+    found, drawn : ndarray, shapes (2, 1) and (2, B)
+        Differences of the logarithms of the medians and of the dispersions, and those of the resamples.
+    motions : int
+    margin : float
+    """
+    (centre, spread), (many, spreads) = found[:, 0], drawn
+    ratio = exponential(interval(float(centre), many, motions))
     return {
         **interval_columns("ratio", ratio),
-        **interval_columns("dispersion_difference", interval(float(spread[0]), spreads, motions)),
+        **interval_columns("dispersion_difference", interval(float(spread), spreads, motions)),
         "within": margin_of(ratio),
         "verdict": verdict(ratio, margin),
     }
@@ -192,7 +207,7 @@ def interval_columns(name: str, found: Interval) -> dict[str, float]:
 
 def _keys(blocks: Blocks, limits: Sequence[str]) -> Iterator[Key]:
     """Yield cylinder, method and limit where anything is known."""
-    for cylinder, method in blocks.runs:
+    for cylinder, method in itertools.product(blocks.cylinders, blocks.methods):
         for limit in limits:
             if not np.isnan(blocks.exceeded(cylinder, method, limit)).all():
                 yield cylinder, method, limit
