@@ -12,7 +12,7 @@ from .records.el_centro import el_centro_1940
 from .records.files import read_record
 from .records.p695 import p695_far_field
 from .suites.file import read_suite, shipped_suites
-from .trace import Trace
+from .traces.trace import Trace
 
 __all__ = [
     "Assumptions",

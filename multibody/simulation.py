@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, InitialState, Run, Trace
-from rockwobble.models.trace_source import Known
+from rockwobble.models.traces.trace_source import Known
 
 from .auto_step import AUTO, STEP_TOLERANCE, find_step
 from .engines.ability import require_able

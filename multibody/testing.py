@@ -22,8 +22,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from .contract import FLAT, GENERAL, Check
-from .contract_sweep import uplifts_in_every_direction
+from .contract.interface import GENERAL, Check
+from .contract.mechanics import FLAT
+from .contract.sweep import uplifts_in_every_direction
 from .engines.registry import find_engine
 
 
@@ -85,7 +86,9 @@ def check_engine(engine: str, checks: Iterable[ContractCheck] | None = None) -> 
 
 def leaves_no_trace(engine: str, support: str) -> None:
     """Nothing is printed, and nothing written where the user works."""
-    code = f"from rockwobble.multibody.contract import run; run({engine!r}, {support!r}, duration=0.01)"
+    code = (
+        f"from rockwobble.multibody.contract.problem import run; run({engine!r}, {support!r}, duration=0.01)"
+    )
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     with tempfile.TemporaryDirectory() as folder:
         shown = subprocess.run(

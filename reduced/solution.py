@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Assumptions
-from rockwobble.models.trace_source import friction_of
+from rockwobble.models.traces.trace_source import friction_of
 
 from . import forces
 from .assumptions import Demands, review

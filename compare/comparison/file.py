@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, TypedDict
 import numpy as np
 
 from rockwobble.models import Case, Trace, plain_json
-from rockwobble.models.trace_file import case_from_plain, case_to_plain
+from rockwobble.models.traces.trace_file import case_from_plain, case_to_plain
 
 from ..storage.manifest import Results
 from .error_budget import ErrorBudget, Limit

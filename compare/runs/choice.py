@@ -11,7 +11,6 @@ from rockwobble.multibody.engines.registry import engine_packages, find_engine, 
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 from rockwobble.multibody.scene.guard import check_time_step
 from rockwobble.multibody.scene_of_case import resolved_settings
-from rockwobble.reduced.problem import require_solvable
 
 SUPPORTS = ("recess", "flat")
 _LEAN = 1e-3  # of alpha: a tilt that fits into any ring
@@ -64,6 +63,9 @@ def require_runnable(case: Case, run: Run) -> None:
         the time step is too large for contact, or a setting is unknown or out of range.
     """
     if run.engine is None:
+        # loads the compiler, which who only imports this need not wait for
+        from rockwobble.reduced.problem import require_solvable
+
         require_solvable(case, **run.settings, support=run.support)
         return
     step = None if isinstance(run.time_step, str) else run.time_step

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.lost_trace import lost_trace
+from rockwobble.models.traces.lost_trace import lost_trace
 from rockwobble.multibody.engines.registry import engine_facts
 
 from ..storage.fingerprint import fingerprint

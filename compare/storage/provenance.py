@@ -40,7 +40,10 @@ def processor() -> str:
 
 @cache
 def commit() -> str:
-    """Return the commit of the checkout that this file is in, with "+" after changes; empty without one."""
+    """Return the commit of the checkout that this file is in; empty without one.
+
+    With "+" after changes of anything but published results, which code does not rest on.
+    """
     here = Path(__file__).resolve()
 
     def git(*arguments: str) -> str:
@@ -51,7 +54,8 @@ def commit() -> str:
 
     try:
         git("ls-files", "--error-unmatch", here.name)  # else the repository is one that we are installed in
-        return git("rev-parse", "HEAD") + ("+" if git("status", "--porcelain", "-uno") else "")
+        code = (":(top)", ":(top,exclude)reports/published")
+        return git("rev-parse", "HEAD") + ("+" if git("status", "--porcelain", "-uno", "--", *code) else "")
     except (OSError, subprocess.CalledProcessError):
         return ""
 

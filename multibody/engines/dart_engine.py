@@ -29,8 +29,8 @@ from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
 from .dart_scene import DartScene, build, quaternions, rotation_vector
-from .dart_settings import DartSettings
 from .scene_counts import SceneCounts
+from .settings.dart import DartSettings
 
 _LEANS = 1e-9  # [rad] from which a lean has a direction
 _OPEN = 1e-8  # [rad] lean at which the base is open; standing it stays below 5e-9

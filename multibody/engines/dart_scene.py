@@ -11,7 +11,7 @@ import numpy as np
 
 from ..protocol import Array, Scene
 from ..scene.friction import body_friction
-from .dart_settings import DartSettings
+from .settings.dart import DartSettings
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)

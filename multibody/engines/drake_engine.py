@@ -20,8 +20,8 @@ from ..facts import EngineFacts
 from ..kinematics import about_vertical, axis_of, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
 from ..scene.friction import body_friction
-from .drake_settings import DrakeSettings
 from .scene_counts import SceneCounts
+from .settings.drake import DrakeSettings
 
 _POINTS = 4
 _POINT_SIZE = 1e-6  # of b: a sphere this small reaches out of the rim by 1e-6 theta^2/2

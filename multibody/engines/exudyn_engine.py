@@ -19,8 +19,8 @@ from ..facts import EngineFacts
 from ..kinematics import axis_of
 from ..protocol import Array, Scene, Settings, Stepper, Steps
 from ..start import Start
-from .exudyn_settings import ExudynSettings
 from .scene_counts import SceneCounts
+from .settings.exudyn import ExudynSettings
 
 _FACTS = EngineFacts(title="Exudyn", step_time=4e-5, order=2.0)
 

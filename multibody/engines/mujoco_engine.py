@@ -16,7 +16,7 @@ from ..scene.ring_settings import RingSettings, take_ring
 from .mujoco_scene import compile_scene
 from .mujoco_start import set_start, to_world
 from .scene_counts import SceneCounts
-from .settings import MujocoSettings
+from .settings.mujoco import MujocoSettings
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]

@@ -9,7 +9,7 @@ from ..protocol import Scene
 from ..scene.friction import body_friction
 from ..scene.ring_settings import RingSettings
 from .mujoco_ring import set_walls
-from .settings import MujocoSettings
+from .settings.mujoco import MujocoSettings
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]

@@ -2,8 +2,9 @@
 
 Bullet finds one contact in a step and keeps four, wherever the base has leaned before: a cylinder that stands
 on them leans by 1e-8 rad in a direction of chance, and uplifts at 0.98 of its load in some. So it is held
-upright until the load is on its rim. From there until it leans by 1e-7 rad it has a point of its rim for a
-contact, to which the scene is turned: the lowest point runs about the rim faster than a step could follow.
+upright until friction does not hold it any more, and it slides on those four; or until the load is on its
+rim. From there until it leans by 1e-7 rad it has a point of its rim for a contact, to which the scene is
+turned: the lowest point runs about the rim faster than a step could follow.
 """
 
 from __future__ import annotations
@@ -11,8 +12,6 @@ from __future__ import annotations
 import contextlib
 import functools
 import math
-import os
-import sys
 from collections.abc import Iterator
 from typing import Any
 
@@ -21,13 +20,12 @@ import numpy as np
 from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
-from ..scene.friction import body_friction
+from .pybullet_scene import make_cylinder, make_ground, quiet
 from .scene_counts import SceneCounts
-from .settings import PybulletSettings
+from .settings.pybullet import PybulletSettings
 
 _LEANS = 1e-7  # [rad] a cylinder that leans less has no lowest point to speak of
 _RESIDUAL = 1e-10  # of an iteration, squared [m^2/s^2]; what a standing cylinder leaves is far below
-_POINT_SIZE = 1e-6  # of b
 _RISEN = 1e-7  # [rad] lean from which the rim carries the cylinder as well as the point does
 _HAS_DIRECTION = 1e-9  # [rad]
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
@@ -74,7 +72,7 @@ class PybulletEngine:
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
         """Open the scene at its start, in a client that is closed whatever happens."""
-        with _quiet():
+        with quiet():
             import pybullet
 
             client = pybullet.connect(pybullet.DIRECT)
@@ -83,7 +81,7 @@ class PybulletEngine:
         try:
             yield _PybulletStepper(pybullet, client, scene, PybulletSettings(**settings))
         finally:
-            with _quiet():
+            with quiet():
                 pybullet.disconnect(client)
 
 
@@ -95,14 +93,15 @@ class _PybulletStepper:
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
         self._stiffness = stiffness if scene.support == "recess" else 0.0
         self._standing = scene.start.standing
-        self._ground = _ground(pybullet, client, scene, settings)
-        self._make = functools.partial(_cylinder, pybullet, client, scene, settings)
+        self._ground = make_ground(pybullet, client, scene, settings)
+        self._make = functools.partial(make_cylinder, pybullet, client, scene, settings)
         self._body = self._make(standing=self._standing)
         self._lengths = scene.body.base_radius, scene.body.mass_centre_height
         self._iterations, self._unsolved = settings.iterations, False
         self._overshoot = settings.friction_damping - 1.0
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._held = self._standing
+        self._friction = scene.friction
         start = scene.start
         self._position = start.position
         self._quaternion = start.quaternion
@@ -128,6 +127,11 @@ class _PybulletStepper:
         quaternions: list[Any] = []
         headings: list[float] = []
         while self._standing and len(positions) < len(acceleration):
+            if self._held and self._slides(acceleration[len(positions)]):
+                self._let_go()
+                still = np.zeros(3)
+                self._put(self._position, np.roll(self._quaternion, -1), still, still)
+                break
             place, turn = self._stand(acceleration[len(positions)])
             positions.append(place)
             quaternions.append(turn)
@@ -166,15 +170,24 @@ class _PybulletStepper:
         vectors = about_vertical(np.array([place, (x, y, z), *velocities]), self._heading - towards)
         self._heading = towards
         if lean > _RISEN:
-            bullet.removeBody(self._body, client)
-            self._body = self._make(standing=False)
-            self._standing = False
+            self._let_go()
         self._put(vectors[0], np.append(vectors[1], w), vectors[2], vectors[3])
         pull = about_vertical(-acceleration[None] - [0.0, 0.0, self._gravity], -towards)[0]
         bullet.setGravity(*pull.tolist(), client)
         bullet.stepSimulation(client)
         place, turn = bullet.getBasePositionAndOrientation(self._body, client)
         return place, turn
+
+    def _slides(self, acceleration: Array) -> bool:
+        """Whether friction does not hold a cylinder that stands."""
+        push = math.hypot(acceleration[0], acceleration[1])
+        return push > self._friction * float(self._gravity + acceleration[2])
+
+    def _let_go(self) -> None:
+        """Go on with the cylinder in place of the point of its rim; its pose is still to be set."""
+        self._bullet.removeBody(self._body, self._client)
+        self._body = self._make(standing=False)
+        self._standing = False
 
     def _put(self, position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
         """Give the body a pose, with the scalar last as Bullet has it, and velocities."""
@@ -245,84 +258,3 @@ class _PybulletStepper:
             for island in report
         )
         return positions, quaternions
-
-
-def _ground(bullet: Any, client: int, scene: Scene, settings: PybulletSettings) -> int:
-    """Set the parameters of the engine and make the ground; return its number."""
-    bullet.setPhysicsEngineParameter(
-        fixedTimeStep=scene.time_step,
-        numSubSteps=0,
-        numSolverIterations=settings.iterations,
-        solverResidualThreshold=settings.solver_residual,
-        contactSlop=settings.contact_slop,
-        contactERP=settings.contact_erp,
-        physicsClientId=client,
-    )
-    bullet.setGravity(0.0, 0.0, -scene.gravity, client)
-    plane = bullet.createCollisionShape(bullet.GEOM_PLANE, physicsClientId=client)
-    ground = bullet.createMultiBody(0.0, plane, physicsClientId=client)
-    bullet.changeDynamics(
-        ground,
-        -1,
-        lateralFriction=body_friction(scene.friction, "product")[1],
-        restitution=0.0,
-        collisionMargin=settings.collision_margin,
-        physicsClientId=client,
-    )
-    return int(ground)
-
-
-def _cylinder(bullet: Any, client: int, scene: Scene, settings: PybulletSettings, *, standing: bool) -> int:
-    """Make the cylinder, or the point on its rim from which it rises; return its number."""
-    shape = scene.body
-    if standing:
-        size = _POINT_SIZE * shape.base_radius
-        outline = bullet.createCollisionShape(
-            bullet.GEOM_SPHERE,
-            radius=size,
-            collisionFramePosition=[shape.base_radius, 0.0, size - shape.mass_centre_height],
-            physicsClientId=client,
-        )
-    else:
-        above = 0.5 * shape.height - shape.mass_centre_height
-        # a shape with a frame becomes a compound, which costs time: only where the outline needs it
-        frame = {"collisionFramePosition": [0.0, 0.0, above]} if above else {}
-        outline = bullet.createCollisionShape(
-            bullet.GEOM_CYLINDER,
-            radius=shape.base_radius,
-            height=shape.height,
-            physicsClientId=client,
-            **frame,
-        )
-    body = bullet.createMultiBody(1.0, outline, physicsClientId=client)
-    transverse, axial = shape.transverse_inertia, shape.axial_inertia
-    bullet.changeDynamics(
-        body,
-        -1,
-        lateralFriction=body_friction(scene.friction, "product")[0],
-        restitution=0.0,
-        collisionMargin=settings.collision_margin,
-        localInertiaDiagonal=[transverse, transverse, axial],
-        linearDamping=0.0,
-        angularDamping=0.0,
-        activationState=bullet.ACTIVATION_STATE_DISABLE_SLEEPING,
-        physicsClientId=client,
-    )
-    return int(body)
-
-
-@contextlib.contextmanager
-def _quiet() -> Iterator[None]:
-    """Keep what Bullet prints from C, its build time and the like, off both standard streams."""
-    sys.stdout.flush()
-    sys.stderr.flush()
-    kept = [os.dup(stream) for stream in (1, 2)]
-    try:
-        with open(os.devnull, "w") as nowhere:  # noqa: PTH123 - a descriptor is what is needed
-            for stream in (1, 2):
-                os.dup2(nowhere.fileno(), stream)
-        yield
-    finally:
-        for stream, original in zip((1, 2), kept, strict=True):
-            os.dup2(original, stream)
-            os.close(original)

@@ -9,21 +9,26 @@ import typer
 
 from ..console.terminal import BAD_INPUT, INTERRUPTED, complain, forgive_output
 from .advise import advise
-from .certify import certify, verify
-from .check import check
+from .checks.certify import certify, verify
+from .checks.check import check
 from .compare import compare
 from .ensemble import ensemble
 from .extremes import extremes
 from .figures import figures
+<<<<<<< HEAD
 from .fragility import fragility
 from .report import report
 from .show import show
+=======
+from .results.report import report
+from .results.show import show
+from .results.view import view
+>>>>>>> main
 from .simulate import simulate
 from .spectrum import spectrum
 from .sweep import sweep
 from .tradeoff import tradeoff
 from .validity import validity
-from .view import view
 
 app = typer.Typer(
     name="rockwobble",

@@ -176,7 +176,7 @@ def _facts(trace: Trace) -> dict[str, str]:
 def _save(out: Path, job: Job, trace: Trace) -> list[str]:
     from rockwobble.compare.runs.execution import job_fingerprint
     from rockwobble.compare.storage.manifest import made_now, write_results
-    from rockwobble.models.trace_file import case_to_plain, packed
+    from rockwobble.models.traces.trace_file import case_to_plain, packed
 
     from ..pages.provenance import command_line
 

@@ -10,7 +10,7 @@ import typer
 
 from ..console.terminal import FAILED, INTERRUPTED, complain, user_input
 from .inputs import options
-from .show import show
+from .results.show import show
 
 if TYPE_CHECKING:
     from rockwobble.compare import CaseSweep, Grid

@@ -112,13 +112,19 @@ class Table:
         return [number(row.get(column.key), column.form) for column in self.columns]
 
     def markdown(self) -> str:
-        """Return the table in Markdown, which has no groups: they are a first column."""
+        """Return the table in Markdown, which has no groups: they are a first column, or a table each."""
+        if self.folded:
+            tables = (f"**{name}**\n\n{self._markdown([], rows)}" for name, rows in self.groups())
+            return "\n\n".join(tables)
         first = [(self.group.replace("_", " "), "---")] if self.group else []
+        lines = [[*([name] if self.group else []), *cells] for name, rows in self.groups() for cells in rows]
+        return self._markdown(first, lines)
+
+    def _markdown(self, first: Sequence[tuple[str, str]], lines: Sequence[Sequence[str]]) -> str:
         heads = [*first, *((c.heading, "---" if c.text else "---:") for c in self.columns)]
-        lines = [[head for head, _ in heads], [rule for _, rule in heads]]
-        lines += [[*([name] if self.group else []), *cells] for name, rows in self.groups() for cells in rows]
+        whole = [[head for head, _ in heads], [rule for _, rule in heads], *lines]
         # a vertical bar would end a cell
-        return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in lines)
+        return "\n".join(f"| {' | '.join(cell.replace('|', '∣') for cell in line)} |" for line in whole)
 
     def html(self) -> str:
         """Return the table as HTML: scrolled on its own where it is wider than the screen."""

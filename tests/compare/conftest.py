@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -11,38 +10,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.models import Cylinder
-
-
-@dataclasses.dataclass(frozen=True, kw_only=True)
-class MadeUpTrace:
-    """The fields of a response and of a trajectory, given one by one."""
-
-    time: np.ndarray
-    tilt: np.ndarray
-    rolling_angle: np.ndarray
-    contact_point: np.ndarray
-    centre_of_mass: np.ndarray
-    energy: np.ndarray
-    twist: np.ndarray
-    passes: pd.DataFrame
-    peak_tilt: float
-    outcome: str = "completed"
-    message: str = ""
-    uplift_time: float = 0.0
-    uplift_direction: float = 0.0
-    wall_time: float = 1.0
-    engine: str = "made up"
-    engine_version: str = "1"
-    support: str = "recess"
-    time_step: float = 1e-4
-    contact_resolution: float = 0.0
-    residual_displacement: float = 0.0
-    residual_twist: float = 0.0
-    tilt_rate: np.ndarray | None = None
-
-    def to_frame(self) -> pd.DataFrame:
-        return pd.DataFrame({"time": self.time, "tilt": self.tilt, "rolling_angle": self.rolling_angle})
+from rockwobble.models import Case, Cylinder, Run, Trace
+from rockwobble.models.traces.trace_source import Array, Known
 
 
 @pytest.fixture
@@ -51,31 +20,41 @@ def cylinder() -> Cylinder:
 
 
 @pytest.fixture
-def make_trace(cylinder: Cylinder) -> Callable[..., Any]:
+def make_trace(cylinder: Cylinder) -> Callable[..., Trace]:
     def make(
-        time: np.ndarray,
-        tilt: np.ndarray,
+        time: Array,
+        tilt: Array,
         *,
-        rolling_angle: np.ndarray | None = None,
-        passes: list[tuple[float, float]] = (),
-        unresolved: list[float] | None = None,
+        rolling_angle: Array | None = None,
+        passes: Sequence[tuple[float, float]] = (),
+        unresolved: Sequence[float] = (),
+        energy: Array | None = None,
         **fields: Any,
-    ) -> MadeUpTrace:
+    ) -> Trace:
         phi = np.zeros_like(time) if rolling_angle is None else rolling_angle
         table = pd.DataFrame(list(passes), columns=["time", "minimum_tilt"], dtype=float)
-        table["angle_of_turn"] = np.pi
-        if unresolved is not None:
-            table["resolved"] = ~table["time"].isin(unresolved)
+        table = table.assign(angle_of_turn=np.pi, resolved=~table["time"].isin(list(unresolved)))
         values: dict[str, Any] = {
+            "case": Case(cylinder, duration=float(time[-1]), name="made up"),
+            "run": Run("mujoco", "recess"),
+            "version": "1",
+            "tilt_rate": np.full_like(time, np.nan),
             "rolling_angle": phi,
             "contact_point": cylinder.base_radius * np.column_stack([np.cos(phi), np.sin(phi)]),
             "centre_of_mass": np.zeros((len(time), 3)),
-            "energy": np.zeros_like(time),
             "twist": np.zeros_like(time),
             "peak_tilt": float(np.max(tilt)),
             "passes": table,
+            "outcome": "completed",
+            "uplift_time": 0.0,
+            "uplift_direction": 0.0,
+            "time_step": 1e-4,
+            "wall_time": 1.0,
+            "contact_resolution": 0.0,
+            "residual_displacement": 0.0,
+            "source": Known({"energy": np.zeros_like(time) if energy is None else energy}),
         }
-        return MadeUpTrace(time=time, tilt=tilt, **(values | fields))
+        return Trace(time=time, tilt=tilt, **(values | fields))
 
     return make
 

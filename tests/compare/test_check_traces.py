@@ -16,7 +16,7 @@ from rockwobble.compare.runs import choice as runs
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.models import Case, GroundMotion, Run, Trace, read_suite
-from rockwobble.models.trace_source import Known
+from rockwobble.models.traces.trace_source import Known
 
 KEPT: dict[str, Trace] = {}
 TRACES: dict[str, Trace] = {}  # made once, and given to every test with another fault in them

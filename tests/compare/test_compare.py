@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import json
 import math
 
 import numpy as np
@@ -11,20 +10,22 @@ from rockwobble.compare import SUMMARY_COLUMNS, compare
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job, simulate_all
-from rockwobble.compare.runs.process_pool import WorkerDiedError
-from rockwobble.models import Case, GroundMotion, InitialState, Run, Suite
+from rockwobble.compare.storage.manifest import read_manifests
+from rockwobble.models import Case, Diagnostic, GroundMotion, InitialState, Run, Suite
+from rockwobble.models.traces.lost_trace import lost_trace
 
 ROUNDING = 1e-12
 
 CONTRACT = [
     "case",
-    "reference",
     "engine",
     "support",
+    "reference_engine",
+    "reference_support",
     "time_step",
     "outcome",
     "reference_outcome",
-    "message",
+    "diagnostics",
     "peak_tilt",
     "reference_peak_tilt",
     "peak_tilt_difference",
@@ -59,24 +60,23 @@ def made_up(monkeypatch, cylinder, make_trace):
     tilt = 0.3 * cylinder.alpha * np.ones_like(time)
 
     def use(engine=None, model=None):
-        def simulate(job: Job):
-            if isinstance(job.method, str):
-                offset = 0.002 if job.method == "flat" else 0.0
-                fields = {"passes": [(3.0, 1e-5)], "wall_time": 0.5} | (model or {})
+        def run_job(job: Job):
+            fields = {"case": job.case, "run": job.run}
+            if job.run.engine is None:
+                offset = 0.002 if job.run.support == "flat" else 0.0
+                fields |= {"passes": [(3.0, 1e-5)], "wall_time": 0.5} | (model or {})
             else:
                 offset = 0.005 * cylinder.alpha
-                fields = {
-                    "engine": job.method.engine,
-                    "support": job.method.support,
-                    "time_step": job.method.time_step or 1e-4,
+                fields |= {
+                    "time_step": job.run.time_step or 1e-4,
                     "wall_time": 2.0,
                     "contact_resolution": 2e-5,
                     "residual_displacement": 0.5 * cylinder.base_radius,
-                    "residual_twist": math.radians(3.0),
+                    "twist": np.full_like(time, math.radians(3.0)),
                 } | (engine or {})
             return make_trace(time, fields.pop("tilt", tilt + offset), **fields)
 
-        monkeypatch.setattr(execution, "simulate", simulate)
+        monkeypatch.setattr(execution, "run_job", run_job)
 
     return use
 
@@ -91,7 +91,8 @@ def test_columns_are_those_of_the_contract_in_its_order(made_up, case):
 def test_numbers_of_a_row(made_up, case, cylinder):
     made_up()
     row = compare(case, runs=[Run("mujoco", "recess", 1e-3)], workers=1).summary.iloc[0]
-    assert (row.case, row.reference, row.engine, row.support) == ("made up", "recess", "mujoco", "recess")
+    assert (row.case, row.engine, row.support) == ("made up", "mujoco", "recess")
+    assert (row.reference_engine, row.reference_support) == ("reduced", "recess")
     assert row.time_step == 1e-3
     assert row.peak_tilt == pytest.approx(0.305, rel=ROUNDING)
     assert row.reference_peak_tilt == pytest.approx(0.3, rel=ROUNDING)
@@ -103,19 +104,19 @@ def test_numbers_of_a_row(made_up, case, cylinder):
     assert row.residual_displacement == pytest.approx(0.5, rel=ROUNDING)
     assert row.residual_twist == pytest.approx(3.0, rel=ROUNDING)
     assert row.time_ratio == 4.0
-    assert row.message == ""
+    assert row.diagnostics == ""
 
 
-def test_open_ground_gets_a_row_for_each_model(made_up, case):
+def test_flat_ground_gets_a_row_for_each_model(made_up, case):
     made_up()
     found = compare(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1)
-    assert found.summary[["support", "reference"]].to_numpy().tolist() == [
+    assert found.summary[["support", "reference_support"]].to_numpy().tolist() == [
         ["recess", "recess"],
         ["flat", "recess"],
         ["flat", "flat"],
     ]
-    assert set(found.responses) == {("made up", "recess"), ("made up", "flat")}
-    assert set(found.trajectories) == {("made up", "mujoco recess"), ("made up", "mujoco flat")}
+    labels = ("recess model", "flat-ground model", "mujoco recess", "mujoco flat")
+    assert set(found.traces) == {("made up", label) for label in labels}
     assert found.summary.diverged.tolist() == [False, False, False]
 
 
@@ -130,82 +131,44 @@ def test_a_window_narrows_only_the_rms(made_up, case, cylinder):
     assert row.agreement_time == pytest.approx(5.01)
 
 
-@pytest.mark.parametrize(
-    ("engine", "model", "words"),
-    [
-        ({"outcome": "failed", "message": "it gained energy"}, {}, "mujoco failed: it gained energy"),
-        ({}, {"outcome": "failed", "message": "no step"}, "the recess model failed: no step"),
-        ({"outcome": "overturned"}, {}, "only mujoco overturned"),
-        ({}, {"outcome": "overturned"}, "only the recess model overturned"),
-        ({"outcome": "overturned"}, {"outcome": "overturned"}, "both overturned"),
-        ({"uplift_time": math.nan}, {}, "only the recess model uplifted"),
-        ({}, {"uplift_time": math.nan}, "only mujoco uplifted"),
-        ({"message": "slipped"}, {}, "slipped"),
-    ],
-)
-def test_what_the_numbers_would_hide_is_said(made_up, case, engine, model, words):
-    made_up(engine, model)
-    assert words in compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.message[0]
+def test_what_limits_a_run_is_in_its_row_by_code(made_up, case):
+    facts = (Diagnostic(code="slip", time=2.0), Diagnostic(code="energy", time=0.0), Diagnostic(code="slip"))
+    made_up({"outcome": "failed", "facts": facts, "peak_tilt": math.nan}, {"outcome": "overturned"})
+    row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
+    assert (row.outcome, row.reference_outcome, row.diagnostics) == ("failed", "overturned", "slip, energy")
 
 
-def test_two_that_never_move_agree_and_say_so(made_up, case):
+def test_two_that_never_move_agree(made_up, case):
     still = {"tilt": np.zeros(1001), "uplift_time": math.nan, "uplift_direction": math.nan, "outcome": "rest"}
     made_up(still, still)
     row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
-    assert row.message.startswith("neither uplifted: there is no motion to compare; not defined here: ")
     assert (row.tilt_rms, row.diverged, row.agreement_time) == (0.0, False, 10.0)
+    assert math.isnan(row.uplift_time_difference)
 
 
 def test_a_run_that_fails_half_way_is_compared_up_to_there(made_up, case, cylinder):
     tilt = np.where(np.arange(1001) > 400, np.nan, 0.3 * cylinder.alpha)
-    made_up({"tilt": tilt, "outcome": "failed", "message": "not a number", "peak_tilt": math.nan})
+    fact = Diagnostic(code="not_finite", time=4.01)
+    made_up({"tilt": tilt, "outcome": "failed", "facts": (fact,), "peak_tilt": math.nan})
     row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
-    assert row.message == (
-        "mujoco failed: not a number; compared up to 4 s; not defined here: peak_tilt, peak_tilt_difference"
-    )
+    assert row.diagnostics == "not_finite"
     assert math.isnan(row.peak_tilt)
     assert row.tilt_rms == 0.0
     assert (row.agreement_time, row.diverged) == (4.0, True)
 
 
-def test_no_number_is_missing_without_a_word(made_up, case):
-    made_up({"energy": np.full(1001, np.nan), "residual_twist": math.nan})
-    row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
-    assert row.message == "not defined here: residual_twist, energy_loss"
-
-
-def test_a_process_that_dies_is_a_failed_row(monkeypatch, made_up, case):
+def test_a_run_that_left_nothing_is_a_failed_row(monkeypatch, made_up, case):
     made_up()
-    simulate = execution.simulate
+    run_job = execution.run_job
 
-    class Pool:
-        """Every engine dies; what else is asked runs here."""
+    def dying(job: Job):
+        return run_job(job) if job.run.engine is None else lost_trace(job.case, job.run, "status -11")
 
-        def __init__(self, workers):
-            pass
-
-        def __enter__(self):
-            return self
-
-        def __exit__(self, *_):
-            pass
-
-        def submit(self, _, job):
-            future = execution.Future()
-            if isinstance(job.method, str):
-                future.set_result(simulate(job))
-            else:
-                future.set_exception(WorkerDiedError("the process ended with status -11"))
-            return future
-
-    monkeypatch.setattr(execution, "ProcessPool", Pool)
-    found = compare(case, runs=[Run("mujoco", "recess")], workers=2)
-    row = found.summary.iloc[0]
-    assert (row.outcome, row.diverged) == ("failed", True)
-    assert row.message == "mujoco left no trajectory: the process ended with status -11"
+    monkeypatch.setattr(execution, "run_job", dying)
+    row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
+    assert (row.outcome, row.diverged, row.diagnostics) == ("failed", True, "died")
     assert row.reference_peak_tilt == pytest.approx(0.3)
     assert math.isnan(row.tilt_rms)
-    assert not found.trajectories
 
 
 def test_a_suite_is_cases_times_runs(made_up, case, cylinder, monkeypatch):
@@ -228,42 +191,33 @@ def test_progress_is_told_of_every_run(made_up, case):
     told = []
     compare(case, runs=[Run("mujoco", "recess")], workers=1, progress=told.append)
     assert [(p.label, p.state, p.done, p.total) for p in told] == [
-        ("recess", "started", 0, 2),
-        ("recess", "finished", 1, 2),
-        ("mujoco recess", "started", 1, 2),
-        ("mujoco recess", "finished", 2, 2),
+        ("made up, recess model", "started", 0, 2),
+        ("made up, recess model", "finished", 1, 2),
+        ("made up, mujoco recess", "started", 1, 2),
+        ("made up, mujoco recess", "finished", 2, 2),
     ]
 
 
 def test_files_hold_the_whole_result(made_up, case, tmp_path):
     made_up()
     found = compare(case, runs=[Run("mujoco", "recess"), Run("mujoco", "flat")], workers=1, out=tmp_path)
-    names = {path.name for path in tmp_path.iterdir()}
-    assert names == {
-        "summary.csv",
-        "summary.parquet",
-        "restore.json",
-        "responses.parquet",
-        "trajectories.parquet",
-        "passes.parquet",
-        "excitation.parquet",
-        "comparison.json",
-    }
+    (manifest,) = read_manifests(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {"manifest.json", *manifest.files, *manifest.pages}
+    assert {"summary.parquet", "summary.csv", "traces.parquet", "passes.parquet"} <= set(manifest.files)
     summary = pd.read_csv(tmp_path / "summary.csv", keep_default_na=False, na_values=["nan"])
     assert list(summary.columns) == list(SUMMARY_COLUMNS)
     # the default parser of older pandas is off by a rounding
     assert summary.tilt_rms.tolist() == pytest.approx(found.summary.tilt_rms.tolist(), rel=ROUNDING)
-    samples = pd.read_parquet(tmp_path / "trajectories.parquet")
-    assert samples.groupby("run").size().to_dict() == {"mujoco recess": 1001, "mujoco flat": 1001}
-    assert set(pd.read_parquet(tmp_path / "responses.parquet").model) == {"recess", "flat"}
+    samples = pd.read_parquet(tmp_path / "traces.parquet")
+    assert samples.groupby("run").size().to_dict() == dict.fromkeys(
+        ["recess model", "flat-ground model", "mujoco recess", "mujoco flat"], 1001
+    )
     assert list(pd.read_parquet(tmp_path / "passes.parquet").columns[:2]) == ["case", "run"]
-    about = json.loads((tmp_path / "comparison.json").read_text())
-    assert about["cases"]["made up"]["tan_alpha"] == 0.2
-    assert about["versions"]["mujoco"]
+    assert manifest.versions["mujoco"]
 
 
 def test_a_folder_that_cannot_be_written_is_refused_before_anything_runs(monkeypatch, case, tmp_path):
-    monkeypatch.setattr(execution, "simulate", lambda _: pytest.fail("it ran"))
+    monkeypatch.setattr(execution, "run_job", lambda _: pytest.fail("it ran"))
     (tmp_path / "taken").write_text("")
     with pytest.raises(ValueError, match="must be a folder"):
         compare(case, runs=[Run("mujoco", "recess")], workers=1, out=tmp_path / "taken")
@@ -271,9 +225,7 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_runs(monkeyp
 
 def test_the_same_run_in_other_processes_is_the_same(cylinder):
     release = InitialState(tilt=0.5 * cylinder.alpha, rolling_rate=0.5)
-    job = Job(
-        case=Case(cylinder, initial=release, duration=1.0, name="release"), method="recess", label="recess"
-    )
+    job = Job(case=Case(cylinder, initial=release, duration=1.0, name="release"), run=Run(None, "recess"))
     here, there = (simulate_all([job, job], workers=workers)[1] for workers in (1, 2))
     assert np.array_equal(here.tilt, there.tilt)
     assert np.array_equal(here.energy, there.energy)

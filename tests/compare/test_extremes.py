@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from rockwobble.compare.runs.execution import simulate_run
-from rockwobble.compare.studies.extremes import EXTREMES, FINE, Condition, conditions, judge, methods, verdict
+from rockwobble.compare.studies.extremes import EXTREMES, FINE, Condition, judge, methods, verdict
+from rockwobble.compare.studies.extremes.conditions import conditions
 from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 

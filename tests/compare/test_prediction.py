@@ -10,10 +10,10 @@ from rockwobble.compare.comparison.prediction import (
     close_pass,
     estimated_error,
     landings,
-    predict_horizon,
+    predict,
     verdict,
 )
-from rockwobble.models import Case, GroundMotion, InitialState
+from rockwobble.models import Case, GroundMotion, InitialState, Run
 
 TIME = np.arange(1001) * 0.01
 
@@ -24,25 +24,24 @@ def case(cylinder):
 
 
 @pytest.fixture
-def predict(case, cylinder, make_trace):
+def predicted(case, cylinder, make_trace):
     """Predict with perturbed copies whose distance grows e-fold in each second, from their disturbance."""
 
     def call(error, *, passes=(), rolls_off=None):
         level = np.full_like(TIME, 0.3 * cylinder.alpha)
         own = make_trace(TIME, level, passes=passes)
 
-        def simulate(disturbed: Case, model: str):
+        def simulate(disturbed: Case, _: Run):
             relative = disturbed.gravity / case.gravity - 1.0
             return make_trace(TIME, level + relative * cylinder.alpha * np.exp(TIME))
 
         reference = own
         if rolls_off is not None:
             reference = make_trace(TIME, level + np.where(rolls_off <= TIME, 0.02 * cylinder.alpha, 0.0))
-        return predict_horizon(
+        return predict(
             case,
             reference=reference,
             own=own,
-            own_model="recess",
             contact_resolution=1e-5,
             error=error,
             simulate=simulate,
@@ -51,21 +50,21 @@ def predict(case, cylinder, make_trace):
     return call
 
 
-def test_a_twin_as_far_off_as_the_engine_grows_to_one_per_cent(predict):
+def test_a_copy_as_far_off_as_the_engine_grows_to_one_per_cent(predicted):
     # RMS of exp(t) in the first second: sqrt((e^2 - 1)/2) = 1.787; 1e-5/1.787 exp(t) = 0.01
-    found = predict(1e-5)
+    found = predicted(1e-5)
     assert found.reason == "growth"
     assert found.length == pytest.approx(np.log(1e3 * 1.787), abs=0.02)  # two samples
 
 
-def test_the_first_of_the_three_counts(predict):
-    assert predict(1e-5, passes=[(4.0, 1e-6), (2.0, 1e-4)]).reason == "pass"
-    assert predict(1e-5, passes=[(4.0, 1e-6)]).length == 4.0
-    found = predict(1e-5, passes=[(4.0, 1e-6)], rolls_off=3.0)
+def test_the_first_of_the_three_counts(predicted):
+    assert predicted(1e-5, passes=[(4.0, 1e-6), (2.0, 1e-4)]).reason == "pass"
+    assert predicted(1e-5, passes=[(4.0, 1e-6)]).length == 4.0
+    found = predicted(1e-5, passes=[(4.0, 1e-6)], rolls_off=3.0)
     assert (found.reason, found.length) == ("model form", pytest.approx(3.0))
 
 
-def test_the_apex_itself_ends_an_agreement_though_a_fall_follows(cylinder):
+def test_upright_itself_ends_an_agreement_though_a_fall_follows(cylinder):
     # past upright once, and over: no later maximum makes a pass of it
     time = np.arange(102) * 0.01
     pulse = 4.0 * 9.81 * cylinder.tan_alpha * np.sin(2.0 * np.pi * np.minimum(time, 1.0))
@@ -79,8 +78,8 @@ def test_the_apex_itself_ends_an_agreement_though_a_fall_follows(cylinder):
     assert (found.reason, found.length) == ("pass", landed - response.uplift_time)
 
 
-def test_a_small_error_and_no_close_pass_end_nothing(predict):
-    found = predict(1e-9)
+def test_a_small_error_and_no_close_pass_end_nothing(predicted):
+    found = predicted(1e-9)
     assert (found.reason, found.length) == ("", 10.0)
 
 

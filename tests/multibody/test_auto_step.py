@@ -10,7 +10,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace
-from rockwobble.models.trace_source import Known
+from rockwobble.models.traces.trace_source import Known
 from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
 
 ALPHA = 0.2

@@ -18,7 +18,7 @@ from rockwobble.compare.runs import choice as runs
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Trace
-from rockwobble.models.lost_trace import lost_trace
+from rockwobble.models.traces.lost_trace import lost_trace
 from rockwobble.reports.cli.main import main
 
 GOOD = "time [s], acceleration [g]\n0.00, 0.0\n0.01, 0.1\n0.02, 0.0\n"
@@ -81,7 +81,7 @@ BAD = {
     ),
     "unknown engine": (
         ["--engine", "bullet"],
-        "engine must be one of mujoco, pybullet, exudyn, got 'bullet'",
+        "engine must be one of mujoco, pybullet, dart, drake, exudyn, got 'bullet'",
     ),
     "no uplift": (
         ["--engine", "exudyn", "--support", "flat"],

@@ -23,7 +23,7 @@ from ..finding import Bound, Finding, at_most, none_wrong, worst_of
 UNITS = {"g": 9.81, "m/s2": 1.0, "cm/s2": 0.01}
 SAMPLES = Bound(1e-15, "the numbers of the file times its unit")
 STEP = Bound(1e-6, "DT of the header, or the mean of printed times")
-COMPONENTS = Bound(1e-15, "each in its column, in its unit, cut to the shortest", "m/s^2")
+COMPONENTS = Bound(1e-15, "each in its column, in its unit, a still end cut to the shortest", "m/s^2")
 _COUNT = 23  # no multiple of the five numbers of a line
 _HEAD = "NPTS= {n}, DT= .0100 SEC"
 
@@ -54,10 +54,12 @@ def _forms(folder: Path) -> Iterator[Finding]:
 
 
 def _components(folder: Path) -> Finding:
-    """Three files of different length and unit: each in its column, cut to the shortest."""
+    """Three files of different length and unit: each in its column, what is still at their end cut off."""
+    count = _COUNT - 6
     x, y, z = (_numbers(seed)[: _COUNT - 3 * seed] for seed in (0, 1, 2))
+    for longer in (x, y):
+        longer[count:] = 0.0
     motion = _read(folder, [_at2(x, _HEAD), _csv(y, 0.01, "cm/s^2", ","), _csv(z, 0.01, "m/s^2", ";")], None)
-    count = len(z)
     expected = np.column_stack([9.81 * x[:count], 0.01 * y[:count], z])
     same = motion.acceleration.shape == expected.shape
     apart = largest(motion.acceleration - expected) if same else math.inf
@@ -81,6 +83,7 @@ def _damaged(folder: Path) -> Finding:
         "a unit that is unknown": ([_csv(values, 0.01, "mm/s^2", ",")] * 2, None),
         "a sample left out": (["\n".join([*lines[:9], *lines[10:]])] * 2, None),
         "times that fall": (["\n".join([lines[0], *lines[:0:-1]])] * 2, None),
+        "half a component": ([good, _at2(values[:12], _HEAD)], None),
         "two starts": ([even, _csv(values, 0.01, "g", ",", start=0.5)], None),
         "a sample that is no number": (["\n".join([*lines[:9], "0.08,nan", *lines[10:]])] * 2, None),
         "one sample": (["\n".join(lines[:2])] * 2, None),

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.trace_source import Known
+from rockwobble.models.traces.trace_source import Known
 
 from ..bench import Array
 from ..problems import PIER

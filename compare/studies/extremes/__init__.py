@@ -1,6 +1,6 @@
 """What breaks first: every extreme by every method, each verdict with what backs it."""
 
-from .conditions import EXTREMES, Condition, conditions
+from .conditions import EXTREMES, Condition
 from .study import KIND, Extremes, measure_extremes, methods, read_extremes
 from .verdict import FINE, Verdict, judge
 
@@ -11,7 +11,6 @@ __all__ = [
     "Condition",
     "Extremes",
     "Verdict",
-    "conditions",
     "judge",
     "measure_extremes",
     "methods",

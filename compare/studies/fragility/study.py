@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from rockwobble.models import Cylinder, GroundMotion, Run
-from rockwobble.models.trace_file import run_to_plain
+from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint

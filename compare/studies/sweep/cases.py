@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.trace_file import run_to_plain
+from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
 from ...runs.choice import require_runnable, run_labels
@@ -38,6 +38,13 @@ class CaseChunk:
     def rows(self) -> int:
         """Number of runs."""
         return len(self.jobs)
+
+    @property
+    def name(self) -> str:
+        """What it is, for whoever waits."""
+        first = self.jobs[0]
+        more = f" and {self.rows - 1} more" if self.rows > 1 else ""
+        return f"{first.case.name}, {first.run}{more}"
 
     @property
     def makers(self) -> dict[str, str]:

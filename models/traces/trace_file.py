@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import plain_json
-from .assumptions import Assumptions
-from .case import Case, Run
-from .cylinder import Cylinder
-from .diagnostic import Diagnostic
-from .ground_motion import GroundMotion
-from .initial_state import InitialState
+from .. import plain_json
+from ..assumptions import Assumptions
+from ..case import Case, Run
+from ..cylinder import Cylinder
+from ..diagnostic import Diagnostic
+from ..ground_motion import GroundMotion
+from ..initial_state import InitialState
 from .trace_source import Known
 
 if TYPE_CHECKING:

@@ -8,11 +8,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..console.terminal import complain, interruptible, user_input
-from ..pages.provenance import command_line
-from .inputs import options
-from .inputs.method_values import settings
-from .inputs.problem import Problem, given_options, refuse, states_problem
+from ...console.terminal import complain, interruptible, user_input
+from ...pages.provenance import command_line
+from ..inputs import options
+from ..inputs.method_values import settings
+from ..inputs.problem import Problem, given_options, refuse, states_problem
 
 if TYPE_CHECKING:
     from rockwobble.compare import Comparison
@@ -78,16 +78,16 @@ def view(
                 name = case.name
             require_writable(out)
         if folder is None:
-            from ..console.progress import shown_progress
-            from ..pages.case_words import describe
-            from .inputs.estimate import time_needed
+            from ...console.progress import shown_progress
+            from ...pages.case_words import describe
+            from ..inputs.estimate import time_needed
 
             for line in (*describe(case), *time_needed([case], [run])):
                 print(line)
             with user_input(), shown_progress() as tell:
                 comparison = compare(case, runs=[run], progress=tell)
         with user_input():
-            from ..pages.comparison.report import view_page
+            from ...pages.comparison.report import view_page
 
             page = view_page(comparison, name, command_line())
             if page is None:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..console.terminal import interruptible, user_input
+from ...console.terminal import interruptible, user_input
 
 Folder = Annotated[Path, typer.Argument(help="Folder that a command has written.", show_default=False)]
 Out = Annotated[
@@ -31,7 +31,7 @@ def report(folder: Folder, out: Out = None) -> None:
         from rockwobble.compare.storage.files import require_writable
         from rockwobble.compare.storage.manifest import read_manifests, write_pages
 
-        from ..pages.registry import KINDS, redrawn
+        from ...pages.registry import KINDS, redrawn
 
         require_writable(place)
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]

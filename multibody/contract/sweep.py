@@ -9,8 +9,8 @@ import numpy as np
 
 from rockwobble.models import GroundMotion
 
-from .contract import PIER, hold, run, small
-from .scene.froude import REFERENCE_GRAVITY
+from ..scene.froude import REFERENCE_GRAVITY
+from .problem import PIER, hold, run, small
 
 SWEEP_SLENDERNESS, SWEEP_DIRECTIONS, SWEEP_SHARES = (0.1, 0.2, 0.5, 1.0), 24, (0.98, 1.02)
 SWEEP_DIRECTION = math.radians(1.0)

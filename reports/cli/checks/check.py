@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..console.terminal import FAILED, complain, interruptible, user_input
+from ...console.terminal import FAILED, complain, interruptible, user_input
 from .check_outside import Model, Support, Tolerance, Trajectory, outside_findings, print_outside
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def check(
             else:
                 outside = outside_findings(model, trajectory, suite, support, tolerance)
         if bench is not None and update_baseline:
-            from ..console.check_update import update
+            from ...console.check_update import update
 
             with user_input():
                 if suite != "quick" or only:
@@ -136,7 +136,7 @@ def _bench(suite: str, workers: int | None) -> Bench:
     from rockwobble.models import Suite as Cases
     from rockwobble.models import read_suite
 
-    from .inputs.suite_choice import chosen_runs, without_missing
+    from ..inputs.suite_choice import chosen_runs, without_missing
 
     read = read_suite(suite)
     runs, missing = without_missing(chosen_runs(read, None, None, None), None)
@@ -155,8 +155,8 @@ def _run(bench: Bench, layers: list[str]) -> tuple[list[Finding], float]:
 
     from rockwobble.compare.check import run_checks
 
-    from ..console.progress import shown_progress
-    from ..pages.check import print_layer
+    from ...console.progress import shown_progress
+    from ...pages.check import print_layer
 
     console = Console()
     begun = time.monotonic()
@@ -176,7 +176,7 @@ def _write(
     from rockwobble.compare import replace_files
     from rockwobble.compare.storage.provenance import package_versions
 
-    from ..pages.check import as_json, as_junit, headline, page
+    from ...pages.check import as_json, as_junit, headline, page
 
     versions = package_versions()
     if json is not None:

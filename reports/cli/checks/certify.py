@@ -9,7 +9,7 @@ from typing import Annotated
 
 import typer
 
-from ..console.terminal import interruptible, user_input
+from ...console.terminal import interruptible, user_input
 
 # of the checks, those that make claims; with an engine, also those that need its runs
 _LAYERS = ("equations", "conserved", "exact", "rest", "invariance", "order", "residual")

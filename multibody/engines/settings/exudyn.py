@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .settings import _build, _in_range, _one_of, _whole
+from .values import build, in_range, one_of, whole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,10 +51,10 @@ class ExudynSettings:
         ValueError
             If a setting is unknown or out of range.
         """
-        settings = _build(cls, "exudyn", given, {})
-        _one_of(settings, "integrator", ("trapezoidal", "generalized-alpha"))
-        _in_range(settings, "spectral_radius", 0.0, 1.0, inclusive=True)
-        _in_range(settings, "relative_tolerance", 0.0, 1e-3)
-        _in_range(settings, "absolute_tolerance", 0.0, 1e-3)
-        _whole(settings, "iterations")
+        settings = build(cls, "exudyn", given, {})
+        one_of(settings, "integrator", ("trapezoidal", "generalized-alpha"))
+        in_range(settings, "spectral_radius", 0.0, 1.0, inclusive=True)
+        in_range(settings, "relative_tolerance", 0.0, 1e-3)
+        in_range(settings, "absolute_tolerance", 0.0, 1e-3)
+        whole(settings, "iterations")
         return settings

@@ -67,7 +67,7 @@ def print_outside(findings: list[Finding]) -> None:
 
     from rockwobble.compare.check import LAYERS
 
-    from ..pages.check import print_layer
+    from ...pages.check import print_layer
 
     console = Console()
     for layer in LAYERS:

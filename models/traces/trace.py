@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..assumptions import Assumptions
+from ..case import Case, Run
+from ..diagnostic import Diagnostic
 from . import trace_file
-from .assumptions import Assumptions
-from .case import Case, Run
-from .diagnostic import Diagnostic
 from .trace_source import Array, Late, Source, friction_of, no_passes
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .settings import _GUIDE, _build, _in_range, _whole
+from .values import GUIDE, build, in_range, whole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -44,10 +44,10 @@ class DartSettings:
         ValueError
             If a setting is unknown or out of range.
         """
-        settings = _build(cls, "dart", given, {"guide_stiffness": (_GUIDE / time_step) ** 2 / 4.0})
-        _in_range(settings, "guide_stiffness", 0.0)
-        _in_range(settings, "depth", 0.0, 1e-3)
-        _in_range(settings, "depth_gain", 0.0, 1.0)
-        _in_range(settings, "tolerance", 0.0, 1e-3)
-        _whole(settings, "iterations")
+        settings = build(cls, "dart", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
+        in_range(settings, "guide_stiffness", 0.0)
+        in_range(settings, "depth", 0.0, 1e-3)
+        in_range(settings, "depth_gain", 0.0, 1.0)
+        in_range(settings, "tolerance", 0.0, 1e-3)
+        whole(settings, "iterations")
         return settings

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .settings import _GUIDE, _build, _in_range, _one_of
+from .values import GUIDE, build, in_range, one_of
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,9 +41,9 @@ class DrakeSettings:
         ValueError
             If a setting is unknown or out of range.
         """
-        settings = _build(cls, "drake", given, {"guide_stiffness": (_GUIDE / time_step) ** 2 / 4.0})
-        _in_range(settings, "guide_stiffness", 0.0)
-        _one_of(settings, "approximation", ("lagged", "similar", "tamsi", "sap"))
-        _in_range(settings, "contact_stiffness", 0.0)
-        _in_range(settings, "dissipation", 0.0, inclusive=True)
+        settings = build(cls, "drake", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
+        in_range(settings, "guide_stiffness", 0.0)
+        one_of(settings, "approximation", ("lagged", "similar", "tamsi", "sap"))
+        in_range(settings, "contact_stiffness", 0.0)
+        in_range(settings, "dissipation", 0.0, inclusive=True)
         return settings

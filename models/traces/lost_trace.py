@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from .case import Case, Run
-from .diagnostic import Diagnostic
+from ..case import Case, Run
+from ..diagnostic import Diagnostic
 from .trace import Trace
 from .trace_source import Known
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Protocol, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from .assumptions import Assumptions
+from ..assumptions import Assumptions
 
 if TYPE_CHECKING:
     import pandas as pd

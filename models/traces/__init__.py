@@ -1,0 +1,1 @@
+"""The motion of a cylinder, whoever computed or measured it."""

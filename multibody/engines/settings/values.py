@@ -1,0 +1,48 @@
+"""Defaults and bounds that the settings of several engines share."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import fields
+from typing import Any, TypeVar
+
+S = TypeVar("S")
+
+GUIDE = 0.2  # 2 h sqrt(stiffness of the guide): see `MujocoSettings.guide_stiffness`
+
+
+def build(kind: type[S], engine: str, given: Mapping[str, Any], defaults: Mapping[str, Any]) -> S:
+    """Return the settings of an engine: those given in place of the defaults."""
+    names = [field.name for field in fields(kind)]  # type: ignore[arg-type]
+    for name in given:
+        if name not in names:
+            raise ValueError(f"{name!r} is not a setting of {engine}; allowed are {', '.join(names)}")
+    return kind(**{**defaults, **given})
+
+
+def in_range(
+    settings: object, name: str, low: float, high: float = math.inf, *, inclusive: bool = False
+) -> None:
+    """Refuse a setting that is no number above `low` and at most `high`."""
+    value = getattr(settings, name)
+    number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if not (number and value <= high and (value > low or (inclusive and value == low))):
+        limit = "" if high == math.inf else f" and at most {high:g}"
+        raise ValueError(
+            f"{name} must be {'at least' if inclusive else 'above'} {low:g}{limit}, got {value!r}"
+        )
+
+
+def whole(settings: object, name: str) -> None:
+    """Refuse a setting that is no positive whole number."""
+    value = getattr(settings, name)
+    if type(value) is not int or value < 1:
+        raise ValueError(f"{name} must be a positive whole number, got {value!r}")
+
+
+def one_of(settings: object, name: str, allowed: tuple[Any, ...]) -> None:
+    """Refuse a setting that is none of the values allowed."""
+    value = getattr(settings, name)
+    if value not in allowed:
+        raise ValueError(f"{name} must be one of {', '.join(map(str, allowed))}, got {value!r}")

@@ -1,0 +1,1 @@
+"""Commands that tell whether models and engines still agree."""

@@ -1,0 +1,70 @@
+"""Make what is published here again, every study by its command, from one commit.
+
+    python reports/published/remake.py               # all of it, some two hours on two cores
+    python reports/published/remake.py tradeoff paper
+
+A study goes on where it was stopped. What a study says is judged by its tables alone, so
+`rockwobble report reports/published/NAME` draws its pages again without any run.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+HERE = Path(__file__).parent
+
+# folder: command
+STUDIES = {
+    "compare": "compare",
+    "paper": "figures",
+    "spectrum": "spectrum",
+    "advice/pier": "advise",
+    "advice/column": "advise --semidiagonal 2 --tan-alpha 0.25 --friction 0.3",
+    "advice/tower": "advise --semidiagonal 10 --tan-alpha 0.1",
+    "ensemble/p695-2": "ensemble --p695 2",
+    "ensemble/p695-3.5": "ensemble --p695 3.5 --engine mujoco",
+    "ensemble/synthetic-3": "ensemble --synthetic 3",
+    "ensemble/copies": "ensemble --duration 20",
+    "fragility": "fragility",
+    "extremes": "extremes",
+    "tradeoff": "tradeoff",
+    "validity": "validity",
+}
+# large, and no statement rests on them
+NOT_KEPT = ("*.html", "finished", "compare/traces.parquet", "compare/excitation.parquet")
+
+
+def main() -> int:
+    """Run the commands of the studies that are named, or of all."""
+    chosen = sys.argv[1:] or list(STUDIES)
+    unknown = [name for name in chosen if not any(name in (each, each.split("/")[0]) for each in STUDIES)]
+    if unknown:
+        print(f"studies are {', '.join(STUDIES)}, got {', '.join(unknown)}", file=sys.stderr)
+        return 2
+    changed = subprocess.run(
+        ["git", "status", "--porcelain", "-uno", "--", ".", ":!reports/published"],
+        cwd=HERE.parents[1], capture_output=True, text=True, check=True,
+    ).stdout  # fmt: skip
+    if changed:
+        print(f"commit first, so that the results can say what made them:\n{changed}", file=sys.stderr)
+        return 2
+    for folder, command in STUDIES.items():
+        if folder not in chosen and folder.split("/")[0] not in chosen:
+            continue
+        begin = time.monotonic()
+        print(f"=== {folder}: rockwobble {command}", flush=True)
+        words = [*command.split(), "--out", folder]
+        subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
+        for pattern in NOT_KEPT:
+            for path in [*(HERE / folder).glob(pattern), *HERE.glob(pattern)]:
+                shutil.rmtree(path) if path.is_dir() else path.unlink()
+        print(f"=== {folder}: {time.monotonic() - begin:.0f} s", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
