@@ -15,15 +15,10 @@ from .compare import compare
 from .ensemble import ensemble
 from .extremes import extremes
 from .figures import figures
-<<<<<<< HEAD
 from .fragility import fragility
-from .report import report
-from .show import show
-=======
 from .results.report import report
 from .results.show import show
 from .results.view import view
->>>>>>> main
 from .simulate import simulate
 from .spectrum import spectrum
 from .sweep import sweep

@@ -29,7 +29,7 @@ _SYMBOLS = ("circle", "square", "triangle-up", "diamond")
 _COLOURS = (DARK, *ORDER)
 _DASHES = ("solid", "dash", "dashdot", "dot")
 _TICKS = (0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 50.0)
-_RATIOS = (0.25, 0.5, 0.7, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0, 3.0, 4.0)
+_RATIOS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0)
 _LINE = 0.42  # inch for a pair of methods
 _MEDIAN = Style(colour=ORDER[0], dash="none", symbol="diamond")
 Row = dict[str, Any]
@@ -174,14 +174,14 @@ def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
     for support, title in _SUPPORTS.items():
         labels = [name for name, own in methods.items() if own["support"] == support]
         if labels:
-            shown = labels if support in ("recess", "flat") else [*recess, *labels]
+            shown = labels if support == "recess" else [*recess, *labels]
             panels.append(_panel(found, cylinder, shown, title))
     measure = MEASURES[str(found.about["measure"])]
     return Picture(
         name=f"fragility-{place}",
         title=f"Fragility of {cylinder}: share of the motions that overturn it",
-        caption=f"Over the intensity, {measure.title}. Lines: lognormal curves by maximum likelihood, with 95 % "
-        "bands by resampling the motions; marks: shares of the runs.",
+        caption=f"Over the intensity, {measure.title}. Lines: lognormal curves by maximum likelihood, with "
+        "95 % bands by resampling the motions; marks: shares of the runs.",
         panels=panels,
         columns=2,
         legend="panels",

@@ -98,6 +98,7 @@ def _states(found: Fragility) -> list[dict[str, Any]]:
     for row in found.fits.to_dict("records"):
         key = str(row["cylinder"]), str(row["method"])
         made = rows.setdefault(key, {"cylinder": key[0], "method": key[1]})
-        bounds = {ALWAYS: f"< {ends.loc[key[0], 'min']:.3g}", NEVER: f"> {ends.loc[key[0], 'max']:.3g}"}
+        low, high = (float(ends[end][key[0]]) for end in ("min", "max"))
+        bounds = {ALWAYS: f"< {low:.3g}", NEVER: f"> {high:.3g}"}
         made[str(row["limit"])] = bounds.get(str(row["kind"]), row["median"])
     return list(rows.values())

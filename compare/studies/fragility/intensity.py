@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, GroundMotion
-from rockwobble.reduced.body import body_of
 
 Array = NDArray[np.float64]
 
@@ -160,6 +159,8 @@ def _value(name: str, motion: GroundMotion, cylinder: Cylinder, gravity: float, 
     if name == "peak_acceleration":
         return motion.peak / uplift
     if name == "peak_velocity":
+        from rockwobble.reduced.body import body_of  # the folder loads a compiler
+
         return body_of(cylinder, gravity).p * _largest_resultant(velocity(motion)) / uplift
     if name == "pgv":
         return _mean_of_peaks(velocity(motion))
