@@ -17,6 +17,7 @@ SCRIPTS = (
     "engine_settings",
     "ensemble_intervals",
     "false_alarms",
+    "fragility_coverage",
     "ring_losses",
     "run_overhead",
     "scene_cost",

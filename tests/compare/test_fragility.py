@@ -13,7 +13,7 @@ from rockwobble import reduced
 from rockwobble.compare import Fragility, fragility, synthetic_motions
 from rockwobble.compare.studies.fragility import runs as running
 from rockwobble.compare.studies.fragility.islands import incremental, islands
-from rockwobble.compare.studies.fragility.limits import LIMITS, exceeded, require_limits
+from rockwobble.compare.studies.fragility.limits import exceeded, require_limits
 from rockwobble.compare.studies.fragility.methods import methods_of, own_model
 from rockwobble.compare.studies.fragility.motions import read_records
 from rockwobble.compare.studies.fragility.plan import Plan
@@ -21,7 +21,8 @@ from rockwobble.compare.studies.fragility.result import fragility_of
 from rockwobble.models import Case, Cylinder, Run, el_centro_1940
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
-LEVELS = (1.5, 2.5, 4.0, 7.0)
+LEVELS = (1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.5, 8.0)
+COUNT = len(LEVELS)
 MOTIONS = synthetic_motions(12, peak=1.0, seed=4)
 RECORDS = Path(__file__).parents[2] / "models" / "records"
 NAN = math.nan
@@ -29,7 +30,7 @@ NAN = math.nan
 
 @pytest.fixture(scope="module")
 def found() -> Fragility:
-    return fragility(COLUMN, MOTIONS, levels=LEVELS, limits=LIMITS, resamples=60, workers=1)
+    return fragility(COLUMN, MOTIONS, levels=LEVELS, resamples=60, workers=1)
 
 
 def rows(found: Fragility, method: str) -> pd.DataFrame:
@@ -39,10 +40,10 @@ def rows(found: Fragility, method: str) -> pd.DataFrame:
 def test_every_method_runs_under_the_same_motions(found):
     methods = list(dict.fromkeys(found.runs["method"]))
     assert methods == ["recess model", "flat-ground model", "planar x", "planar y", "worse plane"]
-    assert len(found.runs) == 5 * 12 * 4
-    assert len(found.points) == 12 * 4
+    assert len(found.runs) == 5 * 12 * COUNT
+    assert len(found.points) == 12 * COUNT
     for _, part in found.points.groupby("step"):
-        assert part["peak_acceleration"].nunique() == 1
+        assert set(part["peak_acceleration"]) == {LEVELS[int(part["step"].iloc[0])]}
     # a run is the one that anybody can make
     point = found.points.iloc[-1]
     motion = next(each for each in MOTIONS if each.name == point["motion"])
@@ -53,14 +54,22 @@ def test_every_method_runs_under_the_same_motions(found):
     assert own["peak_tilt"] == pytest.approx(alone.peak_tilt / COLUMN.alpha, abs=1e-12)
 
 
-def test_the_kernel_gives_the_peaks_of_whole_solutions(found):
-    quick = fragility(COLUMN, MOTIONS, levels=LEVELS, resamples=2, workers=1)
-    for method in ("recess model", "planar y"):
-        np.testing.assert_allclose(
-            rows(quick, method)["peak_tilt"], rows(found, method)["peak_tilt"], rtol=1e-12
-        )
-    assert quick.runs["contact_lost"].isna().all()
-    assert found.runs["contact_lost"].isin([0.0, 1.0]).all()
+def test_contact_is_asked_of_whole_solutions_which_have_the_peaks_of_the_kernel(found):
+    # at the strongest level, where contact is lost
+    options = {"methods": ["recess"], "levels": LEVELS[-1:], "resamples": 2, "workers": 1}
+    whole = fragility(COLUMN, MOTIONS, limits=["contact_lost"], **options).runs.sort_values("motion")
+    quick = rows(found, "recess model")
+    quick = quick[quick["step"] == COUNT - 1]
+    np.testing.assert_allclose(whole["peak_tilt"], quick["peak_tilt"], rtol=1e-12)
+    assert found.runs["contact_lost"].isna().all()
+    assert set(whole["contact_lost"]) <= {0.0, 1.0}
+    lost = [
+        bool(reduced.simulate(Case(COLUMN, m.scaled(s)), rtol=1e-7).assumptions.least_normal_force <= 0.0)
+        for m in MOTIONS[:4]
+        for s in found.points[(found.points["motion"] == m.name)]["scale"].iloc[-1:]
+    ]
+    own = whole.set_index("motion")["contact_lost"]
+    assert [bool(own[motion.name]) for motion in MOTIONS[:4]] == lost
 
 
 def test_the_worse_plane_is_the_larger_of_both(found):
@@ -111,12 +120,9 @@ def test_islands_and_what_stopping_early_makes_of_them():
     np.testing.assert_array_equal(stopped, np.array(expected, dtype=float))
 
 
-def test_the_bias_of_stopping_early_is_never_above_one(found):
-    assert (found.islands["bias"] <= 1.0).all()
-    none = found.islands[found.islands["islands"] == 0]
-    assert (none["bias"] == 1.0).all()
+def test_stopping_early_makes_the_median_smaller(found):
     some = found.islands[found.islands["islands"] > 0]
-    assert len(some)
+    assert len(some) >= 3
     assert (some["bias"] < 1.0).all()
     np.testing.assert_allclose(
         found.islands["bias"], found.islands["median_incremental"] / found.islands["median"]
@@ -149,7 +155,7 @@ def test_pairs_leave_out_what_failed_by_either(found):
     row = whole.contrasts[whole.contrasts["limit"] == "0.5 alpha"].iloc[0]
     assert row["ratio"] == pytest.approx(medians["planar x"] / medians["recess model"], rel=1e-9)
     own = whole.fits[(whole.fits["method"] == "planar x") & (whole.fits["limit"] == "0.5 alpha")].iloc[0]
-    assert (own["failed"], own["runs"]) == (4, 44)
+    assert (own["failed"], own["runs"]) == (COUNT, 11 * COUNT)
 
 
 def test_the_mean_of_the_cylinders_is_geometric():
@@ -213,21 +219,17 @@ def test_engines_run_beside_their_model_and_a_ring_holds_what_has_overturned():
     runs = [Run("mujoco", "recess"), Run("mujoco", "ring", ring_clearance=0.01, ring_inclination=0.5)]
     found = fragility(
         COLUMN,
-        [motion.scaled(1.0) for motion in MOTIONS[:2]],
+        MOTIONS[:2],
         methods=["recess", *runs],
-        levels=[1.2, 12.0],
+        levels=[12.0],
         step_factor=8.0,
         friction=3.0,
         resamples=5,
         workers=1,
     )
-    table = found.runs.pivot_table(index=["motion", "step"], columns="method", values="peak_tilt")
-    weak = table.xs(0, level="step")
-    # one per cent of alpha: the first swings of a weak motion, at eight times the usual step
-    np.testing.assert_allclose(weak["mujoco recess"], weak["recess model"], atol=0.01)
-    strong = found.runs[found.runs["step"] == 1]
+    strong = found.runs
+    assert (strong["outcome"] == "overturned").all()
     ring = strong[strong["method"] == "mujoco ring"]
-    assert (ring["outcome"] == "overturned").all()
     assert (ring["peak_tilt"] > 1.0).all()
     assert (ring["peak_tilt"] < 0.5 * math.pi / COLUMN.alpha).all()
     assert found.about["methods"]["mujoco ring"]["own_model"] == "recess model"

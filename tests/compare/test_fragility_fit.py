@@ -115,7 +115,7 @@ def test_what_has_no_maximum_says_so():
 def test_many_at_once_are_each_what_they_are_alone():
     random = np.random.default_rng(3)
     n = random.integers(1, 6, (60, 5)).astype(float)
-    k = random.binomial(n.astype(int), norm.cdf((X - 0.7) / 0.4)).astype(float)
+    k = random.binomial(n.astype(int), norm.cdf((X - random.uniform(-2.0, 4.0, (60, 1))) / 0.4)).astype(float)
     together = fit_curves(X, n, k)
     assert len(set(together.kinds.tolist())) > 2
     for row in range(60):
@@ -157,19 +157,6 @@ def stripes(random: np.random.Generator, levels: Array, *, motions: int = 22) ->
     """Motions of a capacity each, around 4 with a dispersion of 0.5."""
     capacity = random.normal(math.log(4.0), 0.5, motions)
     return Sample(x=np.tile(levels, (motions, 1)), y=(levels >= capacity[:, None]).astype(float))
-
-
-def test_the_interval_of_the_median_covers_it_as_often_as_it_says():
-    random = np.random.default_rng(11)
-    levels = np.log(np.geomspace(1.25, 12.0, 10))
-    inside = 0
-    for seed in range(400):
-        sample = stripes(random, levels)
-        drawn = sample.curves(resamples(22, 200, seed)).centre
-        found = interval(float(sample.curves().centre[0]), drawn, 22)
-        inside += found.low <= math.log(4.0) <= found.high
-    # of 400 a share of 0.95 scatters by 0.011: the benchmark fragility_coverage takes more
-    assert 0.92 <= inside / 400 <= 0.98
 
 
 def test_a_stripe_and_a_cloud_of_the_same_runs_are_one_curve():

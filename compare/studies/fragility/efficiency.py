@@ -47,8 +47,8 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
         best = min(fitted, key=lambda m: float(found[m].dispersion[0]))
         for measure in fitted:
             spread = float(found[measure].dispersion[0])
-            with np.errstate(divide="ignore", invalid="ignore"):
-                ratios = np.log(drawn[measure]) - np.log(drawn[best])
+            with np.errstate(divide="ignore", invalid="ignore"):  # separated resamples have no dispersion
+                ratios = np.log(drawn[measure] / drawn[best]) if measure != best else np.zeros(len(some))
             value = math.log(spread / float(found[best].dispersion[0]))
             rows.append(
                 {
