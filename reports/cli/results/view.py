@@ -64,7 +64,7 @@ def view(
             )
             from rockwobble.models import Run
 
-            from .inputs.estimate import require_feasible
+            from ..inputs.estimate import require_feasible
 
             if folder is not None:
                 others = set(given_options(context)) - {"folder", "case_name", "out", "opened"}
