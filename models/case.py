@@ -131,7 +131,7 @@ class Run:
         if isinstance(time_step, str):
             if time_step not in WAYS_TO_A_STEP:
                 raise ValueError(
-                    f'time_step must be a number [s], "auto" or "extrapolated", got {time_step!r}'
+                    f'time_step must be "auto", "extrapolated" or a number [s], got {time_step!r}'
                 )
         elif time_step is not None:
             time_step = require_positive("time_step", time_step, "s")

@@ -32,10 +32,10 @@ from .dart_scene import DartScene, build, quaternions, rotation_vector
 from .scene_counts import SceneCounts
 from .settings.dart import DartSettings
 
-_LEANS = 1e-9  # [rad] from which a lean has a direction
+_LEANS = 1e-8  # [rad] from which a lean has a direction that is not of what stood
 _OPEN = 1e-8  # [rad] lean at which the base is open; standing it stays below 5e-9
 # of b, eccentricities of the load: from the first the scene follows it, at the second the base may open
-_LOADED, _OPENING = 0.5, 0.99
+_LOADED, _OPENING = 0.5, 0.999
 _REDUCTION, _FASTEST_REDUCTION = 0.01, 1e-3  # [-], [m/s] by which DART itself reduces a depth
 _FAR = 1e3  # of the height: ODE ends the process where something is too far away
 _SPIN = 1.0  # [rad] about the axis of the cylinder

@@ -42,6 +42,7 @@ FINEST = 1.75e-4  # [s] at the reference size: all three together cost one run a
 _RUNS = 3
 _FIRST_OR_SECOND = 1.5  # order between the two
 _LATE = ("rolling_rate", "energy", "energy_error")
+_OF_NO_ACCOUNT = 1e-6  # of alpha: where runs are that close, their orders mix, and it makes no difference
 _ONE_TURN = math.pi  # [rad] two rolling angles further apart went past upright on different sides
 
 
@@ -95,8 +96,8 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
     count = int(np.searchsorted(finest.time[: common_count(runs)], until, side="right"))
     tilts = [run.tilt[:count] for run in runs]
     order = _order(tilts)
-    moved = np.abs(limit(tilts[1:], order) - limit(tilts[:-1], order))
-    good = _meaningful(moved, np.abs(tilts[-1] - tilts[-2]))
+    moved = np.abs(to_zero_step(tilts[1:], order) - to_zero_step(tilts[:-1], order))
+    good = _meaningful(moved, np.maximum(np.abs(tilts[-1] - tilts[-2]), _OF_NO_ACCOUNT * alpha))
     whole = good == len(finest.time)
     if good == 0:
         return _noted(finest, Diagnostic(code="not_extrapolated", time=0.0, detail="no_closer"))
@@ -109,7 +110,7 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
     return replace(_noted(merged, *facts), error_estimate=left, settled_until=end)
 
 
-def limit(values: Sequence[Array], order: int) -> Array:
+def to_zero_step(values: Sequence[Array], order: int) -> Array:
     """Return the value for a vanishing step of the last two of `values`, at steps that halve."""
     coarse, fine = values[-2:]
     return np.asarray(fine + (fine - coarse) / (2.0**order - 1.0))
@@ -136,7 +137,7 @@ def _merged(pair: Sequence[Trace], order: int, good: int) -> Trace:
     whole = good == len(fine.time)
     # a tilt is never negative, and rolling angles on two sides of upright have no limit between them
     apart = np.abs(pair[0].rolling_angle[:good] - fine.rolling_angle[:good]) > _ONE_TURN
-    kept = (limit([run.tilt[:good] for run in pair], order) < 0.0) | apart
+    kept = (to_zero_step([run.tilt[:good] for run in pair], order) < 0.0) | apart
 
     def sampled(name: str) -> Array:
         return _samples([getattr(run, name) for run in pair], order, good, kept)
@@ -166,7 +167,7 @@ def _merged(pair: Sequence[Trace], order: int, good: int) -> Trace:
 
 def _samples(values: Sequence[Array], order: int, good: int, kept: NDArray[np.bool_]) -> Array:
     found = values[-1].copy()
-    reached = limit([value[:good] for value in values], order)
+    reached = to_zero_step([value[:good] for value in values], order)
     reached[kept] = found[:good][kept]
     found[:good] = np.where(np.isfinite(reached), reached, found[:good])
     return found
@@ -174,7 +175,7 @@ def _samples(values: Sequence[Array], order: int, good: int, kept: NDArray[np.bo
 
 def _number(pair: Sequence[Trace], name: str, order: int) -> float:
     values = [np.array(getattr(run, name)) for run in pair]
-    reached = float(limit(values, order))
+    reached = float(to_zero_step(values, order))
     return reached if math.isfinite(reached) else float(values[-1])
 
 
@@ -182,7 +183,7 @@ def _rows(tables: Sequence[Array], order: int) -> Array:
     """Return the limit of tables with the same rows, else the last of them."""
     if len(tables[0]) != len(tables[-1]):
         return tables[-1]
-    return limit(tables, order)
+    return to_zero_step(tables, order)
 
 
 def _passes(tables: Sequence[pd.DataFrame], order: int, end: float) -> pd.DataFrame:
@@ -191,7 +192,7 @@ def _passes(tables: Sequence[pd.DataFrame], order: int, end: float) -> pd.DataFr
     if len(early[0]) != len(early[-1]):
         return fine
     for name in ("time", "minimum_tilt", "angle_of_turn"):
-        reached = limit([table[name].to_numpy() for table in early], order)
+        reached = to_zero_step([table[name].to_numpy() for table in early], order)
         good = reached >= 0.0 if name == "minimum_tilt" else np.isfinite(reached)
         fine.loc[fine.index[: len(reached)][good], name] = reached[good]
     return fine

@@ -10,11 +10,12 @@ import typer
 import rockwobble as rw
 
 from ..console.progress import shown_progress
+from ..console.provenance import command_line
 from ..console.results import show_and_write
 from ..console.terminal import FAILED, complain, interruptible, user_input
-from ..pages.provenance import command_line
 from ..pages.words.cases import describe
 from .inputs import options
+from .inputs.estimate import require_feasible
 from .inputs.problem import Problem, given_options, states_problem
 
 _NO_ENGINE = "none"
@@ -69,6 +70,7 @@ def advise(
             case = problem.case()
             friction = case.friction if "friction" in given_options(context) else None
             run = _run(case, engine, support, time_step)
+            require_feasible([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
             _require_numbers(copies, seed)
             rw.compare.require_writable(out)
         from rockwobble.compare.runs.execution import Job, job_fingerprint

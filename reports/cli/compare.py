@@ -12,14 +12,16 @@ import typer
 import rockwobble as rw
 
 from ..console.progress import shown_progress
+from ..console.provenance import command_line
 from ..console.terminal import FAILED, complain, interruptible, user_input
-from ..pages.provenance import command_line
 from ..pages.words.cases import describe
 from .inputs import options
-from .inputs.estimate import require_memory, time_needed
+from .inputs.estimate import require_feasible, time_needed
 from .inputs.method_values import settings
 from .inputs.problem import Problem, states_problem
 from .inputs.suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
+
+ALL = "all"  # in place of the name of an engine
 
 
 @states_problem
@@ -27,7 +29,7 @@ def compare(
     context: typer.Context,
     problem: Problem,
     suite: options.SuiteName = None,
-    engine: options.Engines = None,
+    engine: options.EnginesOrAll = None,
     support: options.Supports = None,
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
@@ -46,6 +48,8 @@ def compare(
     With a SUITE: its cases and runs, among which --engine and --support choose. A suite that was ended
     before its end goes on where it was when it is started again with the same folder.
 
+    With --engine all: every installed engine that can run the problem, and who agrees with whom.
+
     With --trajectory: that of a shake table or of another code is one more run. With --engine none it is
     held against the reduced model alone.
 
@@ -54,25 +58,30 @@ def compare(
     kept = f"the finished runs are kept in {out}, the same command goes on"
     with interruptible(kept if suite else "nothing was written"):
         with user_input():
+            from rockwobble.compare.runs.choice import unable_engines
+
             if suite is not None:
                 refuse_problem_options(context, suite)
                 cases, runs = _suite(suite, engine, support, time_step)
             else:
                 cases = [problem.case()]
-                runs = _runs(engine, support, time_step, alone=bool(trajectory))
+                runs = _runs(cases[0], engine, support, time_step, alone=bool(trajectory))
             if setting:
                 runs = list(rw.compare.with_settings(cases[0], runs, settings(setting)))
             rw.compare.require_writable(out)
+            require_feasible(cases, runs)
             for each in cases:
                 for run in runs:
                     rw.compare.require_runnable(each, run)
-            require_memory(cases, runs)
             external = _external(
                 trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
             )
         for line in _echo(suite, cases, runs):
             print(line)
-        if not engine and suite is None:
+        if engine == [ALL]:
+            for reason in unable_engines(cases):
+                complain(reason)
+        elif not engine and suite is None:
             _say_what_is_left_out(support or [])
         with user_input(), shown_progress() as tell:
             comparison = rw.compare.compare(
@@ -97,7 +106,14 @@ def compare(
 def _suite(
     name: str, engines: list[str] | None, supports: list[str] | None, time_step: Any
 ) -> tuple[list[rw.Case], list[rw.Run]]:
+    from rockwobble.compare.runs.choice import all_runs
+
     suite = rw.read_suite(name)
+    if engines == [ALL]:
+        asked = supports or list(dict.fromkeys(run.support for run in suite.runs)) or None
+        return list(suite.cases), [
+            rw.Run(run.engine, run.support, time_step) for run in all_runs(suite.cases, asked)
+        ]
     runs, missing = without_missing(chosen_runs(suite, engines, supports, time_step), engines)
     for engine in missing:
         complain(f"{engine} is not installed here and is left out")
@@ -105,14 +121,19 @@ def _suite(
 
 
 def _runs(
-    engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool
+    case: rw.Case, engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool
 ) -> list[rw.Run]:
+    from rockwobble.compare.runs.choice import all_runs
+
     if engines == ["none"] and alone:
         return []
-    return [
-        rw.Run(run.engine, run.support, time_step)
-        for run in rw.compare.default_runs(engines or None, supports or None)
-    ]
+    every = engines == [ALL]
+    runs = (
+        all_runs([case], supports or None)
+        if every
+        else rw.compare.default_runs(engines or None, supports or None)
+    )
+    return [rw.Run(run.engine, run.support, time_step) for run in runs]
 
 
 def _echo(suite: str | None, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> list[str]:

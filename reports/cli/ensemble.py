@@ -11,11 +11,12 @@ import typer
 import rockwobble as rw
 
 from ..console.progress import shown_progress
+from ..console.provenance import command_line
 from ..console.results import show_and_write
 from ..console.terminal import interruptible, user_input
-from ..pages.provenance import command_line
 from ..pages.words.cases import describe
 from .inputs import options
+from .inputs.estimate import require_feasible
 from .inputs.problem import Problem, states_problem
 from .inputs.suite_choice import refuse_problem_options
 
@@ -81,6 +82,9 @@ def ensemble(
                 print(f"Suite {suite}: {len(stated.cases)} members")
             else:
                 case = problem.case()
+                # each engine and its own model, and a perturbed copy of that
+                methods = [rw.Run(None, "recess"), *(_runs(engine, support, time_step, stated=False) or ())]
+                require_feasible([case], methods, members=members, samples=False)
                 motions = _motions(case, members, synthetic, far_field, seed)
                 stated = _under(case, motions) if motions else case
                 for line in describe(case)[:1] if motions else describe(case):

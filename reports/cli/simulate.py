@@ -12,40 +12,20 @@ import typer
 import rockwobble as rw
 
 from ..console.progress import shown_progress
+from ..console.provenance import command_line
 from ..console.terminal import FAILED, complain, interruptible, user_input
-from ..pages.provenance import command_line
 from ..pages.words.cases import describe
 from .inputs import options
-from .inputs.estimate import require_memory, time_needed
-from .inputs.method_values import restitution, settings
+from .inputs.estimate import require_feasible, time_needed
+from .inputs.method_values import settings
 from .inputs.problem import Problem, states_problem
 
-_MODEL = "Reduced model"
-Plane = Annotated[
-    float | None,
-    typer.Option(
-        "--plane",
-        help="Planar motion: azimuth of the vertical plane that holds it, in rad.",
-        rich_help_panel=_MODEL,
-    ),
-]
-Restitution = Annotated[
-    Any,  # a number, "momentum" or None: typer knows no type for that
-    typer.Option(
-        "--restitution",
-        parser=restitution,
-        metavar="FLOAT|momentum",
-        help="Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from "
-        "the moment of momentum about the new pivot.",
-        rich_help_panel=_MODEL,
-    ),
-]
 RestTilt = Annotated[
     float | None,
     typer.Option(
         "--rest-tilt",
         help="Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out.",
-        rich_help_panel=_MODEL,
+        rich_help_panel=options.REDUCED,
     ),
 ]
 
@@ -57,8 +37,8 @@ def simulate(
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
-    plane: Plane = None,
-    restitution: Restitution = None,
+    plane: options.Plane = None,
+    restitution: options.Restitution = None,
     rest_tilt: RestTilt = None,
     out: options.Out = Path("rockwobble-simulate"),
 ) -> None:
@@ -77,8 +57,8 @@ def simulate(
             rw.compare.require_writable(out)
             model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
             run = _with_settings(case, rw.Run(engine, support, time_step), setting, model)
+            require_feasible([case], [run])
             rw.compare.require_runnable(case, run)
-            require_memory([case], [run])
         for line in (*describe(case), *time_needed([case], [run])):
             print(line)
         job = rw.compare.Job(case=case, run=run)

@@ -11,9 +11,9 @@ import typer
 import rockwobble as rw
 
 from ..console.progress import shown_progress
+from ..console.provenance import command_line
 from ..console.results import show_and_write
 from ..console.terminal import interruptible, user_input
-from ..pages.provenance import command_line
 from ..pages.words.cases import describe
 from .inputs import options
 

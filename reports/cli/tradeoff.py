@@ -10,9 +10,9 @@ import typer
 from rockwobble.compare.storage.files import require_writable
 
 from ..console.progress import shown_progress
+from ..console.provenance import command_line
 from ..console.results import show_and_write
 from ..console.terminal import interruptible, user_input
-from ..pages.provenance import command_line
 from .inputs import options
 
 Quick = Annotated[

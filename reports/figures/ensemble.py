@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Mapping
 from typing import Any, Literal
 
 import numpy as np
@@ -14,7 +13,7 @@ from rockwobble.compare.metrics.distributions import MARGIN
 from rockwobble.compare.studies.ensemble.tables import pairs
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
-from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf
+from .picture import Array, Axis, Line, Panel, Picture, Pictures, Rule, Text, at_hand, ecdf
 
 # beyond the largest ratio, and at least beyond the margin
 _ROOM = 1.25
@@ -26,9 +25,9 @@ _MEDIAN = Style(colour=DARK, dash="none", symbol="diamond")
 _LINE = 0.5  # inch for a pair of methods
 
 
-def pictures(found: Ensemble) -> dict[str, Callable[[], Picture]]:
+def pictures(found: Ensemble) -> Pictures:
     """Return what makes the picture of an ensemble, by name."""
-    return {"ensemble": partial(ensemble_picture, found)}
+    return at_hand(ensemble_picture(found))
 
 
 def main_pairs(found: Ensemble) -> list[dict[str, Any]]:

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-
 import numpy as np
 
 from rockwobble.compare.studies.extremes import Extremes
 
 from .palette import GREY, ORDER, PALE
-from .picture import Axis, Bars, Panel, Picture
+from .picture import Axis, Bars, Panel, Picture, Pictures, at_hand
 
 # verdict: colour and hatch; what nothing explains stands out
 _SHADES = {
@@ -23,9 +20,9 @@ _SHADES = {
 }
 
 
-def pictures(found: Extremes) -> dict[str, Callable[[], Picture]]:
+def pictures(found: Extremes) -> Pictures:
     """Return what makes the picture of a scan, by name."""
-    return {"extremes": partial(extremes_picture, found)}
+    return at_hand(extremes_picture(found))
 
 
 def extremes_picture(found: Extremes) -> Picture:

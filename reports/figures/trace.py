@@ -2,23 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-
 import numpy as np
 
 from rockwobble.models import Trace
 
 from .palette import GREY, ORDER, Style
-from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
+from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Pictures, Rule, at_hand
 
 _PATH = Style(colour=ORDER[0])
 _CIRCLE = Style(colour=GREY, dash="dash")
 
 
-def pictures(trace: Trace) -> dict[str, Callable[[], Picture]]:
+def pictures(trace: Trace) -> Pictures:
     """Return what makes the picture of a motion, by name."""
-    return {"trace": partial(trace_picture, trace)}
+    return at_hand(trace_picture(trace))
 
 
 def trace_picture(trace: Trace) -> Picture:

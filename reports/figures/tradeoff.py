@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from functools import partial
 
 import numpy as np
@@ -11,7 +10,7 @@ import pandas as pd
 from rockwobble.compare.studies.tradeoff import Tradeoff
 
 from .palette import DARK, GREY, ORDER, SYMBOLS, Style
-from .picture import Axis, Line, Panel, Picture, Rule
+from .picture import Axis, Line, Panel, Picture, Pictures, Rule
 
 TITLES = {
     "turn": "Angle of turn in free response",
@@ -37,7 +36,7 @@ _BASE = "recess model"
 _OF_MODEL, _OF_ENGINES = ("scipy", "rest threshold"), ("integrator", "contact")  # panels of variants
 
 
-def pictures(found: Tradeoff) -> dict[str, Callable[[], Picture]]:
+def pictures(found: Tradeoff) -> Pictures:
     """Return what makes the picture of each problem, by its name."""
     return {
         name: partial(_picture, found, name) for name in TITLES if (found.points["problem"] == name).any()

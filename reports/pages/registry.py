@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 KINDS: Mapping[str, tuple[str, ...]] = {
     "comparison": ("compare:Comparison.load", "reports.pages.comparison.report:comparison_files"),
     "ensemble": ("reports.pages.ensemble:stored_page",),
+    "fragility": ("reports.pages.fragility:stored_page",),
     "overturning spectrum": ("reports.pages.spectrum:stored_page",),
     "advice": ("reports.pages.advice:stored_page",),
     "validity": ("compare.studies.validity:read_validity", "reports.pages.validity:validity_page"),

@@ -168,7 +168,7 @@ def test_closeness_knows_an_end_before_the_other() -> None:
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        ({"time_step": "fine"}, 'a number \\[s\\], "auto" or "extrapolated"'),
+        ({"time_step": "fine"}, '"auto", "extrapolated" or a number'),
         ({"time_step": "auto", "step_tolerance": 0.0}, "step_tolerance must be positive"),
         ({"time_step": 1e-4, "step_tolerance": 1e-3}, 'goes with time_step="auto"'),
         ({"time_step": "auto", "nonsense": 1}, "not a setting"),

@@ -11,13 +11,21 @@ import pandas as pd
 import pytest
 
 from rockwobble import multibody
-from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace, el_centro_1940
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    Diagnostic,
+    InitialState,
+    Run,
+    Trace,
+    el_centro_1940,
+)
 from rockwobble.models.traces.trace_source import Known
 from rockwobble.multibody.scene.guard import LARGEST_STEP
-from rockwobble.multibody.time_step.extrapolated import extrapolation, limit
+from rockwobble.multibody.time_step.extrapolated import extrapolation, to_zero_step
 
 ALPHA = 0.2
-# of alpha, after a release: what second order leaves of a first-order engine at a finest step of 1.75e-4 s
+# of alpha, after a release: what the second order leaves of an engine of first order
 RELEASED = 1e-7
 # relative RMS under El Centro on (10 m, 0.1) to 15 s, at the cost of one run at the default step
 SHAKEN = {"mujoco": 5e-6, "pybullet": 2e-5, "dart": 2e-5}
@@ -159,8 +167,8 @@ def test_a_failed_run_is_said() -> None:
 
 
 def test_the_limit_of_one_order() -> None:
-    assert limit([np.array([5.0]), np.array([3.0])], 1) == pytest.approx(1.0)
-    assert limit([np.array([5.0]), np.array([2.0])], 2) == pytest.approx(1.0)
+    assert to_zero_step([np.array([5.0]), np.array([3.0])], 1) == pytest.approx(1.0)
+    assert to_zero_step([np.array([5.0]), np.array([2.0])], 2) == pytest.approx(1.0)
 
 
 @pytest.mark.parametrize(

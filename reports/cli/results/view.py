@@ -11,11 +11,11 @@ import typer
 import rockwobble as rw
 
 from ...console.progress import shown_progress
+from ...console.provenance import command_line
 from ...console.terminal import complain, interruptible, user_input
-from ...pages.provenance import command_line
 from ...pages.words.cases import describe
 from ..inputs import options
-from ..inputs.estimate import time_needed
+from ..inputs.estimate import require_feasible, time_needed
 from ..inputs.method_values import settings
 from ..inputs.problem import Problem, given_options, refuse, states_problem
 
@@ -68,6 +68,7 @@ def view(
                 (run,) = rw.compare.with_settings(
                     case, [rw.Run(engine, support, time_step)], settings(setting)
                 )
+                require_feasible([case], [run])
                 rw.compare.require_runnable(case, run)
                 name = case.name
             rw.compare.require_writable(out)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
@@ -11,7 +11,7 @@ import numpy as np
 from rockwobble.compare import AGREEMENT, Comparison, make_pair
 
 from ..palette import Style
-from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
+from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Pictures, Rule
 from ..thinning import envelope
 from .view import CaseView, case_views
 
@@ -23,7 +23,7 @@ _FALLS = 1.5  # [alpha] where tilts are cut if one goes farther
 _HEIGHT = 2.3  # [inch]
 
 
-def pictures(comparison: Comparison) -> dict[str, Callable[[], Picture]]:
+def pictures(comparison: Comparison) -> Pictures:
     """Return what makes the picture of each case, by its name."""
     return {view.case.name: partial(tilt_picture, view) for view in case_views(comparison)}
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import partial
+from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
@@ -16,7 +15,7 @@ from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
 from rockwobble.compare.studies.validity.rings import FREE
 
 from ..palette import DARK, GREY, ORDER, Style, mark_styles
-from ..picture import Axis, Line, Panel, Picture, Rule, ecdf
+from ..picture import Axis, Line, Panel, Picture, Pictures, Rule, at_hand, ecdf
 from .maps import map_pictures
 
 # of a method, in words
@@ -40,13 +39,9 @@ _LEAST = 1e-9  # what a logarithmic axis shows of nothing
 _ONE = Rule(at=1.0, axis="y", colour=GREY, dash="solid")
 
 
-def pictures(found: Validity) -> dict[str, Callable[[], Picture]]:
+def pictures(found: Validity) -> Pictures:
     """Return what makes each figure of the report, by its name."""
-    return {picture.name: partial(_itself, picture) for picture in validity_pictures(found.tables)}
-
-
-def _itself(picture: Picture) -> Picture:
-    return picture
+    return at_hand(*validity_pictures(found.tables))
 
 
 def validity_pictures(tables: Tables) -> list[Picture]:
