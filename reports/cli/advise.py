@@ -66,10 +66,14 @@ def advise(
     with interruptible():
         with user_input():
             from rockwobble.compare import require_writable
+            from rockwobble.models import Run
+
+            from .inputs.estimate import require_feasible
 
             case = problem.case()
             friction = case.friction if "friction" in given_options(context) else None
             run = _run(case, engine, support, time_step)
+            require_feasible([case], [Run(None, "recess"), *([] if run is None else [run])])
             _require_numbers(copies, seed)
             require_writable(out)
         from rockwobble.compare.runs.execution import Job, job_fingerprint

@@ -62,7 +62,7 @@ def compare(
             from rockwobble.compare.runs.choice import unable_engines
             from rockwobble.models import Suite
 
-            from .inputs.estimate import require_memory
+            from .inputs.estimate import require_feasible
 
             if suite is not None:
                 refuse_problem_options(context, suite)
@@ -73,10 +73,10 @@ def compare(
             if setting:
                 runs = list(with_settings(cases[0], runs, settings(setting)))
             require_writable(out)
+            require_feasible(cases, runs)
             for each in cases:
                 for run in runs:
                     require_runnable(each, run)
-            require_memory(cases, runs)
             external = _external(
                 trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
             )

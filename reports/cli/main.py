@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import Annotated, Any
 
@@ -15,6 +16,7 @@ from .compare import compare
 from .ensemble import ensemble
 from .extremes import extremes
 from .figures import figures
+from .fragility import fragility
 from .results.report import report
 from .results.show import show
 from .results.view import view
@@ -42,6 +44,7 @@ app.command(epilog="Example: rockwobble show rockwobble-sweep")(show)
 app.command(epilog="Example: rockwobble report rockwobble-compare")(report)
 app.command(epilog="Example: rockwobble view --scale 2 --support flat")(view)
 app.command(epilog="Example: rockwobble ensemble --synthetic 3 --members 40 --engine mujoco")(ensemble)
+app.command(epilog="Example: rockwobble fragility --p695 --cylinder pier=6,0.2 --engine mujoco")(fragility)
 app.command(epilog="Example: rockwobble check --only equations --only conserved")(check)
 app.command(epilog="Example: rockwobble certify --engine mujoco --out mujoco.json")(certify)
 app.command(epilog="Example: rockwobble verify mujoco.json")(verify)
@@ -71,11 +74,15 @@ def _root(
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; exit code 0 done, 1 a check failed, 2 bad input, 130 interrupted."""
     forgive_output()
+    os.environ["MPLBACKEND"] = "svg"  # pictures are files here, whatever a notebook has set
     try:
         code = app(arguments, prog_name="rockwobble", standalone_mode=False)
     except _USAGE_ERROR as error:
         # one clear line, without the box that typer draws around it
         complain(error.format_message())
+        sys.exit(BAD_INPUT)
+    except MemoryError:
+        complain("the memory of this machine does not suffice: give fewer runs, or shorter ones")
         sys.exit(BAD_INPUT)
     except (typer.Abort, KeyboardInterrupt):
         complain("interrupted")

@@ -18,6 +18,7 @@ SCRIPTS = (
     "engine_versions",
     "ensemble_intervals",
     "false_alarms",
+    "fragility_coverage",
     "ring_losses",
     "run_overhead",
     "scene_cost",
