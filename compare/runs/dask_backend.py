@@ -89,7 +89,7 @@ def _with_the_same_code(
 @contextmanager
 def _cluster(address: str) -> Iterator[tuple[Any, Callable[[], Mapping[str, int]], Any]]:
     """Open executor, threads of each worker, and what a future raises whose worker died."""
-    if re.fullmatch(r"\w+://[^\s/]+:\d+", address) is None:
+    if re.fullmatch(r"\w+://\S+", address) is None:
         raise ValueError(f"a Dask scheduler has an address such as tcp://10.0.0.1:8786, got {address!r}")
     try:
         distributed: Any = importlib.import_module("distributed")  # it has no types

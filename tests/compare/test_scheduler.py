@@ -177,7 +177,7 @@ def test_no_scheduler_is_one_clear_line(monkeypatch):
     monkeypatch.setattr(dask_backend, "_PATIENCE", 0.5)
     with pytest.raises(ValueError, match="no Dask scheduler answers at 'tcp://127"):
         run_tasks(abs, [1], scheduler="tcp://127.0.0.1:1")
-    with pytest.raises(ValueError, match="has an address such as tcp://10.0.0.1:8786, got 'nonsense'"):
+    with pytest.raises(ValueError, match="has an address such as tcp://.*, got 'nonsense'"):
         run_tasks(abs, [1], scheduler="nonsense")
 
 
@@ -186,7 +186,7 @@ def test_a_cluster_without_workers_is_said(monkeypatch):
     with distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None) as cluster:
         address = cluster.scheduler_address
         monkeypatch.setattr(dask_backend, "_PATIENCE", 1.0)
-        with pytest.raises(ClusterError, match=f"at {address} has had no worker for 1 s: start one by dask"):
+        with pytest.raises(ClusterError, match="has had no worker for 1 s: start one by dask worker inproc"):
             run_tasks(abs, [1], scheduler=address)
 
 
