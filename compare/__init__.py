@@ -34,6 +34,10 @@ if TYPE_CHECKING:
     from .storage.files import replace_files, require_writable
     from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
     from .studies.ensemble.study import Ensemble, ensemble
+    from .studies.fragility.intensity import MEASURES
+    from .studies.fragility.limits import LIMITS
+    from .studies.fragility.result import Fragility
+    from .studies.fragility.study import fragility
     from .studies.sweep.cases import CaseSweep
     from .studies.sweep.grid import Grid
     from .studies.sweep.study import SweepIncompleteError, read_sweep, sweep
@@ -68,6 +72,10 @@ _MODULES = {
         "with_motions",
     ),
     "studies.ensemble.study": ("Ensemble", "ensemble"),
+    "studies.fragility.intensity": ("MEASURES",),
+    "studies.fragility.limits": ("LIMITS",),
+    "studies.fragility.result": ("Fragility",),
+    "studies.fragility.study": ("fragility",),
     "studies.sweep.cases": ("CaseSweep",),
     "studies.sweep.grid": ("Grid",),
     "studies.sweep.study": ("SweepIncompleteError", "read_sweep", "sweep"),
@@ -77,6 +85,8 @@ _MODULES = {
 __all__ = [
     "AGREEMENT",
     "LARGEST_SHARE",
+    "LIMITS",
+    "MEASURES",
     "SUMMARY_COLUMNS",
     "TILTED",
     "WORTH_EXPLAINING",
@@ -85,6 +95,7 @@ __all__ = [
     "Ensemble",
     "ErrorBudget",
     "External",
+    "Fragility",
     "Grid",
     "Job",
     "Pair",
@@ -96,6 +107,7 @@ __all__ = [
     "ensemble",
     "far_field_motions",
     "findings",
+    "fragility",
     "installed_engines",
     "make_pair",
     "missing_engines",

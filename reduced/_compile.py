@@ -49,7 +49,7 @@ def _keep_in_temporary_folder() -> None:
     if not _is_ours(folder):
         folder = Path(tempfile.mkdtemp(prefix="rockwobble-compiled-"))
     os.environ["NUMBA_CACHE_DIR"] = str(folder)
-    numba.config.reload_config()
+    numba.config.reload_config()  # type: ignore[no-untyped-call]
     print(
         f"rockwobble: neither the installation nor HOME can be written: compiled code is kept in {folder}",
         file=sys.stderr,

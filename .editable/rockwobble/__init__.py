@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rockwobble import compare, models, multibody, reduced, reports
-    from rockwobble.compare import Comparison, External, ensemble, simulate, sweep
+    from rockwobble.compare import Comparison, External, ensemble, fragility, simulate, sweep
     from rockwobble.models import (
         Case,
         Cylinder,
@@ -48,6 +48,7 @@ __all__ = [
     "compare",  # may be called: that is its function `compare`
     "el_centro_1940",
     "ensemble",
+    "fragility",
     "models",
     "multibody",
     "p695_far_field",
@@ -61,7 +62,7 @@ __all__ = [
     "sweep",
 ]
 _PARTS = ("compare", "models", "multibody", "reduced", "reports")
-_OF_COMPARE = ("Comparison", "External", "ensemble", "simulate", "sweep")
+_OF_COMPARE = ("Comparison", "External", "ensemble", "fragility", "simulate", "sweep")
 
 
 def __getattr__(name: str) -> object:

@@ -137,6 +137,46 @@ def default_runs(
     return tuple(runs)
 
 
+def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tuple[Run, ...]:
+    """Return every installed engine that can start all cases, with each of the supports that it has.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    engines = [name for name in installed_engines() if not _unable(name, cases)]
+    found = [
+        Run(name, support)
+        for support in (SUPPORTS if supports is None else supports)
+        for name in engines
+        if support in find_engine(name).supports
+    ]
+    if not found:
+        raise ValueError(
+            f"no installed engine has the support {' or '.join(supports or SUPPORTS)} for this case"
+        )
+    return tuple(found)
+
+
+def unable_engines(cases: Sequence[Case]) -> tuple[str, ...]:
+    """Return why installed engines cannot run these cases, one sentence for each."""
+    return tuple(filter(None, (_unable(name, cases) for name in installed_engines())))
+
+
+def _unable(name: str, cases: Sequence[Case]) -> str:
+    try:
+        engine = find_engine(name)
+    except BrokenEngineError as error:
+        return str(error)
+    stands = any(case.initial is None or case.initial.tilt == 0.0 for case in cases)
+    return (
+        f"{name} cannot uplift a cylinder that stands and is left out"
+        if stands and not engine.uplifts
+        else ""
+    )
+
+
 def unsupported(supports: Sequence[str]) -> tuple[str, ...]:
     """Return why a default run with these supports leaves out installed engines, one sentence for each."""
     reserved = reserved_engines()

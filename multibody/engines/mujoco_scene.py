@@ -47,18 +47,12 @@ def compile_scene(
 def _set_options(spec: Any, scene: Scene, settings: MujocoSettings) -> None:
     import mujoco
 
-    integrators = {
-        "Euler": mujoco.mjtIntegrator.mjINT_EULER,
-        "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
-        "implicit": mujoco.mjtIntegrator.mjINT_IMPLICIT,
-        "RK4": mujoco.mjtIntegrator.mjINT_RK4,
-        "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
-    }
     cones = {"elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC, "pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL}
     option = spec.option
     option.timestep = scene.time_step
     option.gravity = [0.0, 0.0, -scene.gravity]
-    option.integrator = integrators[settings.integrator]
+    # by name: not every version has each
+    option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{settings.integrator.upper()}")
     option.cone = cones[settings.cone]
     option.tolerance = settings.tolerance
     option.iterations = settings.iterations

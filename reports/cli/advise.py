@@ -83,9 +83,9 @@ def advise(
         from rockwobble.compare.studies.advice.advice import KIND
 
         from ..console.progress import shown_progress
+        from ..console.provenance import command_line
         from ..console.results import show_and_write
         from ..pages.advice import advice_page
-        from ..pages.provenance import command_line
 
         with shown_progress("stages") as tell:
             found = ask(

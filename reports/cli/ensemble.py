@@ -97,9 +97,9 @@ def ensemble(
         from rockwobble.compare.studies.ensemble.study import KIND
 
         from ..console.progress import shown_progress
+        from ..console.provenance import command_line
         from ..console.results import show_and_write
         from ..pages.ensemble import ensemble_page
-        from ..pages.provenance import command_line
 
         with user_input(), shown_progress() as tell:
             found = compare.ensemble(

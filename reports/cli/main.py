@@ -16,6 +16,7 @@ from .compare import compare
 from .ensemble import ensemble
 from .extremes import extremes
 from .figures import figures
+from .fragility import fragility
 from .results.report import report
 from .results.show import show
 from .results.view import view
@@ -43,6 +44,7 @@ app.command(epilog="Example: rockwobble show rockwobble-sweep")(show)
 app.command(epilog="Example: rockwobble report rockwobble-compare")(report)
 app.command(epilog="Example: rockwobble view --scale 2 --support flat")(view)
 app.command(epilog="Example: rockwobble ensemble --synthetic 3 --members 40 --engine mujoco")(ensemble)
+app.command(epilog="Example: rockwobble fragility --p695 --cylinder pier=6,0.2 --engine mujoco")(fragility)
 app.command(epilog="Example: rockwobble check --only equations --only conserved")(check)
 app.command(epilog="Example: rockwobble certify --engine mujoco --out mujoco.json")(certify)
 app.command(epilog="Example: rockwobble verify mujoco.json")(verify)

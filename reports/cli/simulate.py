@@ -158,7 +158,7 @@ def _save(out: Path, job: Job, trace: Trace) -> list[str]:
     from rockwobble.compare.storage.manifest import made_now, write_results
     from rockwobble.models.traces.trace_file import case_to_plain, packed
 
-    from ..pages.provenance import command_line
+    from ..console.provenance import command_line
 
     case, found = case_to_plain(job.case), trace.to_plain()
     motion = job.case.motion

@@ -145,7 +145,7 @@ def _run(
     from rockwobble.compare import sweep as run
 
     from ..console.progress import shown_progress
-    from ..pages.provenance import command_line
+    from ..console.provenance import command_line
 
     try:
         with user_input(), shown_progress("chunks") as tell:

@@ -18,6 +18,10 @@ KINDS: Mapping[str, tuple[str, str]] = {
         "rockwobble.reports.pages.ensemble:stored_page",
         "rockwobble.reports.pages.page:Page.files",
     ),
+    "fragility": (
+        "rockwobble.reports.pages.fragility:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
+    ),
     "overturning spectrum": (
         "rockwobble.reports.pages.spectrum:stored_page",
         "rockwobble.reports.pages.page:Page.files",
@@ -36,6 +40,10 @@ KINDS: Mapping[str, tuple[str, str]] = {
     ),
     "extremes": (
         "rockwobble.reports.pages.extremes:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
+    ),
+    "engine versions": (
+        "rockwobble.reports.pages.versions:stored_page",
         "rockwobble.reports.pages.page:Page.files",
     ),
     "paper": (

@@ -90,12 +90,14 @@ Duration = Annotated[
         "Length of the run, in s. Default: that of the ground motion, 10 s without one.",
     ),
 ]
-_ENGINES = "mujoco, pybullet, exudyn or another that is installed"
+_ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only)"
 Engine = Annotated[str | None, _of(_METHOD, "--engine", f"{_ENGINES}. Default: the reduced model.")]
-Engines = Annotated[
+_DEFAULT = "Default: those that serve any case and are no extra"
+Engines = Annotated[list[str] | None, _of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}.")]
+EnginesOrAll = Annotated[
     list[str] | None,
-    _of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. Default: all that serve any case."),
+    _of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed."),
 ]
 Support = Annotated[str, _of(_METHOD, "--support", f"{_SUPPORTS}.")]
 Supports = Annotated[

@@ -1,0 +1,210 @@
+"""Lognormal fragility curves by maximum likelihood: one, or thousands at once.
+
+P(demand > limit | intensity) = Phi((ln intensity - ln median)/dispersion): a probit regression on the
+logarithm of the intensity (J. W. Baker, Earthq. Spectra 31, 579-599, 2015). Its log-likelihood is concave,
+so Newton's method with halved steps finds the maximum wherever there is one. There is none where the counts
+are separated: where no run exceeds the limit, where all do, or where all do above an intensity and none
+below.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+FITTED, NEVER, ALWAYS, SEPARATED, FALLING = "fitted", "never", "always", "separated", "not increasing"
+KINDS = (FITTED, NEVER, ALWAYS, SEPARATED, FALLING)
+_ITERATIONS, _HALVINGS = 60, 30
+_TOLERANCE = 1e-11  # of a step of Newton's method, in standard deviations of the logarithm of the intensity
+_GROUPS = 10  # of a cloud, to hold shares against the curve
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Curves:
+    """B fragility curves.
+
+    Attributes
+    ----------
+    centre : ndarray, shape (B,)
+        Logarithm of the median intensity: infinite where no run exceeds the limit, minus infinity where all
+        do, between the two intensities where the counts are separated; NaN where the share does not grow.
+    dispersion : ndarray, shape (B,)
+        Standard deviation of the logarithm; 0 where separated, NaN where there is no curve.
+    kinds : ndarray of int, shape (B,)
+        Place in `KINDS`.
+    """
+
+    centre: Array
+    dispersion: Array
+    kinds: NDArray[np.int64]
+
+    def at(self, x: Array) -> Array:
+        """Return the probabilities (B, n) at logarithms of intensities (n,); NaN where there is no curve."""
+        from scipy.special import ndtr
+
+        with np.errstate(divide="ignore", invalid="ignore"):
+            z = (x[None, :] - self.centre[:, None]) / np.where(
+                np.isfinite(self.centre), self.dispersion, 1.0
+            )[:, None]
+        # on the step of a separated curve itself
+        z[np.isnan(z) & (self.kinds != KINDS.index(FALLING))[:, None]] = 0.0
+        return np.asarray(ndtr(z), dtype=np.float64)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Goodness:
+    """How well counts follow a curve.
+
+    Attributes
+    ----------
+    deviance : float
+        Twice the log-likelihood that the counts lack to shares of their own.
+    degrees : int
+        Levels, or groups of a cloud, less the two parameters.
+    p : float
+        Probability of a larger deviance if the curve is right and all runs are independent. The levels share
+        their motions, so that the deviance is rather smaller and this rather too large.
+    largest : float
+        Largest difference of share and curve.
+    """
+
+    deviance: float
+    degrees: int
+    p: float
+    largest: float
+
+
+def fit_curves(x: Array, n: Array, k: Array) -> Curves:
+    """Fit a curve to each of B sets of counts at the same intensities.
+
+    Parameters
+    ----------
+    x : ndarray, shape (K,)
+        Logarithms of intensities, in any order.
+    n, k : ndarray, shape (B, K)
+        Runs, and those that exceed the limit.
+    """
+    order = np.argsort(x, kind="stable")
+    x, n, k = x[order], n[:, order], k[:, order]
+    # the highest intensity with a run that does not exceed the limit, the lowest with one that does, and back
+    misses, hits = n - k > 0.0, k > 0.0
+    highest_miss, lowest_hit = _highest(x, misses), _lowest(x, hits)
+    highest_hit, lowest_miss = _highest(x, hits), _lowest(x, misses)
+    kinds = np.full(len(n), KINDS.index(FITTED))
+    kinds[lowest_miss >= highest_hit] = KINDS.index(FALLING)
+    kinds[highest_miss <= lowest_hit] = KINDS.index(SEPARATED)
+    kinds[~misses.any(axis=1)] = KINDS.index(ALWAYS)
+    kinds[~hits.any(axis=1)] = KINDS.index(NEVER)
+    with np.errstate(invalid="ignore"):
+        middle = 0.5 * (highest_miss + lowest_hit)
+    known = {NEVER: math.inf, ALWAYS: -math.inf, FALLING: math.nan}
+    centre = np.select([kinds == KINDS.index(kind) for kind in known], list(known.values()), middle)
+    dispersion = np.where(kinds == KINDS.index(SEPARATED), 0.0, math.nan)
+    free = np.flatnonzero(kinds == KINDS.index(FITTED))
+    if len(free):
+        shift, spread = float(x.mean()), float(x.std())
+        a, b = _newton((x - shift) / spread, n[free], k[free])
+        rising = b > 0.0
+        with np.errstate(divide="ignore", invalid="ignore"):
+            centre[free] = np.where(rising, shift - spread * a / b, math.nan)
+            dispersion[free] = np.where(rising, spread / b, math.nan)
+        kinds[free[~rising]] = KINDS.index(FALLING)
+    return Curves(centre=centre, dispersion=dispersion, kinds=kinds)
+
+
+def log_likelihood(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> float:
+    """Return the binomial log-likelihood of a curve, without the coefficients."""
+    from scipy.special import log_ndtr
+
+    eta = (x - centre) / dispersion
+    return float((k * log_ndtr(eta) + (n - k) * log_ndtr(-eta)).sum())
+
+
+def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> Goodness:
+    """Hold the shares against a curve that was fitted to them; many intensities are put into groups."""
+    from scipy.special import ndtr, xlogy
+    from scipy.stats import chi2
+
+    order = np.argsort(x, kind="stable")
+    x, n, k = x[order], n[order], k[order]
+    expected = n * ndtr((x - centre) / dispersion)
+    if len(x) > 2 * _GROUPS:
+        place = np.minimum((np.cumsum(n) - 0.5 * n) / n.sum() * _GROUPS, _GROUPS - 1).astype(int)
+        n, k, expected = (np.bincount(place, each, _GROUPS).astype(np.float64) for each in (n, k, expected))
+    there = n > 0.0
+    n, k, expected = n[there], k[there], expected[there]
+    tiny = np.finfo(float).tiny
+    lacking = xlogy(k, k / np.maximum(expected, tiny)) + xlogy(
+        n - k, (n - k) / np.maximum(n - expected, tiny)
+    )
+    deviance, degrees = max(2.0 * float(lacking.sum()), 0.0), max(len(n) - 2, 0)
+    return Goodness(
+        deviance=deviance,
+        degrees=degrees,
+        p=float(chi2.sf(deviance, degrees)) if degrees else math.nan,
+        largest=float(np.abs(k / n - expected / n).max()),
+    )
+
+
+def _newton(u: Array, n: Array, k: Array) -> tuple[Array, Array]:
+    """Return intercept and slope (B,) on the scale of u (K,), where there is a maximum."""
+    from scipy.special import ndtri
+
+    share = np.clip(k.sum(axis=1) / n.sum(axis=1), 1e-3, 1.0 - 1e-3)
+    a, b = ndtri(share), np.ones(len(n))
+    best = _value(u, n, k, a, b)
+    active = np.arange(len(n))
+    for _ in range(_ITERATIONS):
+        step_a, step_b = _step(u, n[active], k[active], a[active], b[active])
+        factor = np.ones(len(active))
+        for _ in range(_HALVINGS):
+            new = _value(u, n[active], k[active], a[active] + factor * step_a, b[active] + factor * step_b)
+            # rounding of the sum, at the maximum itself
+            worse = new < best[active] - 1e-13 * np.abs(best[active])
+            if not worse.any():
+                break
+            factor[worse] *= 0.5
+        a[active] += factor * step_a
+        b[active] += factor * step_b
+        best[active] = new
+        active = active[
+            factor * np.maximum(np.abs(step_a), np.abs(step_b)) > _TOLERANCE * (1.0 + np.abs(b[active]))
+        ]
+        if not len(active):
+            break
+    return a, b
+
+
+def _value(u: Array, n: Array, k: Array, a: Array, b: Array) -> Array:
+    from scipy.special import log_ndtr
+
+    eta = a[:, None] + b[:, None] * u
+    return np.asarray((k * log_ndtr(eta) + (n - k) * log_ndtr(-eta)).sum(axis=1), dtype=np.float64)
+
+
+def _step(u: Array, n: Array, k: Array, a: Array, b: Array) -> tuple[Array, Array]:
+    """Newton's step: the inverse of the observed information times the score."""
+    from scipy.special import log_ndtr
+
+    eta = a[:, None] + b[:, None] * u
+    log_density = -0.5 * eta**2 - 0.5 * math.log(2.0 * math.pi)
+    hit, miss = np.exp(log_density - log_ndtr(eta)), np.exp(log_density - log_ndtr(-eta))
+    score = k * hit - (n - k) * miss
+    weight = k * hit * (hit + eta) + (n - k) * miss * (miss - eta)
+    g0, g1 = score.sum(axis=1), (score * u).sum(axis=1)
+    h00, h01, h11 = weight.sum(axis=1), (weight * u).sum(axis=1), (weight * u * u).sum(axis=1)
+    determinant = h00 * h11 - h01**2
+    return (h11 * g0 - h01 * g1) / determinant, (h00 * g1 - h01 * g0) / determinant
+
+
+def _highest(x: Array, where: NDArray[np.bool_]) -> Array:
+    return np.asarray(np.where(where, x, -math.inf).max(axis=1), dtype=np.float64)
+
+
+def _lowest(x: Array, where: NDArray[np.bool_]) -> Array:
+    return np.asarray(np.where(where, x, math.inf).min(axis=1), dtype=np.float64)

@@ -1,0 +1,192 @@
+"""Intensity measures of a ground motion of two components.
+
+Each is one number that grows in proportion with the motion, so a motion has a given intensity after one
+scaling. The resultant is the horizontal vector, whose size no turn of the axes changes; a geometric mean is
+of the two components as they are recorded.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Cylinder, GroundMotion
+
+Array = NDArray[np.float64]
+
+DAMPING = 0.05  # of the oscillator of a response spectrum, as everywhere
+# samples of a period: between two of them a sine is at most 0.5 % above the larger
+_FINE = 32
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Measure:
+    """A kind of intensity.
+
+    Attributes
+    ----------
+    title : str
+        With its symbols, for axes and tables.
+    unit : str
+        "-" for a number.
+    meaning : str
+        Its definition in one sentence.
+    """
+
+    title: str
+    unit: str
+    meaning: str
+
+
+MEASURES: Mapping[str, Measure] = MappingProxyType(
+    {
+        "peak_acceleration": Measure(
+            title="peak acceleration / g tan α",
+            unit="-",
+            meaning="Largest resultant acceleration over g tan α: 1 just uplifts the cylinder.",
+        ),
+        "peak_velocity": Measure(
+            title="p × peak velocity / g tan α",
+            unit="-",
+            meaning="Largest resultant velocity times the frequency parameter p = sqrt(m g R/A) of rocking, "
+            "over g tan α.",
+        ),
+        "pga": Measure(
+            title="PGA",
+            unit="g",
+            meaning="Geometric mean of the largest accelerations of the two components.",
+        ),
+        "pgv": Measure(
+            title="PGV",
+            unit="m/s",
+            meaning="Geometric mean of the largest velocities of the two components.",
+        ),
+        "sa": Measure(
+            title="Sa",
+            unit="g",
+            meaning="Largest resultant of the pseudo-accelerations of the two components at a period, "
+            "5 % damped.",
+        ),
+        "sa_mean": Measure(
+            title="Sa, geometric mean",
+            unit="g",
+            meaning="Geometric mean of the largest pseudo-accelerations of the two components at a period, "
+            "5 % damped.",
+        ),
+    }
+)
+
+
+def intensity(
+    name: str, motion: GroundMotion, cylinder: Cylinder, *, gravity: float = 9.81, period: float = 1.0
+) -> float:
+    """Return the intensity of a ground motion for a cylinder.
+
+    Parameters
+    ----------
+    name : str
+        One of `MEASURES`.
+    motion : GroundMotion
+        Its vertical component, if there is one, has no part in it.
+    cylinder : Cylinder
+    gravity : float, optional
+        g [m/s^2].
+    period : float, optional
+        Of the oscillator of "sa" and "sa_mean" [s].
+
+    Raises
+    ------
+    ValueError
+        If the name is unknown, a number is not positive, or the motion has no such intensity because a
+        component is zero throughout.
+
+    Examples
+    --------
+    >>> from rockwobble.models import el_centro_1940
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> round(intensity("peak_acceleration", el_centro_1940(), pier), 3)
+    1.421
+    """
+    require_measure(name)
+    for label, value in (("gravity", gravity), ("period", period)):
+        if not (math.isfinite(value) and value > 0.0):
+            raise ValueError(f"{label} must be positive and finite, got {value!r}")
+    found = _value(name, motion, cylinder, gravity, period)
+    if not found > 0.0:
+        raise ValueError(f"the motion {motion.name!r} has no {name}: a component is zero throughout")
+    return found
+
+
+def require_measure(name: str) -> None:
+    """Refuse a measure that is not one of `MEASURES`."""
+    if name not in MEASURES:
+        raise ValueError(f"an intensity must be one of {', '.join(MEASURES)}, got {name!r}")
+
+
+def velocity(motion: GroundMotion) -> Array:
+    """Return the horizontal velocity of the ground (n, 2) [m/s], from rest at the first sample."""
+    a = motion.acceleration[:, :2]
+    steps = 0.5 * motion.time_step * (a[1:] + a[:-1])
+    return np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
+
+
+def pseudo_acceleration(motion: GroundMotion, period: float) -> Array:
+    """Return omega^2 times the displacement (n, 2) [m/s^2] of a damped oscillator during the motion.
+
+    Exact for a ground acceleration that is linear between samples (N. C. Nigam and P. C. Jennings, Bull.
+    Seismol. Soc. Am. 59, 909-922, 1969). Coarse motions are sampled finer first: no peak is missed.
+    """
+    from scipy.signal import cont2discrete, lfilter
+
+    parts = max(1, math.ceil(_FINE * motion.time_step / period))
+    count = len(motion.acceleration)
+    places = np.arange((count - 1) * parts + 1) / parts
+    a = np.column_stack([np.interp(places, np.arange(count), motion.acceleration[:, i]) for i in (0, 1)])
+    omega = 2.0 * math.pi / period
+    # the first-order hold of the transfer from -a to omega^2 x
+    transfer = np.array([omega**2]), np.array([1.0, 2.0 * DAMPING * omega, omega**2])
+    numerator, denominator, _ = cont2discrete(transfer, motion.time_step / parts, method="foh")
+    return np.asarray(lfilter(np.ravel(numerator), denominator, -a, axis=0), dtype=np.float64)
+
+
+def _value(name: str, motion: GroundMotion, cylinder: Cylinder, gravity: float, period: float) -> float:
+    uplift = gravity * cylinder.tan_alpha
+    if name == "peak_acceleration":
+        return motion.peak / uplift
+    if name == "peak_velocity":
+        from rockwobble.reduced.body import body_of  # the folder loads a compiler
+
+        return body_of(cylinder, gravity).p * _largest_resultant(velocity(motion)) / uplift
+    if name == "pgv":
+        return _mean_of_peaks(velocity(motion))
+    if name == "pga":
+        return _mean_of_peaks(motion.acceleration[:, :2]) / gravity
+    response = pseudo_acceleration(motion, period)
+    return (_largest_resultant(response) if name == "sa" else _mean_of_peaks(response)) / gravity
+
+
+def measures_of(
+    motions: Sequence[GroundMotion], cylinder: Cylinder, *, gravity: float = 9.81, period: float = 1.0
+) -> dict[str, list[float]]:
+    """Return every intensity of every motion, NaN where it has none."""
+
+    def known(name: str, motion: GroundMotion) -> float:
+        try:
+            return intensity(name, motion, cylinder, gravity=gravity, period=period)
+        except ValueError:
+            return math.nan
+
+    return {name: [known(name, motion) for motion in motions] for name in MEASURES}
+
+
+def _largest_resultant(components: Array) -> float:
+    return float(np.hypot(components[:, 0], components[:, 1]).max())
+
+
+def _mean_of_peaks(components: Array) -> float:
+    return float(np.sqrt(np.prod(np.abs(components).max(axis=0))))

@@ -1,0 +1,72 @@
+"""Limit states: what a run must not exceed."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+OVERTURNED, CONTACT_LOST = "overturned", "contact_lost"
+# name: the tilt that is reached [alpha]; NaN where it is no tilt that decides
+LIMITS: Mapping[str, float] = MappingProxyType(
+    {
+        "uplift": 0.0,
+        "0.1 alpha": 0.1,
+        "0.25 alpha": 0.25,
+        "0.5 alpha": 0.5,
+        "1 alpha": 1.0,
+        OVERTURNED: math.nan,
+        CONTACT_LOST: math.nan,
+    }
+)
+DEFAULT_LIMITS = tuple(name for name in LIMITS if name != CONTACT_LOST)
+
+
+def require_limits(names: Iterable[str]) -> tuple[str, ...]:
+    """Return the limit states, each once, in the order of `LIMITS`.
+
+    Raises
+    ------
+    ValueError
+        If one is unknown, or there is none.
+    """
+    given = list(names)
+    for name in given:
+        if name not in LIMITS:
+            raise ValueError(f"a limit must be one of {', '.join(LIMITS)}, got {name!r}")
+    if not given:
+        raise ValueError("a fragility needs at least one limit, got none")
+    return tuple(name for name in LIMITS if name in given)
+
+
+def exceeded(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
+    """Return 1 where a run exceeds a limit, 0 where it does not, NaN where that is not known.
+
+    Overturned is what the run itself says: the side reaches the ground, or no later ground motion can stop
+    it. Such a run exceeds every tilt. A cylinder at rest has not uplifted; any tilt above zero is uplift.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        Columns peak_tilt [alpha], outcome, contact_lost.
+    limit : str
+        One of `LIMITS`.
+    """
+    failed = (runs["outcome"] == "failed").to_numpy(bool)
+    fell = (runs["outcome"] == "overturned").to_numpy(bool)
+    if limit == CONTACT_LOST:
+        found = runs["contact_lost"].to_numpy(float)
+    elif limit == OVERTURNED:
+        found = fell.astype(float)
+    else:
+        peaks = runs["peak_tilt"].to_numpy(float)
+        bound = LIMITS[limit]
+        found = (fell | (peaks > 0.0 if bound == 0.0 else peaks >= bound)).astype(float)
+    return np.where(failed, np.nan, found)

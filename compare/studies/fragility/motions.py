@@ -1,0 +1,88 @@
+"""Ground motions of a fragility: those of FEMA P-695 as recorded, and folders of records with a table."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+
+from rockwobble.models import GroundMotion, p695_far_field, read_record
+
+from ..ensemble.members import FAR_FIELD_PAIRS
+
+TABLE = "records.csv"
+_COLUMNS, _NEEDED = ("name", "x", "y", "z", "units", "scale"), ("x", "y")
+
+
+def recorded_far_field() -> list[GroundMotion]:
+    """Return the 22 far-field pairs of FEMA P-695 as they were recorded.
+
+    Raises
+    ------
+    ValueError
+        If the records of the extra `records` are not installed.
+    """
+    return [p695_far_field(pair) for pair in range(1, FAR_FIELD_PAIRS + 1)]
+
+
+def read_records(folder: str | Path, *, units: str | None = None) -> list[GroundMotion]:
+    """Return the ground motions of a folder, as its records.csv lists them.
+
+    A row for each motion, with the columns x and y, the files of the two horizontal components beside the
+    table (PEER AT2, two-column text or CSV), and maybe z (vertical), name, units and scale.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Or the table itself.
+    units : {"g", "m/s2", "cm/s2"}, optional
+        Of the files that do not say, where the table has no units.
+
+    Raises
+    ------
+    ValueError
+        If there is no such table, a column is missing or unknown, or a record cannot be read: the row is
+        named.
+    """
+    path = Path(folder)
+    path = path / TABLE if path.is_dir() else path
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as file:
+            reader = csv.DictReader(file)
+            columns = list(reader.fieldnames or ())
+            rows = list(reader)
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise ValueError(f"the table of records {path} cannot be read: {reason}") from None
+    wrong = [column for column in columns if column not in _COLUMNS]
+    missing = [column for column in _NEEDED if column not in columns]
+    if wrong or missing:
+        raise ValueError(
+            f"{path} must have the columns x and y, and may have z, name, units and scale, "
+            f"got {', '.join(columns) or 'none'}"
+        )
+    motions = []
+    for number, row in enumerate(rows, start=2):
+        try:
+            motions.append(_motion(path.parent, row, units))
+        except ValueError as error:
+            raise ValueError(f"{path.name}, line {number}: {error}") from None
+    return motions
+
+
+def _motion(folder: Path, row: dict[str, str | None], units: str | None) -> GroundMotion:
+    cells = {name: (cell or "").strip() for name, cell in row.items() if isinstance(cell, str)}
+    if not (cells.get("x") and cells.get("y")):
+        raise ValueError("both horizontal components are needed, x and y")
+    x, y, z = (folder / cells[name] if cells.get(name) else None for name in ("x", "y", "z"))
+    assert x is not None
+    assert y is not None
+    motion = read_record(x, y, z, units=cells.get("units") or units, name=cells.get("name") or None)
+    if not cells.get("scale"):
+        return motion
+    try:
+        factor = float(cells["scale"])
+    except ValueError:
+        factor = 0.0
+    if not 0.0 < factor < float("inf"):
+        raise ValueError(f"scale must be a positive number, got {cells['scale']!r}")
+    return motion.scaled(factor)

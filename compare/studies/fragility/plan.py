@@ -1,0 +1,190 @@
+"""What a fragility consists of: cylinders, motions at levels or as they are, and methods."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble.models import Case, Cylinder, GroundMotion, Run
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+
+from ...runs.choice import require_runnable
+from .intensity import intensity, measures_of, require_measure
+from .methods import Method
+from .tasks import Shaking, Task
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# The reduced runs of a task take about a second together: little is lost with it.
+_CHUNK_TIME = 1.0
+# of the default levels, as peak resultant over g tan(alpha): from a little above uplift to where a slender
+# body of ten metres has fallen under most records
+_LOWEST, _HIGHEST, LEVELS = 1.25, 12.0, 20
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Plan:
+    """Every cylinder under every motion at every level by every method.
+
+    Parameters
+    ----------
+    cylinders : mapping of str to Cylinder
+    motions : sequence of GroundMotion
+        At least two, with different names: they are what is resampled.
+    methods : sequence of Method
+    measure : str
+        Intensity of the levels, one of `MEASURES`.
+    levels : sequence of float or None
+        Stripes: every motion is scaled to each of these intensities. None: a cloud.
+    scales : sequence of float
+        Of a cloud: factors on the motions as they are.
+    period : float
+        Of "sa" and "sa_mean" [s].
+    gravity, friction : float
+    contact : bool
+        Whether it is asked where reduced models lose contact.
+    step_factor : float
+        On the default time step of engines: a share of runs needs less than a trace.
+
+    Raises
+    ------
+    ValueError
+        If an axis is empty, repeats a value or holds one that is out of range, or an engine cannot run.
+    """
+
+    cylinders: Mapping[str, Cylinder]
+    motions: Sequence[GroundMotion]
+    methods: Sequence[Method]
+    measure: str = "peak_acceleration"
+    levels: Sequence[float] | None = None
+    scales: Sequence[float] = (1.0,)
+    period: float = 1.0
+    gravity: float = 9.81
+    friction: float = 1.0
+    contact: bool = False
+    step_factor: float = 1.0
+
+    def __post_init__(self) -> None:
+        require_measure(self.measure)
+        if not self.cylinders:
+            raise ValueError("a fragility needs at least one cylinder, got none")
+        names = [motion.name for motion in self.motions]
+        if len(set(names)) < 2 or len(set(names)) < len(names):
+            raise ValueError(
+                f"a fragility needs at least two ground motions with different names, got {len(names)} "
+                f"with {len(set(names))} names"
+            )
+        for label, values in (("levels", self.levels), ("scales", self.scales)):
+            if values is not None:
+                _require_increasing(label, values)
+        if not (math.isfinite(self.step_factor) and self.step_factor > 0.0):
+            raise ValueError(f"step_factor must be positive and finite, got {self.step_factor!r}")
+        for cylinder in self.cylinders.values():
+            for motion in self.motions:
+                intensity(self.measure, motion, cylinder, gravity=self.gravity, period=self.period)
+            case = Case(cylinder, self.motions[0], gravity=self.gravity, friction=self.friction)
+            for method in self.methods:
+                if method.run is not None:
+                    require_runnable(case, self._stepped(method.run, cylinder))
+
+    def factors(self, cylinder: Cylinder, motion: GroundMotion) -> tuple[float, ...]:
+        """Return the factors on a motion, one for each level or those of the cloud."""
+        if self.levels is None:
+            return tuple(map(float, self.scales))
+        own = intensity(self.measure, motion, cylinder, gravity=self.gravity, period=self.period)
+        return tuple(float(level) / own for level in self.levels)
+
+    @cached_property
+    def points(self) -> pd.DataFrame:
+        """One row for each cylinder, motion and level: its place, the factor, and all intensities."""
+        import pandas as pd
+
+        rows = []
+        for name, cylinder in self.cylinders.items():
+            own = measures_of(self.motions, cylinder, gravity=self.gravity, period=self.period)
+            for index, motion in enumerate(self.motions):
+                for step, scale in enumerate(self.factors(cylinder, motion)):
+                    found = {measure: scale * values[index] for measure, values in own.items()}
+                    if self.levels is not None:  # to the last bit one level for all
+                        found[self.measure] = float(self.levels[step])
+                    rows.append(
+                        {"cylinder": name, "motion": motion.name, "step": step, "scale": scale, **found}
+                    )
+        return pd.DataFrame(rows)
+
+    def tasks(self) -> Iterator[Task]:
+        """Yield the runs: engines singly, reduced models some motions together."""
+        for name, cylinder in self.cylinders.items():
+            shakings = [Shaking(motion=m, scales=self.factors(cylinder, m)) for m in self.motions]
+            for method in self.methods:
+                if method.run is None:
+                    continue
+                run = self._stepped(method.run, cylinder)
+                singles = [
+                    Task(
+                        cylinder=cylinder,
+                        name=name,
+                        label=method.label,
+                        run=run,
+                        shakings=(shaking,),
+                        gravity=self.gravity,
+                        friction=self.friction,
+                        contact=self.contact,
+                    )
+                    for shaking in (shakings if run.engine is None else _one_by_one(shakings))
+                ]
+                yield from singles if run.engine else _together(singles)
+
+    def _stepped(self, run: Run, cylinder: Cylinder) -> Run:
+        if run.engine is None or run.time_step is not None or self.step_factor == 1.0:
+            return run
+        step = REFERENCE_TIME_STEP * froude_scale(cylinder.semidiagonal, self.gravity).time
+        return Run(run.engine, run.support, self.step_factor * step, **run.settings)
+
+
+def default_levels(
+    cylinders: Mapping[str, Cylinder],
+    motions: Sequence[GroundMotion],
+    measure: str,
+    *,
+    gravity: float = 9.81,
+    period: float = 1.0,
+) -> tuple[float, ...]:
+    """Return levels from a little above uplift to where most overturn, each the same factor above the last.
+
+    In another measure than the peak acceleration: what the median motion has at these levels.
+    """
+    require_measure(measure)
+    over = [
+        intensity(measure, motion, cylinder, gravity=gravity, period=period)
+        / intensity("peak_acceleration", motion, cylinder, gravity=gravity)
+        for cylinder in cylinders.values()
+        for motion in motions
+    ]
+    middle = float(np.median(over))
+    return tuple(float(f"{middle * level:.3g}") for level in np.geomspace(_LOWEST, _HIGHEST, LEVELS))
+
+
+def _one_by_one(shakings: Sequence[Shaking]) -> list[Shaking]:
+    return [Shaking(motion=each.motion, scales=(scale,)) for each in shakings for scale in each.scales]
+
+
+def _together(singles: Sequence[Task]) -> Iterator[Task]:
+    """Join tasks of the same cylinder and method until they take about a second."""
+    size = max(1, round(_CHUNK_TIME / max(task.cost for task in singles)))
+    for i in range(0, len(singles), size):
+        part = singles[i : i + size]
+        yield replace(part[0], shakings=tuple(shaking for task in part for shaking in task.shakings))
+
+
+def _require_increasing(label: str, values: Sequence[float]) -> None:
+    found = [float(value) for value in values]
+    good = all(math.isfinite(value) and value > 0.0 for value in found)
+    if not found or not good or sorted(set(found)) != found:
+        raise ValueError(f"{label} must be positive and increase, got {', '.join(map(str, values))}")

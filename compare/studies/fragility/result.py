@@ -1,0 +1,119 @@
+"""What a fragility finds, made from its runs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any
+
+from ...storage.manifest import Manifest, Results, made_now
+from .efficiency import efficiency_table
+from .islands import island_table
+from .limits import OVERTURNED
+from .resampling import resamples
+from .samples import blocks_of
+from .tables import contrast_table, count_table, curve_table, drawn_curves, fit_table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+KIND = "fragility"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Fragility:
+    """Probabilities of exceeding limits by several methods, under the same motions.
+
+    Intervals are of 95 %, by resampling the motions; their ends are in columns NAME_low and NAME_high.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        One row for each cylinder, motion, step (place of the level) and method: peak_tilt [alpha], outcome,
+        contact_lost (1, 0, NaN where nobody asked).
+    points : DataFrame
+        One row for each cylinder, motion and step: scale, and every intensity of `MEASURES`.
+    counts : DataFrame
+        n runs and k that exceed a limit, by cylinder, method, limit and intensity.
+    fits : DataFrame
+        One row for each cylinder, method and limit: kind ("fitted", "never", "always", "separated", "not
+        increasing"), median, dispersion, runs, exceeded, failed, extrapolated, without_curve (share of the
+        resamples), and of the goodness of fit deviance, degrees, p and largest (difference of share and
+        curve).
+    curves : DataFrame
+        The curves point by point: intensity, probability, low, high.
+    contrasts : DataFrame
+        One row for each two methods: ratio of the medians, dispersion_difference, within (least margin that
+        holds the interval of the ratio), verdict for the margin that was stated.
+    efficiency : DataFrame
+        Dispersion of the first method by each measure, and over that of the best.
+    islands : DataFrame
+        Motions that overturn a cylinder which stands under the same motion made stronger, and bias of the
+        median of an analysis that stops at the first overturning.
+    about : mapping
+        What the tables do not hold: cylinders, methods, measure, levels, margin, seed, and the hash of all
+        inputs.
+    """
+
+    runs: pd.DataFrame
+    points: pd.DataFrame
+    counts: pd.DataFrame
+    fits: pd.DataFrame
+    curves: pd.DataFrame
+    contrasts: pd.DataFrame
+    efficiency: pd.DataFrame
+    islands: pd.DataFrame
+    about: Mapping[str, Any]
+
+    @property
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """The tables by name."""
+        return {field.name: getattr(self, field.name) for field in fields(self) if field.name != "about"}
+
+
+def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, about: Mapping[str, Any]) -> Fragility:
+    """Return what runs say, of the plan that `about` states."""
+    limits: Sequence[str] = about["limits"]
+    measure = str(about["measure"])
+    blocks = blocks_of(runs, points)
+    weights = resamples(len(blocks.motions), int(about["resamples"]), int(about["seed"]))
+    drawn = drawn_curves(blocks, limits, measure, weights)
+    return Fragility(
+        runs=runs,
+        points=points,
+        counts=count_table(blocks, limits, measure),
+        fits=fit_table(blocks, limits, measure, drawn),
+        curves=curve_table(blocks, limits, measure, drawn),
+        contrasts=contrast_table(blocks, limits, measure, drawn, weights, float(about["margin"])),
+        efficiency=efficiency_table(blocks, blocks.methods[0], weights),
+        islands=island_table(blocks, measure, weights),
+        about=about,
+    )
+
+
+def stored_fragility(results: Results) -> Fragility:
+    """Return the fragility that is stored in a folder."""
+    names = [field.name for field in fields(Fragility) if field.name != "about"]
+    return Fragility(**{name: results.table(name) for name in names}, about=results.manifest.about)
+
+
+def manifest_of(found: Fragility, command: str = "") -> Manifest:
+    """Return what made a fragility, with its medians and the contrasts of overturning as headline."""
+    fits = found.fits[found.fits["limit"] == OVERTURNED]
+    pairs = (
+        found.contrasts[found.contrasts["limit"] == OVERTURNED] if len(found.contrasts) else found.contrasts
+    )
+    headline = {
+        f"{row['cylinder']}, {row['method']}, median": row["median"] for row in fits.to_dict("records")
+    } | {
+        f"{row['cylinder']}, {row['method']} / {row['against']}": row["ratio"]
+        for row in pairs.to_dict("records")
+    }
+    return made_now(
+        KIND,
+        inputs=str(found.about["inputs"]),
+        command=command,
+        seeds={"resamples": int(found.about["seed"])},
+        headline=headline,
+        about=found.about,
+    )

@@ -1,0 +1,119 @@
+"""The runs of a plan, kept as they are finished, and their table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import nullcontext
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ...runs.cache import open_table_cache
+from ...runs.progress import ProgressCallback
+from ...runs.scheduler import run_tasks
+from ...runs.task import Lost
+from .methods import Method
+from .plan import Plan
+from .tasks import Task, run_task
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# a task whose process died is tried this often: the process may have been ended from outside
+_TRIES = 2
+KEYS = ["cylinder", "motion", "step"]
+
+
+def run_plan(
+    plan: Plan,
+    kind: str,
+    *,
+    folder: str | Path | None = None,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: ProgressCallback | None = None,
+) -> pd.DataFrame:
+    """Run all that a plan holds.
+
+    Parameters
+    ----------
+    plan : Plan
+    kind : str
+        Of the results, for the folder of finished tasks.
+    folder : str or Path, optional
+        Keeps each finished task: a second call, after whatever ended the first, repeats none.
+    workers, scheduler, progress : optional
+        As in `run_tasks`.
+
+    Returns
+    -------
+    DataFrame
+        One row for each cylinder, method, motion and level: cylinder, motion, step (place of the level),
+        method, peak_tilt [alpha], outcome, contact_lost (1, 0, or NaN where nobody asked). A run whose
+        process died failed.
+    """
+    import pandas as pd
+
+    tasks = list(plan.tasks())
+    with nullcontext() if folder is None else open_table_cache(folder, kind, Task.key) as cache:
+        found = run_tasks(
+            run_task,
+            tasks,
+            workers=workers,
+            scheduler=scheduler,
+            cost=lambda task: task.cost,
+            label=lambda task: task.title,
+            progress=progress,
+            cache=cache,
+            tries=_TRIES,
+        )
+    tables = [
+        _labelled(task, _lost(task) if isinstance(each, Lost) else each, plan)
+        for task, each in zip(tasks, found, strict=True)
+    ]
+    table = pd.concat(tables, ignore_index=True)
+    return pd.concat([table, *(worse(table, m) for m in plan.methods if m.of)], ignore_index=True)
+
+
+def worse(runs: pd.DataFrame, method: Method) -> pd.DataFrame:
+    """Return the rows of a method that is the worse of others: the larger tilt, overturned where one is."""
+    parts = [runs[runs["method"] == label].set_index(KEYS) for label in method.of]
+    first = parts[0]
+    others = [part.loc[first.index] for part in parts]
+    peaks = np.column_stack([part["peak_tilt"].to_numpy(float) for part in others])
+    outcomes = np.column_stack([part["outcome"].to_numpy(str) for part in others])
+    lost = np.column_stack([part["contact_lost"].to_numpy(float) for part in others])
+    failed = (outcomes == "failed").any(axis=1)
+    fell = (outcomes == "overturned").any(axis=1)
+    made = first.reset_index()
+    made["method"] = method.label
+    made["peak_tilt"] = peaks.max(axis=1)  # NaN where one failed
+    made["outcome"] = np.where(failed, "failed", np.where(fell, "overturned", outcomes[:, 0]))
+    made["contact_lost"] = lost.max(axis=1)
+    return made
+
+
+def _labelled(task: Task, table: pd.DataFrame, plan: Plan) -> pd.DataFrame:
+    steps = {shaking.motion.name: plan.factors(task.cylinder, shaking.motion) for shaking in task.shakings}
+    places = [(s.motion.name, steps[s.motion.name].index(scale)) for s in task.shakings for scale in s.scales]
+    return table.assign(
+        cylinder=task.name,
+        motion=[name for name, _ in places],
+        step=[step for _, step in places],
+        method=task.label,
+    )[[*KEYS, "method", "peak_tilt", "outcome", "contact_lost"]]
+
+
+def _lost(task: Task) -> pd.DataFrame:
+    import pandas as pd
+
+    count = sum(len(shaking.scales) for shaking in task.shakings)
+    return pd.DataFrame(
+        {"peak_tilt": [np.nan] * count, "outcome": ["failed"] * count, "contact_lost": [np.nan] * count}
+    )
+
+
+def methods_in(runs: pd.DataFrame) -> Sequence[str]:
+    """Return the labels of the methods in the order in which they were run."""
+    return list(dict.fromkeys(runs["method"]))

@@ -1,0 +1,81 @@
+"""From the runs of a study to samples: what each motion does at each level, by cylinder, method and limit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .intensity import MEASURES
+from .limits import exceeded
+from .resampling import Sample
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Blocks:
+    """The runs as blocks of motions and levels.
+
+    Attributes
+    ----------
+    cylinders, methods, motions : list of str
+        In the order in which they were run.
+    intensities : mapping of (str, str) to ndarray, shape (R, S)
+        Logarithms by cylinder and measure; of a stripe the same for all motions.
+    runs : mapping of (str, str) to DataFrame
+        By cylinder and method, the S levels of each of R motions one after the other.
+    """
+
+    cylinders: list[str]
+    methods: list[str]
+    motions: list[str]
+    intensities: Mapping[tuple[str, str], Array]
+    runs: Mapping[tuple[str, str], pd.DataFrame]
+
+    def sample(self, cylinder: str, method: str, limit: str, measure: str) -> Sample:
+        """Return the sample of a method and a limit, by one intensity."""
+        return Sample(x=self.intensities[cylinder, measure], y=self.exceeded(cylinder, method, limit))
+
+    def exceeded(self, cylinder: str, method: str, limit: str) -> Array:
+        """Return 1, 0 or NaN for each motion and level (R, S)."""
+        return exceeded(self.runs[cylinder, method], limit).reshape(len(self.motions), -1)
+
+    def known(self, cylinder: str, measure: str) -> bool:
+        """Whether every motion has an intensity of this measure."""
+        return bool(np.isfinite(self.intensities[cylinder, measure]).all())
+
+
+def blocks_of(runs: pd.DataFrame, points: pd.DataFrame) -> Blocks:
+    """Return the blocks of a table of runs and of the table of the points at which they were made."""
+    cylinders, methods, motions = (
+        list(dict.fromkeys(table[name]))
+        for table, name in ((runs, "cylinder"), (runs, "method"), (points, "motion"))
+    )
+    place = {name: index for index, name in enumerate(motions)}
+
+    def ordered(table: pd.DataFrame) -> pd.DataFrame:
+        order = np.lexsort((table["step"].to_numpy(), table["motion"].map(place).to_numpy()))
+        return table.iloc[order].reset_index(drop=True)
+
+    own = {name: ordered(part) for name, part in points.groupby("cylinder", sort=False)}
+    with np.errstate(divide="ignore"):
+        intensities = {
+            (str(name), measure): np.log(part[measure].to_numpy(float)).reshape(len(motions), -1)
+            for name, part in own.items()
+            for measure in MEASURES
+        }
+    grouped = runs.groupby(["cylinder", "method"], sort=False)
+    return Blocks(
+        cylinders=cylinders,
+        methods=methods,
+        motions=motions,
+        intensities=intensities,
+        runs={(str(key[0]), str(key[1])): ordered(part) for key, part in grouped},
+    )

@@ -1,0 +1,218 @@
+"""The tables of a fragility: counts, fits with their bands, and every method against every other."""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ...metrics.order_statistics import Interval
+from .fit import FITTED, KINDS, Curves, goodness
+from .resampling import Array, Sample, bands, interval
+from .samples import Blocks
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# of a curve: from half of the lowest intensity to twice the highest
+_POINTS, _BEYOND = 60, 2.0
+Key = tuple[str, str, str]  # cylinder, method, limit
+ALL = "all"  # cylinders
+
+
+def count_table(blocks: Blocks, limits: Sequence[str], measure: str) -> pd.DataFrame:
+    """Return n runs and k exceedances at each intensity, from which other tools can fit curves of their own.
+
+    Of a cloud each run is a row with n = 1.
+    """
+    import pandas as pd
+
+    rows = []
+    for cylinder, method, limit in _keys(blocks, limits):
+        x, n, k = blocks.sample(cylinder, method, limit, measure).counts()
+        for place, (runs, over) in enumerate(zip(n[0], k[0], strict=True)):
+            rows.append(
+                {
+                    "cylinder": cylinder,
+                    "method": method,
+                    "limit": limit,
+                    "measure": measure,
+                    "intensity": float(f"{math.exp(x[place]):.12g}"),
+                    "n": int(runs),
+                    "k": int(over),
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def fit_table(
+    blocks: Blocks, limits: Sequence[str], measure: str, drawn: Mapping[Key, Curves]
+) -> pd.DataFrame:
+    """Return the curve of each cylinder, method and limit with its intervals and its goodness of fit."""
+    import pandas as pd
+
+    rows = []
+    motions = len(blocks.motions)
+    for key in _keys(blocks, limits):
+        sample = blocks.sample(*key, measure)
+        x, n, k = sample.counts()
+        found, many = sample.curves(), drawn[key]
+        centre, dispersion = float(found.centre[0]), float(found.dispersion[0])
+        kind = KINDS[found.kinds[0]]
+        median = interval(centre, many.centre, motions)
+        spread = interval(dispersion, many.dispersion, motions)
+        held = goodness(x, n[0], k[0], centre, dispersion) if kind == FITTED else None
+        rows.append(
+            {
+                **dict(zip(("cylinder", "method", "limit"), key, strict=True)),
+                "kind": kind,
+                "runs": int(n.sum()),
+                "exceeded": int(k.sum()),
+                "failed": int(np.isnan(sample.y).sum()),
+                **interval_columns("median", exponential(median)),
+                **interval_columns("dispersion", spread),
+                # beyond the intensities that were run the curve is a guess
+                "extrapolated": not x.min() <= centre <= x.max(),
+                "without_curve": float((many.kinds != KINDS.index(FITTED)).mean()),
+                "deviance": held.deviance if held else math.nan,
+                "degrees": held.degrees if held else 0,
+                "p": held.p if held else math.nan,
+                "largest": held.largest if held else math.nan,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def curve_table(
+    blocks: Blocks, limits: Sequence[str], measure: str, drawn: Mapping[Key, Curves]
+) -> pd.DataFrame:
+    """Return the curves point by point, each with its band."""
+    import pandas as pd
+
+    tables = []
+    for key in _keys(blocks, limits):
+        sample = blocks.sample(*key, measure)
+        ends = sample.x.min() - math.log(_BEYOND), sample.x.max() + math.log(_BEYOND)
+        x = np.linspace(*ends, _POINTS)
+        low, high = bands(drawn[key], x, len(blocks.motions))
+        tables.append(
+            pd.DataFrame(
+                {
+                    **dict(zip(("cylinder", "method", "limit"), key, strict=True)),
+                    "intensity": np.exp(x),
+                    "probability": sample.curves().at(x)[0],
+                    "low": low,
+                    "high": high,
+                }
+            )
+        )
+    return pd.concat(tables, ignore_index=True)
+
+
+def contrast_table(
+    blocks: Blocks,
+    limits: Sequence[str],
+    measure: str,
+    drawn: Mapping[Key, Curves],
+    weights: Array,
+    margin: float,
+) -> pd.DataFrame:
+    """Return the ratio of the medians and the difference of the dispersions of every two methods.
+
+    Of the same motions: a run that failed by one method leaves out that of the other, and both curves are of
+    the same resamples. Rows of the cylinder "all" are geometric means of the ratios over the cylinders.
+    """
+    import pandas as pd
+
+    rows: list[dict[str, Any]] = []
+    for limit, (against, method) in itertools.product(limits, itertools.combinations(blocks.methods, 2)):
+        about = {"limit": limit, "method": method, "against": against}
+        found: list[tuple[Array, Array]] = []
+        for cylinder in blocks.cylinders:
+            pair = [blocks.sample(cylinder, name, limit, measure) for name in (method, against)]
+            unknown = np.isnan(pair[0].y) | np.isnan(pair[1].y)
+            if unknown.all():
+                continue
+            many = [drawn[cylinder, name, limit] for name in (method, against)]
+            if unknown.any():
+                pair = [Sample(x=each.x, y=np.where(unknown, np.nan, each.y)) for each in pair]
+                many = [each.curves(weights) for each in pair]
+            found.append((_differences([each.curves() for each in pair]), _differences(many)))
+            row = contrast_row(*found[-1], len(blocks.motions), margin)
+            rows.append({"cylinder": cylinder, **about, **row})
+        if len(found) == len(blocks.cylinders) > 1:
+            mean, means = (np.mean(each, axis=0) for each in zip(*found, strict=True))
+            rows.append({"cylinder": ALL, **about, **contrast_row(mean, means, len(blocks.motions), margin)})
+    return pd.DataFrame(rows)
+
+
+def _differences(pair: Sequence[Curves]) -> Array:
+    """Differences (2, B) of the logarithms of the medians, and of the dispersions, of two sets of curves."""
+    first, second = pair
+    with np.errstate(invalid="ignore"):  # of two curves that are never reached there is none
+        return np.array([first.centre - second.centre, first.dispersion - second.dispersion])
+
+
+def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, Any]:
+    """Return what tells two curves apart.
+
+    Parameters
+    ----------
+    found, drawn : ndarray, shapes (2, 1) and (2, B)
+        Differences of the logarithms of the medians and of the dispersions, and those of the resamples.
+    motions : int
+    margin : float
+    """
+    (centre, spread), (many, spreads) = found[:, 0], drawn
+    ratio = exponential(interval(float(centre), many, motions))
+    return {
+        **interval_columns("ratio", ratio),
+        **interval_columns("dispersion_difference", interval(float(spread), spreads, motions)),
+        "within": margin_of(ratio),
+        "verdict": verdict(ratio, margin),
+    }
+
+
+def verdict(ratio: Interval, margin: float) -> str:
+    """Return whether a ratio is known to be within a margin of 1: "within", "beyond" or "undecided"."""
+    low, high = 1.0 / (1.0 + margin), 1.0 + margin
+    if ratio.inside(low, high):
+        return "within"
+    return "beyond" if ratio.outside(low, high) else "undecided"
+
+
+def margin_of(ratio: Interval) -> float:
+    """Return the least margin within which the whole interval of a ratio lies; infinite without an end."""
+    if not (ratio.low > 0.0 and math.isfinite(ratio.high)):
+        return math.inf
+    return max(ratio.high, 1.0 / ratio.low, 1.0) - 1.0
+
+
+def exponential(found: Interval) -> Interval:
+    """Return the interval of a number from that of its logarithm."""
+
+    def power(value: float) -> float:
+        return math.inf if value == math.inf else math.exp(value)
+
+    return Interval(value=power(found.value), low=power(found.low), high=power(found.high))
+
+
+def interval_columns(name: str, found: Interval) -> dict[str, float]:
+    """Return an interval as columns NAME, NAME_low and NAME_high."""
+    return {name: found.value, f"{name}_low": found.low, f"{name}_high": found.high}
+
+
+def _keys(blocks: Blocks, limits: Sequence[str]) -> Iterator[Key]:
+    """Yield cylinder, method and limit where anything is known."""
+    for cylinder, method in itertools.product(blocks.cylinders, blocks.methods):
+        for limit in limits:
+            if not np.isnan(blocks.exceeded(cylinder, method, limit)).all():
+                yield cylinder, method, limit
+
+
+def drawn_curves(blocks: Blocks, limits: Sequence[str], measure: str, weights: Array) -> dict[Key, Curves]:
+    """Return the curves of all resamples, by cylinder, method and limit."""
+    return {key: blocks.sample(*key, measure).curves(weights) for key in _keys(blocks, limits)}

@@ -1,0 +1,170 @@
+"""The runs of a fragility, cut into tasks that can be kept and repeated singly."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
+from rockwobble.multibody.engines.registry import engine_facts
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+
+from ...metrics.tilt import overturned
+from ...runs.execution import simulate_run
+from ...storage.fingerprint import fingerprint
+from ...storage.provenance import engine_makers, reduced_makers
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# Computing time of a reduced run for each second of its motion, forces included or not, on one core [s]: a
+# rough mean of the models.
+_KERNEL_TIME, _SOLUTION_TIME = 3e-5, 1e-3
+# facts of a run that mean that the ground would have to pull, or did not touch the cylinder
+_LOST = ("tension", "lift_off")
+_RTOL = 1e-7
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Shaking:
+    """A ground motion and the factors on it."""
+
+    motion: GroundMotion
+    scales: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Task:
+    """One cylinder by one method under some motions, each with some factors.
+
+    Attributes
+    ----------
+    cylinder : Cylinder
+    name, label : str
+        Of the cylinder and of the method.
+    run : Run
+    shakings : tuple of Shaking
+    gravity, friction : float
+    contact : bool
+        Whether it is asked if a reduced model keeps its contact: that takes its forces.
+    """
+
+    cylinder: Cylinder
+    name: str
+    label: str
+    run: Run
+    shakings: tuple[Shaking, ...]
+    gravity: float
+    friction: float
+    contact: bool
+
+    @property
+    def title(self) -> str:
+        """What it is, for whoever waits."""
+        more = f" and {len(self.shakings) - 1} more" if len(self.shakings) > 1 else ""
+        first = self.shakings[0]
+        scale = f" × {first.scales[0]:.3g}" if len(first.scales) == 1 else ""
+        return f"{self.name}, {self.label}, {first.motion.name}{scale}{more}"
+
+    @property
+    def cost(self) -> float:
+        """Rough computing time [s]."""
+        length = sum(shaking.motion.duration * len(shaking.scales) for shaking in self.shakings)
+        if self.run.engine is None:
+            return length * (_SOLUTION_TIME if self._solved else _KERNEL_TIME)
+        step = self.run.time_step
+        if not isinstance(step, float):
+            step = REFERENCE_TIME_STEP * froude_scale(self.cylinder.semidiagonal, self.gravity).time
+        return length / step * engine_facts(self.run.engine).step_time
+
+    @property
+    def makers(self) -> dict[str, str]:
+        """Versions and code on which the results depend."""
+        return reduced_makers() if self.run.engine is None else engine_makers(self.run.engine)
+
+    def key(self) -> str:
+        """Return the hash of all that the results depend on; names are no part of it."""
+        own = {"contact": self.contact, "rtol": _RTOL} if self.run.engine is None else {}
+        return fingerprint(
+            {
+                "cylinder": self.cylinder,
+                "shakings": [(s.motion.acceleration, s.motion.time_step, s.scales) for s in self.shakings],
+                "run": self.run,
+                "gravity": self.gravity,
+                "friction": self.friction,
+                "made with": self.makers,
+                **own,
+            }
+        )
+
+    @property
+    def _solved(self) -> bool:
+        """Whether whole traces are needed; the batch kernel knows homogeneous cylinders and peaks alone."""
+        own = self.cylinder
+        return self.contact or (own.height, own.transverse_inertia, own.axial_inertia) != (None, None, None)
+
+    def rows(self) -> list[dict[str, Any]]:
+        """Return a row for each motion and factor, in their order."""
+        if self.run.engine is None and not self._solved:
+            return [row for shaking in self.shakings for row in self._peaks(shaking)]
+        return [self._row(s.motion, scale) for s in self.shakings for scale in s.scales]
+
+    def _peaks(self, shaking: Shaking) -> list[dict[str, Any]]:
+        from rockwobble import reduced
+
+        peaks = reduced.peak_tilts(
+            [self.cylinder.semidiagonal],
+            self.cylinder.tan_alpha,
+            shaking.motion,
+            shaking.scales,
+            workers=1,  # the processes share the cores already
+            gravity=self.gravity,
+            support=self.run.support,
+            **{"rtol": _RTOL, **self.run.settings},
+        )[0]
+        return [
+            {
+                "peak_tilt": float(peak) / self.cylinder.alpha,
+                "outcome": "failed"
+                if math.isnan(peak)
+                else "overturned"
+                if overturned(peak)
+                else "completed",
+                "contact_lost": math.nan,
+            }
+            for peak in peaks
+        ]
+
+    def _row(self, motion: GroundMotion, scale: float) -> dict[str, Any]:
+        case = Case(self.cylinder, motion.scaled(scale), gravity=self.gravity, friction=self.friction)
+        run = self.run
+        if run.engine is None:
+            run = Run(None, run.support, **{"rtol": _RTOL, **run.settings})
+        trace = simulate_run(case, run)
+        return {
+            "peak_tilt": trace.peak_tilt / self.cylinder.alpha,
+            "outcome": self._outcome(trace),
+            "contact_lost": self._lost(trace),
+        }
+
+    def _outcome(self, trace: Trace) -> str:
+        """Outcome by the one rule; the walls of a ring have no top, so they hold what has overturned.
+
+        A cylinder that leans on a wall beyond its balance when the ground is still again cannot come back.
+        """
+        leans = self.run.support == "ring" and trace.tilt[-1] > self.cylinder.alpha
+        return "overturned" if leans and trace.outcome != "failed" else trace.outcome
+
+    def _lost(self, trace: Trace) -> float:
+        """1 where contact was lost, 0 where it was not; NaN where nobody asked or the run failed."""
+        if trace.outcome == "failed" or not (self.contact or self.run.engine):
+            return math.nan
+        return float(any(fact.code in _LOST for fact in trace.diagnostics))
+
+
+def run_task(task: Task) -> pd.DataFrame:
+    """Return the table of a task: peak_tilt [alpha], outcome, contact_lost."""
+    import pandas as pd
+
+    return pd.DataFrame(task.rows())

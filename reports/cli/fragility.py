@@ -1,0 +1,240 @@
+"""`rockwobble fragility`: the probability of overturning by several methods under the same motions."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..console.terminal import interruptible, user_input
+from .inputs import options
+from .inputs.grid import values
+from .inputs.method_values import settings
+from .inputs.motion_set import DEFAULT_COUNT, motions_of
+from .inputs.several import cylinders_of, methods_of
+from .sweep import Scheduler, Workers
+
+_MOTIONS, _LEVELS, _STATISTICS = "Ground motions", "Intensity", "Statistics"
+
+Cylinders = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--cylinder",
+        help="A cylinder by name, as NAME=R,TAN_ALPHA such as pier=6,0.2; may be repeated.",
+        metavar="NAME=R,TAN_ALPHA",
+        rich_help_panel="Cylinder",
+    ),
+]
+FarField = Annotated[
+    bool,
+    typer.Option(
+        "--p695", help="The 22 far-field pairs of FEMA P-695 (extra records).", rich_help_panel=_MOTIONS
+    ),
+]
+Records = Annotated[
+    Path | None,
+    typer.Option(
+        "--records",
+        help="A folder of records with a table records.csv: columns x and y (files), maybe z, name, units "
+        "and scale.",
+        rich_help_panel=_MOTIONS,
+    ),
+]
+Synthetic = Annotated[
+    int | None,
+    typer.Option(
+        "--synthetic",
+        help=f"So many made-up motions. Default, without records: {DEFAULT_COUNT}.",
+        rich_help_panel=_MOTIONS,
+    ),
+]
+MeasureName = Annotated[
+    str,
+    typer.Option(
+        "--measure",
+        help="Intensity: peak_acceleration (over g tan alpha), peak_velocity (times p over g tan alpha), "
+        "pga, pgv, sa or sa_mean.",
+        rich_help_panel=_LEVELS,
+    ),
+]
+Levels = Annotated[
+    str | None,
+    typer.Option(
+        "--levels",
+        help="Intensities to which every motion is scaled: a list 1.5,2,3 or FROM:TO:COUNT, evenly in the "
+        "logarithm. Default: 20, from a little above uplift to where most overturn.",
+        rich_help_panel=_LEVELS,
+    ),
+]
+Cloud = Annotated[
+    str | None,
+    typer.Option(
+        "--cloud",
+        help="Motions as they are in the place of levels, times each of these factors: 1, or 0.5,1,2.",
+        rich_help_panel=_LEVELS,
+    ),
+]
+Period = Annotated[float, typer.Option("--period", help="Of sa and sa_mean, in s.", rich_help_panel=_LEVELS)]
+Models = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--model",
+        help="Reduced model: recess, flat, planar-x, planar-y, worse-plane (of the two), or none; may be "
+        "repeated. Default: all.",
+        rich_help_panel="Method",
+    ),
+]
+Engines = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--engine",
+        help="mujoco, pybullet, dart, drake or another that is installed; may be repeated. Default: none.",
+        rich_help_panel="Method",
+    ),
+]
+Restitution = Annotated[
+    str,
+    typer.Option(
+        "--restitution",
+        help="Of the planar models: a number, or momentum for Housner's. Default: 1, as the models in three "
+        "dimensions.",
+        rich_help_panel="Method",
+    ),
+]
+StepFactor = Annotated[
+    float,
+    typer.Option(
+        "--step-factor",
+        help="On the default time step of the engines: a share of many runs needs less than a trace.",
+        rich_help_panel="Method",
+    ),
+]
+Limits = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--limit",
+        help='uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned or contact_lost; may be '
+        "repeated. Default: all but the last, which takes the forces of every run.",
+        rich_help_panel=_STATISTICS,
+    ),
+]
+Margin = Annotated[
+    float,
+    typer.Option(
+        "--margin", help="Within which two medians count as equivalent.", rich_help_panel=_STATISTICS
+    ),
+]
+Resamples = Annotated[
+    int,
+    typer.Option("--resamples", min=2, help="Of the motions, for intervals.", rich_help_panel=_STATISTICS),
+]
+Seed = Annotated[int, typer.Option("--seed", help="Of everything random.", rich_help_panel=_STATISTICS)]
+
+
+def fragility(
+    semidiagonal: Annotated[
+        float, typer.Option("--semidiagonal", help="R, in m.", rich_help_panel="Cylinder")
+    ] = 6.0,
+    tan_alpha: Annotated[float, options.TAN_ALPHA] = 0.2,
+    cylinder: Cylinders = None,
+    p695: FarField = False,
+    records: Records = None,
+    synthetic: Synthetic = None,
+    units: options.Units = None,
+    measure: MeasureName = "peak_acceleration",
+    levels: Levels = None,
+    cloud: Cloud = None,
+    period: Period = 1.0,
+    model: Models = None,
+    engine: Engines = None,
+    support: options.Supports = None,
+    settings_given: options.Settings = None,
+    time_step: options.TimeStep = None,
+    step_factor: StepFactor = 1.0,
+    restitution: Restitution = "1",
+    friction: options.Friction = 1.0,
+    gravity: options.Gravity = 9.81,
+    limit: Limits = None,
+    margin: Margin = 0.1,
+    resamples: Resamples = 1000,
+    seed: Seed = 0,
+    workers: Workers = None,
+    scheduler: Scheduler = None,
+    out: options.Out = Path("rockwobble-fragility"),
+) -> None:
+    """Say how probable it is that shaking of an intensity overturns a cylinder, by several methods.
+
+    Every motion is scaled to the same intensities and moves every cylinder by every method, so that
+    methods are compared motion by motion. Lognormal curves by maximum likelihood, with bands by
+    resampling the motions.
+
+    Without options: the five reduced models of R = 6 m, tan alpha = 0.2 under made-up motions.
+
+    Whatever ends it, the same command goes on where it stopped.
+
+    Writes fragility.html, the same as fragility.md with its figures, the tables as Parquet, and
+    counts.csv and counts.json, from which other tools can fit curves of their own.
+    """
+    from .inputs.method_values import restitution as restitution_of
+
+    with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
+        with user_input():
+            from rockwobble import compare
+
+            compare.require_writable(out)
+            bodies = cylinders_of(cylinder, semidiagonal, tan_alpha)
+            motions, source = motions_of(p695, records, synthetic, units, seed)
+            methods = methods_of(
+                next(iter(bodies.values())), model, engine, support, settings(settings_given), time_step
+            )
+            states = None if limit is None else tuple(limit)
+            for name, body in bodies.items():
+                print(f"{name}: R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}")
+            print(f"Motions: {len(motions)}, {source}")
+        from rockwobble.compare.studies.fragility.limits import DEFAULT_LIMITS
+        from rockwobble.compare.studies.fragility.result import manifest_of
+
+        from ..console.progress import shown_progress
+        from ..console.provenance import command_line
+        from ..console.results import show_and_write
+        from ..pages.fragility import count_files, fragility_page
+
+        with user_input(), shown_progress() as tell:
+            found = compare.fragility(
+                bodies,
+                motions,
+                methods=methods,
+                measure=measure,
+                levels=None if levels is None else _levels(levels),
+                scales=None if cloud is None else values("--cloud", cloud),
+                limits=DEFAULT_LIMITS if states is None else states,
+                margin=margin,
+                period=period,
+                restitution=restitution_of(restitution),
+                gravity=gravity,
+                friction=friction,
+                step_factor=step_factor,
+                resamples=resamples,
+                seed=seed,
+                workers=workers,
+                scheduler=scheduler,
+                progress=tell,
+                resume=out,
+                source=source,
+            )
+        manifest = manifest_of(found, command_line())
+        show_and_write(out, fragility_page(found, manifest), manifest, found.tables, count_files(found))
+
+
+def _levels(text: str) -> list[float]:
+    """Return the numbers of a list, or of a range, which is even in the logarithm."""
+    found = values("--levels", text)
+    if ":" not in text:
+        return found
+    low, high = found[0], found[-1]
+    if not 0.0 < low < high:
+        raise ValueError(f"--levels must increase from above zero, got {text!r}")
+    count = len(found)
+    return [low * math.exp(math.log(high / low) * place / (count - 1)) for place in range(count)]

@@ -1,0 +1,90 @@
+"""From options that may be repeated to several cylinders and methods."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+if TYPE_CHECKING:
+    from rockwobble.models import Cylinder, Run
+
+
+def cylinders_of(given: Sequence[str] | None, semidiagonal: float, tan_alpha: float) -> dict[str, Cylinder]:
+    """Return the cylinders of texts NAME=R,TAN_ALPHA; without any the one of the two numbers.
+
+    Raises
+    ------
+    ValueError
+        If a text has another form, or a name comes twice.
+    """
+    from rockwobble.models import Cylinder
+
+    if not given:
+        body = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
+        return {f"R = {semidiagonal:g} m, tan α = {tan_alpha:g}": body}
+    found: dict[str, Cylinder] = {}
+    for text in given:
+        name, sign, numbers = (part.strip() for part in text.partition("="))
+        sizes = numbers.split(",")
+        try:
+            size, slenderness = map(float, sizes)
+        except ValueError:
+            name = ""
+        if not (name and sign):
+            raise ValueError(f"--cylinder must be NAME=R,TAN_ALPHA such as pier=6,0.2, got {text!r}")
+        if name in found:
+            raise ValueError(f"--cylinder {name} is given twice")
+        found[name] = Cylinder(semidiagonal=size, tan_alpha=slenderness)
+    return found
+
+
+def methods_of(
+    body: Cylinder,
+    models: Sequence[str] | None,
+    engines: Sequence[str] | None,
+    supports: Sequence[str] | None,
+    given: Mapping[str, Any],
+    time_step: float | Literal["auto"] | None,
+) -> list[str | Run]:
+    """Return reduced models by name, and each engine with those of the supports that it has.
+
+    Parameters
+    ----------
+    body : Cylinder
+        On which the settings are tried.
+    models, engines, supports : sequence of str, optional
+        Models: all without any, none for "none". Engines: none without any.
+    given : mapping
+        Settings, each of every run that has one of that name.
+    time_step : float or "auto", optional
+        [s]
+
+    Raises
+    ------
+    ValueError
+        If an engine has none of the supports, or nothing has a setting.
+    """
+    from rockwobble.compare import default_runs, with_settings
+    from rockwobble.compare.studies.fragility.methods import MODELS
+    from rockwobble.models import Case, Run, el_centro_1940
+    from rockwobble.multibody.engines.registry import find_engine
+
+    chosen: list[str | Run] = [] if models == ["none"] else list(models or MODELS)
+    if not engines:
+        if supports or given or time_step is not None:
+            raise ValueError("--support, --set and --time-step are for engines, give --engine as well")
+        return chosen
+    runs: list[Run] = []
+    for name in engines:
+        able = [each for each in supports or () if each in find_engine(name).supports]
+        if supports and len(able) < len(supports):
+            lacks = [each for each in supports if each not in able]
+            if not able:
+                raise ValueError(f"{name} has no support {', '.join(lacks)}")
+            print(f"{name} has no support {', '.join(lacks)} and is left out there")
+        runs += default_runs([name], able or None)
+    if time_step is not None:
+        runs = [Run(run.engine, run.support, time_step) for run in runs]
+    if given:
+        runs = list(with_settings(Case(body, el_centro_1940()), runs, given))
+    return [*chosen, *runs]

@@ -1,0 +1,261 @@
+"""Fragility curves with their bands and counts, a panel for each support, and the ratios of the medians."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from rockwobble.compare.studies.fragility.intensity import MEASURES
+from rockwobble.compare.studies.fragility.limits import OVERTURNED
+from rockwobble.compare.studies.fragility.tables import ALL
+
+from .palette import DARK, GREY, ORDER, SHADED, Style, pale
+from .picture import Axis, Band, Line, Panel, Picture, Rule
+
+if TYPE_CHECKING:
+    from rockwobble.compare import Fragility
+
+# of a panel: the support, and what it is called
+_SUPPORTS: Mapping[str, str] = {
+    "planar": "Planar analysis",
+    "recess": "Recess",
+    "flat": "Flat ground",
+    "ring": "Ring of walls",
+}
+_SYMBOLS = ("circle", "square", "triangle-up", "diamond")
+_COLOURS = (DARK, *ORDER)
+_DASHES = ("solid", "dash", "dashdot", "dot")
+_TICKS = (0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 50.0)
+_RATIOS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0)
+_LINE = 0.42  # inch for a pair of methods
+_MEDIAN = Style(colour=ORDER[0], dash="none", symbol="diamond")
+Row = dict[str, Any]
+
+
+def main_contrasts(found: Fragility, limit: str = OVERTURNED) -> dict[str, list[Row]]:
+    """Return the rows of the contrasts that answer the three questions, by question.
+
+    "planar": each planar method against the recess model; "support": the same method on another support
+    against the recess; "engine": an engine against the model of its support, and against another engine.
+    """
+    methods: Mapping[str, Mapping[str, Any]] = found.about["methods"]
+    answers: dict[str, list[Row]] = {"planar": [], "support": [], "engine": []}
+    rows = found.contrasts.to_dict("records") if len(found.contrasts) else []
+    for row in rows:
+        if row["limit"] != limit:
+            continue
+        question, turned = _question(methods, str(row["method"]), str(row["against"]))
+        if question:
+            named = {str(name): value for name, value in row.items()}
+            answers[question].append(_inverted(named) if turned else named)
+    return answers
+
+
+def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: str) -> tuple[str, bool]:
+    """Return the question that a pair answers, and whether the pair is the other way round; "" for none."""
+    one, other = methods[method], methods[against]
+    engines = one["engine"], other["engine"]
+    if engines == (None, None) and "planar" in (one["support"], other["support"]):
+        recess = [each["support"] == "recess" for each in (one, other)]
+        return ("planar", recess[0]) if any(recess) else ("", False)
+    if engines[0] == engines[1]:
+        recess = [each["support"] == "recess" for each in (one, other)]
+        return ("support", recess[0]) if recess[0] != recess[1] else ("", False)
+    if None in engines:
+        turned = engines[0] is None
+        model, engine = (method, other) if turned else (against, one)
+        return ("engine", turned) if engine["own_model"] == model else ("", False)
+    return ("engine", False) if one["support"] == other["support"] else ("", False)
+
+
+def _inverted(row: Row) -> Row:
+    """Return a contrast with its methods exchanged."""
+
+    def inverse(value: float) -> float:
+        return math.inf if value == 0.0 else 1.0 / value
+
+    return row | {
+        "method": row["against"],
+        "against": row["method"],
+        "ratio": inverse(row["ratio"]),
+        "ratio_low": inverse(row["ratio_high"]),
+        "ratio_high": inverse(row["ratio_low"]),
+        "dispersion_difference": -row["dispersion_difference"],
+        "dispersion_difference_low": -row["dispersion_difference_high"],
+        "dispersion_difference_high": -row["dispersion_difference_low"],
+    }
+
+
+def fragility_pictures(found: Fragility) -> list[Picture]:
+    """Return the ratios of the medians, and the curves of each cylinder."""
+    ratios = _ratios(found)
+    curves = [
+        _curves(found, str(name), place) for place, name in enumerate(found.about["cylinders"], start=1)
+    ]
+    return ([ratios] if ratios else []) + curves
+
+
+def _ratios(found: Fragility) -> Picture | None:
+    answers = main_contrasts(found)
+    cylinders = [*found.about["cylinders"], ALL] if len(found.about["cylinders"]) > 1 else [None]
+    rows = [row for part in answers.values() for row in part if math.isfinite(row["ratio"])]
+    if not rows:
+        return None
+    pairs = list(dict.fromkeys((row["method"], row["against"]) for row in rows))
+    margin = float(found.about["margin"])
+    ends = [row[f"ratio_{end}"] for row in rows for end in ("low", "high")]
+    known = [abs(math.log(end)) for end in ends if 0.0 < end < math.inf]
+    reach = min(1.15 * max([*known, 2.0 * math.log1p(margin)]), math.log(4.0))
+    low, high = math.exp(-reach), math.exp(reach)
+    panels = []
+    for cylinder in cylinders:
+        own = {
+            (row["method"], row["against"]): row
+            for row in rows
+            if cylinder is None or row["cylinder"] == cylinder
+        }
+        layers: list[Line | Rule] = [
+            Rule(at=1.0 / (1.0 + margin), until=1.0 + margin, axis="x", colour=SHADED),
+            Rule(at=1.0, axis="x"),
+        ]
+        for place, pair in enumerate(pairs):
+            if pair not in own:
+                continue
+            row = own[pair]
+            x = np.clip([row["ratio_low"], row["ratio_high"]], low, high)
+            y = np.full(2, float(place))
+            layers.append(Line(x=x, y=y, name="95 % interval", style=Style(colour=ORDER[0]), width=3.0))
+            if low <= row["ratio"] <= high:
+                layers.append(
+                    Line(x=np.array([row["ratio"]]), y=y[:1], name="ratio of the medians", style=_MEDIAN)
+                )
+        title = {None: "", ALL: "Mean of all cylinders"}.get(cylinder, str(cylinder))
+        panels.append(
+            Panel(
+                x=Axis(
+                    label="median over median",
+                    unit="-",
+                    log=True,
+                    low=low,
+                    high=high,
+                    ticks=[(tick, f"{tick:g}") for tick in _RATIOS if low <= tick <= high],
+                ),
+                y=Axis(
+                    label="pair",
+                    unit="-",
+                    low=-0.6,
+                    high=len(pairs) - 0.4,
+                    ticks=[(float(i), f"{a}\n/ {b}") for i, (a, b) in enumerate(pairs)],
+                    reverse=True,
+                ),
+                layers=layers,
+                title=title,
+                height=_LINE * len(pairs) + 1.0,
+            )
+        )
+    return Picture(
+        name="fragility-ratios",
+        title="Median overturning intensity of each method over that of another",
+        caption="Above 1 the first method takes more shaking to overturn half of the motions: it is the less "
+        "safe one to rely on. Bars: 95 % intervals by resampling the motions, the same for both methods. "
+        f"Shaded: the margin of {100.0 * margin:g} %.",
+        panels=panels,
+        columns=2,
+    )
+
+
+def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
+    methods: Mapping[str, Mapping[str, Any]] = found.about["methods"]
+    recess = [name for name, own in methods.items() if own["support"] == "recess" and not own["engine"]]
+    panels = []
+    for support, title in _SUPPORTS.items():
+        labels = [name for name, own in methods.items() if own["support"] == support]
+        if labels:
+            shown = labels if support == "recess" else [*recess, *labels]
+            panels.append(_panel(found, cylinder, shown, title))
+    measure = MEASURES[str(found.about["measure"])]
+    return Picture(
+        name=f"fragility-{place}",
+        title=f"Fragility of {cylinder}: share of the motions that overturn it",
+        caption=f"Over the intensity, {measure.title}. Lines: lognormal curves by maximum likelihood, with "
+        "95 % bands by resampling the motions; marks: shares of the runs.",
+        panels=panels,
+        columns=2,
+        legend="panels",
+    )
+
+
+def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -> Panel:
+    counts, curves = (
+        table[(table["cylinder"] == cylinder) & (table["limit"] == OVERTURNED)]
+        for table in (found.counts, found.curves)
+    )
+    measure = MEASURES[str(found.about["measure"])]
+    backs: list[Band | Line] = []
+    fronts: list[Band | Line] = []
+    for index, label in enumerate(labels):
+        colour, dash = _COLOURS[index % len(_COLOURS)], _DASHES[index % len(_DASHES)]
+        own = curves[curves["method"] == label]
+        if not len(own):
+            continue
+        x = own["intensity"].to_numpy(float)
+        low, high = (own[end].to_numpy(float) for end in ("low", "high"))
+        shade = "#d9d9d9" if colour == DARK else pale(pale(colour))
+        backs.append(Band(x=x, low=low, high=high, colour=shade))
+        fronts.append(
+            Line(
+                x=x,
+                y=own["probability"].to_numpy(float),
+                name=label,
+                style=Style(colour=colour, dash=dash),
+                width=1.8,
+            )
+        )
+        part = _grouped(counts[counts["method"] == label])
+        mark = Style(colour=colour, dash="none", symbol=_SYMBOLS[index % len(_SYMBOLS)])
+        fronts.append(
+            Line(
+                x=part["intensity"].to_numpy(float),
+                y=(part["k"] / part["n"]).to_numpy(float),
+                style=mark,
+                size=4.0,
+                notes=[f"{label}: {k} of {n}" for k, n in zip(part["k"], part["n"], strict=True)],
+            )
+        )
+    shown = counts["intensity"]
+    ends = 0.9 * float(shown.min()), 1.1 * float(shown.max())
+    return Panel(
+        x=Axis(
+            label=measure.title,
+            unit=measure.unit,
+            log=True,
+            low=ends[0],
+            high=ends[1],
+            ticks=[(tick, f"{tick:g}") for tick in _TICKS if ends[0] <= tick <= ends[1]],
+        ),
+        y=Axis(label="probability of overturning", unit="-", low=-0.02, high=1.02),
+        layers=[*backs, Rule(at=0.5, axis="y", colour=GREY), *fronts],
+        title=title,
+        height=2.9,
+    )
+
+
+def _grouped(counts: Any) -> Any:
+    """Counts of a cloud by tenths of its runs, each at the mean of its logarithms; of stripes as they are."""
+    import pandas as pd
+
+    if len(counts) <= 40:
+        return counts
+    ordered = counts.sort_values("intensity")
+    group = (np.arange(len(ordered)) * 10) // len(ordered)
+    parts = [part for _, part in ordered.groupby(group)]
+    return pd.DataFrame(
+        {
+            "intensity": [math.exp(float(np.log(part["intensity"]).mean())) for part in parts],
+            "n": [int(part["n"].sum()) for part in parts],
+            "k": [int(part["k"].sum()) for part in parts],
+        }
+    )

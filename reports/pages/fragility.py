@@ -1,0 +1,104 @@
+"""What the page of a fragility is given: its words are in the template fragility.md.j2."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from rockwobble.compare.storage.manifest import Manifest, read_results
+from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER
+from rockwobble.compare.studies.fragility.intensity import MEASURES
+from rockwobble.compare.studies.fragility.limits import OVERTURNED
+from rockwobble.compare.studies.fragility.result import KIND, stored_fragility
+from rockwobble.compare.studies.fragility.tables import ALL
+
+from ..figures.fragility import fragility_pictures, main_contrasts
+from .page import Page
+
+if TYPE_CHECKING:
+    from rockwobble.compare import Fragility
+
+# below this probability the counts do not follow a lognormal curve
+_POOR = 0.05
+
+
+def fragility_page(found: Fragility, manifest: Manifest) -> Page:
+    """Return the page of a fragility."""
+    return Page(
+        name="fragility",
+        template="fragility",
+        values={**fragility_values(found), "about": manifest},
+        pictures=fragility_pictures(found),
+    )
+
+
+def stored_page(folder: Path) -> Page:
+    """Return the page of the fragility that is stored in a folder."""
+    results = read_results(folder, KIND)
+    return fragility_page(stored_fragility(results), results.manifest)
+
+
+def count_files(found: Fragility) -> dict[str, bytes]:
+    """Return the counts as CSV and as JSON, for tools that fit curves of their own."""
+    rows = found.counts.to_dict("records")
+    return {
+        "counts.csv": found.counts.to_csv(index=False).encode(),
+        "counts.json": (json.dumps(rows, indent=0, ensure_ascii=False) + "\n").encode(),
+    }
+
+
+def fragility_values(found: Fragility) -> dict[str, object]:
+    """Return what the template says of a fragility."""
+    measure = MEASURES[str(found.about["measure"])]
+    cylinders = found.about["cylinders"]
+    whole = ALL if len(cylinders) > 1 else next(iter(cylinders))
+    answers = main_contrasts(found)
+    fits = found.fits.to_dict("records")
+    fallen = [row for row in fits if row["limit"] == OVERTURNED]
+    return {
+        "facts": found.about,
+        "measure": measure,
+        "measures": [{"name": name, **_plain(each)} for name, each in MEASURES.items()],
+        "cylinders": [{"name": name, **body} for name, body in cylinders.items()],
+        "answers": {
+            question: [row for row in rows if row["cylinder"] == whole] for question, rows in answers.items()
+        },
+        "contrasts": _by_cylinder([row for rows in answers.values() for row in rows], [*cylinders, ALL]),
+        "several": len(cylinders) > 1,
+        "fallen": fallen,
+        "extrapolated": [row for row in fallen if row["extrapolated"] and row["kind"] == FITTED],
+        "curveless": [row for row in fits if row["kind"] not in (FITTED, ALWAYS, NEVER)],
+        "poor": [row for row in fallen if row["p"] < _POOR],
+        "poor_below": _POOR,
+        "states": _states(found),
+        "state_columns": [["method", "method", "words"]]
+        + [[limit, limit.replace("_", " "), ".3g"] for limit in found.about["limits"]],
+        "ring": any(each["support"] == "ring" for each in found.about["methods"].values()),
+        "failed": [row for row in fallen if row["failed"]],
+        "efficiency": found.efficiency.to_dict("records"),
+        "best": [row for row in found.efficiency.to_dict("records") if row["best"]],
+        "islands": found.islands.to_dict("records"),
+        "pictures": [picture.name for picture in fragility_pictures(found)],
+    }
+
+
+def _plain(measure: Any) -> dict[str, str]:
+    return {"title": measure.title, "unit": measure.unit, "meaning": measure.meaning}
+
+
+def _by_cylinder(rows: list[dict[str, Any]], cylinders: list[str]) -> list[dict[str, Any]]:
+    return [row for cylinder in cylinders for row in rows if row["cylinder"] == cylinder]
+
+
+def _states(found: Fragility) -> list[dict[str, Any]]:
+    """One row for each cylinder and method: the median of each limit, or what bounds it."""
+    rows: dict[tuple[str, str], dict[str, Any]] = {}
+    ends = found.counts.groupby("cylinder")["intensity"].agg(["min", "max"])
+    for row in found.fits.to_dict("records"):
+        key = str(row["cylinder"]), str(row["method"])
+        made = rows.setdefault(key, {"cylinder": key[0], "method": key[1]})
+        low, high = (float(ends[end][key[0]]) for end in ("min", "max"))
+        bounds = {ALWAYS: f"< {low:.3g}", NEVER: f"> {high:.3g}"}
+        made[str(row["limit"])] = bounds.get(str(row["kind"]), row["median"])
+    return list(rows.values())

@@ -1,0 +1,108 @@
+"""Coverage of the intervals of a fragility, by simulation.
+
+`python tests/benchmarks fragility_coverage` prints one line for each kind of study: in what share of
+simulated studies the 95 % interval holds the true median, the true dispersion, and the true ratio of the
+medians of two methods under the same motions.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from rockwobble.compare.studies.fragility.resampling import Array, Sample, interval, resamples
+
+from .console import options_of
+
+STUDIES, RESAMPLES = 2000, 400
+MEDIAN = 4.0
+HEADINGS = ("study", "n", "levels", "median", "dispersion", "ratio")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Kind:
+    """A kind of study: motions of a capacity each, drawn from a lognormal distribution.
+
+    Attributes
+    ----------
+    name : str
+    motions, levels : int
+    dispersion : float
+    island : float
+        Probability that a run above the capacity of its motion stands, and that one below it falls: more of
+        the dispersion is then within the motions.
+    """
+
+    name: str
+    motions: int = 22
+    levels: int = 20
+    dispersion: float = 0.6
+    island: float = 0.0
+
+    def draw(self, random: np.random.Generator) -> tuple[Sample, Sample]:
+        """Return the motions by two methods of the same capacity but for a scatter of a fifth."""
+        x = np.log(np.geomspace(1.25, 12.0, self.levels))
+        capacity = random.normal(math.log(MEDIAN), self.dispersion, self.motions)
+        scatter = 0.2 * random.standard_normal((2, self.motions))
+        # the scatter adds to the dispersion of either method
+        return self._sample(x, capacity + scatter[0], random), self._sample(x, capacity + scatter[1], random)
+
+    def _sample(self, x: Array, capacity: Array, random: np.random.Generator) -> Sample:
+        # within a motion, what a level needs scatters from level to level
+        within = self.island * random.standard_normal((self.motions, self.levels))
+        y = x >= capacity[:, None] + within
+        return Sample(x=np.tile(x, (self.motions, 1)), y=y.astype(np.float64))
+
+    @property
+    def whole(self) -> float:
+        """True dispersion of either method."""
+        return math.sqrt(self.dispersion**2 + 0.2**2 + self.island**2)
+
+
+KINDS = (
+    *(Kind(name="22 motions", levels=levels) for levels in (8, 12, 20)),
+    Kind(name="22 motions, little dispersion", dispersion=0.35),
+    Kind(name="22 motions, with islands", island=0.3),
+    Kind(name="22 motions, with islands", island=0.3, levels=8),
+    *(Kind(name=f"{motions} motions", motions=motions) for motions in (11, 44, 100)),
+)
+
+
+def coverage(kind: Kind, studies: int, draws: int = RESAMPLES, seed: int = 1) -> tuple[float, float, float]:
+    """Return the shares of studies whose intervals hold the median, the dispersion and the ratio of 1."""
+    random = np.random.default_rng(seed)
+    inside = np.zeros((studies, 3))
+    for place in range(studies):
+        weights = resamples(kind.motions, draws, int(random.integers(2**31)))
+        ours, theirs = kind.draw(random)
+        found, other, drawn, others = (
+            each.curves(weights) if many else each.curves()
+            for each, many in ((ours, False), (theirs, False), (ours, True), (theirs, True))
+        )
+        with np.errstate(invalid="ignore"):
+            numbers = (
+                (found.centre[0], drawn.centre, math.log(MEDIAN)),
+                (found.dispersion[0], drawn.dispersion, kind.whole),
+                (found.centre[0] - other.centre[0], drawn.centre - others.centre, 0.0),
+            )
+        for column, (value, many, truth) in enumerate(numbers):
+            held = interval(float(value), many, kind.motions)
+            inside[place, column] = held.low <= truth <= held.high
+    shares = inside.mean(axis=0)
+    return float(shares[0]), float(shares[1]), float(shares[2])
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the table."""
+    parser = options_of("fragility_coverage", "Coverage of the intervals of a fragility.")
+    parser.add_argument("--studies", type=int, default=STUDIES, help="simulated of each kind (%(default)s)")
+    studies = parser.parse_args(arguments).studies
+    print(f"Coverage of 95 % intervals, {studies} studies of each kind")
+    print(f"{HEADINGS[0]:32}" + "".join(f"{name:>12}" for name in HEADINGS[1:]))
+    for kind in KINDS:
+        cells = (str(kind.motions), str(kind.levels), *(f"{share:.3f}" for share in coverage(kind, studies)))
+        print(f"{kind.name:32}" + "".join(f"{cell:>12}" for cell in cells), flush=True)
+    return 0

@@ -1,0 +1,304 @@
+"""A fragility of the reduced models: the same motions for all, limits, islands, contrasts, resuming."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import reduced
+from rockwobble.compare import Fragility, fragility, synthetic_motions
+from rockwobble.compare.studies.fragility import runs as running
+from rockwobble.compare.studies.fragility.islands import incremental, islands
+from rockwobble.compare.studies.fragility.limits import exceeded, require_limits
+from rockwobble.compare.studies.fragility.methods import methods_of, own_model
+from rockwobble.compare.studies.fragility.motions import read_records
+from rockwobble.compare.studies.fragility.plan import Plan
+from rockwobble.compare.studies.fragility.result import fragility_of
+from rockwobble.models import Case, Cylinder, Run, el_centro_1940
+
+COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
+LEVELS = (1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.5, 8.0)
+COUNT = len(LEVELS)
+MOTIONS = synthetic_motions(12, peak=1.0, seed=4)
+RECORDS = Path(__file__).parents[2] / "models" / "records"
+NAN = math.nan
+
+
+@pytest.fixture(scope="module")
+def found() -> Fragility:
+    return fragility(COLUMN, MOTIONS, levels=LEVELS, resamples=60, workers=1)
+
+
+def rows(found: Fragility, method: str) -> pd.DataFrame:
+    return found.runs[found.runs["method"] == method].sort_values(["motion", "step"])
+
+
+def test_every_method_runs_under_the_same_motions(found):
+    methods = list(dict.fromkeys(found.runs["method"]))
+    assert methods == ["recess model", "flat-ground model", "planar x", "planar y", "worse plane"]
+    assert len(found.runs) == 5 * 12 * COUNT
+    assert len(found.points) == 12 * COUNT
+    for _, part in found.points.groupby("step"):
+        assert set(part["peak_acceleration"]) == {LEVELS[int(part["step"].iloc[0])]}
+    # a run is the one that anybody can make
+    point = found.points.iloc[-1]
+    motion = next(each for each in MOTIONS if each.name == point["motion"])
+    alone = reduced.simulate(Case(COLUMN, motion.scaled(point["scale"])), support="flat", rtol=1e-7)
+    own = rows(found, "flat-ground model")
+    own = own[(own["motion"] == point["motion"]) & (own["step"] == point["step"])].iloc[0]
+    assert own["outcome"] == alone.outcome
+    assert own["peak_tilt"] == pytest.approx(alone.peak_tilt / COLUMN.alpha, abs=1e-12)
+
+
+def test_contact_is_asked_of_whole_solutions_which_have_the_peaks_of_the_kernel(found):
+    # at the strongest level, where contact is lost
+    options = {"methods": ["recess"], "levels": LEVELS[-1:], "resamples": 2, "workers": 1}
+    whole = fragility(COLUMN, MOTIONS, limits=["contact_lost"], **options).runs.sort_values("motion")
+    quick = rows(found, "recess model")
+    quick = quick[quick["step"] == COUNT - 1]
+    np.testing.assert_allclose(whole["peak_tilt"], quick["peak_tilt"], rtol=1e-12)
+    assert found.runs["contact_lost"].isna().all()
+    assert set(whole["contact_lost"]) <= {0.0, 1.0}
+    lost = [
+        bool(reduced.simulate(Case(COLUMN, m.scaled(s)), rtol=1e-7).assumptions.least_normal_force <= 0.0)
+        for m in MOTIONS[:4]
+        for s in found.points[(found.points["motion"] == m.name)]["scale"].iloc[-1:]
+    ]
+    own = whole.set_index("motion")["contact_lost"]
+    assert [bool(own[motion.name]) for motion in MOTIONS[:4]] == lost
+
+
+def test_the_worse_plane_is_the_larger_of_both(found):
+    x, y, worse = (rows(found, name) for name in ("planar x", "planar y", "worse plane"))
+    np.testing.assert_array_equal(
+        worse["peak_tilt"], np.maximum(x["peak_tilt"].to_numpy(), y["peak_tilt"].to_numpy())
+    )
+    fell = (x["outcome"] == "overturned").to_numpy() | (y["outcome"] == "overturned").to_numpy()
+    np.testing.assert_array_equal(worse["outcome"] == "overturned", fell)
+
+
+def test_limits_are_one_inside_the_other(found):
+    counts = found.counts.pivot_table(index=["method", "intensity"], columns="limit", values="k")
+    tilts = ["uplift", "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", "overturned"]
+    assert (np.diff(counts[tilts].to_numpy(), axis=1) <= 0).all()
+    assert (found.counts["n"] == 12).all()
+    total = found.runs.groupby("method")["outcome"].apply(lambda part: (part == "overturned").sum())
+    fallen = found.counts[found.counts["limit"] == "overturned"].groupby("method")["k"].sum()
+    assert fallen.to_dict() == total.to_dict()
+
+
+def test_what_a_run_exceeds():
+    table = pd.DataFrame(
+        {
+            "peak_tilt": [0.0, 1e-9, 0.5, 1.2, 8.0, NAN],
+            "outcome": ["rest", "rest", "completed", "completed", "overturned", "failed"],
+            "contact_lost": [0.0, 0.0, NAN, 1.0, 0.0, NAN],
+        }
+    )
+    expected = {
+        "uplift": [0, 1, 1, 1, 1, NAN],
+        "0.5 alpha": [0, 0, 1, 1, 1, NAN],
+        "1 alpha": [0, 0, 0, 1, 1, NAN],
+        "overturned": [0, 0, 0, 0, 1, NAN],
+        "contact_lost": [0, 0, NAN, 1, 0, NAN],
+    }
+    for limit, values in expected.items():
+        np.testing.assert_array_equal(exceeded(table, limit), np.array(values, dtype=float))
+    assert require_limits(["overturned", "uplift"]) == ("uplift", "overturned")
+
+
+def test_islands_and_what_stopping_early_makes_of_them():
+    y = np.array([[0, 1, 0, 1], [0, 0, 1, 1], [1, NAN, 0, 0], [0, NAN, 1, NAN], [1, 0, 1, 0]], dtype=float)
+    found = islands(y)
+    assert found.astype(int).tolist() == [[0, 1, 0, 0], [0] * 4, [1, 0, 0, 0], [0] * 4, [1, 0, 1, 0]]
+    stopped = incremental(y)
+    expected = [[0, 1, 1, 1], [0, 0, 1, 1], [1, 1, 1, 1], [0, NAN, 1, 1], [1, 1, 1, 1]]
+    np.testing.assert_array_equal(stopped, np.array(expected, dtype=float))
+
+
+def test_stopping_early_makes_the_median_smaller(found):
+    some = found.islands[found.islands["islands"] > 0]
+    assert len(some) >= 3
+    assert (some["bias"] < 1.0).all()
+    np.testing.assert_allclose(
+        found.islands["bias"], found.islands["median_incremental"] / found.islands["median"]
+    )
+
+
+def test_contrasts_are_ratios_of_the_fits_and_alike_methods_are_equal(found):
+    medians = found.fits[found.fits["limit"] == "0.5 alpha"].set_index("method")["median"]
+    pairs = found.contrasts[found.contrasts["limit"] == "0.5 alpha"]
+    assert len(pairs) == 10
+    for row in pairs.to_dict("records"):
+        assert row["ratio"] == pytest.approx(medians[row["method"]] / medians[row["against"]], rel=1e-9)
+        assert row["ratio_low"] <= row["ratio"] <= row["ratio_high"]
+    twice = found.runs[found.runs["method"] == "recess model"]
+    both = pd.concat([twice, twice.assign(method="the same")])
+    same = fragility_of(both, found.points, found.about).contrasts
+    row = same[same["limit"] == "0.5 alpha"].iloc[0]
+    assert (row["ratio"], row["ratio_low"], row["ratio_high"], row["verdict"]) == (1.0, 1.0, 1.0, "within")
+    assert row["within"] == 0.0
+
+
+def test_pairs_leave_out_what_failed_by_either(found):
+    runs = found.runs[found.runs["method"].isin(["recess model", "planar x"])].copy()
+    lost = (runs["method"] == "planar x") & (runs["motion"] == MOTIONS[0].name)
+    runs.loc[lost, ["peak_tilt", "outcome"]] = [NAN, "failed"]
+    whole = fragility_of(runs, found.points, found.about)
+    gone = runs["motion"] != MOTIONS[0].name
+    fits = fragility_of(runs[gone], found.points[found.points["motion"] != MOTIONS[0].name], found.about).fits
+    medians = fits[fits["limit"] == "0.5 alpha"].set_index("method")["median"]
+    row = whole.contrasts[whole.contrasts["limit"] == "0.5 alpha"].iloc[0]
+    assert row["ratio"] == pytest.approx(medians["planar x"] / medians["recess model"], rel=1e-9)
+    own = whole.fits[(whole.fits["method"] == "planar x") & (whole.fits["limit"] == "0.5 alpha")].iloc[0]
+    assert (own["failed"], own["runs"]) == (COUNT, 11 * COUNT)
+
+
+def test_the_mean_of_the_cylinders_is_geometric():
+    bodies = {"column": COLUMN, "pier": Cylinder(semidiagonal=6.0, tan_alpha=0.2)}
+    found = fragility(bodies, MOTIONS, methods=["recess", "planar-x"], levels=LEVELS, resamples=20, workers=1)
+    pairs = found.contrasts[found.contrasts["limit"] == "0.5 alpha"].set_index("cylinder")["ratio"]
+    assert pairs["all"] == pytest.approx(math.sqrt(pairs["column"] * pairs["pier"]), rel=1e-12)
+
+
+def test_the_best_measure_has_the_least_dispersion(found):
+    table = found.efficiency
+    best = table[table["best"]].iloc[0]
+    assert best["dispersion"] == table["dispersion"].min()
+    assert (best["over_best"], best["over_best_low"], best["over_best_high"]) == (1.0, 1.0, 1.0)
+    # of one cylinder p and g tan(alpha) are the same for all: the levels' own measure, fitted both ways
+    own = table[table["measure"] == "peak_acceleration"].iloc[0]
+    fit = found.fits[(found.fits["method"] == "recess model") & (found.fits["limit"] == "overturned")].iloc[0]
+    assert own["dispersion"] == pytest.approx(fit["dispersion"], rel=1e-9)
+
+
+def test_a_cloud_takes_the_motions_as_they_are():
+    motions = [motion.scaled(2.0 + 0.4 * place) for place, motion in enumerate(MOTIONS)]
+    found = fragility(COLUMN, motions, methods=["recess"], scales=[1.0, 2.0], resamples=20, workers=1)
+    assert (found.counts["n"] == 1).all()
+    assert found.points["scale"].tolist() == [1.0, 2.0] * 12
+    fit = found.fits[found.fits["limit"] == "0.5 alpha"].iloc[0]
+    assert (fit["kind"], fit["runs"]) == ("fitted", 24)
+
+
+def test_bodies_that_the_kernel_does_not_know_are_solved():
+    hollow = Cylinder(semidiagonal=3.0, tan_alpha=0.15, transverse_inertia=4.0)
+    found = fragility(hollow, MOTIONS[:3], methods=["recess"], levels=[3.0], resamples=5, workers=1)
+    point = found.points.iloc[0]
+    alone = reduced.simulate(Case(hollow, MOTIONS[0].scaled(point["scale"])), rtol=1e-7)
+    assert found.runs["peak_tilt"].iloc[0] == pytest.approx(alone.peak_tilt / hollow.alpha, rel=1e-12)
+
+
+def test_a_second_call_runs_nothing_again(tmp_path, monkeypatch):
+    def once() -> Fragility:
+        return fragility(
+            COLUMN,
+            MOTIONS[:4],
+            methods=["worse-plane"],
+            levels=LEVELS,
+            resamples=5,
+            workers=1,
+            resume=tmp_path,
+        )
+
+    first = once()
+
+    def refuse(task):
+        raise AssertionError(task.title)
+
+    monkeypatch.setattr(running, "run_task", refuse)
+    pd.testing.assert_frame_equal(once().runs, first.runs)
+    assert once().about["inputs"] == first.about["inputs"]
+
+
+def test_engines_run_beside_their_model_and_a_ring_holds_what_has_overturned():
+    runs = [Run("mujoco", "recess"), Run("mujoco", "ring", ring_clearance=0.01, ring_inclination=0.5)]
+    found = fragility(
+        COLUMN,
+        MOTIONS[:2],
+        methods=["recess", *runs],
+        levels=[12.0],
+        step_factor=8.0,
+        friction=3.0,
+        resamples=5,
+        workers=1,
+    )
+    strong = found.runs
+    assert (strong["outcome"] == "overturned").all()
+    ring = strong[strong["method"] == "mujoco ring"]
+    assert (ring["peak_tilt"] > 1.0).all()
+    assert (ring["peak_tilt"] < 0.5 * math.pi / COLUMN.alpha).all()
+    assert found.about["methods"]["mujoco ring"]["own_model"] == "recess model"
+
+
+def test_methods_by_name():
+    methods = methods_of(["worse-plane", "recess", Run("mujoco", "flat"), "flat"], restitution="momentum")
+    assert [each.label for each in methods] == [
+        "planar x",
+        "planar y",
+        "worse plane",
+        "recess model",
+        "mujoco flat",
+        "flat-ground model",
+    ]
+    assert [each.support for each in methods] == ["planar", "planar", "planar", "recess", "flat", "flat"]
+    assert methods[0].run == Run(None, "recess", plane=0.0, restitution="momentum")
+    assert own_model(methods[4], methods) == "flat-ground model"
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"methods": ["planar"]}, "a reduced model must be one of recess, flat"),
+        ({"methods": []}, "at least one method"),
+        ({"methods": ["recess", "recess"]}, None),
+        ({"methods": [Run("mujoco", "recess"), Run("mujoco", "recess")]}, "must differ"),
+        ({"levels": [2.0, 1.0]}, "levels must be positive and increase"),
+        ({"levels": [1.0], "scales": [1.0]}, "got both"),
+        ({"limits": ["2 alpha"]}, "a limit must be one of uplift"),
+        ({"margin": 0.0}, "margin must be positive"),
+        ({"resamples": 1}, "resamples must be at least 2"),
+        ({"measure": "pgd"}, "an intensity must be one of"),
+        ({"step_factor": -1.0}, "step_factor must be positive"),
+    ],
+)
+def test_bad_input(options, words):
+    if words is None:
+        assert [each.label for each in methods_of(options["methods"])] == ["recess model"]
+        return
+    with pytest.raises(ValueError, match=words):
+        fragility(COLUMN, MOTIONS, **{"workers": 1, "levels": None, **options})
+
+
+def test_motions_need_names_and_cylinders_too():
+    with pytest.raises(ValueError, match="at least two ground motions with different names, got 2 with 1"):
+        Plan(cylinders={"a": COLUMN}, motions=[el_centro_1940()] * 2, methods=methods_of(["recess"]))
+    with pytest.raises(ValueError, match="need names"):
+        fragility([COLUMN, COLUMN], MOTIONS)
+
+
+def test_a_folder_of_records_with_its_table(tmp_path):
+    for name in ("RSN6_IMPVALL.I_I-ELC270-hor2.AT2", "RSN6_IMPVALL.I_I-ELC180-hor1.AT2"):
+        (tmp_path / name).write_bytes((RECORDS / name).read_bytes())
+    east, north = "RSN6_IMPVALL.I_I-ELC270-hor2.AT2", "RSN6_IMPVALL.I_I-ELC180-hor1.AT2"
+    table = tmp_path / "records.csv"
+    table.write_text(f"name,x,y,scale\nas it is,{east},{north},\ndoubled,{east},{north},2\n")
+    one, two = read_records(tmp_path)
+    assert (one.name, two.name) == ("as it is", "doubled")
+    np.testing.assert_array_equal(one.acceleration, el_centro_1940().acceleration)
+    assert two.peak == pytest.approx(2.0 * one.peak)
+    for text, words in (
+        ("x,north\n", "must have the columns x and y"),
+        (f"x,y\n{east},\n", "line 2: both horizontal components"),
+        (f"x,y,scale\n{east},{north},-1\n", "line 2: scale must be a positive number, got '-1'"),
+        (f"x,y\n{east},none.AT2\n", "line 2: cannot read the record"),
+    ):
+        table.write_text(text)
+        with pytest.raises(ValueError, match=words):
+            read_records(tmp_path)
+    with pytest.raises(ValueError, match="cannot be read"):
+        read_records(tmp_path / "nowhere.csv")

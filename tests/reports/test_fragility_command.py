@@ -1,0 +1,248 @@
+"""`rockwobble fragility`: from the command line to the files, the page and its figures."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from browser import complaints, needs_chromium
+
+from rockwobble.compare import Fragility
+from rockwobble.compare.storage.manifest import Manifest, read_manifests, read_results
+from rockwobble.compare.studies.fragility.result import KIND, fragility_of, stored_fragility
+from rockwobble.models.records import p695
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.figures.fragility import fragility_pictures, main_contrasts
+from rockwobble.reports.figures.picture import Band, Line
+from rockwobble.reports.figures.svg import svg
+from rockwobble.reports.pages.fragility import fragility_page
+from rockwobble.reports.pages.registry import redrawn
+
+LEVELS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
+MOTIONS = 15
+SMALL = [
+    "--synthetic",
+    "8",
+    "--levels",
+    "1.5:8:5",
+    "--resamples",
+    "40",
+    "--model",
+    "recess",
+    "--workers",
+    "1",
+]
+
+
+def call(*arguments: str) -> int:
+    with pytest.raises(SystemExit) as ended:
+        main(list(arguments))
+    code = ended.value.code
+    assert isinstance(code, int)
+    return code
+
+
+def described(support: str, engine: str | None = None, own: str = "") -> dict[str, object]:
+    return {"support": support, "engine": engine, "own_model": own, "run": None, "of": []}
+
+
+METHODS = {
+    "recess model": (1.0, described("recess")),
+    "flat-ground model": (1.1, described("flat")),
+    "planar x": (1.5, described("planar")),
+    "mujoco recess": (1.0, described("recess", "mujoco", "recess model")),
+    "mujoco flat": (1.1, described("flat", "mujoco", "flat-ground model")),
+    "mujoco ring": (1.05, described("ring", "mujoco", "recess model")),
+    "pybullet recess": (1.02, described("recess", "pybullet", "recess model")),
+}
+
+
+def made_up(cylinders: tuple[str, ...] = ("pier", "tower")) -> Fragility:
+    """Motions of a capacity each, a known factor higher by each method."""
+    random = np.random.default_rng(8)
+    runs, points = [], []
+    for cylinder in cylinders:
+        capacity = np.exp(random.normal(np.log(3.0), 0.4, MOTIONS))
+        for motion in range(MOTIONS):
+            for step, level in enumerate(LEVELS):
+                place = {"cylinder": cylinder, "motion": f"m{motion}", "step": step}
+                wide = dict.fromkeys(("peak_velocity", "pga", "pgv", "sa"), level * (1.0 + 0.05 * motion))
+                points.append(
+                    {**place, "scale": level, "peak_acceleration": level, **wide, "sa_mean": np.nan}
+                )
+                for method, (factor, _) in METHODS.items():
+                    fell = level >= factor * capacity[motion]
+                    outcome = "overturned" if fell else "completed"
+                    runs.append(
+                        {**place, "method": method, "peak_tilt": 8.0 if fell else 0.5, "outcome": outcome}
+                    )
+    about = {
+        "cylinders": {name: {"semidiagonal": 6.0, "tan_alpha": 0.2} for name in cylinders},
+        "motions": MOTIONS,
+        "methods": {name: own for name, (_, own) in METHODS.items()},
+        "measure": "peak_acceleration",
+        "levels": list(LEVELS),
+        "scales": None,
+        "period": 1.0,
+        "friction": 1.0,
+        "limits": ["uplift", "0.5 alpha", "overturned"],
+        "margin": 0.1,
+        "resamples": 100,
+        "seed": 0,
+        "source": "made up",
+        "inputs": "",
+    }
+    return fragility_of(pd.DataFrame(runs).assign(contact_lost=np.nan), pd.DataFrame(points), about)
+
+
+@pytest.fixture(scope="module")
+def found() -> Fragility:
+    return made_up()
+
+
+def test_each_question_gets_its_pairs(found):
+    answers = main_contrasts(found)
+    pairs = {
+        question: [(row["method"], row["against"]) for row in rows if row["cylinder"] == "pier"]
+        for question, rows in answers.items()
+    }
+    assert pairs == {
+        "planar": [("planar x", "recess model")],
+        "support": [
+            ("flat-ground model", "recess model"),
+            ("mujoco flat", "mujoco recess"),
+            ("mujoco ring", "mujoco recess"),
+        ],
+        "engine": [
+            ("mujoco recess", "recess model"),
+            ("mujoco ring", "recess model"),
+            ("pybullet recess", "recess model"),
+            ("mujoco flat", "flat-ground model"),
+            ("pybullet recess", "mujoco recess"),
+        ],
+    }
+
+
+def test_a_pair_the_other_way_round_is_turned(found):
+    order = ["planar x", "recess model"]
+    runs = pd.concat([found.runs[found.runs["method"] == name] for name in order])
+    turned = main_contrasts(fragility_of(runs, found.points, found.about))["planar"][0]
+    straight = main_contrasts(found)["planar"][0]
+    assert (turned["method"], turned["against"]) == ("planar x", "recess model")
+    for name in ("ratio", "ratio_low", "ratio_high", "dispersion_difference"):
+        assert turned[name] == pytest.approx(straight[name], rel=1e-9)
+
+
+def test_the_words_are_those_of_the_tables(found):
+    words = " ".join(fragility_page(found, Manifest(kind=KIND)).markdown().split())
+    row = next(r for r in main_contrasts(found)["planar"] if r["cylinder"] == "all")
+    ends = f"{row['ratio']:.2f} ({row['ratio_low']:.2f} to {row['ratio_high']:.2f})"
+    assert f"planar x against recess model: {ends}, equivalent within" in words
+    assert "mujoco recess against recess model: 1.00 (1.00 to 1.00), equivalent within 0 %." in words
+    assert "in a ring, whose walls have no top" in words
+    assert "15 motions: made up, each scaled to 6 levels" in words
+    # all uplift at the lowest level
+    assert "| pier | recess model | < 1.5 |" in words
+
+
+def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
+    ratios, pier, tower = fragility_pictures(found)
+    assert [panel.title for panel in ratios.panels] == ["pier", "tower", "Mean of all cylinders"]
+    assert [panel.title for panel in pier.panels] == [
+        "Planar analysis",
+        "Recess",
+        "Flat ground",
+        "Ring of walls",
+    ]
+    recess = pier.panels[1]
+    lines = [layer for layer in recess.layers if isinstance(layer, Line) and layer.name]
+    assert [line.name for line in lines] == ["recess model", "mujoco recess", "pybullet recess"]
+    assert sum(isinstance(layer, Band) for layer in recess.layers) == 3
+    marks = next(layer for layer in recess.layers if isinstance(layer, Line) and layer.notes)
+    counts = found.counts[
+        (found.counts["cylinder"] == "pier")
+        & (found.counts["method"] == "recess model")
+        & (found.counts["limit"] == "overturned")
+    ]
+    np.testing.assert_allclose(marks.x, LEVELS)
+    np.testing.assert_allclose(marks.y, counts["k"] / MOTIONS)
+    assert marks.notes[0] == f"recess model: {counts['k'].iloc[0]} of 15"
+    assert svg(tower) == svg(tower)
+
+
+@needs_chromium
+def test_the_page_is_drawn_quiet_and_no_wider_than_the_window(found, tmp_path):
+    page = fragility_page(found, Manifest(kind=KIND)).html()
+    assert complaints(page, tmp_path, figures=3 + 2 * 4) == []
+
+
+def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
+    cylinders = ["--cylinder", "pier=6,0.2", "--cylinder", "column=3,0.15"]
+    assert call("fragility", *SMALL, *cylinders, "--out", str(tmp_path)) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "column: R = 3 m, tan alpha = 0.15" in printed
+    assert "Motions: 8, made-up ground motions, seed 0" in printed
+    (manifest,) = read_manifests(tmp_path)
+    assert (manifest.kind, manifest.seeds) == (KIND, {"resamples": 0})
+    assert redrawn(KIND, tmp_path) == {name: (tmp_path / name).read_bytes() for name in manifest.pages}
+    counts = pd.read_csv(tmp_path / "counts.csv")
+    assert counts.to_dict("records") == json.loads((tmp_path / "counts.json").read_text())
+    levels = sorted(set(counts["intensity"]))
+    # evenly in the logarithm
+    assert levels == pytest.approx(np.geomspace(1.5, 8.0, 5).tolist())
+    stored = stored_fragility(read_results(tmp_path, KIND))
+    pd.testing.assert_frame_equal(
+        stored.fits, fragility_of(stored.runs, stored.points, stored.about).fits, check_exact=True
+    )
+
+
+def test_a_cloud_by_another_measure(tmp_path, capsys):
+    options = ["--synthetic", "8", "--cloud", "3,6", "--measure", "pgv", "--model", "worse-plane"]
+    assert call("fragility", *options, "--resamples", "20", "--workers", "1", "--out", str(tmp_path)) == 0
+    assert "as they are" in " ".join(capsys.readouterr().out.split())
+    counts = pd.read_csv(tmp_path / "counts.csv")
+    assert set(counts["measure"]) == {"pgv"}
+    assert set(counts["n"]) == {1}
+    assert set(counts["method"]) == {"planar x", "planar y", "worse plane"}
+
+
+def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(p695.importlib.util, "find_spec", lambda name: None)
+    p695.p695_far_field.cache_clear()
+    assert call("fragility", "--p695", "--out", str(tmp_path / "out")) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "pip install 'rockwobble[records]'" in error
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--p695", "--synthetic", "9"], "got more than one"),
+        (["--units", "g"], "--units belongs to --records"),
+        (["--records", "nowhere"], "the table of records nowhere cannot be read"),
+        (["--cylinder", "pier=6"], "--cylinder must be NAME=R,TAN_ALPHA such as pier=6,0.2, got 'pier=6'"),
+        (["--cylinder", "a=6,0.2", "--cylinder", "a=3,0.2"], "--cylinder a is given twice"),
+        (["--support", "ring"], "for engines, give --engine as well"),
+        (["--engine", "mujoco", "--support", "bowl"], "mujoco has no support bowl"),
+        (["--engine", "none"], "engine must be one of"),
+        (["--model", "3d"], "a reduced model must be one of recess"),
+        (["--levels", "3,2"], "levels must be positive and increase"),
+        (["--levels", "0:2:5"], "--levels must increase from above zero"),
+        (["--levels", "2", "--cloud", "1"], "got both"),
+        (["--limit", "tilt"], "a limit must be one of uplift"),
+        (["--measure", "pgd"], "an intensity must be one of"),
+        (["--synthetic", "1"], "at least 2 members"),
+        (["--restitution", "soft"], 'must be a number or "momentum"'),
+    ],
+)
+def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words):
+    assert call("fragility", *arguments, "--out", str(tmp_path / "out")) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert words in error
+    assert not (tmp_path / "out").exists()
