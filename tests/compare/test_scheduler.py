@@ -177,7 +177,7 @@ def test_no_scheduler_is_one_clear_line(monkeypatch):
     monkeypatch.setattr(dask_backend, "_PATIENCE", 0.5)
     with pytest.raises(ValueError, match="no Dask scheduler answers at 'tcp://127"):
         run_tasks(abs, [1], scheduler="tcp://127.0.0.1:1")
-    with pytest.raises(ValueError, match="has an address such as tcp://.*, got 'nonsense'"):
+    with pytest.raises(ValueError, match=r"has an address such as tcp://.*, got 'nonsense'"):
         run_tasks(abs, [1], scheduler="nonsense")
 
 
