@@ -10,7 +10,7 @@ import numpy as np
 from .fit import FITTED, KINDS
 from .intensity import MEASURES
 from .limits import OVERTURNED
-from .resampling import Array, interval
+from .resampling import Array, interval, spread_interval
 from .samples import Blocks
 from .tables import exponential, interval_columns
 
@@ -56,7 +56,7 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
                     "method": method,
                     "measure": measure,
                     "median": float(np.exp(found[measure].centre[0])),
-                    **interval_columns("dispersion", interval(spread, drawn[measure], motions)),
+                    **interval_columns("dispersion", spread_interval(spread, drawn[measure], motions)),
                     **interval_columns("over_best", exponential(interval(value, ratios, motions))),
                     "best": measure == best,
                 }
