@@ -232,7 +232,8 @@ def test_engines_run_beside_their_model_and_a_ring_holds_what_has_overturned():
     ring = strong[strong["method"] == "mujoco ring"]
     assert (ring["peak_tilt"] > 1.0).all()
     assert (ring["peak_tilt"] < 0.5 * math.pi / COLUMN.alpha).all()
-    assert found.about["methods"]["mujoco ring"]["own_model"] == "recess model"
+    assert found.about["methods"]["mujoco ring"]["own_model"] == ""
+    assert found.about["methods"]["mujoco recess"]["own_model"] == "recess model"
 
 
 def test_methods_by_name():

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 # Every run has an intensity of its own in each measure but that of the levels, and so many numbers in each
 # resample: as many resamples as keep this many numbers, and no fewer than give an end of an interval.
-_MOST_NUMBERS, _FEWEST = 300_000, 100
+_MOST_NUMBERS, _FEWEST = 150_000, 100
 
 
 def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFrame:
