@@ -39,7 +39,7 @@ def main_contrasts(found: Fragility, limit: str = OVERTURNED) -> dict[str, list[
     """Return the rows of the contrasts that answer the three questions, by question.
 
     "planar": each planar method against the recess model; "support": the same method on another support
-    against the recess; "engine": an engine against the model of its support, and against another engine on it.
+    against the recess; "engine": an engine against the model of its support, and another engine on it.
     """
     methods: Mapping[str, Mapping[str, Any]] = found.about["methods"]
     answers: dict[str, list[Row]] = {"planar": [], "support": [], "engine": []}
