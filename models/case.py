@@ -86,6 +86,10 @@ def run_duration(motion: GroundMotion | None, duration: float | None) -> float:
     return motion.duration
 
 
+_Way = Literal["auto", "extrapolated"]
+WAYS_TO_A_STEP: tuple[_Way, ...] = ("auto", "extrapolated")
+TimeStep = float | _Way | None
+"""Time step of an engine [s], or the way to one."""
 _MODEL_NAMES = {"flat": "flat-ground model"}
 
 
@@ -99,31 +103,36 @@ class Run:
         Name of the engine, such as "mujoco" or "pybullet"; None is a reduced model.
     support : str
         What holds the cylinder in place: "recess", "flat" or "ring".
-    time_step : float or "auto", optional
+    time_step : float, "auto" or "extrapolated", optional
         [s]; default: the engine's own choice for the size of the cylinder. "auto": halved until the
-        result has settled.
+        result has settled. "extrapolated": what runs at several steps tend to.
     **settings
         Passed to the engine, or to `reduced.simulate`, as they are.
 
     Raises
     ------
     ValueError
-        If the time step is neither positive nor "auto".
+        If the time step is neither positive nor one of those words.
     """
 
     engine: str | None
     support: str
-    time_step: float | Literal["auto"] | None
+    time_step: TimeStep
     settings: Mapping[str, Any]
 
     def __init__(
         self,
         engine: str | None,
         support: str,
-        time_step: float | Literal["auto"] | None = None,
+        time_step: TimeStep = None,
         **settings: Any,
     ) -> None:
-        if time_step is not None and not (isinstance(time_step, str) and time_step == "auto"):
+        if isinstance(time_step, str):
+            if time_step not in WAYS_TO_A_STEP:
+                raise ValueError(
+                    f'time_step must be "auto", "extrapolated" or a number [s], got {time_step!r}'
+                )
+        elif time_step is not None:
             time_step = require_positive("time_step", time_step, "s")
         object.__setattr__(self, "engine", engine)
         object.__setattr__(self, "support", support)
@@ -146,9 +155,7 @@ class Run:
         return _restore_run, (self.engine, self.support, self.time_step, dict(self.settings))
 
 
-def _restore_run(
-    engine: str | None, support: str, time_step: float | Literal["auto"] | None, settings: dict[str, Any]
-) -> Run:
+def _restore_run(engine: str | None, support: str, time_step: TimeStep, settings: dict[str, Any]) -> Run:
     return Run(engine, support, time_step, **settings)
 
 

@@ -14,6 +14,8 @@ _UNITS = {
     "transverse_inertia": "m^2",
     "axial_inertia": "m^2",
 }
+# what is in m^2 and in m^4 stays a number
+_SMALLEST, _LARGEST = 1e-70, 1e70  # [m]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -63,6 +65,10 @@ class Cylinder:
             value = getattr(self, name)
             if value is not None or name in ("semidiagonal", "tan_alpha"):
                 object.__setattr__(self, name, require_positive(name, value, unit))
+        if not _SMALLEST <= self.semidiagonal <= _LARGEST:
+            raise ValueError(
+                f"semidiagonal must be from {_SMALLEST:g} to {_LARGEST:g} m, got {self.semidiagonal!r}"
+            )
         if not (self.base_radius > 0.0 and self.mass_centre_height > 0.0):
             raise ValueError(
                 f"tan_alpha must leave a base and a height above rounding, got {self.tan_alpha!r} "

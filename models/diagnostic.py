@@ -32,6 +32,8 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
         "settled": ("alpha", "error that the time step leaves, by extrapolation"),
         "unsettled": ("alpha", "change from twice the time step: it has not settled"),
+        "extrapolated": ("alpha", "error left after extrapolation in the time step, by estimate"),
+        "not_extrapolated": ("", "runs at successive time steps do not agree well enough to extrapolate"),
         "side": ("", "it passed through upright itself: the side to which it goes on is undetermined"),
         # what an external trajectory leaves open
         "note": ("", "how the file was read"),

@@ -13,7 +13,8 @@ from .ground_motion import GroundMotion
 _LENGTHS = {"one-sine": 1.0, "one-cosine": 1.0, "half-sine": 0.5}
 PULSES = tuple(_LENGTHS)
 # between samples the motion is linear: off by (2 pi/400)^2/8 = 3e-5 of the amplitude at most
-_SAMPLES_PER_PERIOD = 400
+SAMPLES_PER_PERIOD = 400
+MOST_STILL = 1e7  # samples of still ground before a motion: a tenth of a gigabyte
 
 
 def pulse(
@@ -56,11 +57,13 @@ def pulse(
     azimuth = require_finite("azimuth", azimuth, "rad")
     if require_finite("start", start, "s") < 0.0:
         raise ValueError(f"start must not be negative [s], got {start!r}")
-    count = round(_SAMPLES_PER_PERIOD * _LENGTHS[kind])
-    step = period / _SAMPLES_PER_PERIOD
+    if start > MOST_STILL * period / SAMPLES_PER_PERIOD:
+        raise ValueError(f"start must leave at most {MOST_STILL:g} samples of still ground, got {start!r} s")
+    count = round(SAMPLES_PER_PERIOD * _LENGTHS[kind])
+    step = period / SAMPLES_PER_PERIOD
     # the pulse begins at a sample, so that its beginning stays sharp
     still = round(start / step)
-    phase = 2.0 * math.pi * np.arange(count + 1) / _SAMPLES_PER_PERIOD
+    phase = 2.0 * math.pi * np.arange(count + 1) / SAMPLES_PER_PERIOD
     shape = np.cos(phase) if kind == "one-cosine" else np.sin(phase)
     if kind != "one-cosine":
         shape[-1] = 0.0  # and not 1e-16

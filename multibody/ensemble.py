@@ -15,9 +15,10 @@ import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import AbstractContextManager
-from typing import Any, Literal
+from typing import Any
 
 from rockwobble.models import Case, Trace
+from rockwobble.models.case import TimeStep
 from rockwobble.models.cpus import usable_cpus
 
 from .engines.registry import find_engine
@@ -37,7 +38,7 @@ def simulate_many(
     *,
     engine: str = "mujoco",
     support: str = "recess",
-    time_step: float | Literal["auto"] | None = None,
+    time_step: TimeStep = None,
     sample_step: float = 0.01,
     progress: Progress | None = None,
     workers: int | None = None,

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
+import stat
+import sys
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
-import numpy as np
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
@@ -30,7 +33,39 @@ def inlined(function: F) -> F:
 
 def kernel(function: F) -> F:
     """Compile an entry point without the interpreter lock, and keep the machine code on disk."""
-    return cast("F", numba.njit(cache=True, nogil=True, **_OPTIONS)(function))
+    compiled = numba.njit(cache=True, nogil=True, **_OPTIONS)
+    try:
+        return cast("F", compiled(function))
+    except RuntimeError:  # numba finds no folder to write to: neither beside the source nor in HOME
+        _keep_in_temporary_folder()
+        return cast("F", compiled(function))
+
+
+def _keep_in_temporary_folder() -> None:
+    """Let the machine code, also of processes started from here, go to a temporary folder, and say so."""
+    folder = (
+        Path(tempfile.gettempdir()) / f"rockwobble-compiled-{os.getuid() if hasattr(os, 'getuid') else ''}"
+    )
+    if not _is_ours(folder):
+        folder = Path(tempfile.mkdtemp(prefix="rockwobble-compiled-"))
+    os.environ["NUMBA_CACHE_DIR"] = str(folder)
+    numba.config.reload_config()  # type: ignore[no-untyped-call]
+    print(
+        f"rockwobble: neither the installation nor HOME can be written: compiled code is kept in {folder}",
+        file=sys.stderr,
+    )
+
+
+def _is_ours(folder: Path) -> bool:
+    """Return whether nobody else writes to a folder, made where it is missing: it holds code that runs."""
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        found = folder.lstat()
+    except OSError:
+        return False
+    if not hasattr(os, "getuid"):
+        return folder.is_dir()
+    return stat.S_ISDIR(found.st_mode) and found.st_uid == os.getuid() and not found.st_mode & 0o022
 
 
 def _borrowed(typing: Any, array: Any) -> Any:
@@ -44,7 +79,7 @@ def _borrowed(typing: Any, array: Any) -> Any:
 
 # A view of an array that counts no references, for as long as the array itself is used later. Counting
 # takes a locked instruction each time the array is handed on: a tenth of a step.
-borrowed = cast("Callable[[NDArray[np.float64]], NDArray[np.float64]]", intrinsic(_borrowed))
+borrowed = cast("Callable[[NDArray[Any]], NDArray[Any]]", intrinsic(_borrowed))
 
 
 def in_memory(entry: Callable[..., Any]) -> bool:

@@ -10,23 +10,59 @@ Every name is imported when it is first used, so that `import rockwobble` costs 
 """
 
 import importlib
+from typing import TYPE_CHECKING
 
+if TYPE_CHECKING:
+    from rockwobble import compare, models, multibody, reduced, reports
+    from rockwobble.compare import Comparison, External, ensemble, fragility, simulate, sweep
+    from rockwobble.models import (
+        Case,
+        Cylinder,
+        Diagnostic,
+        GroundMotion,
+        InitialState,
+        Run,
+        Suite,
+        Trace,
+        el_centro_1940,
+        p695_far_field,
+        pulse,
+        read_record,
+        read_suite,
+        shipped_suites,
+    )
+
+    __version__: str
+
+__all__ = [
+    "Case",
+    "Comparison",
+    "Cylinder",
+    "Diagnostic",
+    "External",
+    "GroundMotion",
+    "InitialState",
+    "Run",
+    "Suite",
+    "Trace",
+    "compare",  # may be called: that is its function `compare`
+    "el_centro_1940",
+    "ensemble",
+    "fragility",
+    "models",
+    "multibody",
+    "p695_far_field",
+    "pulse",
+    "read_record",
+    "read_suite",
+    "reduced",
+    "reports",
+    "shipped_suites",
+    "simulate",
+    "sweep",
+]
 _PARTS = ("compare", "models", "multibody", "reduced", "reports")
-_NAMES = {
-    **dict.fromkeys(
-        (
-            *("Case", "Cylinder", "Diagnostic", "GroundMotion", "InitialState", "Run", "Suite", "Trace"),
-            *("el_centro_1940", "p695_far_field", "pulse", "read_record", "read_suite", "shipped_suites"),
-        ),
-        "rockwobble.models",
-    ),
-    **dict.fromkeys(
-        ("Comparison", "External", "ensemble", "fragility", "simulate", "sweep"),
-        "rockwobble.compare",
-    ),
-}
-# the part `compare` may be called: that is its function `compare`
-__all__ = sorted([*_NAMES, *_PARTS])
+_OF_COMPARE = ("Comparison", "External", "ensemble", "fragility", "simulate", "sweep")
 
 
 def __getattr__(name: str) -> object:
@@ -34,10 +70,12 @@ def __getattr__(name: str) -> object:
         from importlib.metadata import version
 
         return version("rockwobble")
-    if name in _NAMES:
-        return getattr(importlib.import_module(_NAMES[name]), name)
     if name in _PARTS:
         return importlib.import_module(f"rockwobble.{name}")
+    if name in __all__:
+        return getattr(
+            importlib.import_module(f"rockwobble.{'compare' if name in _OF_COMPARE else 'models'}"), name
+        )
     raise AttributeError(f"module 'rockwobble' has no attribute {name!r}")
 
 

@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, Trace
+from rockwobble.multibody.time_step.extrapolated import to_zero_step
 
 from ..metrics.agreement import Agreement
 
@@ -203,10 +204,10 @@ def extrapolated(time: Array, tilts: Sequence[Array], steps: Sequence[float], *,
 def _intercept(tilts: Sequence[Array], *, smooth: bool) -> Array:
     """Value at step zero of a polynomial through the finest runs."""
     if smooth and len(tilts) > 2:
-        coarse, middle, fine = tilts[-3:]
-        return np.asarray((coarse - 6.0 * middle + 8.0 * fine) / 3.0)
+        # the first order, and then the second
+        return to_zero_step([to_zero_step(tilts[-3:-1], 1), to_zero_step(tilts[-2:], 1)], 2)
     if smooth or len(tilts) == 2:
-        return np.asarray(2.0 * tilts[-1] - tilts[-2])
+        return to_zero_step(tilts[-2:], 1)
     # least squares of a straight line over all runs, by the step: one that is off by chance weighs little
     steps = 0.5 ** np.arange(len(tilts))
     design = np.column_stack([np.ones_like(steps), steps]) / steps[:, None]  # scatter goes with the step

@@ -1,7 +1,8 @@
 """The runs of an engine at finer steps, and what they tend to.
 
 A budget needs the engine's limit for a vanishing step. Each run is repeated at half and a quarter of its
-step, and where the limit is still uncertain at an eighth and so on; none longer than its traces agree.
+step, and where the limit is still uncertain at an eighth and so on; none longer than its traces agree. A run
+that is extrapolated itself is no run at a step: what it tends to rests on further ones, from its finest on.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
+from rockwobble.multibody.simulation import STEP_SETTINGS
+from rockwobble.multibody.time_step.extrapolated import EXTRAPOLATED
 
 from ..runs.execution import SAMPLE_STEP, Job
 from .error_budget import COVERED, WORTH_EXPLAINING, Limit, common_count, extrapolated
@@ -58,6 +61,15 @@ class Refined:
         assert self.run.engine is not None  # only runs of engines are refined
         return _released(self.case) or engine_facts(self.run.engine).smooth_uplift
 
+    @property
+    def extrapolated(self) -> bool:
+        """Whether the run is itself what others tend to."""
+        return self.run.time_step == EXTRAPOLATED
+
+    def levels(self, asked: Sequence[int]) -> Sequence[int]:
+        """Return how often the step is to be halved: not at all, too, where no run was at the step itself."""
+        return (0, *asked) if self.extrapolated and 1 in asked else asked
+
 
 def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str, str], Limit]:
     """Return the limit of each run, by names of case and run.
@@ -70,14 +82,16 @@ def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str,
     simulate : callable
         Runs jobs, and returns their results in the same order.
     """
-    found: dict[tuple[str, str], list[Trace]] = {(r.case.name, r.label): [r.trajectory] for r in refined}
+    found: dict[tuple[str, str], list[Trace]] = {
+        (r.case.name, r.label): [] if r.extrapolated else [r.trajectory] for r in refined
+    }
     waiting = list(refined)
     levels: Sequence[int] = range(1, _ALWAYS + 1)
     while waiting:
-        jobs = [_job(each, level) for each in waiting for level in levels]
-        results = iter(simulate(jobs))
-        for each in waiting:
-            found[each.case.name, each.label] += [next(results) for _ in levels]
+        jobs = [[_job(each, level) for level in each.levels(levels)] for each in waiting]
+        results = iter(simulate([job for some in jobs for job in some]))
+        for each, some in zip(waiting, jobs, strict=True):
+            found[each.case.name, each.label] += [next(results) for _ in some]
         next_level = levels[-1] + 1
         if next_level > _AT_MOST:
             break
@@ -101,9 +115,10 @@ def _released(case: Case) -> bool:
 def _job(refined: Refined, level: int) -> Job:
     run = refined.run
     step = refined.trajectory.time_step * 0.5**level
+    settings = {name: value for name, value in run.settings.items() if name not in STEP_SETTINGS}
     return Job(
         case=finer_case(refined),
-        run=Run(run.engine, run.support, step, **run.settings),
+        run=Run(run.engine, run.support, step, **settings),
         label=f"{refined.label}, step/{2**level}",
     )
 

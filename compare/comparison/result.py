@@ -17,6 +17,7 @@ from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Manifest, made_now, read_results, write_results
 from .error_budget import ErrorBudget
 from .file import ABOUT, load_fields, plain_fields
+from .matrix import agreement_matrix
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -60,9 +61,10 @@ class Comparison:
     ) -> None:
         """Write the results to `folder`: whole files or none, other files there are left alone.
 
-        summary.csv and summary.parquet are the summary; traces.parquet holds the samples of runs and
-        references, passes.parquet the passes, excitation.parquet the ground motions, budget.parquet the error
-        budgets, comparison.json the rest, and manifest.json says what made them.
+        summary.csv and summary.parquet are the summary, matrix.csv says who agrees with whom; traces.parquet
+        holds the samples of runs and references, passes.parquet the passes, excitation.parquet the ground
+        motions, budget.parquet the error budgets, comparison.json the rest, and manifest.json says what made
+        them.
 
         Parameters
         ----------
@@ -82,6 +84,8 @@ class Comparison:
             "summary.csv": self.summary.to_csv(index=False).encode(),
             ABOUT: (plain_json.dumps(whole, indent=1) + "\n").encode(),
         }
+        if len(matrix := self.matrix()):
+            files["matrix.csv"] = matrix.to_csv(index=False).encode()
         made = self.manifest(command or self.command)
         write_results(folder, made, self._tables(), files=files, pages=pages)
 
@@ -115,6 +119,13 @@ class Comparison:
         """
         stored = read_results(folder, KIND)
         return cls(**load_fields(stored), command=stored.manifest.command)
+
+    def matrix(self) -> pd.DataFrame:
+        """Return how each motion differs from every other on its support, where two engines have run.
+
+        The columns are those of `rockwobble.compare.comparison.matrix.MATRIX_COLUMNS`.
+        """
+        return agreement_matrix(self.cases, self.traces, until=self.until)
 
     def _tables(self) -> dict[str, pd.DataFrame]:
         tables = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Iterator
 from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
@@ -26,7 +27,8 @@ _PLAN = "tasks.json"  # there only until all tasks are done
 class Cache(Generic[T, R]):
     """The folder finished/KIND in a folder of results: one file for each finished task.
 
-    A second run, after whatever ended the first, repeats none that is there.
+    A second run, after whatever ended the first, repeats none that is there. The name of a file holds the
+    hash of its content, so no damage to it goes unseen.
 
     Parameters
     ----------
@@ -39,6 +41,11 @@ class Cache(Generic[T, R]):
         is called is no part of it: renaming it repeats nothing.
     pack, unpack : callable
         A result as the bytes of a file, and back.
+
+    Attributes
+    ----------
+    damaged : list of Path
+        Files that were asked for and are not what was written: their tasks run again.
     """
 
     def __init__(
@@ -48,20 +55,30 @@ class Cache(Generic[T, R]):
         *,
         name: Callable[[T], str],
         pack: Callable[[T, R], bytes],
-        unpack: Callable[[T, Path], R],
+        unpack: Callable[[T, bytes], R],
     ) -> None:
         self._folder, self._kind = folder, kind
         self._name, self._pack, self._unpack = name, pack, unpack
+        self._there = {path.stem.partition("-")[0]: path for path in folder.glob("*.parquet")}
         self._used: set[Path] = set()
         self._expected = 0
+        self.damaged: list[Path] = []
 
     def find(self, task: T) -> R | None:
-        """Return the result of a task if it is there and whole: what is damaged runs again."""
-        path = self._path(task)
-        try:
-            return self._unpack(task, path)
-        except (OSError, ValueError):
+        """Return the result of a task if it is there and whole; what is damaged runs again."""
+        path = self._there.get(self._name(task))
+        if path is None:
             return None
+        try:
+            content = path.read_bytes()
+            if path.stem.partition("-")[2] == _digest(content):
+                result = self._unpack(task, content)
+                self._used.add(path)
+                return result
+        except (OSError, ValueError):
+            pass
+        self.damaged.append(path)
+        return None
 
     def keep(self, task: T, result: R) -> None:
         """Keep the result of a task.
@@ -71,7 +88,13 @@ class Cache(Generic[T, R]):
         ValueError
             If it cannot be written.
         """
-        write_whole(self._path(task), self._pack(task, result))
+        key, content = self._name(task), self._pack(task, result)
+        path = self._folder / f"{key}-{_digest(content)}.parquet"
+        write_whole(path, content)
+        if (before := self._there.get(key, path)) != path:
+            before.unlink(missing_ok=True)
+        self._there[key] = path
+        self._used.add(path)
 
     def expect(self, count: int) -> None:
         """Note how many tasks there will be, at least: what is finished can then be told from what is not."""
@@ -86,10 +109,9 @@ class Cache(Generic[T, R]):
             path.unlink()
         (self._folder / _PLAN).unlink(missing_ok=True)
 
-    def _path(self, task: T) -> Path:
-        path = self._folder / f"{self._name(task)}.parquet"
-        self._used.add(path)
-        return path
+
+def _digest(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()[:32]
 
 
 @contextmanager
@@ -99,7 +121,7 @@ def open_cache(
     *,
     name: Callable[[T], str],
     pack: Callable[[T, R], bytes],
-    unpack: Callable[[T, Path], R],
+    unpack: Callable[[T, bytes], R],
 ) -> Iterator[Cache[T, R]]:
     """Open the finished tasks of one kind of results in `folder`; nobody else can meanwhile.
 
@@ -125,9 +147,9 @@ def open_table_cache(
     """Open the finished tasks whose results are tables; see `open_cache`."""
 
     def packed(task: T, table: pd.DataFrame) -> bytes:
-        return pack(table, {"kind": f"task of {kind}", "task": task})
+        return pack(table, {"kind": f"task of {kind}", "task": str(getattr(task, "name", task))})
 
-    return open_cache(folder, kind, name=name, pack=packed, unpack=lambda _, path: read(path)[0])
+    return open_cache(folder, kind, name=name, pack=packed, unpack=lambda _, content: read(content)[0])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -11,6 +11,7 @@ from rockwobble.multibody.engines.registry import engine_packages, find_engine, 
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 from rockwobble.multibody.scene.guard import check_time_step
 from rockwobble.multibody.scene_of_case import resolved_settings
+from rockwobble.multibody.simulation import STEP_SETTINGS
 
 SUPPORTS = ("recess", "flat")
 _LEAN = 1e-3  # of alpha: a tilt that fits into any ring
@@ -72,8 +73,8 @@ def require_runnable(case: Case, run: Run) -> None:
     if step is not None:
         check_time_step(step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
     settings = dict(run.settings)
-    if run.time_step == "auto":
-        settings.pop("step_tolerance", None)
+    for name in _step_settings(run):
+        settings.pop(name, None)
     resolved_settings(case, run.engine, run.support, settings, step)
 
 
@@ -108,8 +109,12 @@ def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
     )
     if run.engine is None:
         return ("plane", "restitution", "rtol", "rest_tilt")
-    steps = ("step_tolerance",) if run.time_step == "auto" else ()
-    return (*resolved_settings(start, run.engine, run.support, {}), *steps)
+    return (*resolved_settings(start, run.engine, run.support, {}), *_step_settings(run))
+
+
+def _step_settings(run: Run) -> tuple[str, ...]:
+    """Settings of the way to a time step that the run takes."""
+    return tuple(name for name, way in STEP_SETTINGS.items() if way == run.time_step)
 
 
 def default_runs(
@@ -130,6 +135,46 @@ def default_runs(
         able = [engine for engine in engines if support in find_engine(engine).supports]
         runs += [Run(engine, support) for engine in able or (engines if supports is not None else ())]
     return tuple(runs)
+
+
+def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tuple[Run, ...]:
+    """Return every installed engine that can start all cases, with each of the supports that it has.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    engines = [name for name in installed_engines() if not _unable(name, cases)]
+    found = [
+        Run(name, support)
+        for support in (SUPPORTS if supports is None else supports)
+        for name in engines
+        if support in find_engine(name).supports
+    ]
+    if not found:
+        raise ValueError(
+            f"no installed engine has the support {' or '.join(supports or SUPPORTS)} for this case"
+        )
+    return tuple(found)
+
+
+def unable_engines(cases: Sequence[Case]) -> tuple[str, ...]:
+    """Return why installed engines cannot run these cases, one sentence for each."""
+    return tuple(filter(None, (_unable(name, cases) for name in installed_engines())))
+
+
+def _unable(name: str, cases: Sequence[Case]) -> str:
+    try:
+        engine = find_engine(name)
+    except BrokenEngineError as error:
+        return str(error)
+    stands = any(case.initial is None or case.initial.tilt == 0.0 for case in cases)
+    return (
+        f"{name} cannot uplift a cylinder that stands and is left out"
+        if stands and not engine.uplifts
+        else ""
+    )
 
 
 def unsupported(supports: Sequence[str]) -> tuple[str, ...]:
@@ -169,7 +214,7 @@ def _finer(case: Case, run: Run) -> Run:
     step = run.time_step
     if not isinstance(step, float):
         step = REFERENCE_TIME_STEP * froude_scale(case.cylinder.semidiagonal, case.gravity).time
-    settings = {name: value for name, value in run.settings.items() if name != "step_tolerance"}
+    settings = {name: value for name, value in run.settings.items() if name not in STEP_SETTINGS}
     return Run(run.engine, run.support, 0.5 * step, **settings)
 
 

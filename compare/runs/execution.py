@@ -9,11 +9,14 @@ from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.case import TimeStep
 from rockwobble.models.traces.lost_trace import lost_trace
 from rockwobble.multibody.engines.registry import engine_facts
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.time_step.extrapolated import FINEST
 
 from ..storage.fingerprint import fingerprint
 from ..storage.parquet_file import pack, read
@@ -24,6 +27,8 @@ from .scheduler import run_tasks
 from .task import Lost
 
 SAMPLE_STEP = 0.01
+# [s] at the reference size: the usual search ends at half of the default step
+_EQUAL_STEPS: dict[str | None, float] = {"auto": 2.5e-5, "extrapolated": FINEST / 1.75}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -56,7 +61,7 @@ def simulate(
     *,
     support: str = "recess",
     engine: str | None = None,
-    time_step: float | Literal["auto"] | None = None,
+    time_step: TimeStep = None,
     sample_step: float = SAMPLE_STEP,
     **settings: Any,
 ) -> Trace:
@@ -68,7 +73,7 @@ def simulate(
     support : {"recess", "flat", "ring"}, optional
     engine : str, optional
         Such as "mujoco" or "pybullet". Default: the reduced model.
-    time_step : float or "auto", optional
+    time_step : float, "auto" or "extrapolated", optional
         Of an engine [s].
     sample_step : float, optional
         Spacing of the samples [s].
@@ -184,11 +189,19 @@ def open_trace_cache(
         table = trace.to_frame()
         return pack(table if samples else table.iloc[-1:], about)
 
-    def unpacked(job: Job, path: Path) -> Trace:
-        table, about = read(path)
+    def unpacked(job: Job, content: bytes) -> Trace:
+        table, about = read(content)
         return dataclasses.replace(Trace.from_plain(about["trace"], table, job.case), run=job.run)
 
     return open_cache(folder, kind, name=job_fingerprint, pack=packed, unpack=unpacked)
+
+
+def equal_step(case: Case, run: Run) -> float:
+    """Return the time step of a single run of an engine that takes as long as `run` [s]."""
+    unit_time = froude_scale(case.cylinder.semidiagonal, case.gravity).time
+    if isinstance(run.time_step, float):
+        return run.time_step
+    return unit_time * _EQUAL_STEPS.get(run.time_step, REFERENCE_TIME_STEP)
 
 
 def makers_of(job: Job) -> dict[str, str]:
@@ -218,6 +231,4 @@ def _cost(job: Job) -> float:
     """Rough computing time of a job [s]."""
     if job.run.engine is None:
         return math.inf  # may compile
-    step = job.run.time_step or 1e-4
-    # the usual search ends at half of the default step
-    return job.case.length / (2.5e-5 if step == "auto" else step) * engine_facts(job.run.engine).step_time
+    return job.case.length / equal_step(job.case, job.run) * engine_facts(job.run.engine).step_time

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
@@ -27,6 +27,8 @@ class Progress:
         Of the computing time of those that run, from 0 to 1, as far as it is known beforehand.
     left : float
         Seconds to go if the rest is as fast as what ran so far; NaN before anything has.
+    damaged : sequence of str
+        Files of finished tasks that are not what was written: these tasks run again.
     """
 
     label: str
@@ -36,6 +38,7 @@ class Progress:
     found: int = 0
     share: float = 0.0
     left: float = math.nan
+    damaged: tuple[str, ...] = ()
 
 
 ProgressCallback = Callable[[Progress], None]
@@ -51,10 +54,19 @@ class Clock:
         Of the tasks that run, in any unit.
     found : int
         Tasks found finished.
+    damaged : sequence of str
+        See `Progress`.
     """
 
-    def __init__(self, tell: ProgressCallback | None, costs: list[float], found: int = 0) -> None:
+    def __init__(
+        self,
+        tell: ProgressCallback | None,
+        costs: list[float],
+        found: int = 0,
+        damaged: Sequence[str] = (),
+    ) -> None:
         self._tell = tell
+        self._damaged = tuple(damaged)
         self._costs = costs
         self._whole = sum(costs)
         self._found = self._done = found
@@ -78,6 +90,7 @@ class Clock:
                     found=self._found,
                     share=share,
                     left=left,
+                    damaged=self._damaged,
                 )
             )
 

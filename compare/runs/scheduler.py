@@ -81,14 +81,17 @@ def run_tasks(
     [1, 2, 3]
     """
     results: dict[int, R | Lost] = {}
+    damaged: list[str] = []
     if cache is not None:
         cache.expect(len(tasks))
         found = {index: cache.find(task) for index, task in enumerate(tasks)}
         results |= {index: result for index, result in found.items() if result is not None}
+        damaged = [str(path) for path in cache.damaged]
     costs = [1.0 if cost is None else cost(task) for task in tasks]
     order = sorted((index for index in range(len(tasks)) if index not in results), key=lambda i: -costs[i])
     waiting = [tasks[index] for index in order]
-    tell = Clock(progress, [costs[i] if math.isfinite(costs[i]) else 0.0 for i in order], len(results))
+    known = [costs[i] if math.isfinite(costs[i]) else 0.0 for i in order]
+    tell = Clock(progress, known, len(results), damaged)
     # a number that is given holds even for one task: in a process of its own it can be ended in a long call
     count = min(usable_cpus(), len(waiting)) if workers is None else workers
     if scheduler is not None:

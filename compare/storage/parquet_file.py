@@ -31,17 +31,16 @@ def pack(table: pd.DataFrame | Mapping[str, Any], about: Mapping[str, Any]) -> b
     return buffer.getvalue()
 
 
-def read(path: Path) -> tuple[pd.DataFrame, dict[str, Any]]:
+def read(content: bytes) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Return the table of a file that `pack` made, and what it says of itself.
 
     Raises
     ------
     ValueError or OSError
-        If it cannot be read, or is damaged.
+        If it cannot be read, or its data are damaged.
     """
     import pyarrow.parquet as pq
 
-    content = path.read_bytes()
     table = pq.read_table(io.BytesIO(content), page_checksum_verification=True)
     return table.to_pandas(), read_about(content)
 

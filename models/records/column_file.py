@@ -1,4 +1,4 @@
-"""Records as text of two columns, time and acceleration, separated by blanks, commas or semicolons."""
+"""Records as text of columns, time and accelerations, separated by blanks, commas or semicolons."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from .units import stated_unit
 _COMMENT_MARKS = "#%!"
 # printed times are rounded, as 0.0167 for 1/60: a sample may stand this much of a step off its place
 _UNEVENNESS = 0.05
+_COMMA_NUMBER = r"[-+]?\d+,\d+(?:[Ee][-+]?\d+)?"
 
 
 def read_columns(path: Path, lines: list[str]) -> Component:
@@ -24,33 +25,86 @@ def read_columns(path: Path, lines: list[str]) -> Component:
     ValueError
         If a line holds something else, or the times do not rise in even steps.
     """
+    header, rows, numbers = _rows(path, lines, (2,), "two numbers, time [s] and acceleration")
+    return _component(path, header, rows, numbers, 1)
+
+
+def read_table(path: Path, lines: list[str]) -> list[Component]:
+    """Read lines of time [s] and the accelerations x, y and, where there is one, z.
+
+    Where the last line of the header names the columns x, y, z, their order is that of the names.
+
+    Raises
+    ------
+    ValueError
+        If a line holds something else, the names are others, or the times do not rise in even steps.
+    """
+    what = "three or four numbers, time [s] and the accelerations x, y and perhaps z"
+    header, rows, numbers = _rows(path, lines, (3, 4), what)
+    return [_component(path, header, rows, numbers, place) for place in _places(path, header, len(rows[0]))]
+
+
+def _rows(
+    path: Path, lines: list[str], widths: tuple[int, ...], what: str
+) -> tuple[list[str], list[list[float]], list[int]]:
+    """Return the header, the rows of numbers, and the line of each row."""
     header: list[str] = []
-    rows: list[tuple[float, float]] = []
+    rows: list[list[float]] = []
     numbers: list[int] = []
     for number, line in enumerate(lines, start=1):
         text = line.replace('"', "").strip()
         cells = _cells(text)
         is_data = text[:1] not in _COMMENT_MARKS and (rows or any(map(_is_number, cells)))
+        if _has_decimal_comma(text) and (is_data or not rows):
+            raise ValueError(
+                f"{path.name}, line {number}: numbers must have a decimal point, got a comma in {text[:60]!r}"
+            )
         if not is_data:
             if not rows:
                 header.append(text)
             continue
-        if len(cells) != 2 or not all(map(_is_number, cells)):
-            raise ValueError(
-                f"{path.name}, line {number}: expected two numbers, time [s] and acceleration, "
-                f"got {text[:60]!r}"
-            )
-        rows.append((parse_number(path, number, cells[0]), parse_number(path, number, cells[1])))
+        wide = len(cells) in widths and len(cells) == len(rows[0] if rows else cells)
+        if not (wide and all(map(_is_number, cells))):
+            raise ValueError(f"{path.name}, line {number}: expected {what}, got {text[:60]!r}")
+        rows.append([parse_number(path, number, cell) for cell in cells])
         numbers.append(number)
     if len(rows) < 2:
         raise ValueError(f"{path.name} must hold at least two samples, got {len(rows)}")
-    time, values = np.array(rows).T
+    return header, rows, numbers
+
+
+def _component(
+    path: Path, header: list[str], rows: list[list[float]], numbers: list[int], place: int
+) -> Component:
+    time, values = np.array([row[0] for row in rows]), np.array([row[place] for row in rows])
     return Component(path, values, _even_step(path, time, numbers), stated_unit(path, header), float(time[0]))
+
+
+def _places(path: Path, header: list[str], width: int) -> list[int]:
+    """Return the columns of x, y and z: by their names where the header has them, else by their order."""
+    names = [re.split(r"[\s\[(]", cell.lower())[0] for cell in _cells(header[-1])] if header else []
+    if len(names) != width or not set(names[1:]) & set("xyz"):
+        return list(range(1, width))
+    wanted = "xyz"[: width - 1]
+    if sorted(names[1:]) != list(wanted):
+        raise ValueError(
+            f"{path.name}: its columns must be time, {', '.join(wanted)}, got {', '.join(names)}"
+        )
+    return [names.index(axis) for axis in wanted]
 
 
 def _cells(text: str) -> list[str]:
     text = text.rstrip(",;\t ")
     return re.split(r"\s*[,;]\s*", text) if re.search("[,;]", text) else text.split()
+
+
+def _has_decimal_comma(text: str) -> bool:
+    """Return whether a line of numbers is parted by semicolons or blanks, with commas inside the numbers."""
+    parts = [part.strip() for part in (text.split(";") if ";" in text else text.split())]
+    commas = [re.fullmatch(_COMMA_NUMBER, part) is not None for part in parts]
+    return (
+        len(parts) > 1 and any(commas) and all(c or _is_number(p) for c, p in zip(commas, parts, strict=True))
+    )
 
 
 def _is_number(cell: str) -> bool:

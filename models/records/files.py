@@ -9,7 +9,7 @@ import numpy as np
 
 from ..ground_motion import GroundMotion
 from .at2_file import is_at2, read_at2
-from .column_file import read_columns
+from .column_file import read_columns, read_table
 from .component import Component
 from .units import UNITS, factor
 
@@ -22,21 +22,22 @@ _LEFT_OUT, _STILL = 0.01, 0.05
 
 def read_record(
     x_path: str | Path,
-    y_path: str | Path,
+    y_path: str | Path | None = None,
     z_path: str | Path | None = None,
     *,
     units: str | None = None,
     name: str | None = None,
 ) -> GroundMotion:
-    """Read a ground motion, one file for each component.
+    """Read a ground motion, one file for each component or one for all.
 
-    Each file may be PEER AT2 (in each form of its header line), text of two columns, time [s] and
-    acceleration, or the same as CSV with or without a header line. 1 g is 9.81 m/s^2.
+    The file of a component may be PEER AT2 (in each form of its header line), text of two columns, time [s]
+    and acceleration, or the same as CSV with or without a header line. One file for all is text or CSV of
+    time, x, y and, where there is one, z. 1 g is 9.81 m/s^2.
 
     Parameters
     ----------
     x_path, y_path : str or Path
-        East-west and north-south component.
+        East-west and north-south component; without the second the first holds all.
     z_path : str or Path, optional
         Vertical component.
     units : {"g", "m/s2", "cm/s2"}, optional
@@ -58,7 +59,12 @@ def read_record(
     """
     if units is not None and units not in UNITS:
         raise ValueError(f"units must be one of {', '.join(UNITS)}, got {units!r}")
-    components = [_read_component(Path(path)) for path in (x_path, y_path, z_path) if path is not None]
+    if y_path is None:
+        if z_path is not None:
+            raise ValueError(f"a file of all components has no other beside it, got {z_path} beside {x_path}")
+        components = _read_all(Path(x_path))
+    else:
+        components = [_read_component(Path(path)) for path in (x_path, y_path, z_path) if path is not None]
     length = min(len(component.values) for component in components)
     first = components[0]
     for other in components[1:]:
@@ -70,6 +76,18 @@ def read_record(
 
 
 def _read_component(path: Path) -> Component:
+    lines = _lines(path)
+    return read_at2(path, lines) if is_at2(lines) else read_columns(path, lines)
+
+
+def _read_all(path: Path) -> list[Component]:
+    lines = _lines(path)
+    if is_at2(lines):
+        raise ValueError(f"{path.name} is an AT2 file, which holds one component: give one for each")
+    return read_table(path, lines)
+
+
+def _lines(path: Path) -> list[str]:
     try:
         # utf-8-sig drops the byte-order mark that spreadsheets write
         lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
@@ -78,7 +96,7 @@ def _read_component(path: Path) -> Component:
         raise ValueError(f"cannot read the record {path}: {reason}") from None
     if not any(line.strip() for line in lines):
         raise ValueError(f"the record {path} is empty")
-    return read_at2(path, lines) if is_at2(lines) else read_columns(path, lines)
+    return lines
 
 
 def _require_still_beyond(components: Sequence[Component], length: int) -> None:

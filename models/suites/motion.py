@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from ..ground_motion import GroundMotion
-from ..pulses import pulse
+from ..pulses import MOST_STILL, SAMPLES_PER_PERIOD, pulse
 from ..records.el_centro import el_centro_1940
 from ..records.files import read_record
 from ..records.p695 import p695_far_field
@@ -79,12 +79,16 @@ def _pulse(kind: str, values: dict[str, float], uplift: float) -> GroundMotion:
     shift = values.get("time_shift", 0.0)
     if shift < 0.0:
         raise KeyedError("time_shift", f"must not be negative with a pulse, got {shift:g}")
+    if shift > MOST_STILL * values["period"] / SAMPLES_PER_PERIOD:
+        raise KeyedError("time_shift", f"must leave at most {MOST_STILL:g} samples before, got {shift:g} s")
     azimuth = math.radians(values.get("azimuth_deg", 0.0))
     return pulse(kind, amplitude=amplitude, period=values["period"], azimuth=azimuth, start=shift)
 
 
 def _shifted(motion: GroundMotion, shift: float) -> GroundMotion:
     """Return the motion begun later, after still ground, or earlier, without its first samples."""
+    if shift > MOST_STILL * motion.time_step:
+        raise KeyedError("time_shift", f"must leave at most {MOST_STILL:g} samples before, got {shift:g} s")
     count = round(shift / motion.time_step)
     if abs(shift / motion.time_step - count) > _ROUNDING * max(1, abs(count)):
         raise KeyedError(

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, model_validator
 
 from ..bounds import REFERENCES
+from ..case import WAYS_TO_A_STEP, TimeStep
 from ..pulses import PULSES
 from ..records.units import UNITS
 from .errors import KeyedError, shown
@@ -167,9 +168,9 @@ def _texts(given: Any) -> Any:
 
 
 def _steps(given: Any) -> Any:
-    """Values of a time step; "auto" is left to the engine."""
-    if given == "auto":
-        return ("auto",)
+    """Values of a time step; the ways to one are left to the engine."""
+    if given in WAYS_TO_A_STEP:
+        return (given,)
     return expanded(given, positive)
 
 
@@ -188,7 +189,7 @@ class RunTable(_Table):
 
     engine: Texts
     support: Texts = ["recess"]
-    time_step: Annotated[tuple[float | Literal["auto"], ...] | None, BeforeValidator(_steps)] = None
+    time_step: Annotated[tuple[TimeStep, ...] | None, BeforeValidator(_steps)] = None
     settings: dict[str, Any] = Field(default_factory=dict)
 
 

@@ -32,11 +32,12 @@ from .dart_scene import DartScene, build, quaternions, rotation_vector
 from .scene_counts import SceneCounts
 from .settings.dart import DartSettings
 
-_LEANS = 1e-9  # [rad] from which a lean has a direction
+_LEANS = 1e-8  # [rad] from which a lean has a direction that is not of what stood
 _OPEN = 1e-8  # [rad] lean at which the base is open; standing it stays below 5e-9
 # of b, eccentricities of the load: from the first the scene follows it, at the second the base may open
-_LOADED, _OPENING = 0.5, 0.99
+_LOADED, _OPENING = 0.5, 0.999
 _REDUCTION, _FASTEST_REDUCTION = 0.01, 1e-3  # [-], [m/s] by which DART itself reduces a depth
+_FAR = 1e3  # of the height: ODE ends the process where something is too far away
 _SPIN = 1.0  # [rad] about the axis of the cylinder
 
 _FACTS = EngineFacts(
@@ -88,6 +89,7 @@ class _DartStepper:
         self._dart: DartScene = build(scene, settings)
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._open = False
+        self._lost = False
         start = scene.start
         self._position, self._quaternion = start.position, start.quaternion
         position = start.position - [0.0, 0.0, settings.depth]
@@ -119,8 +121,8 @@ class _DartStepper:
         return Steps(position, quaternion, velocity, spin)
 
     def warnings(self) -> str:
-        """DART does not warn."""
-        return ""
+        """Say that it went out of reach: DART does not warn, and would end the process."""
+        return "the cylinder is out of reach" if self._lost else ""
 
     def counts(self) -> SceneCounts:
         """Return what the last step solved: a normal and two directions of friction for each contact."""
@@ -140,11 +142,16 @@ class _DartStepper:
         spin_x, spin_y = cosine(0.5 * _SPIN), sine(0.5 * _SPIN)
         target, gain = self._settings.depth, self._settings.depth_gain / self._step
         reduction, fastest = _REDUCTION / self._step, _FASTEST_REDUCTION
+        far = _FAR * body.height
         rows: list[list[float]] = []
         row = get().tolist()
         for ax, ay, az in acceleration:
-            x, y, z, _, _, height = row
+            x, y, z, away_x, away_y, height = row
             angle = root(x * x + y * y + z * z)
+            # also false for what is not a number
+            if not angle + abs(away_x) + abs(away_y) + abs(height) < far:
+                self._lost = True
+                return rows + [[math.nan] * 7] * (len(acceleration) - len(rows))
             part, whole = sine(0.5 * angle) / angle, cosine(0.5 * angle)
             # the quaternion without the turn of the cylinder about its axis
             w, k = whole * spin_x + part * z * spin_y, part * z * spin_x - whole * spin_y

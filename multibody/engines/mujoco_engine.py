@@ -22,17 +22,16 @@ if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]
 
 _STANDING_BLOCK = 20  # steps between two looks at whether a standing cylinder has uplifted
-# Lean from which the rim carries a cylinder better than the corners of its prisms do [rad]. Below it the
-# rounding of the rim's depth, 1e-16 b/lean, makes the rim hop; and the longer the base rolls on corners,
-# the more its path is that of a polygon.
-_RISEN = 1e-7
+# Lean up to which a corner that is turned under it at each step carries a cylinder better than its rim does
+# [rad]: the rounding of the rim's depth, 1e-16 b/lean, makes the rim hop where it is a share of the depth
+# itself, and each hop slips. Corners that stay where they are would be a polygon.
+_RISEN = 1e-4
 # the same over the depth of a single corner under the weight, over b: what stands leans by up to a sixteenth
 _RISEN_DEPTHS = 1000.0
-# of that lean: from there it has a direction, which a corner follows instead of the load
-_LEANS = 0.1
+_LEANS = 1e-8  # [rad] from which a lean has a direction, which a corner follows instead of the load
 # of b, eccentricities of the load: from the first a corner follows it, from the second at every step, and on
-# the four corners of the first prism alone
-_LOADED, _OPENING = 0.5, 0.99
+# the four corners of the first prism alone, early enough for the change to die away before the base opens
+_LOADED, _OPENING = 0.5, 0.9
 _LAST_PRISMS, _OUT_OF_REACH = 1, 1e-3  # [-], [m]
 # A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
 # under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
@@ -42,7 +41,7 @@ _FACTS = EngineFacts(
     title="MuJoCo",
     step_time=1.2e-5,
     release_error=2e-6,
-    uplift_error=2.5e-5,
+    uplift_error=5e-6,
     smooth_uplift=True,  # its corners turn under the load
     contact_time="contact_time_constant",
     alternatives={
@@ -218,16 +217,16 @@ class _MujocoStepper:
         body, corners = self._scene.body, self._settings.standing_corners
         push = np.hypot(acceleration[:, 0], acceleration[:, 1]) * body.mass_centre_height
         eccentricity = push / (body.base_radius * (self._scene.gravity + acceleration[:, 2]))
-        opens = bool(eccentricity.max() > _OPENING)
         axis = axis_of(self._state[None, 4:8])[0, :2]
         lean = float(np.hypot(*axis))
+        opens = bool(eccentricity.max() > _OPENING) or lean > _LEANS
         if lean > (self._risen if eccentricity[0] > _ON_RIM else max(self._risen, _RISEN_ANYHOW)):
             self._leave_prisms()
-        if not self._standing or eccentricity.max() < _LOADED:
+        if not self._standing or (eccentricity.max() < _LOADED and lean <= _LEANS):
             return len(acceleration)
         load = -acceleration[0] if opens else -acceleration.mean(axis=0)
         # the first corner of a prism is an eighth of a turn from its x axis
-        at = axis if lean > _LEANS * self._risen else load
+        at = axis if lean > _LEANS else load
         first = np.arctan2(at[1], at[0]) - 0.25 * np.pi
         half = 0.5 * (first + 2.0 * np.pi / corners * np.arange(corners // 4))
         self._model.geom_quat[self._prisms] = np.outer(np.cos(half), [1, 0, 0, 0]) + np.outer(

@@ -22,7 +22,8 @@ def compile_scene(
 ) -> mujoco.MjModel:
     """Return the compiled model of `scene`: its file, with what the case does not need taken out.
 
-    The prisms that carry the cylinder are there only while it is `standing`, the walls only of a `ring`.
+    The prisms that carry the cylinder are there only while it is `standing`, and then its rim is not; the
+    walls only of a `ring`.
     """
     import mujoco
 
@@ -46,18 +47,12 @@ def compile_scene(
 def _set_options(spec: Any, scene: Scene, settings: MujocoSettings) -> None:
     import mujoco
 
-    integrators = {
-        "Euler": mujoco.mjtIntegrator.mjINT_EULER,
-        "implicitfast": mujoco.mjtIntegrator.mjINT_IMPLICITFAST,
-        "implicit": mujoco.mjtIntegrator.mjINT_IMPLICIT,
-        "RK4": mujoco.mjtIntegrator.mjINT_RK4,
-        "discrete": mujoco.mjtIntegrator.mjINT_DISCRETE,
-    }
     cones = {"elliptic": mujoco.mjtCone.mjCONE_ELLIPTIC, "pyramidal": mujoco.mjtCone.mjCONE_PYRAMIDAL}
     option = spec.option
     option.timestep = scene.time_step
     option.gravity = [0.0, 0.0, -scene.gravity]
-    option.integrator = integrators[settings.integrator]
+    # by name: not every version has each
+    option.integrator = getattr(mujoco.mjtIntegrator, f"mjINT_{settings.integrator.upper()}")
     option.cone = cones[settings.cone]
     option.tolerance = settings.tolerance
     option.iterations = settings.iterations
@@ -84,6 +79,9 @@ def _set_contact(
     spec: Any, scene: Scene, settings: MujocoSettings, standing: bool, ring: RingSettings | None
 ) -> None:
     count = settings.standing_corners // 4 if standing else 0
+    if count:
+        # the rounding of the rim's depth would make it hop
+        spec.delete(next(pair for pair in spec.pairs if pair.geomname2 == "cylinder" and _on_ground(pair)))
     for index in range(_PRISMS):
         name = f"prism{index}"
         if index >= count:
@@ -92,14 +90,27 @@ def _set_contact(
         else:
             # the corners of all prisms stand evenly on the rim
             spec.geom(name).alt.euler = [0.0, 0.0, 90.0 * index / count]
+    rim = settings.impedance if standing else settings.rolling_impedance
+    # friction stays as hard as it is on the corners
+    spec.option.impratio = _yield(rim) / _yield(settings.impedance)
     ground, _ = body_friction(scene.friction, "pair")
     for pair in spec.pairs:
-        friction = ground if ring is None or pair.geomname1 == "ground" else ring.ring_friction
+        friction = ground if ring is None or _on_ground(pair) else ring.ring_friction
+        impedance = rim if _on_ground(pair) else settings.impedance
         pair.friction = [friction, friction, 0.0, 0.0, 0.0]
         pair.condim = 3
         pair.solref = [settings.contact_time_constant / scene.unit_time, settings.contact_damping_ratio]
-        pair.solimp = [settings.impedance, settings.impedance, 1e-3, 0.5, 2.0]
+        pair.solimp = [impedance, impedance, 1e-3, 0.5, 2.0]
         # two negative numbers are a stiffness, which friction has none of, and a damping; the engine divides
         # the damping by the impedance
-        damping = settings.friction_damping * settings.impedance / scene.time_step
+        damping = settings.friction_damping * impedance / scene.time_step
         pair.solreffriction = [-1.0, -damping]
+
+
+def _on_ground(pair: Any) -> bool:
+    return bool(pair.geomname1 == "ground")
+
+
+def _yield(impedance: float) -> float:
+    """Return the share of a load that contact leaves to its spring, over what it takes at once."""
+    return (1.0 - impedance) / impedance

@@ -27,6 +27,7 @@ _LEAST_ENERGY = 0.05
 PENETRATION = 0.01  # of b
 GUIDE_TWIST = 0.02  # [rad] about one degree
 LARGEST_STEP = 1e-3  # [s] at the reference size; contact needs it ten times shorter than the fastest pass
+SMALLEST_STEP = 1e-9  # [s] there; below it what a step changes is lost in rounding
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +46,7 @@ def energy_scale(body: Body, gravity: float) -> float:
 
 
 def check_time_step(time_step: float, unit_time: float) -> None:
-    """Refuse a time step [s] that no contact can follow.
+    """Refuse a time step [s] that no contact can follow, or that is lost in rounding.
 
     Raises
     ------
@@ -56,6 +57,11 @@ def check_time_step(time_step: float, unit_time: float) -> None:
         raise ValueError(
             f"time_step must be at most {LARGEST_STEP * unit_time:.3g} s for contact at this size and "
             f"gravity, got {time_step:g}"
+        )
+    if time_step < SMALLEST_STEP * unit_time:
+        raise ValueError(
+            f"time_step must be at least {SMALLEST_STEP * unit_time:.3g} s, where rounding is still small, "
+            f"got {time_step:g}"
         )
 
 

@@ -13,16 +13,20 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import pi
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._compile import borrowed, jit
+from .._compile import borrowed, inlined, jit
 from ..body import Body
 from ..trigonometry import sin_cos
 from .endings import HALF_PI, may_overturn, may_sit_down, surely_falls
+from .events import REPEATED, make_events
+from .log import as_table, empty_log, mark_of
 from .march import (
     COMPLETED,
+    DECIDED,
     MAXIMUM,
     MINIMUM,
     OVER_BUDGET,
@@ -32,18 +36,18 @@ from .march import (
     Driver,
     March,
     Options,
-    as_table,
+    Piece,
     piece_of_record,
     write,
 )
-from .stepping import Stepper, make_events
+from .sampling import make_sampling
+from .stepping import Stepper
 from .systems import System
-from .tsit5 import State, Vector, ground
+from .tsit5 import State, ground
 from .uplift import nearest_branch, start_length, started, uplift_in
 
 _LEAST_STEP = 1e-200  # a step that must be shorter fails whatever its length [s]
 _FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
-_RETRY = 1.0 / 32.0  # of a step that went wrong; the next may be four times as long
 _HAIR = 1e-6  # of 1/p; an uplift so near to the next sample leaves no more than its square
 # of 1/p; what leaves the balance, or unstable steady wobble, grows by exp(p t): in this time all motion turns
 # or falls but what is nearer to them than 3e-7, which nobody could tell from resting there
@@ -58,26 +62,49 @@ def spin_momentum(body: Body, theta: float, phi_rate: float) -> float:
     return s * s * (body.J + (2.0 * body.E + body.C * t) * t) * phi_rate
 
 
+class Lift(NamedTuple):
+    """What becomes of a cylinder at rest within a piece of the record."""
+
+    stays: bool
+    at: float  # time of uplift since the beginning of the piece [s]
+    length: float  # for which the series of the uplift is used [s]
+    y: State  # after it
+
+
 def make_driver(system: System, stepper: Stepper) -> Driver:
     """Return the compiled march of one model by one method."""
-    workspace, restarted, advance, partial = stepper
-    turning_point, crossing = make_events(partial)
+    workspace, restarted, _, partial = stepper
+    tried, ending_of = make_events(system, stepper)
     derivative, momenta = system.derivative, system.momenta
     placed: Callable[..., State] = system.placed
 
     @jit
-    def is_flat(y: State) -> bool:
-        """Return whether a state has neither spin nor twist rate: exactly planar motion."""
-        L, S = momenta(y)
-        return bool(L == 0.0 and S == 0.0)
-
-    @jit
-    def lifted(
-        body: Body, time_step: float, a: Vector, slope: Vector, at: float, time: float, last: State
-    ) -> State:
+    def lifted(body: Body, time_step: float, piece: Piece, at: float, time: float, last: State) -> State:
         """Return the state `time` after an uplift; `last` is the state in which it stood."""
-        theta, omega, angle, rate = started(body, time_step, a, slope, at, time)
+        theta, omega, angle, rate = started(body, time_step, piece.a, piece.slope, at, time)
         return placed(last, theta, omega, nearest_branch(angle, last[2]), spin_momentum(body, theta, rate))
+
+    @inlined
+    def lift_in(body: Body, rtol: float, time_step: float, piece: Piece, elapsed: float, y: State) -> Lift:
+        """Return how a cylinder at rest leaves the ground after `elapsed` of a piece, if it does.
+
+        An uplift within a hair of the next sample is taken up there, already above the threshold,
+        however short that sample is.
+        """
+        wait = uplift_in(body, ground(piece.a, piece.slope, elapsed), piece.slope, piece.length - elapsed)
+        at = elapsed + wait
+        if wait < 0.0 or (at > 0.0 and piece.length - at < _HAIR / body.p):
+            return Lift(True, at, 0.0, y)
+        length = min(start_length(body, rtol, piece.a, piece.slope, at), piece.length - at)
+        return Lift(False, at, length, lifted(body, time_step, piece, at, length, y))
+
+    @inlined
+    def rebounded(y: State, restitution: float) -> State:
+        """Return the state after the base met the ground in planar motion: contact changes sides."""
+        opposite = y[2] + (-pi if y[2] > 0.0 else pi)
+        return placed(y, 0.0, restitution * abs(y[1]), opposite, 0.0)
+
+    sample_rest, sample_uplift, sample_step = make_sampling(lifted, partial)
 
     @jit
     def march(
@@ -107,186 +134,120 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             From each sample on, the largest |a| and the least az of `record` [m/s^2], by which a fall that
             nothing can stop ends the integration early; m = 0 goes on until the side is down.
         """
-        size = len(initial)
-        y, k = initial, initial
-        owned = workspace(initial)  # until its last use, at the end
-        work = borrowed(owned)
-        samples, moving = np.zeros((len(times), size)), np.zeros(len(times), dtype=np.bool_)
-        sample = 0
-        # lists, typed by a row and emptied: a growing array would have its references counted in each step
-        extrema, rests, steps = [(0.0, 0.0, 0.0, 0.0)], [(0.0, 0.0)], [(0.0, *initial)]
-        extrema.clear()
-        rests.clear()
-        steps.clear()
-        step_count = 0
-
+        y, k, peak = initial, initial, initial[0]
+        owned = workspace(y), np.zeros((len(times), len(y))), np.zeros(len(times), dtype=np.bool_)
+        # borrowed until the last use of what they were borrowed from, at the end
+        work, wanted = borrowed(owned[0]), (borrowed(times), borrowed(owned[1]), borrowed(owned[2]))
+        log = empty_log(y)
         resting = y[0] == 0.0
-        uplift_time, uplift_direction = np.nan, np.nan
-        if not resting:
-            uplift_time, uplift_direction = 0.0, y[2]
-        peak = y[0]
-        h_next = _FIRST_STEP / body.p
-        now, piece, status = 0.0, 0, COMPLETED
-        restart = True  # kept until a step has been made ready, also when an uplift ends at a sample
-        end, deciding, decided = options.duration, False, False
-        y_end, peak_end, kept = y, peak, (0, 0, 0)  # what stood when the duration was over
+        uplift = (np.nan, np.nan) if resting else (0.0, y[2])  # time and direction
+        now, index, sample, step_count, status = 0.0, 0, 0, 0, COMPLETED
+        h_next, restart = _FIRST_STEP / body.p, True  # until a step has been made ready
+        end, deciding, mark = options.duration, False, mark_of(y, peak, log)
 
-        while status == COMPLETED and not decided:
+        while status == COMPLETED:
             if now >= end:
                 if deciding or resting or not may_overturn(body, y[0], y[1], *momenta(y)):
                     break
-                deciding, end = True, now + _UNDECIDED / body.p
-                y_end, peak_end, kept = y, peak, (len(extrema), len(rests), len(steps))
-                piece, restart = len(record), True
-            begin = now
-            a, slope, finish = piece_of_record(record, time_step, piece)
-            finish = min(finish, end)
-            length = finish - begin
+                end, deciding, mark = now + _UNDECIDED / body.p, True, mark_of(y, peak, log)
+                index, restart = len(record), True
+            piece = piece_of_record(record, time_step, index, now, end)
             elapsed = 0.0
             # the forcing jumps where a record begins or ends, and only there
-            restart = restart or piece == 0 or piece == len(record) - 1
+            restart = restart or index == 0 or index == len(record) - 1
 
-            while now < finish and status == COMPLETED and not decided:
+            while now < piece.finish and status == COMPLETED:
                 if resting:
-                    wait = uplift_in(body, ground(a, slope, elapsed), slope, length - elapsed)
-                    lift = elapsed + wait
-                    # one within a hair of the next sample is taken up there, already above the threshold,
-                    # however short that sample is
-                    stays = wait < 0.0 or (lift > 0.0 and length - lift < _HAIR / body.p)
-                    now = finish if stays else begin + lift
-                    while sample < len(times) and times[sample] <= now:
-                        write(y, samples[sample])
-                        sample += 1
-                    if stays:
-                        break
-                    series = min(start_length(body, options.rtol, a, slope, lift), length - lift)
-                    y_new = lifted(body, time_step, a, slope, lift, series, y)
-                    elapsed = lift + series
-                    if y_new[0] <= 0.0:  # touched the threshold and fell back
+                    lift = lift_in(body, options.rtol, time_step, piece, elapsed, y)
+                    now = piece.finish if lift.stays else piece.begin + lift.at
+                    sample = sample_rest(wanted, sample, now, y)
+                    elapsed = lift.at + lift.length
+                    if lift.stays or lift.y[0] <= 0.0:  # or touched the threshold and fell back
                         continue
-                    if np.isnan(uplift_time):
-                        uplift_time = now
-                        uplift_direction = lifted(body, time_step, a, slope, lift, 0.0, y)[2]
-                    if len(rests) > 0:
-                        rests[-1] = (rests[-1][0], now)
-                    while sample < len(times) and times[sample] <= begin + elapsed:
-                        y_at = lifted(body, time_step, a, slope, lift, times[sample] - now, y)
-                        write(y_at, samples[sample])
-                        moving[sample] = True
-                        sample += 1
-                    y = y_new
-                    peak = max(peak, y[0])
-                    now = finish if elapsed >= length else begin + elapsed
-                    h_next = 0.1 * series
+                    if np.isnan(uplift[0]):
+                        uplift = now, lifted(body, time_step, piece, lift.at, 0.0, y)[2]
+                    if len(log.rests) > 0:
+                        log.rests[-1] = (log.rests[-1][0], now)
+                    until = piece.begin + elapsed
+                    sample = sample_uplift(wanted, sample, until, body, time_step, piece, lift.at, now, y)
+                    y, peak, h_next = lift.y, max(peak, lift.y[0]), 0.1 * lift.length
+                    now = piece.finish if elapsed >= piece.length else until
                     resting, restart = False, True
                     continue
 
-                a_now = ground(a, slope, elapsed)
+                a = ground(piece.a, piece.slope, elapsed)
                 if restart:
-                    k = restarted(body, y, a_now, work)
+                    k = restarted(body, y, a, work)
                     restart = False
                     if now == 0.0 and y[1] == 0.0:  # a release at rest is a turning point
-                        kind = MAXIMUM if derivative(body, y, a_now)[1] < 0.0 else MINIMUM
-                        extrema.append((0.0, y[0], y[2], kind))
-
-                h, h_next, trials, y_new, k, path = advance(
-                    body, options.rtol, y, k, work, h_next, length - elapsed, a_now, slope
-                )
-                step_count += trials
+                        kind = MAXIMUM if derivative(body, y, a)[1] < 0.0 else MINIMUM
+                        log.extrema.append((0.0, y[0], y[2], kind))
+                trial = tried(body, options.rtol, y, k, work, h_next, piece.length - elapsed, a, piece.slope)
+                k, h_next = trial.k, trial.h_next
+                step_count += trial.trials
                 if step_count > options.step_budget:
                     status = OVER_BUDGET
                     break
-                if h == 0.0:
-                    if h_next < _LEAST_STEP:
-                        status = STALLED
-                        break
+                if trial.verdict == REPEATED:
+                    restart = trial.h > 0.0
+                    status = STALLED if h_next < _LEAST_STEP and not restart else COMPLETED
                     continue
-
-                turns = y[1] * y_new[1] < 0.0
-                turn = turned_tilt = turned_angle = 0.0
-                if turns:
-                    turn, turned_tilt, turned_angle = turning_point(body, work, path, y, h, y_new[1])
-                # with spin the tilt stays positive; without it the base meets the ground
-                flat = is_flat(y) and is_flat(y_new)
-                lands = flat and (y_new[0] <= 0.0 or (turns and turned_tilt <= 0.0))
-                if turns and not flat and turned_tilt <= 0.0:  # it jumped the barrier and came back
-                    h_next, restart = _RETRY * h, True
-                    continue
-                falls = y_new[0] >= HALF_PI
-                outward = piece < len(later) and y_new[0] > body.alpha and y_new[1] >= 0.0
-                if outward and surely_falls(body, y_new[0], later[piece, 0], body.g + later[piece, 1]):
+                outward = index < len(later) and trial.y[0] > body.alpha and trial.y[1] >= 0.0
+                if outward and surely_falls(body, trial.y[0], later[index, 0], body.g + later[index, 1]):
                     peak, status = HALF_PI, OVERTURNED
                     break
-                if lands or falls:
-                    level = HALF_PI if falls else 0.0
-                    # a hop within one step lands after its highest point, a dip before its lowest
-                    hops = lands and turns and turned_tilt > 0.0
-                    first = turn if hops else 0.0
-                    last = turn if lands and turns and not hops else h
-                    h, y_new = crossing(body, work, path, y, first, last, level)
-                    turns = hops
-                whole = elapsed + h >= length
-                after = finish if whole else begin + (elapsed + h)
 
-                while sample < len(times) and times[sample] <= after:
-                    if times[sample] == after:
-                        write(y_new, samples[sample])
-                    else:
-                        y_at, _ = partial(body, work, path, times[sample] - now)
-                        write(y_at, samples[sample])
-                    moving[sample] = True
-                    sample += 1
-                if turns:
-                    kind = MAXIMUM if y[1] > 0.0 else MINIMUM
-                    extrema.append((now + turn, turned_tilt, turned_angle, kind))
-                    peak = max(peak, turned_tilt)
-                    decided = deciding and kind == MAXIMUM
-
-                y = y_new
-                elapsed = length if whole else elapsed + h
-                now = after
-                peak = max(peak, y[0])
-                if falls:
+                ending = ending_of(body, work, y, trial)
+                elapsed += ending.h
+                now, begin = piece.begin + elapsed, now
+                if elapsed >= piece.length:
+                    elapsed, now = piece.length, piece.finish
+                sample = sample_step(wanted, sample, now, body, work, trial.path, begin, ending.y)
+                if ending.turns:
+                    turn = trial.turn
+                    log.extrema.append((begin + turn.at, turn.tilt, turn.angle, turn.kind))
+                    peak = max(peak, turn.tilt)
+                    status = DECIDED if deciding and turn.kind == MAXIMUM else COMPLETED
+                y, peak = ending.y, max(peak, ending.y[0])
+                if ending.falls:
                     status = OVERTURNED
-                elif lands:
-                    extrema.append((now, 0.0, y[2], MINIMUM))
-                    opposite = y[2] + (-pi if y[2] > 0.0 else pi)  # the other end of the diameter
-                    y = placed(y, 0.0, options.restitution * abs(y[1]), opposite, 0.0)
-                    restart = True
+                elif ending.lands:
+                    log.extrema.append((now, 0.0, y[2], MINIMUM))
+                    y, restart = rebounded(y, options.restitution), True
                     resting = y[1] == 0.0  # no speed is left: it stands, or lifts off again by (25) and (26)
                 if options.record_steps:
-                    steps.append((now, *y))
-                if options.rest_tilt > 0.0 and not falls:
+                    log.steps.append((now, *y))
+                if options.rest_tilt > 0.0 and not ending.falls:
+                    a = ground(piece.a, piece.slope, elapsed)
                     L, S = momenta(y)
-                    a_now = ground(a, slope, elapsed)
-                    resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a_now)
+                    resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)
                 if resting:
-                    rests.append((now, np.nan))
+                    log.rests.append((now, np.nan))
                     y = placed(y, 0.0, 0.0, y[2], 0.0)
-            piece += 1
+            index += 1
 
-        if deciding and status == COMPLETED:
-            y, peak, now = y_end, peak_end, options.duration
+        if deciding and status in (COMPLETED, DECIDED):
+            y, peak, now, status = mark.y, mark.peak, options.duration, COMPLETED
         else:
-            kept = (len(extrema), len(rests), len(steps))
-        if status == COMPLETED and resting and not deciding:
-            status = REST
-        final = np.empty(size)
+            mark = mark_of(y, peak, log)
+            if status == COMPLETED and resting:
+                status = REST
+        final = np.empty(len(y))
         write(y, final)
-        owned[0] = 0.0
+        owned[0][0] = 0.0
         return March(
             status,
             now,
             peak,
-            uplift_time,
-            uplift_direction,
-            samples,
-            moving,
+            uplift[0],
+            uplift[1],
+            owned[1],
+            owned[2],
             sample,
             final,
-            as_table(extrema, kept[0], 4),
-            as_table(rests, kept[1], 2),
-            as_table(steps, kept[2], 1 + size),
+            as_table(log.extrema, mark.counts[0], 4),
+            as_table(log.rests, mark.counts[1], 2),
+            as_table(log.steps, mark.counts[2], 1 + len(y)),
             step_count,
         )
 

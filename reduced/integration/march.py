@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +12,7 @@ from .._compile import inlined, jit
 from .tsit5 import State, Vector
 
 REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a march ends
+DECIDED = 5  # while it runs: it is known that it does not overturn after the duration
 MAXIMUM, MINIMUM = 1.0, -1.0
 
 
@@ -56,22 +57,23 @@ def write(source: State, target: NDArray[np.float64]) -> None:
         target[i] = source[i]
 
 
-@jit
-def as_table(rows: Any, count: int, width: int) -> NDArray[np.float64]:
-    """Return the first `count` tuples of a list as an array (count, width)."""
-    table = np.empty((count, width))
-    for i in range(count):
-        write(rows[i], table[i])
-    return table
+class Piece(NamedTuple):
+    """A stretch of linear ground motion, from one sample of the record to the next."""
+
+    begin: float  # [s]
+    finish: float  # [s]
+    length: float  # [s]
+    a: Vector  # acceleration at its beginning [m/s^2]
+    slope: Vector  # its rate [m/s^3]
 
 
 @inlined
 def piece_of_record(
-    record: NDArray[np.float64], time_step: float, index: int
-) -> tuple[Vector, Vector, float]:
-    """Return the acceleration at sample `index`, its rate from there on, and where that ends [s]."""
+    record: NDArray[np.float64], time_step: float, index: int, begin: float, last: float
+) -> Piece:
+    """Return the stretch behind sample `index`, from `begin` and to `last` at the latest [s]."""
     if index >= len(record) - 1:  # the ground is still after the record
-        return (0.0, 0.0, 0.0), (0.0, 0.0, 0.0), np.inf
+        return Piece(begin, last, last - begin, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
     end = index + 1
     a = (record[index, 0], record[index, 1], record[index, 2])
     slope = (
@@ -79,4 +81,5 @@ def piece_of_record(
         (record[end, 1] - a[1]) / time_step,
         (record[end, 2] - a[2]) / time_step,
     )
-    return a, slope, end * time_step
+    finish = min(end * time_step, last)
+    return Piece(begin, finish, finish - begin, a, slope)

@@ -1,4 +1,4 @@
-"""Accepted steps of a system, and the events inside them.
+"""Accepted steps of a system.
 
 Nothing here knows of records: the ground acceleration is a + slope t, t from the start of the step.
 Two methods take the steps. The recess model, of which millions of runs are asked, has Taylor series
@@ -127,63 +127,3 @@ def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callab
 def taylor_series() -> Stepper:
     """Return the steps of `taylor` for the recess model."""
     return Stepper(taylor.workspace, taylor.restarted, taylor.advance, taylor.partial)
-
-
-class Events(NamedTuple):
-    """The compiled functions that find the events inside a step."""
-
-    turning_point: Callable[..., Any]
-    crossing: Callable[..., Any]
-
-
-def make_events(partial: Callable[..., Any]) -> Events:
-    """Return the search for events in steps that `partial` fills."""
-
-    @jit
-    def turning_point(
-        body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, rate_at_end: float
-    ) -> tuple[float, float, float]:
-        """Return when, in a step of length `h`, the tilt rate is zero, and tilt and rolling angle there.
-
-        Newton's method on partial steps. What it leaves is of second order in the tilt.
-        """
-        at = h * y[1] / (y[1] - rate_at_end)
-        tilt, angle = y[0], y[2]
-        for _ in range(3):
-            y_at, k_at = partial(body, work, path, at)
-            change = -y_at[1] / k_at[1]
-            tilt, angle = y_at[0] + 0.5 * y_at[1] * change, y_at[2] + k_at[2] * change
-            if not 0.0 <= at + change <= h:
-                break
-            at += change
-        return at, tilt, angle
-
-    @jit
-    def crossing(
-        body: Body, work: NDArray[np.float64], path: Any, y: State, first: float, last: float, level: float
-    ) -> tuple[float, State]:
-        """Return when, from `first` to `last`, the tilt reaches `level`, and the state there.
-
-        The tilt sinks to 0 or rises to any other level. Newton's method on partial steps, kept inside
-        the bracket by bisection.
-        """
-        low, high = first, last
-        side = 1.0 if level == 0.0 else -1.0
-        at = 0.5 * (first + last)
-        y_at = y
-        for _ in range(80):
-            y_at, _ = partial(body, work, path, at)
-            miss = y_at[0] - level
-            if miss * side > 0.0:
-                low = at
-            else:
-                high = at
-            guess = at - miss / y_at[1]
-            if not low < guess < high:
-                guess = 0.5 * (low + high)
-            if abs(guess - at) <= 1e-15 * last:
-                break
-            at = guess
-        return at, y_at
-
-    return Events(turning_point, crossing)

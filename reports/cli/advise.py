@@ -66,10 +66,14 @@ def advise(
     with interruptible():
         with user_input():
             from rockwobble.compare import require_writable
+            from rockwobble.models import Run
+
+            from .inputs.estimate import require_feasible
 
             case = problem.case()
             friction = case.friction if "friction" in given_options(context) else None
             run = _run(case, engine, support, time_step)
+            require_feasible([case], [Run(None, "recess"), *([] if run is None else [run])])
             _require_numbers(copies, seed)
             require_writable(out)
         from rockwobble.compare.runs.execution import Job, job_fingerprint
@@ -79,9 +83,9 @@ def advise(
         from rockwobble.compare.studies.advice.advice import KIND
 
         from ..console.progress import shown_progress
+        from ..console.provenance import command_line
         from ..console.results import show_and_write
         from ..pages.advice import advice_page
-        from ..pages.provenance import command_line
 
         with shown_progress("stages") as tell:
             found = ask(

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 import typer
 
+from ..console.provenance import command_line
 from ..console.terminal import FAILED, complain, interruptible, user_input
-from ..pages.provenance import command_line
 from .inputs import options
 from .inputs.method_values import settings
 from .inputs.problem import Problem, states_problem
@@ -20,13 +20,15 @@ if TYPE_CHECKING:
     from rockwobble.compare import External
     from rockwobble.models import Case, Run
 
+ALL = "all"  # in place of the name of an engine
+
 
 @states_problem
 def compare(
     context: typer.Context,
     problem: Problem,
     suite: options.SuiteName = None,
-    engine: options.Engines = None,
+    engine: options.EnginesOrAll = None,
     support: options.Supports = None,
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
@@ -45,6 +47,8 @@ def compare(
     With a SUITE: its cases and runs, among which --engine and --support choose. A suite that was ended
     before its end goes on where it was when it is started again with the same folder.
 
+    With --engine all: every installed engine that can run the problem, and who agrees with whom.
+
     With --trajectory: that of a shake table or of another code is one more run. With --engine none it is
     held against the reduced model alone.
 
@@ -55,29 +59,33 @@ def compare(
         with user_input():
             from rockwobble.compare import compare as held_against_models
             from rockwobble.compare import require_runnable, require_writable, with_settings
+            from rockwobble.compare.runs.choice import unable_engines
             from rockwobble.models import Suite
 
-            from .inputs.estimate import require_memory
+            from .inputs.estimate import require_feasible
 
             if suite is not None:
                 refuse_problem_options(context, suite)
                 cases, runs = _suite(suite, engine, support, time_step)
             else:
                 cases = [problem.case()]
-                runs = _runs(engine, support, time_step, alone=bool(trajectory))
+                runs = _runs(cases[0], engine, support, time_step, alone=bool(trajectory))
             if setting:
                 runs = list(with_settings(cases[0], runs, settings(setting)))
             require_writable(out)
+            require_feasible(cases, runs)
             for each in cases:
                 for run in runs:
                     require_runnable(each, run)
-            require_memory(cases, runs)
             external = _external(
                 trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
             )
         for line in _echo(suite, cases, runs):
             print(line)
-        if not engine and suite is None:
+        if engine == [ALL]:
+            for reason in unable_engines(cases):
+                complain(reason)
+        elif not engine and suite is None:
             _say_what_is_left_out(support or [])
         from ..console.progress import shown_progress
 
@@ -104,24 +112,33 @@ def compare(
 def _suite(
     name: str, engines: list[str] | None, supports: list[str] | None, time_step: Any
 ) -> tuple[list[Case], list[Run]]:
-    from rockwobble.models import read_suite
+    from rockwobble.compare.runs.choice import all_runs
+    from rockwobble.models import Run, read_suite
 
     suite = read_suite(name)
+    if engines == [ALL]:
+        asked = supports or list(dict.fromkeys(run.support for run in suite.runs)) or None
+        return list(suite.cases), [
+            Run(run.engine, run.support, time_step) for run in all_runs(suite.cases, asked)
+        ]
     runs, missing = without_missing(chosen_runs(suite, engines, supports, time_step), engines)
     for engine in missing:
         complain(f"{engine} is not installed here and is left out")
     return list(suite.cases), runs
 
 
-def _runs(engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool) -> list[Run]:
+def _runs(
+    case: Case, engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool
+) -> list[Run]:
     from rockwobble.compare import default_runs
+    from rockwobble.compare.runs.choice import all_runs
     from rockwobble.models import Run
 
     if engines == ["none"] and alone:
         return []
-    return [
-        Run(run.engine, run.support, time_step) for run in default_runs(engines or None, supports or None)
-    ]
+    every = engines == [ALL]
+    runs = all_runs([case], supports or None) if every else default_runs(engines or None, supports or None)
+    return [Run(run.engine, run.support, time_step) for run in runs]
 
 
 def _echo(suite: str | None, cases: Sequence[Case], runs: Sequence[Run]) -> list[str]:

@@ -73,6 +73,9 @@ def ensemble(
     with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
         with user_input():
             from rockwobble import compare
+            from rockwobble.models import Run
+
+            from .inputs.estimate import require_feasible
 
             compare.require_writable(out)
             stated: Case | Suite | list[Case]
@@ -81,6 +84,9 @@ def ensemble(
                 print(f"Suite {suite}: {len(stated.cases)} members")
             else:
                 case = problem.case()
+                # each engine and its own model, and a perturbed copy of that
+                methods = [Run(None, "recess"), *(_runs(engine, support, time_step, stated=False) or ())]
+                require_feasible([case], methods, members=members, samples=False)
                 motions = _motions(case, members, synthetic, far_field, seed)
                 stated = _under(case, motions) if motions else case
                 for line in describe(case)[:1] if motions else describe(case):
@@ -91,9 +97,9 @@ def ensemble(
         from rockwobble.compare.studies.ensemble.study import KIND
 
         from ..console.progress import shown_progress
+        from ..console.provenance import command_line
         from ..console.results import show_and_write
         from ..pages.ensemble import ensemble_page
-        from ..pages.provenance import command_line
 
         with user_input(), shown_progress() as tell:
             found = compare.ensemble(

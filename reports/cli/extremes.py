@@ -41,9 +41,9 @@ def extremes(
         from rockwobble.compare.studies.extremes import KIND, measure_extremes
 
         from ..console.progress import shown_progress
+        from ..console.provenance import command_line
         from ..console.results import show_and_write
         from ..pages.extremes import extremes_page
-        from ..pages.provenance import command_line
 
         with user_input(), shown_progress() as tell:
             found = measure_extremes(out, quick=quick, workers=workers, progress=tell, command=command_line())

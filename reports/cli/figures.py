@@ -32,8 +32,8 @@ def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-figures")) -> 
                 raise ValueError(f"--grid must be from {_LEAST_GRID} to {_MOST_GRID}, got {grid}")
             require_writable(out)
         from ..console.progress import shown_progress
+        from ..console.provenance import command_line
         from ..console.results import show_and_write
-        from ..pages.provenance import command_line
         from ..paper.page import compute, paper_page
 
         with shown_progress("figures") as tell:

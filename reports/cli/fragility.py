@@ -10,10 +10,11 @@ import typer
 
 from ..console.terminal import interruptible, user_input
 from .inputs import options
+from .inputs.grid import values
 from .inputs.method_values import settings
 from .inputs.motion_set import DEFAULT_COUNT, motions_of
 from .inputs.several import cylinders_of, methods_of
-from .sweep import Scheduler, Workers, values
+from .sweep import Scheduler, Workers
 
 _MOTIONS, _LEVELS, _STATISTICS = "Ground motions", "Intensity", "Statistics"
 
@@ -196,9 +197,9 @@ def fragility(
         from rockwobble.compare.studies.fragility.result import manifest_of
 
         from ..console.progress import shown_progress
+        from ..console.provenance import command_line
         from ..console.results import show_and_write
         from ..pages.fragility import count_files, fragility_page
-        from ..pages.provenance import command_line
 
         with user_input(), shown_progress() as tell:
             found = compare.fragility(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import Annotated, Any
 
@@ -73,11 +74,15 @@ def _root(
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; exit code 0 done, 1 a check failed, 2 bad input, 130 interrupted."""
     forgive_output()
+    os.environ["MPLBACKEND"] = "svg"  # pictures are files here, whatever a notebook has set
     try:
         code = app(arguments, prog_name="rockwobble", standalone_mode=False)
     except _USAGE_ERROR as error:
         # one clear line, without the box that typer draws around it
         complain(error.format_message())
+        sys.exit(BAD_INPUT)
+    except MemoryError:
+        complain("the memory of this machine does not suffice: give fewer runs, or shorter ones")
         sys.exit(BAD_INPUT)
     except (typer.Abort, KeyboardInterrupt):
         complain("interrupted")

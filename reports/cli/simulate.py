@@ -11,39 +11,19 @@ import typer
 
 from ..console.terminal import FAILED, complain, interruptible, user_input
 from .inputs import options
-from .inputs.method_values import restitution, settings
+from .inputs.method_values import settings
 from .inputs.problem import Problem, states_problem
 
 if TYPE_CHECKING:
     from rockwobble.compare import Job
     from rockwobble.models import Case, Run, Trace
 
-_MODEL = "Reduced model"
-Plane = Annotated[
-    float | None,
-    typer.Option(
-        "--plane",
-        help="Planar motion: azimuth of the vertical plane that holds it, in rad.",
-        rich_help_panel=_MODEL,
-    ),
-]
-Restitution = Annotated[
-    Any,  # a number, "momentum" or None: typer knows no type for that
-    typer.Option(
-        "--restitution",
-        parser=restitution,
-        metavar="FLOAT|momentum",
-        help="Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from "
-        "the moment of momentum about the new pivot.",
-        rich_help_panel=_MODEL,
-    ),
-]
 RestTilt = Annotated[
     float | None,
     typer.Option(
         "--rest-tilt",
         help="Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out.",
-        rich_help_panel=_MODEL,
+        rich_help_panel=options.REDUCED,
     ),
 ]
 
@@ -55,8 +35,8 @@ def simulate(
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
-    plane: Plane = None,
-    restitution: Restitution = None,
+    plane: options.Plane = None,
+    restitution: options.Restitution = None,
     rest_tilt: RestTilt = None,
     out: options.Out = Path("rockwobble-simulate"),
 ) -> None:
@@ -68,7 +48,7 @@ def simulate(
     manifest.json; SI units and radians.
     """
     from ..pages.case_words import describe
-    from .inputs.estimate import require_memory, time_needed
+    from .inputs.estimate import require_feasible, time_needed
 
     with interruptible():
         with user_input():
@@ -81,8 +61,8 @@ def simulate(
             require_writable(out)
             model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
             run = _with_settings(case, Run(engine, support, time_step), setting, model)
+            require_feasible([case], [run])
             require_runnable(case, run)
-            require_memory([case], [run])
         for line in (*describe(case), *time_needed([case], [run])):
             print(line)
         job = Job(case=case, run=run)
@@ -178,7 +158,7 @@ def _save(out: Path, job: Job, trace: Trace) -> list[str]:
     from rockwobble.compare.storage.manifest import made_now, write_results
     from rockwobble.models.traces.trace_file import case_to_plain, packed
 
-    from ..pages.provenance import command_line
+    from ..console.provenance import command_line
 
     case, found = case_to_plain(job.case), trace.to_plain()
     motion = job.case.motion

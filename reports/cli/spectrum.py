@@ -125,9 +125,9 @@ def spectrum(
         from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
 
         from ..console.progress import shown_progress
+        from ..console.provenance import command_line
         from ..console.results import show_and_write
         from ..pages.case_words import describe
-        from ..pages.provenance import command_line
         from ..pages.spectrum import spectrum_page, spectrum_tables
 
         for line in describe(case)[:2]:

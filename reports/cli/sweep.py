@@ -10,14 +10,20 @@ import typer
 
 from ..console.terminal import FAILED, INTERRUPTED, complain, user_input
 from .inputs import options
+from .inputs.estimate import require_sweep
+from .inputs.grid import grid_of
+from .inputs.problem import refuse
 from .results.show import show
 
 if TYPE_CHECKING:
     from rockwobble.compare import CaseSweep, Grid
-    from rockwobble.models import GroundMotion
 
 _GRID, _WORK = "Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT", "Work"
-_MOST_VALUES = 100_000
+# what states a grid: the file of a suite states its own
+_STATED = {
+    *("semidiagonal", "tan_alpha", "scale", "record_x", "record_y", "record_z", "units", "gravity"),
+    *("plane", "restitution"),
+}
 
 SuiteFile = Annotated[
     str | None,
@@ -64,7 +70,8 @@ Scheduler = Annotated[
     str | None,
     typer.Option(
         "--scheduler",
-        help="Dask scheduler that has the work done, such as tcp://10.0.0.1:8786.",
+        help="Dask scheduler that has the work done, such as tcp://10.0.0.1:8786: started by dask scheduler, "
+        "and on each machine dask worker tcp://10.0.0.1:8786. Needs pip install '.[distributed]'.",
         rich_help_panel=_WORK,
     ),
 ]
@@ -77,6 +84,7 @@ ChunkSize = Annotated[
 
 
 def sweep(
+    context: typer.Context,
     suite: SuiteFile = None,
     semidiagonal: Sizes = "0.5:30:100",
     tan_alpha: Slendernesses = "0.2",
@@ -85,7 +93,10 @@ def sweep(
     record_y: RecordsY = None,
     record_z: RecordsZ = None,
     units: options.Units = None,
+    gravity: options.Gravity = 9.81,
     model: Models = None,
+    plane: options.Plane = None,
+    restitution: options.Restitution = None,
     workers: Workers = None,
     scheduler: Scheduler = None,
     chunk: ChunkSize = None,
@@ -94,7 +105,7 @@ def sweep(
     """Run every combination, and keep each chunk of runs as soon as it is finished.
 
     A grid takes every size with every slenderness, scale, record and model, from rest, for its
-    peak tilt. A suite takes every case with every run.
+    peak tilt; friction is assumed to suffice. A suite takes every case with every run.
 
     Whatever ends the sweep, the same command goes on where it stopped.
 
@@ -103,16 +114,24 @@ def sweep(
     with user_input():
         from rockwobble.compare import require_writable
 
+        plan: Grid | CaseSweep
         if suite is None:
-            plan: Grid | CaseSweep = _grid(
-                semidiagonal, tan_alpha, scale, _motions(record_x, record_y, record_z, units), model
+            plan = grid_of(
+                semidiagonal,
+                tan_alpha,
+                scale,
+                (record_x, record_y, record_z, units),
+                model,
+                gravity=gravity,
+                plane=plane,
+                restitution=restitution,
             )
         else:
-            if record_x or record_y or record_z or units:
-                raise ValueError(f"the records of a suite stand in its file, got options besides {suite}")
+            refuse(context, _STATED, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
+        how_long = require_sweep(plan)
         require_writable(out)
-    for line in _echo(plan):
+    for line in (*_echo(plan), how_long):
         print(line)
     _run(plan, out, scheduler, workers, chunk)
     print()
@@ -126,7 +145,7 @@ def _run(
     from rockwobble.compare import sweep as run
 
     from ..console.progress import shown_progress
-    from ..pages.provenance import command_line
+    from ..console.provenance import command_line
 
     try:
         with user_input(), shown_progress("chunks") as tell:
@@ -147,20 +166,6 @@ def _run(
         raise typer.Exit(INTERRUPTED) from None
 
 
-def _grid(
-    sizes: str, slendernesses: str, scales: str, motions: list[GroundMotion], models: list[str] | None
-) -> Grid:
-    from rockwobble.compare import Grid
-
-    return Grid(
-        semidiagonals=values("--semidiagonal", sizes),
-        tan_alphas=values("--tan-alpha", slendernesses),
-        scales=values("--scale", scales),
-        motions=motions,
-        models=models or ("recess",),
-    )
-
-
 def _suite(name: str, models: list[str] | None) -> CaseSweep:
     from rockwobble import reduced
     from rockwobble.compare import CaseSweep, default_runs
@@ -172,51 +177,6 @@ def _suite(name: str, models: list[str] | None) -> CaseSweep:
     suite = read_suite(name)
     chosen = [Run(None, **{"support": "recess", **reduced.MODELS[model]}) for model in models or ()]
     return CaseSweep(suite.cases, (*chosen, *(suite.runs or (() if models else default_runs()))))
-
-
-def values(option: str, text: str) -> list[float]:
-    """Return the numbers of "6", "1,2,6" or "0.5:30:100".
-
-    Raises
-    ------
-    ValueError
-        If the text is none of these.
-    """
-    try:
-        if ":" not in text:
-            return [float(part) for part in text.split(",")]
-        first, last, count = text.split(":")
-        number = int(count)
-        if not (2 <= number <= _MOST_VALUES and math.isfinite(float(first) - float(last))):
-            raise ValueError  # noqa: TRY301 - the same answer as for what is no number
-        import numpy as np
-
-        return [float(value) for value in np.linspace(float(first), float(last), number)]
-    except ValueError:
-        raise ValueError(
-            f"{option} must be a number, a list such as 1,2,6 or a range FROM:TO:COUNT, got {text!r}"
-        ) from None
-
-
-def _motions(
-    x: list[Path] | None, y: list[Path] | None, z: list[Path] | None, units: str | None
-) -> list[GroundMotion]:
-    from rockwobble.models import el_centro_1940, read_record
-
-    x, y, z = x or [], y or [], z or []
-    if not x and not y:
-        if z or units:
-            raise ValueError(
-                "--record-z and --units belong to a record, give --record-x and --record-y as well"
-            )
-        return [el_centro_1940()]
-    if len(x) != len(y) or len(z) not in (0, len(x)):
-        raise ValueError(
-            f"each record needs both horizontal components, and all a vertical one or none: "
-            f"got {len(x)}, {len(y)} and {len(z)} files"
-        )
-    ups: list[Path | None] = list(z) if z else [None] * len(x)
-    return [read_record(east, north, up, units=units) for east, north, up in zip(x, y, ups, strict=True)]
 
 
 def _echo(plan: Grid | CaseSweep) -> list[str]:

@@ -35,8 +35,8 @@ def tradeoff(quick: Quick = False, out: options.Out = Path("rockwobble-tradeoff"
         from rockwobble.compare.studies.tradeoff import measure_tradeoff
 
         from ..console.progress import shown_progress
+        from ..console.provenance import command_line
         from ..console.results import show_and_write
-        from ..pages.provenance import command_line
         from ..pages.tradeoff import tradeoff_page
 
         with shown_progress("rounds") as tell:

@@ -46,8 +46,8 @@ def validity(
         from rockwobble.compare.studies.validity import FULL, QUICK, measure_all, validity_of
 
         from ..console.progress import shown_progress
+        from ..console.provenance import command_line
         from ..console.results import show_and_write
-        from ..pages.provenance import command_line
         from ..pages.validity import limits_table, validity_page
 
         extent = QUICK if quick else FULL

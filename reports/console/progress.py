@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 from ..pages.table import number
+from .terminal import complain
 
 if TYPE_CHECKING:
     from rockwobble.compare.runs.progress import Progress, ProgressCallback
@@ -21,8 +22,20 @@ _PAUSE = 10.0  # between two lines of more [s]
 
 @contextmanager
 def shown_progress(what: str = "runs") -> Iterator[ProgressCallback]:
-    """Yield a callback that shows how far tasks are; `what` they are, in words."""
-    with _bar(what) if sys.stderr.isatty() else _lines(what) as tell:
+    """Yield a callback that shows how far tasks are; `what` they are, in words.
+
+    It names each file of finished tasks that is damaged, once.
+    """
+    named: set[str] = set()
+    with _bar(what) if sys.stderr.isatty() else _lines(what) as show:
+
+        def tell(event: Progress) -> None:
+            for path in event.damaged:
+                if path not in named:
+                    named.add(path)
+                    complain(f"{path} is damaged, what it held is computed again")
+            show(event)
+
         yield tell
 
 

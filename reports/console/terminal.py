@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import codecs
 import io
+import os
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
 import typer
@@ -65,10 +67,22 @@ def interruptible(left: str = "nothing was written") -> Iterator[None]:
 def forgive_output() -> None:
     """Let no output stop a command: results outlive a closed pipe, a full device and a poor encoding."""
     codecs.register_error("rockwobble", _plain)
+    _open_standard_files()
     sys.stdout, sys.stderr = _forgiving(sys.stdout, "standard output"), _forgiving(sys.stderr, "")
 
 
-def _forgiving(stream: TextIO, name: str) -> TextIO:
+def _open_standard_files() -> None:
+    """Put the null device in the place of standard files that are closed: a later file would take theirs."""
+    for descriptor in range(3):
+        try:
+            os.fstat(descriptor)
+        except OSError:
+            os.dup2(os.open(os.devnull, os.O_RDWR), descriptor)
+
+
+def _forgiving(stream: TextIO | None, name: str) -> TextIO:
+    if stream is None:  # closed when Python started
+        return Path(os.devnull).open("w", encoding="utf-8")
     if not isinstance(stream, io.TextIOWrapper):
         return stream
     if stream.isatty():

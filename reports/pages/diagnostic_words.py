@@ -17,6 +17,12 @@ _UNSETTLED = {
     "no_later": "a smaller step does not put off the divergence",
     "no_closer": "a smaller step does not bring it closer",
 }
+# why runs at successive steps tell no limit
+_NOT_EXTRAPOLATED = {
+    "fails": "a run at a coarser step fails",
+    "parted": "the runs part there",
+    "no_closer": "the runs do not come closer to one another",
+}
 _WORDS: Mapping[str, Callable[[Diagnostic], str]] = MappingProxyType(
     {
         "step_budget": lambda fact: (
@@ -66,6 +72,14 @@ _WORDS: Mapping[str, Callable[[Diagnostic], str]] = MappingProxyType(
                 "the step"
             )
         ),
+        "extrapolated": lambda fact: (
+            f"the motion is, until {_s(fact.duration)}, what runs at three time steps tend to, with order "
+            f"{fact.bound:.0f}: within {fact.size:.1e} alpha, by estimate"
+        ),
+        "not_extrapolated": lambda fact: (
+            f"it is not extrapolated{_from(fact) if fact.time > 0.0 else ''}, but the run at the finest time "
+            f"step: {_NOT_EXTRAPOLATED.get(fact.detail, fact.detail)}"
+        ),
         "side": lambda fact: (
             f"it passed through upright itself, first{_at(fact)}: the ground had moved in one plane, and the "
             "side of such a pass is undetermined"
@@ -87,6 +101,7 @@ _MANY: Mapping[str, str] = MappingProxyType(
         "energy": "lost or gained energy",
         "solver": "had steps whose solver did not converge",
         "unsettled": "did not settle with the time step",
+        "not_extrapolated": "could not be extrapolated in the time step to the end",
         "unresolved_pass": "had passes closer to upright than contact resolves",
         "undecided": "ended in the middle of a fall",
         "side": "passed through upright itself",

@@ -42,6 +42,10 @@ KINDS: Mapping[str, tuple[str, str]] = {
         "rockwobble.reports.pages.extremes:stored_page",
         "rockwobble.reports.pages.page:Page.files",
     ),
+    "engine versions": (
+        "rockwobble.reports.pages.versions:stored_page",
+        "rockwobble.reports.pages.page:Page.files",
+    ),
     "paper": (
         "rockwobble.reports.paper.page:stored_page",
         "rockwobble.reports.pages.page:Page.files",

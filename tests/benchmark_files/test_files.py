@@ -10,6 +10,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 
@@ -22,7 +23,6 @@ from rockwobble import reduced
 from rockwobble.models import Case
 from rockwobble.reduced.exact import free_response, steady_wobble_rate
 
-jsonschema = pytest.importorskip("jsonschema")
 CASES = sorted(path.name for path in (PUBLISHED / "cases").iterdir())
 SHORT = ("turn-flat", "turn-recess", "uplift-directions", "near-upright-pass", "onset-of-slip")
 REFERENCE = Path(__file__).resolve().parents[1] / "reference"

@@ -15,6 +15,7 @@ SCRIPTS = (
     "convergence",
     "engine_extremes",
     "engine_settings",
+    "engine_versions",
     "ensemble_intervals",
     "false_alarms",
     "fragility_coverage",

@@ -96,7 +96,7 @@ def test_a_model_half_a_per_cent_off_in_size_is_unexplained(engine, limit):
 
 def test_the_difference_of_two_models_is_model_form(engine, limit):
     models = [
-        reduced.simulate(Case(PIER, initial=CASE.initial, duration=2.0), **reduced.MODELS[m], rtol=1e-11)
+        reduced.simulate(Case(PIER, initial=CASE.initial, duration=2.0), support=m, rtol=1e-11)
         for m in ("flat", "recess")
     ]
     found = error_budget(PIER, engine, *models, limit, WHOLE_RUN)
@@ -160,6 +160,17 @@ def test_the_finer_runs_are_no_longer_than_the_traces_agree(engine):
     for level, job in enumerate(jobs, 1):
         assert job.case.length == pytest.approx(0.81)  # no longer than the traces agree, in whole samples
         assert job.run.time_step == pytest.approx(trajectory.time_step * 0.5**level)
+
+
+def test_the_numerics_of_an_extrapolated_run_are_what_its_extrapolation_leaves():
+    runs = [Run("mujoco", "recess", STEP), Run("mujoco", "recess", "extrapolated", finest_step=STEP / 2)]
+    case = dataclasses.replace(CASE, duration=1.0)
+    found = compare(Suite([case], runs), runs=runs, budget=True, workers=1)
+    plain, extrapolated = found.summary.to_dict("records")
+    # both rest on the same finest run, the one at an eighth of the step
+    assert extrapolated["numerics_rms"] < 0.1 * plain["numerics_rms"]
+    assert extrapolated["unexplained_rms"] == pytest.approx(plain["unexplained_rms"], abs=1e-8)
+    assert extrapolated["finest_step"] == pytest.approx(STEP / 8)
 
 
 def test_a_base_that_lands_flat_loses_what_the_model_keeps():

@@ -130,18 +130,22 @@ def test_what_was_finished_before_an_interruption_is_kept_and_counted(tmp_path):
     assert unfinished(tmp_path) == []
 
 
-@pytest.mark.parametrize("place", [200, 3000])  # in the data; the footer has no checksum
-def test_a_damaged_file_is_no_finished_task(tmp_path, place):
+def test_a_damaged_file_is_named_and_its_task_runs_again(tmp_path):
     with table_cache(tmp_path) as cache:
         run_tasks(multiples, [1, 2], workers=1, cache=cache)
-    path = tmp_path / CACHE / "study" / f"{2:032d}.parquet"
-    content = bytearray(path.read_bytes())
-    content[place] ^= 1  # a single bit
-    path.write_bytes(content)
-    RAN.clear()
-    with table_cache(tmp_path) as cache:
-        run_tasks(counted, [1, 2], workers=1, cache=cache)
-    assert RAN == [2]
+    (path,) = (tmp_path / CACHE / "study").glob(f"{2:032d}-*.parquet")
+    whole = path.read_bytes()
+    for place in range(0, len(whole), 7):  # data, header and footer
+        content = bytearray(whole)
+        content[place] ^= 1  # a single bit
+        path.write_bytes(content)
+        RAN.clear()
+        told: list[Progress] = []
+        with table_cache(tmp_path) as cache:
+            run_tasks(counted, [1, 2], workers=1, cache=cache, progress=told.append)
+        assert RAN == [2], place
+        assert {event.damaged for event in told} == {(str(path),)}
+        assert path.read_bytes() == whole
 
 
 def test_a_single_task_has_a_process_of_its_own_where_it_is_asked_for():

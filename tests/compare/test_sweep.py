@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import CaseSweep, Grid, SweepIncompleteError, read_sweep, sweep
+from rockwobble.compare import CaseSweep, Grid, Progress, SweepIncompleteError, read_sweep, sweep
 from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.task import Lost
 from rockwobble.compare.storage.manifest import read_results
@@ -143,6 +143,13 @@ def test_cases_with_engines_and_models(tmp_path):
     pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
 
 
+def test_the_chunks_of_a_suite_have_names_for_whoever_waits():
+    cases = [Case(PIER, duration=0.1, name=name) for name in "abc"]
+    events: list[Progress] = []
+    sweep(CaseSweep(cases, [Run(None, "recess")]), workers=1, chunk_size=2, progress=events.append)
+    assert [event.label for event in events[::2]] == ["a, recess model and 1 more", "c, recess model"]
+
+
 def test_the_manifest_says_what_was_swept(tmp_path):
     table = sweep(grid(), out=tmp_path, workers=1, seeds={"records": 7}, command="rockwobble sweep")
     made = read_results(tmp_path, KIND).manifest
@@ -153,7 +160,7 @@ def test_the_manifest_says_what_was_swept(tmp_path):
     assert np.array_equal(motions[["acceleration_x", "acceleration_y"]], SHORT.acceleration)
 
 
-@pytest.mark.parametrize("where", [100, 300])  # in the data; the footer has no checksum
+@pytest.mark.parametrize("where", [100, -100])  # in the data, and in what the file says of itself
 def test_a_damaged_chunk_runs_again(tmp_path, where):
     first = sweep(grid(), out=tmp_path, workers=1)
     path = next((tmp_path / CACHE / KIND).glob("*.parquet"))

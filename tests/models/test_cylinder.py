@@ -95,4 +95,10 @@ def test_one_inertia_is_held_against_the_default_of_the_other() -> None:
 
 def test_refuses_a_slenderness_that_leaves_no_base() -> None:
     with pytest.raises(ValueError, match=r"^tan_alpha must leave a base"):
-        Cylinder(semidiagonal=1e-200, tan_alpha=1e-200)
+        Cylinder(semidiagonal=1e-60, tan_alpha=1e-300)
+
+
+@pytest.mark.parametrize("size", [1e-300, 1e-71, 1e71, 1e300])
+def test_refuses_a_size_whose_inertia_is_no_number(size: float) -> None:
+    with pytest.raises(ValueError, match=r"^semidiagonal must be from 1e-70 to 1e\+70 m, got"):
+        Cylinder(semidiagonal=size, tan_alpha=0.2)

@@ -97,7 +97,11 @@ def test_printed_times_may_be_rounded(write: Write) -> None:
         (TEXT.replace("1.5", ""), r"x.txt, line 2: expected two numbers, .*, got '0.02'"),
         (TEXT.replace("1.5", "1.5 7"), r"x.txt, line 2: expected two numbers, .*, got '0.02 1.5 7'"),
         ("0.00,0.0\n0.02,,1.5\n", r"x.txt, line 2: expected two numbers, .*, got '0.02,,1.5'"),
-        ("0,00;0,0\n0,02;1,5\n", r"x.txt, line 1: expected two numbers, .*, got '0,00;0,0'"),
+        (
+            "0,00;0,0\n0,02;1,5\n",
+            r"x.txt, line 1: numbers must have a decimal point, got a comma in '0,00;0,0'",
+        ),
+        ("t a\n0,00 0,0\n0,02 1,5\n", r"x.txt, line 2: numbers must have a decimal point, .* '0,00 0,0'"),
         ("t,a\n0.00,x\n0.02,1\n", r"x.txt, line 2: expected two numbers, .*, got '0.00,x'"),
         (TEXT.replace("1.5", "nan"), r"x.txt, line 2: a sample must be a finite number, got 'nan'"),
         (TEXT.replace("1.5", "-Inf"), r"x.txt, line 2: a sample must be a finite number, got '-Inf'"),
@@ -129,3 +133,31 @@ def test_steps_that_creep_are_uneven_too(write: Write) -> None:
     path = write("\n".join(f"{t:.5f} 0" for t in time))
     with pytest.raises(ValueError, match=r"^x.txt, line \d+: times must rise in even steps"):
         read_record(path, path, units="g")
+
+
+ALL = "t,x [g],y,z\n0,0.1,0.2,0.3\n0.01,0.4,0.5,0.6\n0.02,0.7,0.8,0.9\n"
+
+
+def test_one_file_of_all_components_is_read_by_the_names_of_its_columns(write: Write) -> None:
+    whole = read_record(write(ALL))
+    assert (whole.acceleration / 9.81)[1].tolist() == pytest.approx([0.4, 0.5, 0.6], rel=1e-15)
+    assert whole.time_step == 0.01
+    turned = read_record(write(ALL.replace("t,x [g],y,z", "t,z [g],x,y")))
+    assert (turned.acceleration / 9.81)[1].tolist() == pytest.approx([0.5, 0.6, 0.4], rel=1e-15)
+    flat = read_record(write("# no names\n0 1 2\n0.5 3 4\n"), units="m/s2")
+    assert flat.acceleration.tolist() == [[1.0, 2.0], [3.0, 4.0]]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("0 1\n1 2\n", "line 1: expected three or four numbers"),
+        ("0 1 2\n1 2 3 4\n", "line 2: expected three or four numbers"),
+        (ALL.replace("t,x [g],y,z", "t,x [g],y,y"), "its columns must be time, x, y, z, got t, x, y, y"),
+        ("0;1,5;2\n1;2,5;2\n", "numbers must have a decimal point"),
+        ("NPTS= 2, DT= .01 SEC\n1 2\n", "AT2 file, which holds one component"),
+    ],
+)
+def test_one_file_of_all_components_says_what_is_wrong(write: Write, text: str, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        read_record(write(text), units="g")

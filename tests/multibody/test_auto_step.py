@@ -11,7 +11,8 @@ import pytest
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run, Trace
 from rockwobble.models.traces.trace_source import Known
-from rockwobble.multibody.auto_step import COARSEST, SMALLEST, Closeness, closeness, find_step
+from rockwobble.multibody.time_step.attempts import Closeness, closeness
+from rockwobble.multibody.time_step.auto import COARSEST, SMALLEST, find_step
 
 ALPHA = 0.2
 # Richardson with a measured order is good for a factor; three is what it misses by at the bounds of the order
@@ -167,7 +168,7 @@ def test_closeness_knows_an_end_before_the_other() -> None:
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
-        ({"time_step": "fine"}, 'a number \\[s\\] or "auto"'),
+        ({"time_step": "fine"}, '"auto", "extrapolated" or a number'),
         ({"time_step": "auto", "step_tolerance": 0.0}, "step_tolerance must be positive"),
         ({"time_step": 1e-4, "step_tolerance": 1e-3}, 'goes with time_step="auto"'),
         ({"time_step": "auto", "nonsense": 1}, "not a setting"),

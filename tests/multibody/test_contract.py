@@ -41,8 +41,8 @@ def test_fields_and_shapes(engine: str) -> None:
         assert np.isfinite(getattr(run, name)).all(), name
     assert run.contact_point.shape == (n, 2)
     assert run.centre_of_mass.shape == (n, 3)
-    assert (run.engine, run.support, run.outcome) == (engine, "flat", "completed")
-    assert run.engine_version[0].isdigit()
+    assert (run.run.engine, run.run.support, run.outcome) == (engine, "flat", "completed")
+    assert run.version[0].isdigit()
     assert run.time_step == pytest.approx(1e-4)
     assert run.wall_time > 0.0
     assert len(run.settings) > 3
@@ -141,7 +141,7 @@ def test_import_loads_no_engine() -> None:
     ("change", "message"),
     [
         ({"engine": "chrono"}, "engine must be one of mujoco, pybullet, dart, drake, exudyn, got 'chrono'"),
-        ({"support": "glued"}, "support must be one of guided, free, ring in mujoco, got 'glued'"),
+        ({"support": "glued"}, "support must be one of recess, flat, ring in mujoco, got 'glued'"),
         (
             {"time_step": 1e-2},
             "time_step must be at most 0.001 s for contact at this size and gravity, got 0.01",
@@ -171,9 +171,12 @@ def test_import_loads_no_engine() -> None:
 def test_bad_input_is_refused_in_one_line(change: dict[str, Any], message: str) -> None:
     if change.get("engine") == "pybullet" and "pybullet" not in multibody.available_engines():
         pytest.skip("no wheel of pybullet here")
-    arguments: dict[str, Any] = {"initial": RELEASE, "duration": 1.0, **change}
+    stated: dict[str, Any] = {"initial": RELEASE, "duration": 1.0}
+    stated |= {name: change[name] for name in ("duration", "gravity", "friction") if name in change}
     with pytest.raises(ValueError, match=r"must|setting") as caught:
-        multibody.simulate(Case(PIER), **arguments)
+        multibody.simulate(
+            Case(PIER, **stated), **{name: change[name] for name in change if name not in stated}
+        )
     assert str(caught.value).startswith(message)
     assert "\n" not in str(caught.value)
 

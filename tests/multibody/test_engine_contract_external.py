@@ -120,7 +120,7 @@ def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(insta
     assert multibody.available_engines()[-1] == "sound"
     release = InitialState(PIER.alpha / 2, rolling_rate=0.5)
     run = multibody.simulate(Case(PIER, initial=release, duration=0.5), engine="sound", support="flat")
-    assert (run.engine, run.outcome) == ("sound", "completed")
+    assert (run.run.engine, run.outcome) == ("sound", "completed")
     check_engine("sound")
 
 

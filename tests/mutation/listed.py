@@ -112,10 +112,11 @@ def _structure() -> list[Mutation]:
     # the pieces keep their times, but from the 21st on they are those of the next
     skipped = _around(
         "integration/march.py",
-        "piece_of_record(record, time_step, index)",
+        "piece_of_record(record, time_step, index, begin, last)",
+        "piece = without_fault(record, time_step, index, begin, last)\n"
         "skipped = 1 if 20 < index < len(record) - 2 else 0\n"
-        "a, slope, end = without_fault(record, time_step, index + skipped)\n"
-        "return a, slope, end - skipped * time_step",
+        "other = without_fault(record, time_step, index + skipped, begin, last)\n"
+        "return Piece(begin, piece.finish, piece.length, other.a, other.slope)",
     )
     exchanged = _around("columns.py", "three_columns(motion)", "return without_fault(motion)[:, [1, 0, 2]]")
     late = _around(

@@ -70,8 +70,11 @@ GROUPS = (
             "reduced/body.py",
             "reduced/integration/driver.py",
             "reduced/integration/endings.py",
+            "reduced/integration/events.py",
+            "reduced/integration/log.py",
             "reduced/integration/march.py",
             "reduced/integration/recurrences.py",
+            "reduced/integration/sampling.py",
             "reduced/integration/stepping.py",
             "reduced/integration/systems.py",
             "reduced/integration/taylor.py",
@@ -120,7 +123,7 @@ GROUPS = (
     Group(
         name="traces of engines",
         patterns=(
-            "multibody/auto_step.py",
+            "multibody/time_step/*.py",
             "multibody/recording/forces.py",
             "multibody/scene/guard.py",
             "multibody/kinematics.py",

@@ -1,7 +1,9 @@
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
+from pathlib import Path
 
 
 def test_scipy_is_loaded_by_what_uses_it():
@@ -9,3 +11,33 @@ def test_scipy_is_loaded_by_what_uses_it():
     script = "import sys, rockwobble.reduced; print(*{'scipy.optimize', 'scipy.special'} & set(sys.modules))"
     found = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
     assert found.stdout == "\n"
+
+
+# as where the installation belongs to somebody else and HOME cannot be written
+NOWHERE = """
+from numba.core.caching import CompileResultCacheImpl as kind
+kind._locator_classes = [each for each in kind._locator_classes if "UserProvided" in each.__name__]
+import os, rockwobble.reduced
+print(os.environ["NUMBA_CACHE_DIR"])
+"""
+
+
+def test_compiled_code_goes_to_a_folder_of_ours_where_it_has_no_other_place(tmp_path):
+    environment = {name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
+    environment["TMPDIR"] = str(tmp_path)
+
+    def start() -> tuple[Path, str]:
+        done = subprocess.run(
+            [sys.executable, "-c", NOWHERE], env=environment, capture_output=True, text=True, check=True
+        )
+        return Path(done.stdout.strip()), done.stderr
+
+    folder, said = start()
+    assert said == (
+        f"rockwobble: neither the installation nor HOME can be written: compiled code is kept in {folder}\n"
+    )
+    assert folder.parent == tmp_path
+    assert start()[0] == folder
+    folder.chmod(0o777)  # anybody may have put code there
+    other, _ = start()
+    assert (other.parent, other != folder) == (tmp_path, True)

@@ -2,23 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from browser import complaints, needs_chromium
+from test_published import WHOLE
 
 from rockwobble import compare
 from rockwobble.compare import Comparison
-from rockwobble.compare.studies.advice import advise
-from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
-from rockwobble.reports.pages import extremes, tradeoff, validity
-from rockwobble.reports.pages.advice.page import advice_page
+from rockwobble.compare.storage.manifest import made_now
+from rockwobble.models import Case, Cylinder, InitialState
 from rockwobble.reports.pages.comparison import report
 from rockwobble.reports.pages.comparison.report import comparison_page, view_page
-from rockwobble.reports.pages.ensemble.page import ensemble_page
+from rockwobble.reports.pages.ensemble import ensemble_page
+from rockwobble.reports.pages.registry import redrawn
 
-PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 # of a player: moved, it must say where it is
 PLAYER = """
 window.lookFurther = (found) => {
@@ -36,32 +34,20 @@ window.addEventListener("load", () => setTimeout(() => document.getElementById("
 """
 
 
-def advice() -> str:
-    case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940(), name="El Centro")
-    return advice_page(advise(case, count=20), "rockwobble advise")
-
-
 def ensemble() -> str:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     case = Case(pier, initial=release, duration=1.0, name="release")
-    return ensemble_page(compare.ensemble(case, runs=[], size=8, workers=1))
-
-
-PAGES: dict[str, tuple[Callable[[], str], int]] = {
-    "validity": (lambda: validity.stored_page(PUBLISHED / "validity").html(), 38),
-    "tradeoff": (lambda: tradeoff.stored_page(PUBLISHED / "tradeoff").html(), 18),
-    "extremes": (lambda: extremes.stored_page(PUBLISHED / "extremes").html(), 0),
-    "advice": (advice, 4),
-    "ensemble": (ensemble, 2),
-}
+    found = compare.ensemble(case, runs=[], size=8, workers=1)
+    return ensemble_page(found, made_now("ensemble")).html()
 
 
 @needs_chromium
-@pytest.mark.parametrize("name", PAGES)
-def test_page_of_a_study_is_drawn(name: str, tmp_path: Path):
-    page, figures = PAGES[name]
-    assert complaints(page(), tmp_path, figures=figures) == []
+@pytest.mark.parametrize("kind", sorted({kind for _, kind in WHOLE}))
+def test_page_of_a_study_is_drawn(kind: str, tmp_path: Path):
+    folder = next(folder for folder, each in WHOLE if each == kind)
+    (page,) = (page.decode() for name, page in redrawn(kind, folder).items() if name.endswith(".html"))
+    assert complaints(page, tmp_path, figures=page.count("Plotly.newPlot(")) == []
 
 
 @needs_chromium
@@ -82,8 +68,8 @@ def test_a_page_with_a_broken_figure_is_found(tmp_path: Path):
     broken = whole.replace("Plotly.newPlot(", "Plotly.noPlot(")
     assert broken != whole
     said = complaints(broken, tmp_path, figures=2)
-    assert "screen: ensemble: not drawn" in said
-    assert "phone: ensemble: not drawn" in said
+    assert "screen: ensemble-0: not drawn" in said
+    assert "phone: ensemble-0: not drawn" in said
     assert any("Plotly.noPlot is not a function" in line for line in said)
 
 
@@ -92,11 +78,11 @@ def test_what_a_reader_would_stumble_over_is_found(tmp_path: Path):
     whole = ensemble()
     wrong = whole.replace("share of the members [-]", 20 * "share of the members ")
     wrong = wrong.replace(
-        "<header>", '<div style="width: 700px">wide</div><img src="https://example.org/a.png"><header>'
+        "<h1", '<div style="width: 700px">wide</div><img src="https://example.org/a.png"><h1'
     )
     said = complaints(wrong, tmp_path, figures=3)
-    assert any(line.startswith("phone: ensemble: yaxis without a unit") for line in said)
-    assert any(line.startswith("phone: ensemble: text cut off") for line in said)
+    assert any(line.startswith("phone: ensemble-0: yaxis without a unit") for line in said)
+    assert any(line.startswith("phone: ensemble-0: text cut off") for line in said)
     assert any(line.startswith("phone: the page scrolls sideways") for line in said)
     assert "screen: 2 figures, expected 3" in said
     assert "screen: asks for https://example.org/a.png" in said

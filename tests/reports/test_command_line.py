@@ -374,7 +374,11 @@ def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path):
     closed = run(tmp_path / "closed", "utf-8", stdout=writer)
     os.close(writer)
     assert (closed.returncode, b"Traceback" in closed.stderr) == (0, False)
-    for folder in (tmp_path, tmp_path / "full", tmp_path / "closed"):
+    shut = subprocess.run(  # with no standard file at all, as under some schedulers
+        ["sh", "-c", '"$@" <&- >&- 2>&-', "sh", *RUN, "--out", str(tmp_path / "shut" / "out")], check=False
+    )
+    assert shut.returncode == 0
+    for folder in (tmp_path, tmp_path / "full", tmp_path / "closed", tmp_path / "shut"):
         assert Trace.load(folder / "out" / "run.parquet").outcome == "completed"
 
 

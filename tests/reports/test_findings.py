@@ -171,6 +171,14 @@ WORDS = {
         {"duration": 3.0, "size": 1e-5, "bound": 1.0},
     ),
     "unsettled": ("the tilt has not settled by halving the step: a smaller step fails", {"detail": "fails"}),
+    "extrapolated": (
+        "the motion is, until 3 s, what runs at three time steps tend to, with order 2: within 1.0e-06 alpha",
+        {"duration": 3.0, "size": 1e-6, "bound": 2.0},
+    ),
+    "not_extrapolated": (
+        "it is not extrapolated from 2 s on, but the run at the finest time step: the runs part there",
+        {"detail": "parted"},
+    ),
     "missed_pass": ("2 near passes fell between two samples, first at 2 s", {"size": 2}),
     "note": ("positions are in mm", {"detail": "positions are in mm"}),
 }

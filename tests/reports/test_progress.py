@@ -35,3 +35,13 @@ def test_few_tasks_have_a_line_each_and_many_one_at_the_end(capsys):
         for done in range(1, 101):
             tell(Progress(label="[a]", state="finished", done=done, total=100))
     assert capsys.readouterr().err == "100 of 100 cells\n"
+
+
+def test_a_damaged_file_is_named_once(capsys):
+    with shown_progress() as tell:
+        for state in ("started", "finished"):
+            tell(Progress(label="a", state=state, done=0, total=1, damaged=("out/finished/a.parquet",)))
+    lines = capsys.readouterr().err.splitlines()
+    assert [line for line in lines if "damaged" in line] == [
+        "rockwobble: out/finished/a.parquet is damaged, what it held is computed again"
+    ]

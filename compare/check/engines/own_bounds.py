@@ -1,8 +1,9 @@
 """What a run may be off where nobody states it: measured on the run itself, by a second one of another step.
 
 Every case is held against its model twice. As it is: engines err at uplift, and near passes magnify what they
-err, so the bound is a wide one. It grows with the difference of the two steps and with perturbed copies of
-the model, off by as much as the engine is at first, and the window ends where those reach 1 % of alpha. In
+err, so the bound is a wide one. It grows with the difference of the two steps and with copies of the model:
+off by as much as the engine is at first, and with a base that closes below the tilt that contact resolves.
+The window ends where those reach 1 % of alpha. In
 motion: the first seconds of a release, or, of a case that begins at rest, the strongest seconds of its
 motion, at half of what uplifts, as they meet a cylinder that rocks and wobbles. There the error is what the
 step leaves and no more, and what 0.5 % of R does is a hundred times the bound.
@@ -18,6 +19,7 @@ import numpy as np
 
 from rockwobble.models import Case, GroundMotion, InitialState, Run, Trace
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
 
 from ...comparison.prediction import early_rms, estimated_error, landings, time_scale
 from ...metrics.agreement import AGREEMENT
@@ -159,8 +161,17 @@ def _apart(one: Trace, other: Trace) -> Array:
 
 
 def _copies(bench: Bench, job: Job, model: Trace, trace: Trace, by_step: Array) -> list[Array]:
-    """How far two copies of the model go, off by as much as the engine at first [alpha]."""
+    """How far copies of the model go [alpha]: off by as much as the engine at first, and closing as it does.
+
+    A base that opens by less than the contact sinks in stays closed in every engine, at every step: after
+    weak shaking a model chatters there, and the strong motion that follows finds it elsewhere.
+    """
     case, start = job.case, float(np.nan_to_num(model.uplift_time))
+    threshold = trace.contact_resolution / case.cylinder.alpha
+    closing = []
+    if threshold > REST_TILT:
+        closed = bench.solve(case, model.run.support, rest_tilt=min(threshold, LARGEST_REST_TILT))
+        closing.append(_apart(model, closed))
 
     def copy(relative: float) -> Array:
         disturbed = dataclasses.replace(case, gravity=case.gravity * (1.0 + relative))
@@ -169,8 +180,8 @@ def _copies(bench: Bench, job: Job, model: Trace, trace: Trace, by_step: Array) 
     trial = copy(_COPY)
     distance = early_rms(case, model.time[: len(trial)], trial, start)
     if distance == 0.0:
-        return []
+        return closing
     by_table = estimated_error(case, job.run.engine, trace.time_step)
     error = max(early_rms(case, trace.time[: len(by_step)], by_step, start), by_table)
     relative = min(_COPY * error / distance, _MOST)
-    return [copy(relative), copy(-relative)]
+    return [*closing, copy(relative), copy(-relative)]

@@ -42,9 +42,8 @@ class CaseChunk:
     @property
     def name(self) -> str:
         """What it is, for whoever waits."""
-        first = self.jobs[0]
         more = f" and {self.rows - 1} more" if self.rows > 1 else ""
-        return f"{first.case.name}, {first.run}{more}"
+        return f"{self.jobs[0].name}{more}"
 
     @property
     def makers(self) -> dict[str, str]:

@@ -27,6 +27,7 @@ class GridChunk:
     """Some sizes and scales of a grid, with one slenderness, motion and model; `run` solves them."""
 
     motion: GroundMotion
+    motion_key: str  # hash of its samples, the same for many chunks
     label: str  # of the motion
     model: str
     tan_alpha: float
@@ -49,11 +50,11 @@ class GridChunk:
         """Return the hash of all that the results depend on."""
         return fingerprint(
             {
-                "motion": (self.motion.acceleration, self.motion.time_step, self.label),
+                "motion": (self.motion_key, self.label),
                 "model": self.model,
                 "tan_alpha": self.tan_alpha,
-                "semidiagonals": self.semidiagonals,
-                "scales": self.scales,
+                "semidiagonals": np.array(self.semidiagonals),
+                "scales": np.array(self.scales),
                 "options": self.options,
                 "made with": reduced_makers(),
             }
@@ -155,11 +156,13 @@ class Grid:
         """Cut the grid into chunks of about `size` runs, in the order of the table."""
         size = size or _CHUNK_SIZE
         for motion in self.motions:
+            motion_key = _motion_key(motion)
             for model in self.models:
                 for tan_alpha in self.tan_alphas:
                     for sizes, scales in self._blocks(size):
                         yield GridChunk(
                             motion=motion,
+                            motion_key=motion_key,
                             label=motion.name or "record",
                             model=model,
                             tan_alpha=tan_alpha,
@@ -181,7 +184,7 @@ class Grid:
                     "samples": len(motion.acceleration),
                     "components": motion.acceleration.shape[1],
                     "peak": motion.peak,
-                    "fingerprint": fingerprint((motion.acceleration, motion.time_step)),
+                    "fingerprint": _motion_key(motion),
                 }
                 for motion in self.motions
             ],
@@ -213,6 +216,10 @@ class Grid:
                 raise ValueError(
                     f"the options of a grid are {allowed}, got {', '.join(self.options)}"
                 ) from None
+
+
+def _motion_key(motion: GroundMotion) -> str:
+    return fingerprint((motion.acceleration, motion.time_step))
 
 
 def _outcome(peak: float) -> str:

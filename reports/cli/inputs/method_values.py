@@ -3,20 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import typer
 
+if TYPE_CHECKING:
+    from rockwobble.models.case import TimeStep
 
-def time_step(text: str) -> float | Literal["auto"]:
-    """Return a time step [s], or "auto"; whether an engine can use the number is said later.
+
+def time_step(text: str) -> TimeStep:
+    """Return a time step [s], "auto" or "extrapolated"; whether an engine can use the number is said later.
 
     Raises
     ------
     BadParameter
         If the text is neither.
     """
-    return "auto" if text == "auto" else _number(text, 'a number [s] or "auto"')
+    from rockwobble.models.case import WAYS_TO_A_STEP
+
+    for way in WAYS_TO_A_STEP:
+        if text == way:
+            return way
+    return _number(text, 'a number [s], "auto" or "extrapolated"')
 
 
 def restitution(text: str) -> float | Literal["momentum"]:

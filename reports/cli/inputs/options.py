@@ -10,7 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .method_values import time_step
+from .method_values import restitution, time_step
 
 
 def _of(panel: str, name: str, help_text: str, **more: Any) -> Any:
@@ -18,6 +18,7 @@ def _of(panel: str, name: str, help_text: str, **more: Any) -> Any:
 
 
 _BODY, _GROUND, _RELEASE, _METHOD = "Cylinder", "Ground motion", "Release", "Method"
+REDUCED = "Reduced model"
 _EXTERNAL = "Trajectory of a shake table or another code"
 
 Semidiagonal = Annotated[float | None, _of(_BODY, "--semidiagonal", "R = sqrt(b^2 + h^2), in m. Default: 6.")]
@@ -44,6 +45,10 @@ TransverseInertia = Annotated[
     ),
 ]
 AxialInertia = Annotated[float | None, _of(_BODY, "--axial-inertia", "I2/m about the axis, in m2.")]
+Record = Annotated[
+    Path | None,
+    _of(_GROUND, "--record", "Text or CSV of time, x, y and perhaps z, in place of the files below."),
+]
 RecordX = Annotated[
     Path | None,
     _of(
@@ -85,12 +90,14 @@ Duration = Annotated[
         "Length of the run, in s. Default: that of the ground motion, 10 s without one.",
     ),
 ]
-_ENGINES = "mujoco, pybullet, exudyn or another that is installed"
+_ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only)"
 Engine = Annotated[str | None, _of(_METHOD, "--engine", f"{_ENGINES}. Default: the reduced model.")]
-Engines = Annotated[
+_DEFAULT = "Default: those that serve any case and are no extra"
+Engines = Annotated[list[str] | None, _of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}.")]
+EnginesOrAll = Annotated[
     list[str] | None,
-    _of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. Default: all that serve any case."),
+    _of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed."),
 ]
 Support = Annotated[str, _of(_METHOD, "--support", f"{_SUPPORTS}.")]
 Supports = Annotated[
@@ -98,14 +105,15 @@ Supports = Annotated[
     _of(_METHOD, "--support", f"{_SUPPORTS}; may be repeated. Default: recess and flat."),
 ]
 TimeStep = Annotated[
-    Any,  # a number, "auto" or None: typer knows no type for that, `time_step` makes it
+    Any,  # a number, a word or None: typer knows no type for that, `time_step` makes it
     _of(
         _METHOD,
         "--time-step",
         "Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size. auto "
-        "halves it until the tilt has settled, and says what error is left.",
+        "halves it until the tilt has settled, extrapolated gives what three steps tend to; both say what "
+        "error is left.",
         parser=time_step,
-        metavar="FLOAT|auto",
+        metavar="FLOAT|auto|extrapolated",
     ),
 ]
 Settings = Annotated[
@@ -116,6 +124,25 @@ Settings = Annotated[
         "Setting of the method, such as ring_clearance=0.01, integrator=discrete or rtol=1e-10, for each run "
         "that has one of that name; may be repeated.",
         metavar="NAME=VALUE",
+    ),
+]
+Plane = Annotated[
+    float | None,
+    typer.Option(
+        "--plane",
+        help="Planar motion: azimuth of the vertical plane that holds it, in rad.",
+        rich_help_panel=REDUCED,
+    ),
+]
+Restitution = Annotated[
+    Any,  # a number, "momentum" or None: typer knows no type for that
+    typer.Option(
+        "--restitution",
+        parser=restitution,
+        metavar="FLOAT|momentum",
+        help="Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from "
+        "the moment of momentum about the new pivot.",
+        rich_help_panel=REDUCED,
     ),
 ]
 SuiteName = Annotated[

@@ -32,6 +32,7 @@ class Problem:
     mass_centre_height: options.MassCentreHeight = None
     transverse_inertia: options.TransverseInertia = None
     axial_inertia: options.AxialInertia = None
+    record: options.Record = None
     record_x: options.RecordX = None
     record_y: options.RecordY = None
     record_z: options.RecordZ = None
@@ -106,8 +107,13 @@ class Problem:
         from rockwobble.models import el_centro_1940, read_record
 
         x, y, z, scale = self.record_x, self.record_y, self.record_z, self.scale
+        whole = self.record
         if not (math.isfinite(scale) and scale > 0.0):
             raise ValueError(f"--scale must be positive and finite, got {scale:g}")
+        if whole is not None:
+            if any(path is not None for path in (x, y, z)):
+                raise ValueError("--record holds all components, got --record-x, -y or -z beside it")
+            return read_record(whole, units=self.units).scaled(scale)
         if x is None and y is None:
             if z is not None or self.units is not None:
                 raise ValueError(
@@ -120,7 +126,10 @@ class Problem:
             return None
         if x is None or y is None:
             given, missing = ("--record-y", "--record-x") if x is None else ("--record-x", "--record-y")
-            raise ValueError(f"both horizontal components are needed, got {given} without {missing}")
+            raise ValueError(
+                f"both horizontal components are needed, got {given} without {missing}; one file of all is "
+                "given by --record"
+            )
         return read_record(x, y, z, units=self.units).scaled(scale)
 
 

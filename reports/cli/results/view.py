@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ...console.provenance import command_line
 from ...console.terminal import complain, interruptible, user_input
-from ...pages.provenance import command_line
 from ..inputs import options
 from ..inputs.method_values import settings
 from ..inputs.problem import Problem, given_options, refuse, states_problem
@@ -64,6 +64,8 @@ def view(
             )
             from rockwobble.models import Run
 
+            from ..inputs.estimate import require_feasible
+
             if folder is not None:
                 others = set(given_options(context)) - {"folder", "case_name", "out", "opened"}
                 refuse(context, others, "states a run and does not go with a stored one")
@@ -74,6 +76,7 @@ def view(
             else:
                 case = problem.case()
                 (run,) = with_settings(case, [Run(engine, support, time_step)], settings(setting))
+                require_feasible([case], [run])
                 require_runnable(case, run)
                 name = case.name
             require_writable(out)

@@ -24,6 +24,7 @@ from ..words import fragment
 from .budgets import budget_sentences, divergence_sentences
 from .external import external_rows
 from .findings import counted_remarks, finding_sentences, headline
+from .matrix import matrix_tables
 from .tables import all_columns, diverging_runs, group_rows, main_rows, meanings, worst_first
 
 if TYPE_CHECKING:
@@ -62,6 +63,7 @@ def comparison_page(comparison: Comparison, command: str = "", *, drawn: bool = 
         whole.append(all_budgets_picture(comparison))
     blocks = _blocks(views, many=many) if drawn else {}
     diverging = diverging_runs(summary, lengths) if many else []
+    matrix = comparison.matrix()
     return Page(
         name="report",
         template="comparison/report",
@@ -81,11 +83,13 @@ def comparison_page(comparison: Comparison, command: str = "", *, drawn: bool = 
             ]
             if many
             else [],
+            "matrices": matrix_tables(matrix) if many else [],
             "meanings": meanings(),
             "failed": int((own_rows(summary)["outcome"] == "failed").sum()),
             "cases": [
                 {
                     **_case(view),
+                    "matrices": matrix_tables(matrix[matrix["case"] == view.case.name]),
                     "pictures": [picture.name for picture in pictures.get(place, [])],
                     "player": name if (name := f"player-{place}") in blocks else "",
                 }

@@ -17,47 +17,22 @@ halvings, the order is p = log2(d1/d2), and what is left of the finer one d2/(2^
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import replace
 
 from rockwobble.models import Diagnostic, Trace
 
-from .scene.guard import LARGEST_STEP
+from ..scene.guard import LARGEST_STEP
+from .attempts import Attempt, Closeness, Progress, closeness, part_of, shares
 
 AUTO = "auto"
 COARSEST = 4e-4  # [s] at the reference size: four times the default, so that easy cases cost a fourth
 SMALLEST = 6.25e-6  # [s] at the reference size: six halvings; below it rounding and cost grow, not accuracy
 STEP_TOLERANCE = 1e-3  # of alpha; the default, a tenth of the difference at which traces part
-_PARTED = 0.01  # of alpha
 _PUT_OFF = 1.05  # a divergence later by less is no gain
 _CLOSER = 0.9  # a difference reduced by less is no gain
 _ORDERS = 0.5, 2.0  # least and largest order that an estimate relies on
 
 assert COARSEST <= LARGEST_STEP
-
-Attempt = Callable[[float, Callable[[float], None]], Trace]
-Progress = Callable[[float], None]
-
-
-@dataclass(frozen=True, slots=True)
-class Closeness:
-    """How close two traces of one case are.
-
-    Attributes
-    ----------
-    difference : float
-        Largest difference of the tilt until `until` [rad].
-    until : float
-        The end of the shorter trace, or the last pass before the divergence [s].
-    divergence : float
-        Where they part; infinite if they do not [s].
-    """
-
-    difference: float
-    until: float
-    divergence: float
 
 
 def find_step(
@@ -81,12 +56,12 @@ def find_step(
     steps = [COARSEST * unit_time]
     while steps[-1] > SMALLEST * unit_time * 1.5:
         steps.append(0.5 * steps[-1])
-    shares = _shares(steps)
+    parts = shares(steps)
     best, coarser = None, None  # the run to keep, and the last one
     found: list[Closeness] = []  # of the run to keep and all before it
     verdict, spent = "still_changes", 0.0
     for index, step in enumerate(steps):
-        run = attempt(step, _part(progress, shares[index], shares[index + 1]))
+        run = attempt(step, part_of(progress, parts[index], parts[index + 1]))
         spent += run.wall_time
         if best is None or best.outcome == "failed":
             best = run
@@ -107,26 +82,6 @@ def find_step(
         progress(1.0)
     assert best is not None
     return replace(_reported(best, found, verdict, alpha), wall_time=spent)
-
-
-def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
-    """Return how close two traces are in tilt, by their samples."""
-    count = min(len(coarse.time), len(fine.time))
-    same = np.abs(coarse.time[:count] - fine.time[:count]) <= 1e-9 * max(fine.time[-1], 1.0)
-    # the last sample of a run that overturned stands at its own time
-    count = count if same.all() else int(np.argmin(same))
-    distance = np.abs(coarse.tilt[:count] - fine.tilt[:count])
-    beyond = np.flatnonzero(distance > _PARTED * alpha)
-    if not len(beyond):
-        ends_alike = coarse.outcome == fine.outcome or "overturned" not in (coarse.outcome, fine.outcome)
-        end = float(fine.time[count - 1])
-        return Closeness(float(distance.max(initial=0.0)), end, math.inf if ends_alike else end)
-    divergence = float(fine.time[beyond[0]])
-    passes = np.asarray(fine.passes["time"], dtype=float)
-    earlier = passes[passes < divergence]
-    until = float(earlier[-1]) if len(earlier) else 0.0
-    within = distance[: int(np.searchsorted(fine.time, until, side="right"))]
-    return Closeness(float(within.max(initial=0.0)), until, divergence)
 
 
 def _judge(found: list[Closeness], tolerance: float) -> tuple[str | None, bool]:
@@ -171,17 +126,3 @@ def _reported(run: Trace, found: list[Closeness], verdict: str, alpha: float) ->
     else:
         fact = Diagnostic(code="settled", duration=last.until, size=error / alpha, bound=order)
     return replace(run, error_estimate=error, settled_until=last.until, facts=(*run.facts, fact))
-
-
-def _shares(steps: list[float]) -> list[float]:
-    """Fractions of the whole work that are done before each step and after the last."""
-    work = np.cumsum([0.0, *(1.0 / step for step in steps)])
-    return [float(value) for value in work / work[-1]]
-
-
-def _part(progress: Progress | None, start: float, end: float) -> Progress:
-    def tell(fraction: float) -> None:
-        if progress is not None:
-            progress(start + (end - start) * fraction)
-
-    return tell

@@ -1,0 +1,174 @@
+"""Events inside a step: the tilt turns, the base meets the ground, or the side does.
+
+A step is given by its method (`stepping.Stepper`) and what that keeps of it: ``work`` and ``path``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._compile import inlined, jit
+from ..body import Body
+from .endings import HALF_PI
+from .march import MAXIMUM, MINIMUM
+from .stepping import Stepper
+from .systems import System
+from .tsit5 import State, Vector
+
+TAKEN, REPEATED = range(2)  # what becomes of a step
+NO_TURN = 0.0  # beside MAXIMUM and MINIMUM
+_RETRY = 1.0 / 32.0  # of a step that went wrong; the next may be four times as long
+
+
+class Turn(NamedTuple):
+    """A turning point of the tilt inside a step."""
+
+    kind: float  # MAXIMUM, MINIMUM or NO_TURN
+    at: float  # time since the beginning of the step [s]
+    tilt: float
+    angle: float  # rolling angle
+
+
+class Trial(NamedTuple):
+    """A step that was tried."""
+
+    verdict: int  # TAKEN, or REPEATED with the length `h_next`
+    h: float  # its length [s]
+    h_next: float  # length proposed for the next one [s]
+    trials: int  # how often its method tried
+    y: State  # at its end
+    k: State  # what the method leaves to the next one, with ``path``
+    path: Any
+    turn: Turn
+    flat: bool  # motion without spin and twist rate: exactly planar
+
+
+class Ending(NamedTuple):
+    """Where a step ends: as it was taken, or earlier, where base or side meet the ground."""
+
+    h: float  # its length [s]
+    y: State
+    lands: bool  # the base, in planar motion
+    falls: bool  # the side
+    turns: bool  # the turning point lies before this end
+
+
+class Events(NamedTuple):
+    """The compiled functions that find the events inside a step."""
+
+    tried: Callable[..., Trial]  # (body, rtol, y, k, work, h, length, a, slope)
+    ending_of: Callable[..., Ending]  # (body, work, y, trial)
+
+
+def make_events(system: System, stepper: Stepper) -> Events:
+    """Return the search for events in the steps that `stepper` takes."""
+    advance, partial, momenta = stepper.advance, stepper.partial, system.momenta
+
+    @inlined
+    def is_flat(y: State) -> bool:
+        """Return whether a state has neither spin nor twist rate: exactly planar motion."""
+        L, S = momenta(y)
+        return bool(L == 0.0 and S == 0.0)
+
+    @jit
+    def turning_point(
+        body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, rate_at_end: float
+    ) -> tuple[float, float, float]:
+        """Return when, in a step of length `h`, the tilt rate is zero, and tilt and rolling angle there.
+
+        Newton's method on partial steps. What it leaves is of second order in the tilt.
+        """
+        at = h * y[1] / (y[1] - rate_at_end)
+        tilt, angle = y[0], y[2]
+        for _ in range(3):
+            y_at, k_at = partial(body, work, path, at)
+            change = -y_at[1] / k_at[1]
+            tilt, angle = y_at[0] + 0.5 * y_at[1] * change, y_at[2] + k_at[2] * change
+            if not 0.0 <= at + change <= h:
+                break
+            at += change
+        return at, tilt, angle
+
+    @jit
+    def crossing(
+        body: Body, work: NDArray[np.float64], path: Any, y: State, first: float, last: float, level: float
+    ) -> tuple[float, State]:
+        """Return when, from `first` to `last`, the tilt reaches `level`, and the state there.
+
+        The tilt sinks to 0 or rises to any other level. Newton's method on partial steps, kept inside
+        the bracket by bisection.
+        """
+        low, high = first, last
+        side = 1.0 if level == 0.0 else -1.0
+        at = 0.5 * (first + last)
+        y_at = y
+        for _ in range(80):
+            y_at, _ = partial(body, work, path, at)
+            miss = y_at[0] - level
+            if miss * side > 0.0:
+                low = at
+            else:
+                high = at
+            guess = at - miss / y_at[1]
+            if not low < guess < high:
+                guess = 0.5 * (low + high)
+            if abs(guess - at) <= 1e-15 * last:
+                break
+            at = guess
+        return at, y_at
+
+    @inlined
+    def turn_in(body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, y_new: State) -> Turn:
+        """Return the turning point of the tilt in a step from `y` to `y_new`."""
+        if not y[1] * y_new[1] < 0.0:
+            return Turn(NO_TURN, 0.0, 0.0, 0.0)
+        at, tilt, angle = turning_point(body, work, path, y, h, y_new[1])
+        return Turn(MAXIMUM if y[1] > 0.0 else MINIMUM, at, tilt, angle)
+
+    @inlined
+    def tried(
+        body: Body,
+        rtol: float,
+        y: State,
+        k: State,
+        work: NDArray[np.float64],
+        h: float,
+        length: float,
+        a: Vector,
+        slope: Vector,
+    ) -> Trial:
+        """Try a step from `y`, as `stepping.Stepper.advance`.
+
+        One that does not fit or that jumped the centrifugal barrier and came back is to be repeated.
+        """
+        h, h_next, count, y_new, k, path = advance(body, rtol, y, k, work, h, length, a, slope)
+        if h == 0.0:
+            return Trial(REPEATED, h, h_next, count, y_new, k, path, Turn(NO_TURN, 0.0, 0.0, 0.0), False)
+        flat = is_flat(y) and is_flat(y_new)
+        turn = turn_in(body, work, path, y, h, y_new)
+        if turn.kind != NO_TURN and not flat and turn.tilt <= 0.0:
+            return Trial(REPEATED, h, _RETRY * h, count, y_new, k, path, turn, flat)
+        return Trial(TAKEN, h, h_next, count, y_new, k, path, turn, flat)
+
+    @inlined
+    def ending_of(body: Body, work: NDArray[np.float64], y: State, trial: Trial) -> Ending:
+        """Return where a step from `y` ends."""
+        h, y_new, turn = trial.h, trial.y, trial.turn
+        turns = turn.kind != NO_TURN
+        # with spin the tilt stays positive; without it the base meets the ground
+        lands = trial.flat and (y_new[0] <= 0.0 or (turns and turn.tilt <= 0.0))
+        falls = y_new[0] >= HALF_PI
+        if not (lands or falls):
+            return Ending(h, y_new, lands, falls, turns)
+        # a hop within one step lands after its highest point, a dip before its lowest
+        hops = lands and turns and turn.tilt > 0.0
+        first = turn.at if hops else 0.0
+        last = turn.at if lands and turns and not hops else h
+        h, y_new = crossing(body, work, trial.path, y, first, last, HALF_PI if falls else 0.0)
+        return Ending(h, y_new, lands, falls, hops)
+
+    return Events(tried, ending_of)

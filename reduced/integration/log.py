@@ -1,0 +1,56 @@
+"""Rows that a march writes as it goes on, and what stood at one moment of it."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._compile import jit
+from .march import write
+from .tsit5 import State
+
+
+class Log(NamedTuple):
+    """Rows of the tables that a march returns (`March`).
+
+    Lists, typed by a row and emptied: a growing array would have its references counted in each step.
+    """
+
+    extrema: list[tuple[float, float, float, float]]
+    rests: list[tuple[float, float]]
+    steps: list[tuple[float, ...]]
+
+
+class Mark(NamedTuple):
+    """What stood when the duration was over and the march went on to see whether the cylinder overturns."""
+
+    y: State
+    peak: float
+    counts: tuple[int, int, int]  # rows of the log
+
+
+@jit
+def empty_log(y: State) -> Log:
+    """Return a log without rows."""
+    log = Log([(0.0, 0.0, 0.0, 0.0)], [(0.0, 0.0)], [(0.0, *y)])
+    log.extrema.clear()
+    log.rests.clear()
+    log.steps.clear()
+    return log
+
+
+@jit
+def mark_of(y: State, peak: float, log: Log) -> Mark:
+    """Return what stands now."""
+    return Mark(y, peak, (len(log.extrema), len(log.rests), len(log.steps)))
+
+
+@jit
+def as_table(rows: Any, count: int, width: int) -> NDArray[np.float64]:
+    """Return the first `count` tuples of a list as an array (count, width)."""
+    table = np.empty((count, width))
+    for i in range(count):
+        write(rows[i], table[i])
+    return table

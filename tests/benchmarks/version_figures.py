@@ -1,0 +1,95 @@
+"""Figures of one engine as it is installed: what `engine_versions` runs in a process of its own."""
+
+from __future__ import annotations
+
+import json
+import math
+import sys
+import time
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from rockwobble import multibody, reduced
+from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
+from rockwobble.multibody.contract.sweep import uplifts_in_every_direction
+from rockwobble.multibody.engines.registry import find_engine
+
+# h = 2 b, b = 1 m, released at half its slenderness: its contact point turns by 203.90980 deg on flat ground
+CAN = Cylinder(semidiagonal=math.sqrt(5.0), tan_alpha=0.5)
+CAN_RELEASE, CAN_LENGTH, CAN_STEP = InitialState(0.5 * CAN.alpha, rolling_rate=0.1), 3.5, 2e-5
+RELEASED, RELEASE_STEP = Cylinder(semidiagonal=6.0, tan_alpha=0.35), 1e-4
+SHAKEN, SHAKEN_LENGTH, SHAKEN_STEP = Cylinder(semidiagonal=10.0, tan_alpha=0.1), 15.0, 2e-4
+_EXACT = 1e-11  # tolerance of the models
+
+
+def measure(engine: str) -> dict[str, Any]:
+    """Return the figures by name; what the engine cannot run is its reason."""
+    started = time.perf_counter()
+    found: dict[str, Any] = {"version": find_engine(engine).version()}
+    for name, figure in (("turn", _turn), ("uplift", _uplift), ("release", _release), ("el_centro", _shaken)):
+        try:
+            found[name] = figure(engine)
+        # whatever an old version raises is what there is to say of it
+        except Exception as error:
+            found[name], line = math.nan, (str(error).splitlines() or [""])[0]
+            found.setdefault("remarks", []).append(f"{name}: {type(error).__name__}: {line}")
+    return found | {"seconds": time.perf_counter() - started}
+
+
+def _turn(engine: str) -> float:
+    """Angle of turn less that of the flat-ground model [deg]."""
+    case = Case(CAN, initial=CAN_RELEASE, duration=CAN_LENGTH)
+    run = _finished(multibody.simulate(case, engine=engine, support="flat", time_step=CAN_STEP))
+    exact = reduced.simulate(case, support="flat", rtol=_EXACT)
+    turned, expected = (float(trace.passes["angle_of_turn"].iloc[0]) for trace in (run, exact))
+    return math.degrees(abs(turned) - abs(expected))
+
+
+def _uplift(engine: str) -> str:
+    """Say whether the static sweep of the contract holds, else where it first does not."""
+    if not find_engine(engine).uplifts:
+        return "no uplift"
+    try:
+        uplifts_in_every_direction(engine, find_engine(engine).supports[0])
+    except AssertionError as error:
+        return str(error)
+    return "holds"
+
+
+def _release(engine: str) -> float:
+    """Largest error of the tilt in 2 s after a release, over alpha."""
+    initial = InitialState(0.5 * RELEASED.alpha, rolling_rate=0.5)
+    case = Case(RELEASED, initial=initial, duration=2.0)
+    support = find_engine(engine).supports[0]
+    run = _finished(multibody.simulate(case, engine=engine, support=support, time_step=RELEASE_STEP))
+    exact = reduced.simulate(case, support=support, rtol=_EXACT)
+    return float(np.abs(run.tilt - exact.tilt).max()) / RELEASED.alpha
+
+
+def _shaken(engine: str) -> float:
+    """Relative root mean square of the tilt difference under El Centro."""
+    if not find_engine(engine).uplifts:
+        return math.nan
+    case = Case(SHAKEN, el_centro_1940(), duration=SHAKEN_LENGTH)
+    run = _finished(multibody.simulate(case, engine=engine, time_step=SHAKEN_STEP))
+    exact = reduced.simulate(case, rtol=_EXACT)
+    return float(np.sqrt(np.mean((run.tilt - exact.tilt) ** 2) / np.mean(exact.tilt**2)))
+
+
+def _finished(run: Trace) -> Trace:
+    if run.outcome == "failed":
+        raise RuntimeError(f"the run failed: {', '.join(fact.code for fact in run.facts)}")
+    return run
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Print the figures of the engine that is named, as JSON in the last line."""
+    (engine,) = arguments
+    print(json.dumps(measure(engine)))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

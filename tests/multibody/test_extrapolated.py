@@ -1,0 +1,188 @@
+"""time_step="extrapolated": what runs at three steps tend to, and what it says where they tend to nothing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from rockwobble import multibody
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    Diagnostic,
+    InitialState,
+    Run,
+    Trace,
+    el_centro_1940,
+)
+from rockwobble.models.traces.trace_source import Known
+from rockwobble.multibody.scene.guard import LARGEST_STEP
+from rockwobble.multibody.time_step.extrapolated import extrapolation, to_zero_step
+
+ALPHA = 0.2
+# of alpha, after a release: what the second order leaves of an engine of first order
+RELEASED = 1e-7
+# relative RMS under El Centro on (10 m, 0.1) to 15 s, at the cost of one run at the default step
+SHAKEN = {"mujoco": 5e-6, "pybullet": 2e-5, "dart": 2e-5}
+ESTIMATE = 3.0  # Richardson is good for a factor
+
+
+@pytest.mark.parametrize("engine", [name for name in SHAKEN if name in multibody.available_engines()])
+@pytest.mark.parametrize(("support", "tan_alpha"), [("recess", 0.35), ("flat", 0.1)])
+def test_a_release_extrapolates(
+    engine: str, support: str, tan_alpha: float, solve_free: Callable[..., Any]
+) -> None:
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+    release = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
+    told: list[float] = []
+    case = Case(cylinder, initial=release, duration=3.0)
+    run = multibody.simulate(
+        case, engine=engine, support=support, time_step="extrapolated", progress=told.append
+    )
+    exact = solve_free(cylinder, release, run.time, rolls_out=support == "flat")
+    assert np.abs(run.tilt - exact.tilt).max() < RELEASED * cylinder.alpha
+    assert np.abs(run.tilt - exact.tilt).max() < ESTIMATE * run.error_estimate
+    # the azimuth as well as the tilt: a pass at 0.3 alpha magnifies by ten
+    assert np.abs(run.rolling_angle - exact.rolling_angle).max() < 100.0 * RELEASED
+    (fact,) = (fact for fact in run.facts if fact.code.endswith("extrapolated"))
+    assert (fact.code, fact.bound, fact.duration) == ("extrapolated", 1.0, run.time[-1])
+    assert told == sorted(told)
+    assert told[-1] == 1.0
+    assert (run.time_step, run.run.time_step) == (pytest.approx(1.75e-4), "extrapolated")
+
+
+@pytest.mark.parametrize("engine", [name for name in SHAKEN if name in multibody.available_engines()])
+def test_a_shaken_run_extrapolates(engine: str, solve_forced: Callable[..., Any]) -> None:
+    motion, cylinder = el_centro_1940(), Cylinder(semidiagonal=10.0, tan_alpha=0.1)
+    run = multibody.simulate(Case(cylinder, motion, duration=15.0), engine=engine, time_step="extrapolated")
+    exact = solve_forced(cylinder, motion, 15.0)
+    tilt = np.interp(exact.time, run.time, run.tilt)
+    relative = np.sqrt(np.mean((tilt - exact.tilt) ** 2) / np.mean(exact.tilt**2))
+    assert relative < SHAKEN[engine]
+    # near passes of upright make its error one of second order
+    assert [(fact.code, fact.bound) for fact in run.facts] == [("extrapolated", 2.0)]
+
+
+def made(tilt: Any, *, angle: Any = None, outcome: str = "completed", **more: Any) -> Trace:
+    """Return a trace with that tilt and nothing else to speak of."""
+    n = len(tilt)
+    zeros, points = np.zeros(n), np.zeros((n, 3))
+    return Trace(
+        case=Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), duration=1.0),
+        run=Run("made", "flat"),
+        version="",
+        time=0.01 * np.arange(n),
+        tilt=np.asarray(tilt, dtype=float),
+        tilt_rate=zeros,
+        rolling_angle=zeros if angle is None else np.asarray(angle, dtype=float),
+        twist=zeros,
+        contact_point=points[:, :2],
+        centre_of_mass=points,
+        peak_tilt=float(np.max(tilt)),
+        outcome=outcome,
+        facts=(Diagnostic(code="warning", detail="why"),) if outcome == "failed" else (),
+        uplift_time=0.0,
+        uplift_direction=0.0,
+        contact_resolution=1e-6,
+        wall_time=1.0,
+        source=Known({"energy": np.asarray(tilt, dtype=float), "slip": zeros}),
+        **more,
+    )
+
+
+def three(error: Callable[[float], Any], **more: Any) -> list[Trace]:
+    """Return runs at steps of 4, 2 and 1, whose tilt is off by `error` of the step."""
+    return [replace(made(0.1 + error(step), **more), time_step=step) for step in (4.0, 2.0, 1.0)]
+
+
+@pytest.mark.parametrize("order", [1, 2])
+def test_a_series_of_one_term_is_taken_off(order: int) -> None:
+    shape = 1e-5 * np.sin(0.1 * np.arange(100))
+    runs = three(lambda step: shape * step**order)
+    found = extrapolation(runs, ALPHA)
+    np.testing.assert_allclose(found.tilt, 0.1, atol=1e-15)
+    np.testing.assert_allclose(found.energy, 0.1, atol=1e-15)
+    assert found.peak_tilt == pytest.approx(0.1, abs=1e-15)
+    assert [(fact.code, fact.bound) for fact in found.facts] == [("extrapolated", order)]
+    assert found.settled_until == found.time[-1]
+
+
+def test_the_estimate_is_the_term_that_is_left() -> None:
+    shape = 1e-5 * np.sin(0.1 * np.arange(100))
+    found = extrapolation(three(lambda step: shape * (step + 0.05 * step**2)), ALPHA)
+    error = np.abs(found.tilt - 0.1).max()
+    assert error > 1e-8
+    assert found.error_estimate == pytest.approx(error, rel=1e-6)
+
+
+def test_beyond_a_parting_it_is_the_finest_run() -> None:
+    side = {4.0: 1.0, 2.0: -1.0, 1.0: 1.0}
+    late = np.arange(100) >= 60
+
+    def error(step: float) -> Any:
+        return 1e-5 * step * np.sin(0.1 * np.arange(100)) + np.where(late, 0.05 * side[step], 0.0)
+
+    passes = pd.DataFrame({name: [0.3, 0.55] for name in ("time", "minimum_tilt", "angle_of_turn")})
+    runs = three(error, passes=passes.assign(resolved=True))
+    found = extrapolation(runs, ALPHA)
+    assert found.settled_until == 0.55
+    np.testing.assert_allclose(found.tilt[:56], 0.1, atol=1e-15)
+    np.testing.assert_array_equal(found.tilt[56:], runs[-1].tilt[56:])
+    codes = [(fact.code, fact.detail) for fact in found.facts]
+    assert codes == [("extrapolated", ""), ("not_extrapolated", "parted")]
+    assert found.facts[1].time == 0.55
+
+
+def test_runs_that_do_not_come_closer_are_not_extrapolated() -> None:
+    off = {4.0: 1e-5, 2.0: -1e-5, 1.0: 1e-5}
+    runs = three(lambda step: np.full(50, off[step]))
+    found = extrapolation(runs, ALPHA)
+    np.testing.assert_array_equal(found.tilt, runs[-1].tilt)
+    assert [(fact.code, fact.detail) for fact in found.facts] == [("not_extrapolated", "no_closer")]
+
+
+def test_a_tilt_stays_positive_and_two_sides_of_upright_do_not_mix() -> None:
+    runs = three(lambda step: np.where(np.arange(50) == 20, -0.1 + 1e-5 * step**1.2, 1e-5 * step))
+    found = extrapolation(runs, ALPHA)
+    assert (found.tilt >= 0.0).all()
+    assert found.tilt[20] == runs[-1].tilt[20]
+    turned = [
+        replace(run, rolling_angle=np.full(50, angle))
+        for run, angle in zip(three(lambda step: np.full(50, 1e-5 * step)), (0.0, 0.0, 6.0), strict=True)
+    ]
+    np.testing.assert_array_equal(extrapolation(turned, ALPHA).rolling_angle, 6.0)
+
+
+def test_a_failed_run_is_said() -> None:
+    fails = made([0.1], outcome="failed")
+    good = three(lambda step: np.full(50, 1e-5 * step))
+    (fact,) = extrapolation([fails, *good[1:]], ALPHA).facts
+    assert (fact.code, fact.detail) == ("not_extrapolated", "fails")
+    assert extrapolation([*good[:2], fails], ALPHA) is fails
+
+
+def test_the_limit_of_one_order() -> None:
+    assert to_zero_step([np.array([5.0]), np.array([3.0])], 1) == pytest.approx(1.0)
+    assert to_zero_step([np.array([5.0]), np.array([2.0])], 2) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        ({"time_step": "extrapolated", "finest_step": 0.0}, "finest_step must be positive"),
+        (
+            {"time_step": "extrapolated", "finest_step": 0.3 * LARGEST_STEP},
+            "finest_step must be at most 0.00025",
+        ),
+        ({"time_step": "auto", "finest_step": 1e-4}, "finest_step"),
+        ({"time_step": 1e-4, "finest_step": 1e-4}, 'goes with time_step="extrapolated"'),
+    ],
+)
+def test_what_is_refused(pier: Cylinder, arguments: dict[str, Any], line: str) -> None:
+    with pytest.raises(ValueError, match=line):
+        multibody.simulate(Case(pier, initial=InitialState(0.1), duration=0.1), **arguments)

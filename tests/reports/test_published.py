@@ -1,0 +1,55 @@
+"""What is published says what its tables hold, was made by committed code, and by code that does the same."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from rockwobble.compare.certificate.verdict import CHANGED
+from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.registry import KINDS, redrawn
+
+PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
+FOLDERS = sorted(path.parent for path in PUBLISHED.rglob(MANIFEST))
+WHOLE = [
+    (folder, each.kind)
+    for folder in FOLDERS
+    for each in read_manifests(folder)
+    if each.kind in KINDS and all(file_state(folder, each, name) == "whole" for name in each.files)
+]
+
+
+def name_of(value: object) -> str:
+    return value.relative_to(PUBLISHED).as_posix() if isinstance(value, Path) else str(value)
+
+
+def test_every_study_is_published_and_most_of_them_whole() -> None:
+    kinds = {each.kind for folder in FOLDERS for each in read_manifests(folder)}
+    assert kinds == set(KINDS)
+    assert {kind for _, kind in WHOLE} == set(KINDS) - {"comparison"}  # without its samples, which are large
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=name_of)
+def test_it_was_made_by_committed_code_and_nothing_is_damaged(folder: Path) -> None:
+    for each in read_manifests(folder):
+        assert len(each.commit) == 40  # and no "+": the code was as committed
+        assert [name for name in each.files if file_state(folder, each, name) == "damaged"] == []
+        assert each.headline
+
+
+@pytest.mark.parametrize(("folder", "kind"), WHOLE, ids=name_of)
+def test_its_words_are_what_its_tables_say_today(folder: Path, kind: str) -> None:
+    pages = {name: page for name, page in redrawn(kind, folder).items() if name.endswith(".md")}
+    assert pages
+    for name, page in pages.items():
+        assert (folder / name).read_text(encoding="utf-8") == page.decode()
+
+
+@pytest.mark.parametrize("name", ["reduced", "mujoco"])
+def test_the_code_still_does_what_it_did_then(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["verify", str(PUBLISHED / "certificates" / f"{name}.json"), "--json"])
+    assert json.loads(capsys.readouterr().out)["word"] != CHANGED
