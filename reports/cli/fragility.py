@@ -10,7 +10,7 @@ import typer
 
 from ..console.terminal import interruptible, user_input
 from .inputs import options
-from .inputs.grid import values
+from .inputs.grid import values_of
 from .inputs.method_values import settings
 from .inputs.motion_set import DEFAULT_COUNT, motions_of
 from .inputs.several import cylinders_of, methods_of
@@ -208,7 +208,7 @@ def fragility(
                 methods=methods,
                 measure=measure,
                 levels=None if levels is None else _levels(levels),
-                scales=None if cloud is None else values("--cloud", cloud),
+                scales=None if cloud is None else values_of("--cloud", cloud),
                 limits=DEFAULT_LIMITS if states is None else states,
                 margin=margin,
                 period=period,
@@ -230,7 +230,7 @@ def fragility(
 
 def _levels(text: str) -> list[float]:
     """Return the numbers of a list, or of a range, which is even in the logarithm."""
-    found = values("--levels", text)
+    found = values_of("--levels", text)
     if ":" not in text:
         return found
     low, high = found[0], found[-1]
