@@ -12,10 +12,11 @@ from browser import complaints, needs_chromium
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.storage.manifest import Manifest, read_manifests, read_results
+from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.result import KIND, fragility_of, stored_fragility
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.figures.fragility import fragility_pictures, main_contrasts
+from rockwobble.reports.figures.fragility import fragility_pictures
 from rockwobble.reports.figures.picture import Band, Line
 from rockwobble.reports.figures.svg import svg
 from rockwobble.reports.pages.fragility import fragility_page
