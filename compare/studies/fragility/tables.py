@@ -12,7 +12,7 @@ import pandas as pd
 
 from ...metrics.order_statistics import Interval
 from .fit import FITTED, KINDS, Curves, goodness
-from .resampling import Array, Sample, bands, interval
+from .resampling import Array, Sample, bands, interval, spread_interval
 from .samples import Blocks
 
 # of a curve: from half of the lowest intensity to twice the highest
@@ -57,7 +57,7 @@ def fit_table(
         centre, dispersion = float(found.centre[0]), float(found.dispersion[0])
         kind = KINDS[found.kinds[0]]
         median = interval(centre, many.centre, motions)
-        spread = interval(dispersion, many.dispersion, motions)
+        spread = spread_interval(dispersion, many.dispersion, motions)
         held = goodness(x, n[0], k[0], centre, dispersion) if kind == FITTED else None
         rows.append(
             {
