@@ -10,10 +10,11 @@ from rockwobble.compare.storage.manifest import Manifest, read_results
 from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER
 from rockwobble.compare.studies.fragility.intensity import MEASURES
 from rockwobble.compare.studies.fragility.limits import OVERTURNED
+from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.result import KIND, stored_fragility
 from rockwobble.compare.studies.fragility.tables import ALL
 
-from ..figures.fragility import fragility_pictures, main_contrasts
+from ..figures.fragility import fragility_pictures
 from .page import Page
 
 if TYPE_CHECKING:

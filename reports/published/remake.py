@@ -17,6 +17,15 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 
+# of a fragility
+_BODIES = (
+    "--cylinder pier=6,0.2 --cylinder column=3,0.15 --cylinder tower=10,0.1 "
+    "--levels 1.5,2,2.75,3.75,5,6.5,9,12"
+)
+_ENGINES = (
+    "--engine mujoco --engine pybullet --support recess --support flat --support ring "
+    "--set ring_clearance=0.01 --set ring_inclination=0.5"
+)
 # folder: command
 STUDIES = {
     "compare": "compare",
@@ -29,7 +38,8 @@ STUDIES = {
     "ensemble/p695-3.5": "ensemble --p695 3.5 --engine mujoco",
     "ensemble/synthetic-3": "ensemble --synthetic 3",
     "ensemble/copies": "ensemble --duration 20",
-    "fragility": "fragility",
+    "fragility/p695": f"fragility --p695 {_BODIES} --friction 3 --step-factor 8 {_ENGINES}",
+    "fragility/synthetic": f"fragility --synthetic 2000 --seed 16 {_BODIES}",
     "extremes": "extremes",
     "tradeoff": "tradeoff",
     "validity": "validity",

@@ -13,7 +13,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockwobble.compare.studies.fragility.resampling import Array, Sample, interval, resamples
+from rockwobble.compare.studies.fragility.resampling import (
+    Array,
+    Sample,
+    interval,
+    resamples,
+    spread_interval,
+)
 
 from .console import options_of
 
@@ -83,13 +89,13 @@ def coverage(kind: Kind, studies: int, draws: int = RESAMPLES, seed: int = 1) ->
             for each, many in ((ours, False), (theirs, False), (ours, True), (theirs, True))
         )
         with np.errstate(invalid="ignore"):
-            numbers = (
-                (found.centre[0], drawn.centre, math.log(MEDIAN)),
-                (found.dispersion[0], drawn.dispersion, kind.whole),
-                (found.centre[0] - other.centre[0], drawn.centre - others.centre, 0.0),
-            )
-        for column, (value, many, truth) in enumerate(numbers):
-            held = interval(float(value), many, kind.motions)
+            ratio, ratios = found.centre[0] - other.centre[0], drawn.centre - others.centre
+        held_and_true = (
+            (interval(float(found.centre[0]), drawn.centre, kind.motions), math.log(MEDIAN)),
+            (spread_interval(float(found.dispersion[0]), drawn.dispersion, kind.motions), kind.whole),
+            (interval(float(ratio), ratios, kind.motions), 0.0),
+        )
+        for column, (held, truth) in enumerate(held_and_true):
             inside[place, column] = held.low <= truth <= held.high
     shares = inside.mean(axis=0)
     return float(shares[0]), float(shares[1]), float(shares[2])

@@ -31,6 +31,7 @@ from rockwobble.compare.studies.fragility.resampling import (
     expanded_shares,
     interval,
     resamples,
+    spread_interval,
 )
 from rockwobble.compare.studies.fragility.tables import margin_of, verdict
 
@@ -189,6 +190,16 @@ def test_intervals_keep_what_is_not_bounded_and_what_is_not_known():
     drawn[:40] = math.nan
     unknown = interval(0.0, drawn, 22)
     assert (unknown.low, unknown.high) == (-math.inf, math.inf)
+
+
+def test_a_dispersion_is_reflected_about_itself():
+    found = spread_interval(0.5, np.linspace(0.4, 0.6, 1001), 22)
+    low, high = expanded_shares(22)
+    assert (found.low, found.high) == pytest.approx(
+        (0.25 / (0.4 + 0.2 * high), 0.25 / (0.4 + 0.2 * low)), rel=1e-3
+    )
+    # a resample without dispersion bounds nothing
+    assert spread_interval(0.5, np.zeros(100), 22).high == math.inf
 
 
 def test_a_band_holds_its_curve_and_is_none_where_all_resamples_agree():

@@ -10,7 +10,7 @@ import numpy as np
 from .fit import FITTED, KINDS
 from .intensity import MEASURES
 from .limits import OVERTURNED
-from .resampling import Array, interval
+from .resampling import Array, interval, spread_interval
 from .samples import Blocks
 from .tables import exponential, interval_columns
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 # Every run has an intensity of its own in each measure but that of the levels, and so many numbers in each
 # resample: as many resamples as keep this many numbers, and no fewer than give an end of an interval.
-_MOST_NUMBERS, _FEWEST = 300_000, 100
+_MOST_NUMBERS, _FEWEST = 150_000, 100
 
 
 def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFrame:
@@ -56,7 +56,7 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
                     "method": method,
                     "measure": measure,
                     "median": float(np.exp(found[measure].centre[0])),
-                    **interval_columns("dispersion", interval(spread, drawn[measure], motions)),
+                    **interval_columns("dispersion", spread_interval(spread, drawn[measure], motions)),
                     **interval_columns("over_best", exponential(interval(value, ratios, motions))),
                     "best": measure == best,
                 }

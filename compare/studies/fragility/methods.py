@@ -97,15 +97,17 @@ def _method(given: str | Run, restitution: float | str, labels: Iterable[str]) -
 
 
 def own_model(method: Method, methods: Sequence[Method]) -> str:
-    """Return the label of the reduced model of the support of an engine, if it is among the methods."""
+    """Return the label of the reduced model of the support of an engine, if there is one among the methods.
+
+    No reduced model knows the walls of a ring.
+    """
     if method.run is None or method.run.engine is None:
         return ""
-    wanted = "flat" if method.support == "flat" else "recess"
     return next(
         (
             other.label
             for other in methods
-            if other.run is not None and other.run.engine is None and other.support == wanted
+            if other.run is not None and other.run.engine is None and other.support == method.support
         ),
         "",
     )

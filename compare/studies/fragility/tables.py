@@ -11,7 +11,7 @@ import numpy as np
 
 from ...metrics.order_statistics import Interval
 from .fit import FITTED, KINDS, Curves, goodness
-from .resampling import Array, Sample, bands, interval
+from .resampling import Array, Sample, bands, interval, spread_interval
 from .samples import Blocks
 
 if TYPE_CHECKING:
@@ -63,7 +63,7 @@ def fit_table(
         centre, dispersion = float(found.centre[0]), float(found.dispersion[0])
         kind = KINDS[found.kinds[0]]
         median = interval(centre, many.centre, motions)
-        spread = interval(dispersion, many.dispersion, motions)
+        spread = spread_interval(dispersion, many.dispersion, motions)
         held = goodness(x, n[0], k[0], centre, dispersion) if kind == FITTED else None
         rows.append(
             {
