@@ -64,6 +64,11 @@ class Cache(Generic[T, R]):
         self._expected = 0
         self.damaged: list[Path] = []
 
+    @property
+    def count(self) -> int:
+        """Number of results that are kept here."""
+        return len(self._there)
+
     def find(self, task: T) -> R | None:
         """Return the result of a task if it is there and whole; what is damaged runs again."""
         path = self._there.get(self._name(task))

@@ -5,6 +5,8 @@ from __future__ import annotations
 import importlib
 import logging
 import platform
+import re
+import time
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, wait
 from contextlib import contextmanager
@@ -17,8 +19,13 @@ R = TypeVar("R")
 
 # seconds to wait for the scheduler: a machine that is there answers in a fraction of one
 _PATIENCE = 15.0
+_LOOK = 0.5  # between two looks at the scheduler and its workers [s]
 # tasks submitted for each that can run, so that no worker waits
 _AHEAD = 2
+
+
+class ClusterError(RuntimeError):
+    """The scheduler is gone, or has no workers that can do the work; what is finished stays finished."""
 
 
 def on_cluster(
@@ -32,6 +39,7 @@ def on_cluster(
     here, waiting, tried = dict(makers()), list(range(len(tasks)))[::-1], [0] * len(tasks)
     running: dict[Future[R], int] = {}
     with _cluster(address) as (executor, threads, losses):
+        seen = time.monotonic()
         while waiting or running:
             for _ in range(min(len(waiting), max(1, _AHEAD * sum(threads().values())) - len(running))):
                 place = waiting.pop()
@@ -39,7 +47,14 @@ def on_cluster(
                     yield Started(place)
                 tried[place] += 1
                 running[executor.submit(_with_the_same_code, function, tasks[place], here, makers)] = place
-            for future in wait(running, return_when=FIRST_COMPLETED).done:
+            done = wait(running, timeout=_LOOK, return_when=FIRST_COMPLETED).done
+            seen = time.monotonic() if _has_workers(address, threads) else seen
+            if time.monotonic() - seen > _PATIENCE:
+                raise ClusterError(
+                    f"the Dask scheduler at {address} has had no worker for {_PATIENCE:g} s: start one by "
+                    f"dask worker {address}"
+                )
+            for future in done:
                 place = running.pop(future)
                 try:
                     yield Finished(place, future.result())
@@ -50,6 +65,13 @@ def on_cluster(
                         yield Finished(place, Lost(_first_line(error)))
 
 
+def _has_workers(address: str, threads: Callable[[], Mapping[str, int]]) -> bool:
+    try:
+        return bool(threads())
+    except (OSError, ValueError, RuntimeError) as error:  # what a client without a scheduler raises
+        raise ClusterError(f"the Dask scheduler at {address} does not answer any more: {error}") from None
+
+
 def _with_the_same_code(
     function: Callable[[T], R], task: T, expected: Mapping[str, str], makers: Callable[[], Mapping[str, str]]
 ) -> R:
@@ -57,7 +79,7 @@ def _with_the_same_code(
     here = makers()
     for name, value in expected.items():
         if here.get(name) != value:
-            raise ValueError(
+            raise ClusterError(
                 f"a worker on {platform.node()} must have what the caller has: {name} is "
                 f"{here.get(name)} there and {value} here"
             )
@@ -67,12 +89,15 @@ def _with_the_same_code(
 @contextmanager
 def _cluster(address: str) -> Iterator[tuple[Any, Callable[[], Mapping[str, int]], Any]]:
     """Open executor, threads of each worker, and what a future raises whose worker died."""
+    if re.fullmatch(r"\w+://\S+", address) is None:
+        raise ValueError(f"a Dask scheduler has an address such as tcp://10.0.0.1:8786, got {address!r}")
     try:
         distributed: Any = importlib.import_module("distributed")  # it has no types
     except ImportError:
         raise ValueError("--scheduler needs Dask: pip install 'rockwobble[distributed]'") from None
-    # it repeats each failed try of a connection as a warning; one clear line follows
-    logging.getLogger("distributed.comm").setLevel(logging.ERROR)
+    # it repeats each failed try of a connection, and each lost one; one clear line follows
+    for name in ("distributed.comm", "distributed.client"):
+        logging.getLogger(name).setLevel(logging.CRITICAL)
     try:
         client = distributed.Client(address, timeout=_PATIENCE, set_as_default=False)
     except (OSError, ValueError) as error:

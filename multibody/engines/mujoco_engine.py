@@ -31,7 +31,7 @@ _RISEN_DEPTHS = 1000.0
 _LEANS = 1e-8  # [rad] from which a lean has a direction, which a corner follows instead of the load
 # of b, eccentricities of the load: from the first a corner follows it, from the second at every step, and on
 # the four corners of the first prism alone, early enough for the change to die away before the base opens
-_LOADED, _OPENING = 0.5, 0.9
+_LOADED, _OPENING = 0.5, 0.98
 _LAST_PRISMS, _OUT_OF_REACH = 1, 1e-3  # [-], [m]
 # A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
 # under a load on its rim does a lean mean that it has uplifted, or if it is far larger.

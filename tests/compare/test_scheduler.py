@@ -18,6 +18,7 @@ from scheduled import die_once, killed, multiples, never_the_same, refuse, signa
 
 from rockwobble.compare.runs import dask_backend
 from rockwobble.compare.runs.cache import CACHE, open_table_cache, unfinished
+from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.runs.scheduler import run_tasks
 from rockwobble.compare.runs.task import Lost
@@ -176,16 +177,27 @@ def test_no_scheduler_is_one_clear_line(monkeypatch):
     monkeypatch.setattr(dask_backend, "_PATIENCE", 0.5)
     with pytest.raises(ValueError, match="no Dask scheduler answers at 'tcp://127"):
         run_tasks(abs, [1], scheduler="tcp://127.0.0.1:1")
+    with pytest.raises(ValueError, match=r"has an address such as tcp://.*, got 'nonsense'"):
+        run_tasks(abs, [1], scheduler="nonsense")
 
 
-def test_dask_gives_the_same_andrefuses_other_code():
+def test_a_cluster_without_workers_is_said(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    with distributed.LocalCluster(n_workers=0, processes=False, dashboard_address=None) as cluster:
+        address = cluster.scheduler_address
+        monkeypatch.setattr(dask_backend, "_PATIENCE", 1.0)
+        with pytest.raises(ClusterError, match="has had no worker for 1 s: start one by dask worker inproc"):
+            run_tasks(abs, [1], scheduler=address)
+
+
+def test_dask_gives_the_same_and_refuses_other_code():
     distributed = pytest.importorskip("distributed")
     with distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
     ) as cluster:
         address = cluster.scheduler_address
         assert run_tasks(abs, [-2, 1, -3], scheduler=address) == [2, 1, 3]
-        with pytest.raises(ValueError, match="must have what the caller has: call"):
+        with pytest.raises(ClusterError, match="must have what the caller has: call"):
             run_tasks(abs, [1], scheduler=address, makers=never_the_same)
 
 

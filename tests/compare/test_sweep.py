@@ -9,6 +9,7 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare import CaseSweep, Grid, Progress, SweepIncompleteError, read_sweep, sweep
 from rockwobble.compare.runs.cache import CACHE
+from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.task import Lost
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.compare.studies.sweep import study
@@ -104,6 +105,18 @@ def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeyp
     assert len(files(tmp_path)) == 8
     with pytest.raises(ValueError, match="does not hold results"):
         read_sweep(tmp_path)
+
+
+def test_a_cluster_that_is_gone_says_what_is_kept(tmp_path, monkeypatch):
+    run_tasks = study.run_tasks
+
+    def gone(*args, **options):
+        run_tasks(args[0], args[1][:3], **options)
+        raise ClusterError("the Dask scheduler does not answer any more")
+
+    monkeypatch.setattr(study, "run_tasks", gone)
+    with pytest.raises(SweepIncompleteError, match=f"any more; 3 chunks are kept in {tmp_path}$"):
+        sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
 
 
 def test_each_input_of_a_chunk_is_in_its_key():

@@ -13,6 +13,7 @@ import numpy as np
 from rockwobble.models import Case, GroundMotion, Run, Suite
 
 from ...runs.cache import open_table_cache
+from ...runs.dask_backend import ClusterError
 from ...runs.progress import ProgressCallback
 from ...runs.scheduler import run_tasks
 from ...runs.task import Lost
@@ -32,7 +33,7 @@ Chunk = GridChunk | CaseChunk
 
 
 class SweepIncompleteError(RuntimeError):
-    """Some chunks ended their processes again and again; all others are finished."""
+    """Some chunks are not finished: their processes died again and again, or the Dask cluster is gone."""
 
 
 def sweep(
@@ -85,7 +86,7 @@ def sweep(
     ValueError
         If the plan, the folder or the scheduler is not usable.
     SweepIncompleteError
-        If chunks could not be finished because their processes died.
+        If chunks could not be finished because their processes died, or the Dask cluster cannot do them.
 
     Examples
     --------
@@ -103,17 +104,21 @@ def sweep(
     # in a mixed order the runs that take long are spread evenly, and so the time left can be predicted
     order = np.random.default_rng(0).permutation(len(chunks)).tolist()
     with nullcontext() if out is None else open_table_cache(out, KIND, _key) as cache:
-        found = run_tasks(
-            run_chunk,
-            [chunks[index] for index in order],
-            workers=workers,
-            scheduler=scheduler,
-            label=lambda chunk: chunk.name,
-            progress=progress,
-            cache=cache,
-            tries=_TRIES,
-            makers=partial(_makers, whole),
-        )
+        try:
+            found = run_tasks(
+                run_chunk,
+                [chunks[index] for index in order],
+                workers=workers,
+                scheduler=scheduler,
+                label=lambda chunk: chunk.name,
+                progress=progress,
+                cache=cache,
+                tries=_TRIES,
+                makers=partial(_makers, whole),
+            )
+        except ClusterError as error:
+            kept = "nothing is kept" if cache is None else f"{cache.count} chunks are kept in {out}"
+            raise SweepIncompleteError(f"{error}; {kept}") from None
         lost = [each.why for each in found if isinstance(each, Lost)]
         if lost:
             raise SweepIncompleteError(

@@ -33,8 +33,8 @@ class MujocoSettings:
         lowest point sinks and rises by a curvature of its path that no velocity shows, and where it rises by
         more than the rim has sunk in, contact is lost for a step, and with it friction. At 0.9999 that lets
         the rim slip by 1e-5 m under El Centro on (10 m, 0.1), and twice that on (6 m, 0.2) doubled, where
-        the relative RMS at 1e-4 s is 1.0e-5 and 1.2e-5; at 0.995 they are 4.1e-6 and 7.0e-6, at 0.98 4.1e-6
-        and 8.0e-6.
+        the relative RMS at 1e-4 s is 1.0e-5 and 1.2e-5; at 0.995 they are 3.7e-6 and 6.4e-6, at 0.98 3.7e-6
+        and 7.5e-6.
     friction_damping : float
         Share of the slip velocity that one step removes, at most 2. The rim's material point moves on
         while it rolls, and friction, which has no memory, lets it creep by (1/friction_damping - 1/2) h
