@@ -24,11 +24,13 @@ _POOR = 0.05
 
 def fragility_page(found: Fragility, manifest: Manifest) -> Page:
     """Return the page of a fragility."""
+    pictures = fragility_pictures(found)
+    names = [picture.name for picture in pictures]
     return Page(
         name="fragility",
         template="fragility",
-        values={**fragility_values(found), "about": manifest},
-        pictures=fragility_pictures(found),
+        values={**fragility_values(found), "about": manifest, "pictures": names},
+        pictures=pictures,
     )
 
 
@@ -78,7 +80,6 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "efficiency": found.efficiency.to_dict("records"),
         "best": [row for row in found.efficiency.to_dict("records") if row["best"]],
         "islands": found.islands.to_dict("records"),
-        "pictures": [picture.name for picture in fragility_pictures(found)],
     }
 
 
