@@ -1,7 +1,9 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from rockwobble.compare.storage.manifest import made_now, read_results, write_results
@@ -19,7 +21,7 @@ def test_the_last_patch_of_each_minor_release() -> None:
 
 
 @pytest.fixture
-def table():
+def table() -> pd.DataFrame:
     row = dict.fromkeys(COLUMNS, math.nan) | {"engine": "mujoco", "uplift": "holds", "remark": ""}
     broken = row | {"version": "3.3.7", "uplift": "", "remark": "turn: AttributeError: no such name"}
     return made_table(
@@ -27,7 +29,7 @@ def table():
     )
 
 
-def test_the_page_names_the_release_that_moved_a_figure(table) -> None:
+def test_the_page_names_the_release_that_moved_a_figure(table: pd.DataFrame) -> None:
     text = versions_page(table, made_now(KIND)).markdown()
     assert (
         "**1 release has moved the error under El Centro by more than a tenth: MuJoCo 4.0.0 (4 times).**"
@@ -36,7 +38,7 @@ def test_the_page_names_the_release_that_moved_a_figure(table) -> None:
     assert "no such name" in text
 
 
-def test_the_page_is_drawn_again_from_its_files(table, tmp_path) -> None:
+def test_the_page_is_drawn_again_from_its_files(table: pd.DataFrame, tmp_path: Path) -> None:
     made = made_now(KIND)
     pages = versions_page(table, made).files()
     write_results(tmp_path, made, {"versions": table}, pages=pages)
