@@ -128,7 +128,9 @@ def _row(engine: str, version: str, folder: Path, *, sweep: bool) -> dict[str, A
     found = json.loads(done.stdout.splitlines()[-1])
     if found.pop("version") != version:
         return row | {"remark": "another version was found in its place"}
-    row.update(remark="; ".join(found.pop("remarks", [])), **found)
+    # most of the time one reason keeps all figures from running
+    reasons = dict.fromkeys(remark.partition(": ")[2] for remark in found.pop("remarks", []))
+    row.update(remark="; ".join(reasons), **found)
     return row
 
 
