@@ -22,6 +22,7 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "validity": ("compare.studies.validity:read_validity", "reports.pages.validity:validity_page"),
     "tradeoff": ("compare.studies.tradeoff:read_tradeoff", "reports.pages.tradeoff:tradeoff_page"),
     "extremes": ("compare.studies.extremes:read_extremes", "reports.pages.extremes:extremes_page"),
+    "engine versions": ("reports.pages.versions:stored_page",),
     "paper": ("reports.paper.page:stored_page",),
 }
 

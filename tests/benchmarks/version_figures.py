@@ -89,7 +89,7 @@ def _finished(run: Trace) -> Trace:
     return run
 
 
-def main(arguments: Sequence[str]) -> int:
+def printed(arguments: Sequence[str]) -> int:
     """Print the figures of the engine that is named, as JSON in the last line."""
     engine, *rest = arguments
     print(json.dumps(measure(engine, sweep="--no-sweep" not in rest)))
@@ -97,4 +97,4 @@ def main(arguments: Sequence[str]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(printed(sys.argv[1:]))
