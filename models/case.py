@@ -12,6 +12,7 @@ from .bounds import Bounds
 from .cylinder import Cylinder
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
+from .shown import Brief
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -159,8 +160,8 @@ def _restore_run(engine: str | None, support: str, time_step: TimeStep, settings
     return Run(engine, support, time_step, **settings)
 
 
-@dataclass(frozen=True, slots=True)
-class Suite:
+@dataclass(frozen=True, slots=True, repr=False)
+class Suite(Brief):
     """Cases times runs.
 
     Parameters

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 from ._validation import require_positive
+from .shown import Brief
 
 _UNITS = {
     "semidiagonal": "m",
@@ -18,8 +19,8 @@ _UNITS = {
 _SMALLEST, _LARGEST = 1e-70, 1e70  # [m]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Cylinder:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Cylinder(Brief):
     """A rigid body of revolution that stands on a circular base.
 
     Size and slenderness are those that govern rocking: they locate the mass centre S against the

@@ -6,12 +6,13 @@ import math
 from dataclasses import dataclass
 
 from ._validation import require_finite
+from .shown import Brief
 
 _UNITS = {"tilt": "rad", "tilt_rate": "rad/s", "rolling_angle": "rad", "rolling_rate": "rad/s"}
 
 
-@dataclass(frozen=True, slots=True)
-class InitialState:
+@dataclass(frozen=True, slots=True, repr=False)
+class InitialState(Brief):
     """Tilt, rolling angle and their rates at time zero; psi' = -phi' in every model and engine.
 
     Parameters

@@ -42,10 +42,10 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+import rockwobble as rw
+
 if TYPE_CHECKING:
     from rockwobble.compare.check import Finding
-    from rockwobble.models import Case, Run, Suite
-
 # of models.suite_file, which would be imported with every run of pytest
 ENDING = ".suite.toml"
 _OPTION = "--no-rockwobble-budget"
@@ -122,16 +122,14 @@ class SuiteFile(pytest.File):
 
     def collect(self) -> Iterator[SuiteItem]:
         """Yield the items."""
-        from rockwobble.compare import default_runs, missing_engines
         from rockwobble.compare.runs.choice import run_labels
-        from rockwobble.models import read_suite
 
         try:
-            suite = read_suite(self.path)
+            suite = rw.read_suite(self.path)
         except ValueError as error:
             raise self.CollectError(str(error)) from None
-        runs = suite.runs or default_runs()
-        absent = missing_engines()
+        runs = suite.runs or rw.compare.default_runs()
+        absent = rw.compare.missing_engines()
         for case in suite.cases:
             for run, label in zip(runs, run_labels(runs), strict=True):
                 item: SuiteItem = SuiteItem.from_parent(
@@ -145,20 +143,19 @@ class SuiteFile(pytest.File):
 class SuiteItem(pytest.Item):
     """One engine run of one case, held against the reduced model."""
 
-    def __init__(self, *, suite: Suite, case: Case, run: Run, label: str, **common: Any) -> None:
+    def __init__(self, *, suite: rw.Suite, case: rw.Case, run: rw.Run, label: str, **common: Any) -> None:
         super().__init__(**common)
         self.suite, self.case, self.run, self.label = suite, case, run, label
 
     def runtest(self) -> None:
         """Run engine and model, and raise what is beyond a bound."""
-        from rockwobble import reduced
         from rockwobble.compare.check import Bench
         from rockwobble.compare.check.engines.agreement import check_run, reference_of
         from rockwobble.compare.runs.execution import Job
 
         from .console.budget_of_run import budget_of_run
 
-        bench = Bench(reduced=reduced, suite=self.suite, shipped=False, workers=1)
+        bench = Bench(reduced=rw.reduced, suite=self.suite, shipped=False, workers=1)
         job = Job(case=self.case, run=self.run, label=self.label)
         (trace,) = bench.traces([job])
         failed = [finding for finding in check_run(bench, job, trace) if finding.failed]

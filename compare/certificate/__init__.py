@@ -1,9 +1,9 @@
 """What an installation can do, as claims with their evidence, and a fingerprint to tell it by."""
 
-from .certificate import Certificate, certify, read_certificate, verify
+from .certificate import certify, read_certificate, verify
 from .claims import Claim, claims_of
 from .fingerprint import engine_method, reduced_method
-from .verdict import Answer
+from .verdict import Answer, Certificate
 
 __all__ = [
     "Answer",

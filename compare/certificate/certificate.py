@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 from rockwobble.models import Run
 
@@ -16,13 +15,12 @@ from ..storage.provenance import commit, package_versions
 from .claims import claims_of
 from .fingerprint import Method, engine_method, fingerprint, reduced_method, repeated
 from .short_cases import short_cases
-from .verdict import KIND, Answer, compare, read
+from .verdict import KIND, Answer, Certificate, Described, compare, read
 
 FORMAT = 1
-Certificate = Mapping[str, Any]
 
 
-def certify(method: Method, findings: Iterable[Finding]) -> dict[str, Any]:
+def certify(method: Method, findings: Iterable[Finding]) -> Certificate:
     """Make a certificate.
 
     Parameters
@@ -49,7 +47,7 @@ def certify(method: Method, findings: Iterable[Finding]) -> dict[str, Any]:
     }
 
 
-def described(run: Run) -> dict[str, Any]:
+def described(run: Run) -> Described:
     """Return a method as a certificate has it."""
     return {"engine": run.engine, "time_step": run.time_step, "settings": dict(run.settings)}
 
@@ -88,7 +86,7 @@ def verify(certificate: Certificate, method: Method | None = None) -> Answer:
     return compare(old, repeated(method_of(certificate) if method is None else method, old))
 
 
-def read_certificate(path: Path) -> dict[str, Any]:
+def read_certificate(path: Path) -> Certificate:
     """Read a certificate.
 
     Raises

@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from random import Random
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,10 @@ from numpy.typing import NDArray
 
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, GroundMotion, Run, Trace
+from rockwobble.models.case import TimeStep
 
 from .short_cases import G, ShortCase, short_cases
+from .verdict import Entry, Sample
 
 Array = NDArray[np.float64]
 _SAMPLES = 40  # of each motion
@@ -53,7 +56,7 @@ class Method:
     simulate: Callable[[ShortCase, Case], Trace]
 
 
-def reduced_method(module: Any = reduced) -> Method:
+def reduced_method(module: ModuleType = reduced) -> Method:
     """Return the reduced models at their default tolerance; of a copy of the package, for its tests."""
 
     def simulate(short: ShortCase, case: Case) -> Trace:
@@ -64,7 +67,7 @@ def reduced_method(module: Any = reduced) -> Method:
     return Method(run=Run(None, "recess"), accuracy=1e-10, repeats=1e-9, simulate=simulate)
 
 
-def engine_method(engine: str, time_step: float | None = None, **settings: Any) -> Method:
+def engine_method(engine: str, time_step: TimeStep | None = None, **settings: Any) -> Method:
     """Return an engine, at its defaults where nothing else is asked for."""
 
     def simulate(short: ShortCase, case: Case) -> Trace:
@@ -77,7 +80,7 @@ def engine_method(engine: str, time_step: float | None = None, **settings: Any) 
     return Method(run=run, accuracy=1e-5, repeats=1e-4, simulate=simulate)
 
 
-def fingerprint(method: Method) -> Iterator[dict[str, Any]]:
+def fingerprint(method: Method) -> Iterator[Entry]:
     """Yield the twelve entries, each when it is computed."""
     for short in short_cases():
         trace = method.simulate(short, short.case)
@@ -88,20 +91,27 @@ def fingerprint(method: Method) -> Iterator[dict[str, Any]]:
         allowed = method.repeats * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
         if len(lost):  # from there on copies are no measure
             allowed[lost[0] :] = allowed[max(lost[0] - 1, 0)]
-        found["agreement_time"] = found["time"][lost[0]] if len(lost) else None
-        found["repeats"] = method.repeats
-        found["allowed"] = {name: _listed(allowed[:, k]) for k, name in enumerate(SIGNALS)}
-        yield found | (peaks(short, method) if len(lost) else {})
+        whole: Entry = {
+            **found,
+            "agreement_time": found["time"][lost[0]] if len(lost) else None,
+            "repeats": method.repeats,
+            "allowed": {name: _rounded(allowed[:, k]) for k, name in enumerate(SIGNALS)},
+        }
+        if len(lost):
+            whole["peaks"] = peaks(short, method)
+        yield whole
 
 
-def repeated(method: Method, old: Sequence[Mapping[str, Any]]) -> Iterator[dict[str, Any]]:
+def repeated(method: Method, old: Sequence[Entry]) -> Iterator[Sample]:
     """Yield what is needed of the entries to hold them against older ones: the copies are theirs."""
     for short, one in zip(short_cases(), old, strict=True):
-        again = peaks(short, method) if one["agreement_time"] is not None else {}
-        yield entry(short, method.simulate(short, short.case)) | again
+        found = entry(short, method.simulate(short, short.case))
+        if one["agreement_time"] is not None:
+            found["peaks"] = peaks(short, method)
+        yield found
 
 
-def entry(short: ShortCase, trace: Trace) -> dict[str, Any]:
+def entry(short: ShortCase, trace: Trace) -> Sample:
     """Return the samples and the events of one case."""
     values = _signals(trace)
     return {
@@ -113,16 +123,16 @@ def entry(short: ShortCase, trace: Trace) -> dict[str, Any]:
         "uplift_time": _known(trace.uplift_time),
         "uplift_direction": _known(trace.uplift_direction),
         "peak_tilt": _known(trace.peak_tilt / short.case.cylinder.alpha),
-        "time": _listed(trace.time),
+        "time": _rounded(trace.time),
         "signals": {name: _listed(values[:, k]) for k, name in enumerate(SIGNALS)},
     }
 
 
-def peaks(short: ShortCase, method: Method) -> dict[str, Any]:
+def peaks(short: ShortCase, method: Method) -> list[float | None]:
     """Return the peak tilts of many copies."""
     members = _members(short.case, method.accuracy)
     found = [method.simulate(short, member).peak_tilt / member.cylinder.alpha for member in members]
-    return {"peaks": _listed(np.array(found))}
+    return _listed(np.array(found))
 
 
 def _signals(trace: Trace) -> Array:
@@ -180,4 +190,8 @@ def _known(value: float) -> float | None:
 
 
 def _listed(values: Array) -> list[float | None]:
-    return [float(f"{value:.12g}") if math.isfinite(value) else None for value in values]
+    return [value if math.isfinite(value) else None for value in _rounded(values)]
+
+
+def _rounded(values: Array) -> list[float]:
+    return [float(f"{value:.12g}") for value in values]

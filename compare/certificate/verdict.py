@@ -13,10 +13,11 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Literal, NotRequired, TypedDict
 
 import numpy as np
 
@@ -24,6 +25,51 @@ SAME, CHAOTIC, CHANGED = "same", "chaotic", "changed"
 KIND = "rockwobble certificate"
 # Kolmogorov-Smirnov distance of two samples that chance exceeds once in a hundred times, over sqrt(1/n + 1/m)
 _ONE_PERCENT = 1.63
+
+
+class Sample(TypedDict):
+    """What one case gives: None stands for what is not known."""
+
+    name: str
+    claim: str
+    term: str
+    support: str
+    outcome: str
+    uplift_time: float | None
+    uplift_direction: float | None
+    peak_tilt: float | None
+    time: list[float]
+    signals: dict[str, list[float | None]]
+    peaks: NotRequired[list[float | None]]
+
+
+class Entry(Sample):
+    """The same with what a comparison may leave: until when, how closely a number repeats, by signal."""
+
+    agreement_time: float | None
+    repeats: float
+    allowed: dict[str, list[float]]
+
+
+class Described(TypedDict):
+    """A method."""
+
+    engine: str | None
+    time_step: float | Literal["auto", "extrapolated"] | None
+    settings: dict[str, float | int | str | bool | None]
+
+
+class Certificate(TypedDict):
+    """What a certificate holds."""
+
+    kind: str
+    format: int
+    method: Described
+    versions: dict[str, str]
+    commit: str
+    claims: list[dict[str, object]]
+    not_covered: list[str]
+    fingerprint: list[Entry]
 
 
 @dataclass(frozen=True)
@@ -70,7 +116,7 @@ class Answer:
         )
 
 
-def compare(old: Iterable[Mapping[str, Any]], new: Iterable[Mapping[str, Any]]) -> Answer:
+def compare(old: Iterable[Entry], new: Iterable[Sample]) -> Answer:
     """Return the answer for two fingerprints; the entries of `new` are taken only up to the first change."""
     answer = Answer(SAME)
     for one, other in zip(old, new, strict=True):
@@ -82,35 +128,26 @@ def compare(old: Iterable[Mapping[str, Any]], new: Iterable[Mapping[str, Any]]) 
     return answer
 
 
-def compare_entries(old: Mapping[str, Any], new: Mapping[str, Any]) -> Answer:
+def compare_entries(old: Entry, new: Sample) -> Answer:
     """Return the answer for one case."""
-    about = {"case": old["name"], "claim": old["claim"], "term": old["term"]}
+    decided = partial(Answer, case=old["name"], claim=old["claim"], term=old["term"])
     end = math.inf if old["agreement_time"] is None else old["agreement_time"]
     if old["name"] != new["name"]:
-        return Answer(CHANGED, quantity="the case itself", **about)
+        return decided(CHANGED, quantity="the case itself")
     for name in ("uplift_time", "uplift_direction"):
         apart = _apart(old[name], new[name])
         if apart > 10.0 * old["repeats"]:
-            return Answer(
-                CHANGED,
-                quantity=name,
-                difference=apart,
-                allowed=10.0 * old["repeats"],
-                time=math.nan,
-                **about,
-            )
+            return decided(CHANGED, quantity=name, difference=apart, allowed=10.0 * old["repeats"])
     first = _first_difference(old, new)
     if first is not None and first[1] < end:
-        return Answer(
-            CHANGED, quantity=first[0], time=first[1], difference=first[2], allowed=first[3], **about
-        )
+        return decided(CHANGED, quantity=first[0], time=first[1], difference=first[2], allowed=first[3])
     apart = _apart(old["peak_tilt"], new["peak_tilt"])
     if end == math.inf:
         allowed = 10.0 * max(old["allowed"]["tilt"])
         if old["outcome"] != new["outcome"]:
-            return Answer(CHANGED, quantity=f"outcome {old['outcome']}, now {new['outcome']}", **about)
+            return decided(CHANGED, quantity=f"outcome {old['outcome']}, now {new['outcome']}")
         if apart > allowed:
-            return Answer(CHANGED, quantity="peak_tilt", difference=apart, allowed=allowed, **about)
+            return decided(CHANGED, quantity="peak_tilt", difference=apart, allowed=allowed)
         return Answer(SAME)
     if first is None and old["outcome"] == new["outcome"]:
         return Answer(SAME)
@@ -118,19 +155,15 @@ def compare_entries(old: Mapping[str, Any], new: Mapping[str, Any]) -> Answer:
         np.array([p for p in one.get("peaks", ()) if p is not None]) for one in (old, new)
     )
     if not len(new_peaks):
-        return Answer(CHANGED, quantity="agreement time, which no longer ends", **about)
+        return decided(CHANGED, quantity="agreement time, which no longer ends")
     gap = largest_gap(old_peaks, new_peaks)
     most = _ONE_PERCENT * math.sqrt(1.0 / len(old_peaks) + 1.0 / len(new_peaks))
     time = first[1] if first else math.nan
     word = CHAOTIC if gap <= most else CHANGED
-    return Answer(
-        word, quantity="distribution of the peaks", difference=gap, allowed=most, time=time, **about
-    )
+    return decided(word, quantity="distribution of the peaks", difference=gap, allowed=most, time=time)
 
 
-def _first_difference(
-    old: Mapping[str, Any], new: Mapping[str, Any]
-) -> tuple[str, float, float, float] | None:
+def _first_difference(old: Entry, new: Sample) -> tuple[str, float, float, float] | None:
     """Return signal, time, difference and what is allowed where the first sample differs."""
     found = []
     for name, wanted in old["signals"].items():
@@ -164,7 +197,7 @@ def largest_gap(first: np.ndarray, second: np.ndarray) -> float:
     return float(np.max(np.abs(below[0] - below[1])))
 
 
-def read(path: Path) -> dict[str, Any]:
+def read(path: Path) -> Certificate:
     """Return what a certificate says.
 
     Raises
@@ -173,7 +206,7 @@ def read(path: Path) -> dict[str, Any]:
         If it is no certificate.
     """
     try:
-        found = json.loads(path.read_text(encoding="utf-8"))
+        found: Certificate = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
         raise ValueError(f"{path} cannot be read: {error}") from None
     if not isinstance(found, dict) or found.get("kind") != KIND:

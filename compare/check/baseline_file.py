@@ -11,7 +11,6 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
 from pathlib import Path
-from typing import Any
 
 Values = Mapping[str, float]
 
@@ -29,7 +28,7 @@ class Baseline:
     """
 
     values: Mapping[str, Values]
-    reasons: tuple[Mapping[str, Any], ...] = ()
+    reasons: tuple[Mapping[str, object], ...] = ()
 
 
 def folder() -> Path:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+
+import pandas as pd
 
 from rockwobble.models import Case, Run, Suite, Trace
 
@@ -17,12 +18,10 @@ from ..storage.provenance import package_versions
 from ..traces.trajectory import External, read_trajectories
 from .case_budgets import case_budgets
 from .error_budget import ErrorBudget
+from .external.verdict import Row
 from .prediction import Simulate, estimated_error, measured_error, predict
 from .result import KIND, Comparison
 from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 def compare(
@@ -170,7 +169,7 @@ def _row(
     budget: ErrorBudget | None,
     copy_of: Simulate,
     until: float | None,
-) -> dict[str, Any]:
+) -> Row:
     reference, own, trial = (found[case.name, each] for each in (name, str(own_model(run)), label))
     if not len(trial.time) or not len(reference.time):
         return lost_row(case, name, reference, label, trial)
@@ -198,7 +197,5 @@ def _row(
     )
 
 
-def _table(rows: list[dict[str, Any]]) -> pd.DataFrame:
-    import pandas as pd
-
+def _table(rows: list[Row]) -> pd.DataFrame:
     return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS)).astype({"diverged": bool, "agreed_passes": int})

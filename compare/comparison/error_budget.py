@@ -15,18 +15,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, Trace
+from rockwobble.models.shown import Brief
 from rockwobble.multibody.time_step.extrapolated import to_zero_step
 
 from ..metrics.agreement import Agreement
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -51,8 +49,8 @@ BUDGET_COLUMNS = (
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Limit:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Limit(Brief):
     """An engine extrapolated in its time step.
 
     Parameters
@@ -76,8 +74,8 @@ class Limit:
     order: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class ErrorBudget:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ErrorBudget(Brief):
     """Signed parts of a tilt difference, in units of alpha.
 
     Parameters
@@ -124,8 +122,6 @@ class ErrorBudget:
 
     def to_frame(self) -> pd.DataFrame:
         """Return the samples as a table, in units of alpha."""
-        import pandas as pd
-
         names = ("time", "whole", "model_form", "numerics", "unexplained", "limit_error")
         return pd.DataFrame({name: getattr(self, name) for name in names})
 
@@ -231,7 +227,7 @@ def common_count(times: Sequence[Array]) -> int:
     return int(different[0]) if len(different) else count
 
 
-def findings(summary: Any) -> Any:
+def findings(summary: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of a summary in which too much stays unexplained, the worst first.
 
     Rows whose whole difference is below 1e-4 alpha are not worth it.

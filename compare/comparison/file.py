@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, TypedDict
+from typing import TypedDict
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.traces.trace_file import case_from_plain, case_to_plain
 
 from ..storage.manifest import Results
 from .error_budget import ErrorBudget, Limit
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 ABOUT = "comparison.json"
 _SEPARATOR = "\n"  # in no name of a case or a run: these are single lines
@@ -33,13 +31,33 @@ class ComparisonFields(TypedDict):
     budgets: Mapping[BudgetKey, ErrorBudget]
 
 
+class _Motion(TypedDict):
+    """A ground motion without its samples, which stand in a table."""
+
+    name: str
+    time_step: float
+    components: str
+
+
+class _StoredCase(TypedDict):
+    """What `case_to_plain` gives, but for the motion."""
+
+    motion: _Motion | None
+
+
+class _StoredBudget(TypedDict):
+    covered: float
+    steps: list[float]
+    order: float
+
+
 def plain_fields(
     cases: Mapping[str, Case],
     traces: Mapping[Key, Trace],
     versions: Mapping[str, str],
     until: float | None,
     budgets: Mapping[BudgetKey, ErrorBudget],
-) -> dict[str, Any]:
+) -> dict[str, object]:
     """Return what the tables of a comparison do not hold, for JSON."""
     return {
         "versions": versions,
@@ -57,8 +75,7 @@ def plain_fields(
     }
 
 
-def _header(case: Case) -> dict[str, Any] | None:
-    """A motion without its samples, which stand in a table."""
+def _header(case: Case) -> _Motion | None:
     motion = case.motion
     if motion is None:
         return None
@@ -68,8 +85,6 @@ def _header(case: Case) -> dict[str, Any] | None:
 
 def load_fields(stored: Results) -> ComparisonFields:
     """Return what the stored comparison is made of; see `Comparison.load`."""
-    import pandas as pd
-
     try:
         rest = plain_json.loads(stored.content(ABOUT))
         excitation = dict(iter(stored.table("excitation").groupby("case", sort=False)))
@@ -89,20 +104,19 @@ def load_fields(stored: Results) -> ComparisonFields:
         raise ValueError(f"{stored.folder} holds a comparison that cannot be read: {why}") from None
 
 
-def _case(given: Mapping[str, Any], excitation: pd.DataFrame | None) -> Case:
-    motion = given["motion"]
-    if motion is not None:
-        assert excitation is not None
-        columns = [f"acceleration_{axis}" for axis in motion["components"]]
-        motion = {
-            "acceleration": excitation[columns].to_numpy(),
-            "time_step": motion["time_step"],
-            "name": motion["name"],
-        }
+def _case(given: _StoredCase, excitation: pd.DataFrame | None) -> Case:
+    header = given["motion"]
+    if header is None:
+        return case_from_plain(given)
+    assert excitation is not None
+    samples = excitation[[f"acceleration_{axis}" for axis in header["components"]]].to_numpy()
+    motion = {"acceleration": samples, "time_step": header["time_step"], "name": header["name"]}
     return case_from_plain({**given, "motion": motion})
 
 
-def _traces(given: Mapping[str, Any], samples: pd.DataFrame, cases: Mapping[str, Case]) -> dict[Key, Trace]:
+def _traces(
+    given: Mapping[str, Mapping[str, object]], samples: pd.DataFrame, cases: Mapping[str, Case]
+) -> dict[Key, Trace]:
     tables = dict(iter(samples.groupby(["case", "run"], sort=False)))
     none = samples.iloc[:0]  # of a run whose process died
     traces = {}
@@ -113,9 +127,7 @@ def _traces(given: Mapping[str, Any], samples: pd.DataFrame, cases: Mapping[str,
 
 
 def _budgets(
-    given: Mapping[str, Any],
-    samples: pd.DataFrame,
-    traces: Mapping[Key, Trace],
+    given: Mapping[str, _StoredBudget], samples: pd.DataFrame, traces: Mapping[Key, Trace]
 ) -> dict[BudgetKey, ErrorBudget]:
     """Return the budgets; the limit of each covers what the budget does, and no more."""
     budgets = {}

@@ -19,7 +19,6 @@ import dataclasses
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -162,7 +161,7 @@ def landings(response: Trace) -> FloatArray:
     return np.asarray(response.time)[1:][np.abs(turned - np.pi) < _HALF_A_TURN]
 
 
-def early_rms(case: Case, time: Any, difference: Any, start: float) -> float:
+def early_rms(case: Case, time: FloatArray, difference: FloatArray, start: float) -> float:
     """Return the RMS of a difference in the first second after `start`, scaled with the cylinder's time."""
     first = (time >= start) & (time <= start + FIRST_STRETCH * time_scale(case))
     return float(np.sqrt(np.mean(np.square(difference[first])))) if first.any() else 0.0

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import ClassVar
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
+from rockwobble.models.shown import Shown
 
 from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Manifest, made_now, read_results, write_results
@@ -19,14 +20,11 @@ from .error_budget import ErrorBudget
 from .file import ABOUT, load_fields, plain_fields
 from .matrix import agreement_matrix
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 KIND = "comparison"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Comparison:
+class Comparison(Shown):
     """Runs held against reference models, or against one another.
 
     Parameters
@@ -48,6 +46,7 @@ class Comparison:
         That asked for what was loaded.
     """
 
+    _figures: ClassVar[str] = "comparison.tilt"
     summary: pd.DataFrame
     cases: Mapping[str, Case]
     traces: Mapping[tuple[str, str], Trace]
@@ -136,23 +135,15 @@ class Comparison:
         }
         return tables | ({"budget": self._budget()} if self.budgets else {})
 
-    def plot(self, case: str | None = None) -> Any:
-        """Return a matplotlib figure of one case, the first by default, drawn by `rockwobble.reports`."""
-        # by name: a result does not depend on who draws it
-        picture = importlib.import_module("rockwobble.reports.figures.comparison.tilt")
-        return picture.draw(self, next(iter(self.cases)) if case is None else case)
-
-    def __repr__(self) -> str:
+    def _said(self) -> dict[str, str]:
         diverged = int(self.summary["diverged"].sum())
-        return f"Comparison({len(self.cases)} cases, {len(self.summary)} rows, {diverged} diverged)"
+        return {"cases": str(len(self.cases)), "rows": str(len(self.summary)), "diverged": str(diverged)}
 
     def _repr_html_(self) -> str:
         names = ["case", "run", "reference", "outcome", "peak_tilt", "tilt_rms_relative", "agreement_time"]
         return str(self.summary[[*names, "diverged", "diagnostics"]].to_html(index=False))
 
     def _stacked(self) -> pd.DataFrame:
-        import pandas as pd
-
         tables = []
         for (case, label), trace in self.traces.items():
             if not len(trace.time):  # its process died
@@ -165,8 +156,6 @@ class Comparison:
         return whole
 
     def _budget(self) -> pd.DataFrame:
-        import pandas as pd
-
         tables = []
         for key, budget in self.budgets.items():
             table = budget.to_frame()
@@ -177,8 +166,6 @@ class Comparison:
         return whole
 
     def _passes(self) -> pd.DataFrame:
-        import pandas as pd
-
         tables = [
             trace.passes.assign(case=case, run=label)
             for (case, label), trace in self.traces.items()
@@ -188,8 +175,6 @@ class Comparison:
         return passes.set_index(["case", "run"]).reset_index()
 
     def _excitation(self) -> pd.DataFrame:
-        import pandas as pd
-
         tables = []
         for name, case in self.cases.items():
             if case.motion is None:
@@ -201,7 +186,7 @@ class Comparison:
         return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame({"case": [], "time": []})
 
 
-def describe_case(case: Case) -> dict[str, Any]:
+def describe_case(case: Case) -> dict[str, object]:
     """Return the numbers that state a case, for a file or a page; SI units and radians."""
     cylinder, motion, initial = case.cylinder, case.motion, case.initial
     return {
@@ -238,7 +223,7 @@ def _number(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
 
 
-def _inputs(case: Case) -> dict[str, Any]:
+def _inputs(case: Case) -> dict[str, object]:
     """What a case depends on, without the names of it and its motion."""
     motion = case.motion
     return {

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from types import MappingProxyType
-from typing import Any
 
 from rockwobble.models import Case, Trace
 
@@ -18,7 +17,7 @@ from ..traces.pair import make_pair
 from ..traces.trajectory import measurement
 from .error_budget import BUDGET_COLUMNS, ErrorBudget
 from .external.difference import allowance as noise_allowance
-from .external.verdict import VERDICT_COLUMNS, judge, no_verdict
+from .external.verdict import VERDICT_COLUMNS, Row, judge, no_verdict
 from .prediction import Prediction, close_pass, verdict
 
 REDUCED = "reduced"  # the engine of a reduced model, in tables
@@ -90,7 +89,7 @@ def summary_row(
     budget: ErrorBudget | None = None,
     until: float | None = None,
     allowance: float = 0.0,
-) -> dict[str, Any]:
+) -> Row:
     """Return all columns of the summary for one run and one reference.
 
     Parameters
@@ -157,7 +156,7 @@ def summary_row(
     return row | (dict.fromkeys(BUDGET_COLUMNS, math.nan) if budget is None else budget.columns())
 
 
-def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> dict[str, Any]:
+def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:
     """Who is held against whom, and how both ended."""
     return {
         "case": case.name,
@@ -190,7 +189,7 @@ def external_row(
     trial: Trace,
     *,
     until: float | None = None,
-) -> dict[str, Any]:
+) -> Row:
     """Return the row of an external trajectory: nothing is known of its steps and errors.
 
     Its uplift is compared as its samples show it: see `external.uplift_difference`.
@@ -212,9 +211,9 @@ def external_row(
     return row | verdict.columns()
 
 
-def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> dict[str, Any]:
+def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:
     """Return the row of a run that left no samples: what is not known is NaN."""
-    row: dict[str, Any] = dict.fromkeys(SUMMARY_COLUMNS, math.nan)
+    row: Row = dict.fromkeys(SUMMARY_COLUMNS, math.nan)
     row |= {
         **_methods(case, name, reference, label, trial),
         "reference_peak_tilt": reference.peak_tilt / case.cylinder.alpha,

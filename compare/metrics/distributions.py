@@ -12,6 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import betaincinv, ndtri
+from scipy.stats import binomtest, rankdata
 
 from .order_statistics import CONFIDENCE, Interval, end_index, quantile_interval
 
@@ -143,8 +145,6 @@ def signed_rank_p(logarithms: Array) -> float:
     Exact for every number of members, and for ties as those of infinite ratios, which share a mean rank:
     scipy takes a normal distribution there, or tries all signs one by one.
     """
-    from scipy.stats import rankdata
-
     differs = logarithms[logarithms != 0.0]
     ranks = np.rint(2.0 * rankdata(np.abs(differs))).astype(int)  # mean ranks are whole or a half
     # how often each sum of the ranks of the larger ones comes about where every sign is a coin
@@ -158,8 +158,6 @@ def signed_rank_p(logarithms: Array) -> float:
 
 def mcnemar_p(only: int, only_there: int) -> float:
     """Return the exact probability of so unequal counts of members that overturn by one method alone."""
-    from scipy.stats import binomtest
-
     return float(binomtest(only, only + only_there).pvalue) if only + only_there else 1.0
 
 
@@ -207,8 +205,6 @@ def ratio_within_reach(logarithms: Array) -> float:
     logarithms : ndarray, shape (n,)
         Of the ratios, see `log_ratios`, without those that have none.
     """
-    from scipy.special import betaincinv
-
     count = len(logarithms)
     index = end_index(count, 0.5, 0.5 * (1.0 - CONFIDENCE)) if count else None
     middle = quantile_interval(logarithms, 0.5).value
@@ -238,6 +234,4 @@ def _ratio(logarithms: Array, share: float) -> Interval:
 
 
 def _normal(share: float) -> float:
-    from scipy.special import ndtri
-
     return float(ndtri(share))

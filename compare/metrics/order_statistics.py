@@ -18,6 +18,8 @@ from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.optimize import brentq
+from scipy.special import betainc, betaincinv
 
 Array = NDArray[np.float64]
 
@@ -96,8 +98,6 @@ def share_interval(count: int, total: int) -> Interval:
     >>> found.value, found.low, round(found.high, 3)
     (0.0, 0.0, 0.154)
     """
-    from scipy.special import betaincinv
-
     left_out = 0.5 * (1.0 - CONFIDENCE)
     return Interval(
         value=count / total if total else math.nan,
@@ -112,8 +112,6 @@ def end_index(count: int, share: float, left_out: float) -> float | None:
 
     None where even the smallest value is so with more than the probability `left_out`.
     """
-    from scipy.optimize import brentq
-    from scipy.special import betainc
 
     def excess(index: float) -> float:
         return float(betainc(index, count + 1 - index, share)) - (1.0 - left_out)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 from rockwobble.models import Case, InitialState, Run
 from rockwobble.multibody import BrokenEngineError, available_engines
@@ -78,7 +77,7 @@ def require_runnable(case: Case, run: Run) -> None:
     resolved_settings(case, run.engine, run.support, settings, step)
 
 
-def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, Any]) -> tuple[Run, ...]:
+def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, object]) -> tuple[Run, ...]:
     """Return the runs with more settings, each where the run has one of that name.
 
     Raises

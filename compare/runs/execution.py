@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,6 +13,7 @@ from typing import Any
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
+from rockwobble.models.shown import Brief
 from rockwobble.models.traces.lost_trace import lost_trace
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
@@ -31,8 +32,8 @@ SAMPLE_STEP = 0.01
 _EQUAL_STEPS: dict[str | None, float] = {"auto": 2.5e-5, "extrapolated": FINEST / 1.75}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Job:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Job(Brief):
     """One run of one case.
 
     Parameters
@@ -191,7 +192,9 @@ def open_trace_cache(
 
     def unpacked(job: Job, content: bytes) -> Trace:
         table, about = read(content)
-        return dataclasses.replace(Trace.from_plain(about["trace"], table, job.case), run=job.run)
+        facts = about["trace"]
+        assert isinstance(facts, Mapping)
+        return dataclasses.replace(Trace.from_plain(facts, table, job.case), run=job.run)
 
     return open_cache(folder, kind, name=job_fingerprint, pack=packed, unpack=unpacked)
 

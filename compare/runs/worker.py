@@ -17,8 +17,10 @@ import tempfile
 import threading
 import traceback
 from collections.abc import Callable
-from typing import Any, BinaryIO
+from typing import BinaryIO, TypeVar
 
+T = TypeVar("T")
+Call = tuple[Callable[..., object], tuple[object, ...]]
 _SERVE = "from rockwobble.compare.runs.worker import serve; serve()"
 
 
@@ -45,7 +47,7 @@ class Worker:
             start_new_session=True,  # Ctrl-C reaches the caller, and the caller ends this one
         )
 
-    def call(self, function: Callable[..., Any], *arguments: Any) -> Any:
+    def call(self, function: Callable[..., T], *arguments: object) -> T:
         """Return or raise what the function does there.
 
         Raises
@@ -68,7 +70,8 @@ class Worker:
             raise WorkerDiedError(f"the process ended with status {status}" + last) from None
         if not succeeded:
             raise value
-        return value
+        result: T = value
+        return result
 
     def kill(self) -> None:
         """End the process at once, whatever it does; a call under way fails."""
@@ -95,7 +98,7 @@ def serve() -> None:
     """Answer calls from the standard input until it closes; the body of the process."""
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what an engine prints must not mix with the answers
-    calls: queue.SimpleQueue[tuple[Callable[..., Any], tuple[Any, ...]]] = queue.SimpleQueue()
+    calls: queue.SimpleQueue[Call] = queue.SimpleQueue()
     threading.Thread(target=_listen, args=(sys.stdin.buffer, calls), daemon=True).start()
     while True:
         function, arguments = calls.get()
@@ -116,7 +119,7 @@ def _failure(error: Exception) -> bytes:
     return answer
 
 
-def _listen(stdin: BinaryIO, calls: queue.SimpleQueue[Any]) -> None:
+def _listen(stdin: BinaryIO, calls: queue.SimpleQueue[Call]) -> None:
     """Pass calls on, and end the process when the caller is gone, even in the middle of a call."""
     try:
         while True:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import Protocol
 
 import numpy as np
 
@@ -17,7 +17,7 @@ class _Hash(Protocol):
     def update(self, data: bytes, /) -> None: ...
 
 
-def fingerprint(value: Any) -> str:
+def fingerprint(value: object) -> str:
     """Return the hash of a value: numbers by their bits, containers and dataclasses by what they hold.
 
     Parameters
@@ -47,7 +47,7 @@ def fingerprint(value: Any) -> str:
     return digest.hexdigest()[:_DIGITS]
 
 
-def _feed(digest: _Hash, value: Any) -> None:
+def _feed(digest: _Hash, value: object) -> None:
     """Feed a value with its kind and length in front, so that no two values feed the same bytes."""
     if isinstance(value, np.generic):
         value = value.item()

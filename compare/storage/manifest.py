@@ -79,7 +79,7 @@ def made_now(
     command: str = "",
     seeds: Mapping[str, int] | None = None,
     headline: Mapping[str, float | int | str | None] | None = None,
-    about: Mapping[str, Any] | None = None,
+    about: Mapping[str, object] | None = None,
     versions: Mapping[str, str] | None = None,
 ) -> Manifest:
     """Return the manifest of what has just been computed here; `write_results` adds the files."""

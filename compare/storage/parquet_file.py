@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from rockwobble.models import plain_json
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 METADATA = b"rockwobble"
 
 
-def pack(table: pd.DataFrame | Mapping[str, Any], about: Mapping[str, Any]) -> bytes:
+def pack(table: pd.DataFrame | Mapping[str, object], about: Mapping[str, object]) -> bytes:
     """Return a table, or columns by name, as the bytes of a Parquet file with `about` in its metadata."""
     import pyarrow as pa
     import pyarrow.parquet as pq
@@ -31,7 +31,7 @@ def pack(table: pd.DataFrame | Mapping[str, Any], about: Mapping[str, Any]) -> b
     return buffer.getvalue()
 
 
-def read(content: bytes) -> tuple[pd.DataFrame, dict[str, Any]]:
+def read(content: bytes) -> tuple[pd.DataFrame, dict[str, object]]:
     """Return the table of a file that `pack` made, and what it says of itself.
 
     Raises
@@ -45,10 +45,10 @@ def read(content: bytes) -> tuple[pd.DataFrame, dict[str, Any]]:
     return table.to_pandas(), read_about(content)
 
 
-def read_about(source: bytes | Path) -> dict[str, Any]:
+def read_about(source: bytes | Path) -> dict[str, object]:
     """Return what a Parquet file says of itself; nothing where rockwobble did not write it."""
     import pyarrow.parquet as pq
 
     metadata = pq.read_schema(io.BytesIO(source) if isinstance(source, bytes) else source).metadata or {}
-    found: dict[str, Any] = plain_json.loads(metadata.get(METADATA, b"{}"))
+    found: dict[str, object] = plain_json.loads(metadata.get(METADATA, b"{}"))
     return found

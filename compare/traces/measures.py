@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Cylinder
 from rockwobble.multibody.recording.passes import passes_between, turning_points
@@ -13,9 +13,6 @@ from rockwobble.multibody.recording.passes import passes_between, turning_points
 from ..runs.execution import SAMPLE_STEP
 from .file import Array
 from .pose import SAME_TIME, Poses
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 def sample_times(end: float) -> Array:
@@ -62,8 +59,6 @@ def peak(poses: Poses) -> float:
 
 def passes(poses: Poses, start: float, stands: float) -> pd.DataFrame:
     """Tilt minima between two maxima; one next to a guessed change of azimuth is not resolved."""
-    import pandas as pd
-
     points = turning_points(poses.time, poses.tilt, poses.rolling_angle)
     found = passes_between([point for point in points if point.time >= start], stands)
     guesses = poses.time[~poses.followed]

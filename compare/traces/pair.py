@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, Trace
+from rockwobble.models.shown import Brief
 
 FloatArray = NDArray[np.float64]
 
@@ -16,8 +17,8 @@ FloatArray = NDArray[np.float64]
 _SAME_TIME = 1e-9
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Pair:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Pair(Brief):
     """A trial held against a reference, sample by sample.
 
     The samples are those of the reference, up to the earliest of: the end of either trace, the

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from rockwobble.models import Case, Diagnostic, Run, Trace
+from rockwobble.models.shown import Brief
 
 from .file import Array, Columns, read_columns
 from .measures import passes, peak, places, resampled, sample_times
@@ -60,8 +61,8 @@ class External:
             raise ValueError(f"noise must be above 0 and below pi/2 [rad], got {self.noise!r}")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Measurement:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Measurement(Brief):
     """What a file of an external trajectory told: the source of its trace.
 
     The trace is at the sample times of the reduced models. What the file does not tell is NaN: energy,

@@ -2,20 +2,19 @@
 
 from __future__ import annotations
 
-import html
-import importlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 from ..assumptions import Assumptions
 from ..case import Case, Run
 from ..diagnostic import Diagnostic
+from ..shown import Shown
 from . import trace_file
 from .trace_source import Array, Late, Source, friction_of, no_passes
 
@@ -24,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Trace:
+class Trace(Shown):
     """Motion of one cylinder at n samples; positions are relative to O, which moves with the ground.
 
     What a source does not know is NaN.
@@ -94,6 +93,7 @@ class Trace:
         [s]; NaN unless the step was sought.
     """
 
+    _figures: ClassVar[str] = "trace"
     case: Case
     run: Run
     version: str
@@ -195,11 +195,6 @@ class Trace:
             }
         )
 
-    def plot(self) -> Any:
-        """Return a matplotlib figure of tilt and contact point, drawn by `rockwobble.reports`."""
-        # by name: a motion does not depend on who draws it
-        return importlib.import_module("rockwobble.reports.figures.trace").draw(self)
-
     def to_plain(self) -> dict[str, Any]:
         """Return all of it but its case and samples, for JSON."""
         numbers = {name: getattr(self, name) for name in trace_file.NUMBERS}
@@ -250,16 +245,11 @@ class Trace:
             found["diagnostics"] = ", ".join(fact.code for fact in self.facts)
         return found
 
+    _said = summary
+
     def __repr__(self) -> str:
         said = [f"{name} {value}" for name, value in self.summary().items() if name not in ("case", "run")]
         return f"Trace({self.run}: {', '.join(said)})"
-
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><th>{html.escape(name)}</th><td>{html.escape(value)}</td></tr>"
-            for name, value in self.summary().items()
-        )
-        return f"<table>{rows}</table>"
 
     @cached_property
     def late(self) -> Mapping[str, Array]:

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
-from ..console.terminal import FAILED, complain, interruptible, user_input
-from .inputs import options
-from .inputs.problem import Problem, given_options, states_problem
+import rockwobble as rw
 
-if TYPE_CHECKING:
-    from rockwobble.models import Case, Run
+from ..console.progress import shown_progress
+from ..console.provenance import command_line
+from ..console.results import show_and_write
+from ..console.terminal import FAILED, complain, interruptible, user_input
+from ..pages.words.cases import describe
+from .inputs import options
+from .inputs.estimate import require_feasible
+from .inputs.problem import Problem, given_options, states_problem
 
 _NO_ENGINE = "none"
 
@@ -61,30 +65,20 @@ def advise(
     Writes advice.html, one page that needs nothing else, the same as advice.md with advice.svg, and
     the runs as Parquet.
     """
-    from ..pages.case_words import describe
-
     with interruptible():
         with user_input():
-            from rockwobble.compare import require_writable
-            from rockwobble.models import Run
-
-            from .inputs.estimate import require_feasible
-
             case = problem.case()
             friction = case.friction if "friction" in given_options(context) else None
             run = _run(case, engine, support, time_step)
-            require_feasible([case], [Run(None, "recess"), *([] if run is None else [run])])
+            require_feasible([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
             _require_numbers(copies, seed)
-            require_writable(out)
+            rw.compare.require_writable(out)
         from rockwobble.compare.runs.execution import Job, job_fingerprint
         from rockwobble.compare.storage.fingerprint import fingerprint
         from rockwobble.compare.storage.manifest import made_now
         from rockwobble.compare.studies.advice import advise as ask
         from rockwobble.compare.studies.advice.advice import KIND
 
-        from ..console.progress import shown_progress
-        from ..console.provenance import command_line
-        from ..console.results import show_and_write
         from ..pages.advice import advice_page
 
         with shown_progress("stages") as tell:
@@ -116,22 +110,20 @@ def advise(
         raise typer.Exit(FAILED)
 
 
-def _run(case: Case, engine: str | None, support: str, time_step: float | None) -> Run | None:
-    from rockwobble.compare import installed_engines, require_runnable
+def _run(case: rw.Case, engine: str | None, support: str, time_step: float | None) -> rw.Run | None:
     from rockwobble.compare.studies.advice.drive import SUPPORTS
-    from rockwobble.models import Run
 
     if engine == _NO_ENGINE and time_step is not None:
         raise ValueError("--time-step belongs to an engine, got it with --engine none")
-    missing = engine is None and "mujoco" not in installed_engines()
+    missing = engine is None and "mujoco" not in rw.compare.installed_engines()
     if missing:
         complain("mujoco is not installed here: the prediction stays unverified")
     if missing or engine == _NO_ENGINE:
         if support not in SUPPORTS:
             raise ValueError(f"--support must be one of {', '.join(SUPPORTS)}, got {support!r}")
         return None
-    run = Run(engine or "mujoco", support, time_step)
-    require_runnable(case, run)
+    run = rw.Run(engine or "mujoco", support, time_step)
+    rw.compare.require_runnable(case, run)
     return run
 
 

@@ -5,20 +5,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
+import rockwobble as rw
+
+from ..console.progress import shown_progress
 from ..console.provenance import command_line
 from ..console.terminal import FAILED, complain, interruptible, user_input
+from ..pages.words.cases import describe
 from .inputs import options
+from .inputs.estimate import require_feasible, time_needed
 from .inputs.method_values import settings
 from .inputs.problem import Problem, states_problem
 from .inputs.suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
-
-if TYPE_CHECKING:
-    from rockwobble.compare import External
-    from rockwobble.models import Case, Run
 
 ALL = "all"  # in place of the name of an engine
 
@@ -57,12 +58,7 @@ def compare(
     kept = f"the finished runs are kept in {out}, the same command goes on"
     with interruptible(kept if suite else "nothing was written"):
         with user_input():
-            from rockwobble.compare import compare as held_against_models
-            from rockwobble.compare import require_runnable, require_writable, with_settings
             from rockwobble.compare.runs.choice import unable_engines
-            from rockwobble.models import Suite
-
-            from .inputs.estimate import require_feasible
 
             if suite is not None:
                 refuse_problem_options(context, suite)
@@ -71,12 +67,12 @@ def compare(
                 cases = [problem.case()]
                 runs = _runs(cases[0], engine, support, time_step, alone=bool(trajectory))
             if setting:
-                runs = list(with_settings(cases[0], runs, settings(setting)))
-            require_writable(out)
+                runs = list(rw.compare.with_settings(cases[0], runs, settings(setting)))
+            rw.compare.require_writable(out)
             require_feasible(cases, runs)
             for each in cases:
                 for run in runs:
-                    require_runnable(each, run)
+                    rw.compare.require_runnable(each, run)
             external = _external(
                 trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
             )
@@ -87,11 +83,9 @@ def compare(
                 complain(reason)
         elif not engine and suite is None:
             _say_what_is_left_out(support or [])
-        from ..console.progress import shown_progress
-
         with user_input(), shown_progress() as tell:
-            comparison = held_against_models(
-                Suite(cases, runs),
+            comparison = rw.compare.compare(
+                rw.Suite(cases, runs),
                 runs=runs,
                 progress=tell,
                 external=external,
@@ -111,15 +105,14 @@ def compare(
 
 def _suite(
     name: str, engines: list[str] | None, supports: list[str] | None, time_step: Any
-) -> tuple[list[Case], list[Run]]:
+) -> tuple[list[rw.Case], list[rw.Run]]:
     from rockwobble.compare.runs.choice import all_runs
-    from rockwobble.models import Run, read_suite
 
-    suite = read_suite(name)
+    suite = rw.read_suite(name)
     if engines == [ALL]:
         asked = supports or list(dict.fromkeys(run.support for run in suite.runs)) or None
         return list(suite.cases), [
-            Run(run.engine, run.support, time_step) for run in all_runs(suite.cases, asked)
+            rw.Run(run.engine, run.support, time_step) for run in all_runs(suite.cases, asked)
         ]
     runs, missing = without_missing(chosen_runs(suite, engines, supports, time_step), engines)
     for engine in missing:
@@ -128,23 +121,22 @@ def _suite(
 
 
 def _runs(
-    case: Case, engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool
-) -> list[Run]:
-    from rockwobble.compare import default_runs
+    case: rw.Case, engines: list[str] | None, supports: list[str] | None, time_step: Any, *, alone: bool
+) -> list[rw.Run]:
     from rockwobble.compare.runs.choice import all_runs
-    from rockwobble.models import Run
 
     if engines == ["none"] and alone:
         return []
     every = engines == [ALL]
-    runs = all_runs([case], supports or None) if every else default_runs(engines or None, supports or None)
-    return [Run(run.engine, run.support, time_step) for run in runs]
+    runs = (
+        all_runs([case], supports or None)
+        if every
+        else rw.compare.default_runs(engines or None, supports or None)
+    )
+    return [rw.Run(run.engine, run.support, time_step) for run in runs]
 
 
-def _echo(suite: str | None, cases: Sequence[Case], runs: Sequence[Run]) -> list[str]:
-    from ..pages.case_words import describe
-    from .inputs.estimate import time_needed
-
+def _echo(suite: str | None, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> list[str]:
     if suite is not None:
         return list(describe_suite(suite, cases, runs))
     return [*describe(cases[0]), *time_needed(cases, runs)]
@@ -152,13 +144,11 @@ def _echo(suite: str | None, cases: Sequence[Case], runs: Sequence[Run]) -> list
 
 def _external(
     paths: list[Path] | None,
-    cases: Sequence[Case],
+    cases: Sequence[rw.Case],
     angles: str | None,
     offset: float,
     noise_deg: float | None,
-) -> list[External]:
-    from rockwobble.compare import External, read_trajectory
-
+) -> list[rw.External]:
     if not paths:
         if angles is not None or offset or noise_deg is not None:
             raise ValueError("--trajectory-angles, -offset and -noise-deg need a --trajectory")
@@ -166,17 +156,16 @@ def _external(
     if len(cases) > 1:
         raise ValueError(f"--trajectory belongs to one case, got a suite of {len(cases)}")
     noise = None if noise_deg is None else math.radians(noise_deg)
-    external = [External(path=path, angle_unit=angles, time_offset=offset, noise=noise) for path in paths]
+    external = [rw.External(path=path, angle_unit=angles, time_offset=offset, noise=noise) for path in paths]
     for each in external:  # whatever is wrong with a file is said before anything runs
-        read_trajectory(each, cases[0])
+        rw.compare.read_trajectory(each, cases[0])
     return external
 
 
 def _say_what_is_left_out(supports: list[str]) -> None:
-    from rockwobble.compare import missing_engines
     from rockwobble.compare.runs.choice import unsupported
 
-    for name in missing_engines():
+    for name in rw.compare.missing_engines():
         complain(f"{name} is not installed here and is left out")
     for reason in unsupported(supports):
         complain(reason)

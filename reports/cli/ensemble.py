@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import dataclasses
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
-from ..console.terminal import interruptible, user_input
-from .inputs import options
-from .inputs.problem import Problem, states_problem
+import rockwobble as rw
 
-if TYPE_CHECKING:
-    from rockwobble.models import Case, GroundMotion, Run, Suite
+from ..console.progress import shown_progress
+from ..console.provenance import command_line
+from ..console.results import show_and_write
+from ..console.terminal import interruptible, user_input
+from ..pages.words.cases import describe
+from .inputs import options
+from .inputs.estimate import require_feasible
+from .inputs.problem import Problem, states_problem
+from .inputs.suite_choice import refuse_problem_options
 
 Members = Annotated[int, typer.Option("--members", help="Number of members, where no suite gives them.")]
 Perturbation = Annotated[
@@ -68,24 +73,17 @@ def ensemble(
     Writes ensemble.html, the same as ensemble.md with ensemble.svg, and members, methods and contrasts as
     Parquet and CSV.
     """
-    from ..pages.case_words import describe
-
     with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
         with user_input():
-            from rockwobble import compare
-            from rockwobble.models import Run
-
-            from .inputs.estimate import require_feasible
-
-            compare.require_writable(out)
-            stated: Case | Suite | list[Case]
+            rw.compare.require_writable(out)
+            stated: rw.Case | rw.Suite | list[rw.Case]
             if suite is not None:
                 stated = _suite(context, suite)
                 print(f"Suite {suite}: {len(stated.cases)} members")
             else:
                 case = problem.case()
                 # each engine and its own model, and a perturbed copy of that
-                methods = [Run(None, "recess"), *(_runs(engine, support, time_step, stated=False) or ())]
+                methods = [rw.Run(None, "recess"), *(_runs(engine, support, time_step, stated=False) or ())]
                 require_feasible([case], methods, members=members, samples=False)
                 motions = _motions(case, members, synthetic, far_field, seed)
                 stated = _under(case, motions) if motions else case
@@ -96,13 +94,10 @@ def ensemble(
         from rockwobble.compare.storage.manifest import made_now
         from rockwobble.compare.studies.ensemble.study import KIND
 
-        from ..console.progress import shown_progress
-        from ..console.provenance import command_line
-        from ..console.results import show_and_write
         from ..pages.ensemble import ensemble_page
 
         with user_input(), shown_progress() as tell:
-            found = compare.ensemble(
+            found = rw.compare.ensemble(
                 stated,
                 runs=runs,
                 size=members,
@@ -114,7 +109,7 @@ def ensemble(
             )
         manifest = made_now(
             KIND,
-            inputs=found.about["inputs"],
+            inputs=str(found.about["inputs"]),
             command=command_line(),
             seeds={"ensemble": seed},
             headline={
@@ -128,54 +123,45 @@ def ensemble(
         show_and_write(out, ensemble_page(found, manifest), manifest, tables, sheets)
 
 
-def _suite(context: typer.Context, name: str) -> Suite:
-    from rockwobble.models import read_suite
-
-    from .inputs.suite_choice import refuse_problem_options
-
+def _suite(context: typer.Context, name: str) -> rw.Suite:
     for option in ("members", "perturbation", "synthetic", "far_field"):
         source = context.get_parameter_source(option)
         if source is not None and source.name == "COMMANDLINE":
             given = {"far_field": "p695"}.get(option, option)
             raise ValueError(f"--{given} does not go with a suite, got {name}: its cases are the members")
     refuse_problem_options(context, name)
-    return read_suite(name)
+    return rw.read_suite(name)
 
 
 def _motions(
-    case: Case, members: int, synthetic: float | None, far_field: float | None, seed: int
-) -> list[GroundMotion]:
+    case: rw.Case, members: int, synthetic: float | None, far_field: float | None, seed: int
+) -> list[rw.GroundMotion]:
     """Return the ground motions that are the members; none where the members are perturbed starts."""
-    from rockwobble.compare import far_field_motions, synthetic_motions
-
     if synthetic is not None and far_field is not None:
         raise ValueError("the members are made-up ground motions or those of FEMA P-695, got both options")
     uplift = case.gravity * case.cylinder.tan_alpha
     if far_field is not None:
-        return far_field_motions(peak=far_field * uplift)
+        return rw.compare.far_field_motions(peak=far_field * uplift)
     if synthetic is not None:
-        return synthetic_motions(members, peak=synthetic * uplift, seed=seed)
+        return rw.compare.synthetic_motions(members, peak=synthetic * uplift, seed=seed)
     return []
 
 
-def _under(case: Case, motions: list[GroundMotion]) -> list[Case]:
+def _under(case: rw.Case, motions: list[rw.GroundMotion]) -> list[rw.Case]:
     """Return the case under each motion, named by that alone: the others are all the same."""
     return [dataclasses.replace(case, name=motion.name, motion=motion) for motion in motions]
 
 
 def _runs(
     engines: list[str] | None, supports: list[str] | None, time_step: Any, *, stated: bool
-) -> list[Run] | None:
+) -> list[rw.Run] | None:
     """Return the runs of the options; None where those of a suite count."""
-    from rockwobble.compare import default_runs
-    from rockwobble.models import Run
-
     if engines == ["none"]:
         return []
     if stated and not (engines or supports or time_step):
         return None
-    chosen = default_runs(engines or None, supports or None)
-    return [Run(run.engine, run.support, time_step) for run in chosen]
+    chosen = rw.compare.default_runs(engines or None, supports or None)
+    return [rw.Run(run.engine, run.support, time_step) for run in chosen]
 
 
 def _source(synthetic: float | None, far_field: float | None, perturbation: float) -> str:

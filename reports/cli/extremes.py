@@ -7,6 +7,11 @@ from typing import Annotated
 
 import typer
 
+from rockwobble.compare.storage.files import require_writable
+
+from ..console.progress import shown_progress
+from ..console.provenance import command_line
+from ..console.results import show_and_write
 from ..console.terminal import FAILED, interruptible, user_input
 from .inputs import options
 
@@ -35,14 +40,9 @@ def extremes(
     """
     with interruptible("what was run so far is kept, and the next call goes on from there"):
         with user_input():
-            from rockwobble.compare.storage.files import require_writable
-
             require_writable(out)
         from rockwobble.compare.studies.extremes import KIND, measure_extremes
 
-        from ..console.progress import shown_progress
-        from ..console.provenance import command_line
-        from ..console.results import show_and_write
         from ..pages.extremes import extremes_page
 
         with user_input(), shown_progress() as tell:

@@ -7,6 +7,11 @@ from typing import Annotated
 
 import typer
 
+from rockwobble.compare.storage.files import require_writable
+
+from ..console.progress import shown_progress
+from ..console.provenance import command_line
+from ..console.results import show_and_write
 from ..console.terminal import interruptible, user_input
 from .inputs import options
 
@@ -26,14 +31,9 @@ def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-figures")) -> 
     """
     with interruptible():
         with user_input():
-            from rockwobble.compare.storage.files import require_writable
-
             if not _LEAST_GRID <= grid <= _MOST_GRID:
                 raise ValueError(f"--grid must be from {_LEAST_GRID} to {_MOST_GRID}, got {grid}")
             require_writable(out)
-        from ..console.progress import shown_progress
-        from ..console.provenance import command_line
-        from ..console.results import show_and_write
         from ..paper.page import compute, paper_page
 
         with shown_progress("figures") as tell:

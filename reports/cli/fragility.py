@@ -8,6 +8,11 @@ from typing import Annotated
 
 import typer
 
+import rockwobble as rw
+
+from ..console.progress import shown_progress
+from ..console.provenance import command_line
+from ..console.results import show_and_write
 from ..console.terminal import interruptible, user_input
 from .inputs import options
 from .inputs.grid import values_of
@@ -181,9 +186,7 @@ def fragility(
 
     with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
         with user_input():
-            from rockwobble import compare
-
-            compare.require_writable(out)
+            rw.compare.require_writable(out)
             bodies = cylinders_of(cylinder, semidiagonal, tan_alpha)
             motions, source = motions_of(p695, records, synthetic, units, seed)
             methods = methods_of(
@@ -196,13 +199,10 @@ def fragility(
         from rockwobble.compare.studies.fragility.limits import DEFAULT_LIMITS
         from rockwobble.compare.studies.fragility.result import manifest_of
 
-        from ..console.progress import shown_progress
-        from ..console.provenance import command_line
-        from ..console.results import show_and_write
         from ..pages.fragility import count_files, fragility_page
 
         with user_input(), shown_progress() as tell:
-            found = compare.fragility(
+            found = rw.compare.fragility(
                 bodies,
                 motions,
                 methods=methods,

@@ -5,18 +5,20 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
+import rockwobble as rw
+
+from ..console.progress import shown_progress
+from ..console.provenance import command_line
 from ..console.terminal import FAILED, complain, interruptible, user_input
+from ..pages.words.cases import describe
 from .inputs import options
+from .inputs.estimate import require_feasible, time_needed
 from .inputs.method_values import settings
 from .inputs.problem import Problem, states_problem
-
-if TYPE_CHECKING:
-    from rockwobble.compare import Job
-    from rockwobble.models import Case, Run, Trace
 
 RestTilt = Annotated[
     float | None,
@@ -47,25 +49,19 @@ def simulate(
     Writes the samples to run.csv, the passes to passes.csv, all to run.parquet, which Trace.load reads, and
     manifest.json; SI units and radians.
     """
-    from ..pages.case_words import describe
-    from .inputs.estimate import require_feasible, time_needed
-
     with interruptible():
         with user_input():
-            from rockwobble.compare import Job, require_runnable, require_writable
-            from rockwobble.models import Run
-
             case = problem.case()
             if plane is not None and case.initial is not None:  # it leans in the plane that holds it
                 case = replace(case, initial=replace(case.initial, rolling_angle=plane))
-            require_writable(out)
+            rw.compare.require_writable(out)
             model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
-            run = _with_settings(case, Run(engine, support, time_step), setting, model)
+            run = _with_settings(case, rw.Run(engine, support, time_step), setting, model)
             require_feasible([case], [run])
-            require_runnable(case, run)
+            rw.compare.require_runnable(case, run)
         for line in (*describe(case), *time_needed([case], [run])):
             print(line)
-        job = Job(case=case, run=run)
+        job = rw.compare.Job(case=case, run=run)
         trace = _run(job)
         with user_input():
             written = _save(out, job, trace)
@@ -75,10 +71,8 @@ def simulate(
         raise typer.Exit(FAILED)
 
 
-def _with_settings(case: Case, run: Run, setting: list[str] | None, model: dict[str, Any]) -> Run:
+def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model: dict[str, Any]) -> rw.Run:
     """Return the run with the options that belong to its method; others are refused, not ignored."""
-    from rockwobble.compare import with_settings
-
     model = {name: value for name, value in model.items() if value is not None}
     if run.engine is None and run.time_step is not None:
         raise ValueError("--time-step belongs to an engine, give --engine as well")
@@ -87,32 +81,29 @@ def _with_settings(case: Case, run: Run, setting: list[str] | None, model: dict[
         raise ValueError(f"{option} belongs to the reduced models, got --engine {run.engine}")
     if twice := model.keys() & settings(setting).keys():
         raise ValueError(f"{min(twice)} is given twice, by an option and by --set")
-    (whole,) = with_settings(case, [run], settings(setting) | model)
+    (whole,) = rw.compare.with_settings(case, [run], settings(setting) | model)
     return whole
 
 
-def _run(job: Job) -> Trace:
-    from rockwobble.compare import simulate_all
-
-    from ..console.progress import shown_progress
-    from ..pages.diagnostic_words import sentences
+def _run(job: rw.compare.Job) -> rw.Trace:
+    from ..pages.words.diagnostics import sentences
 
     with user_input(), shown_progress() as tell:
         # in a process of its own, so that Ctrl-C also stops an engine in the middle of a long call
-        trace = simulate_all([job], workers=2, progress=tell)[0]
+        trace = rw.compare.simulate_all([job], workers=2, progress=tell)[0]
     if not len(trace.time):
         complain(f"{job.label} left no result: {sentences(trace.facts)}")
         raise typer.Exit(FAILED)
     return trace
 
 
-def _print_result(trace: Trace, label: str) -> None:
+def _print_result(trace: rw.Trace, label: str) -> None:
     from rich import box
     from rich.console import Console
     from rich.table import Table
     from rich.text import Text
 
-    from ..pages.diagnostic_words import sentences
+    from ..pages.words.diagnostics import sentences
 
     table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
     for name, value in _facts(trace).items():
@@ -123,7 +114,7 @@ def _print_result(trace: Trace, label: str) -> None:
     console.print(table)
 
 
-def _facts(trace: Trace) -> dict[str, str]:
+def _facts(trace: rw.Trace) -> dict[str, str]:
     cylinder = trace.case.cylinder
     facts = {
         "peak tilt": f"{trace.peak_tilt / cylinder.alpha:.4f} alpha = {math.degrees(trace.peak_tilt):.4f} deg"
@@ -153,12 +144,10 @@ def _facts(trace: Trace) -> dict[str, str]:
     return facts
 
 
-def _save(out: Path, job: Job, trace: Trace) -> list[str]:
+def _save(out: Path, job: rw.compare.Job, trace: rw.Trace) -> list[str]:
     from rockwobble.compare.runs.execution import job_fingerprint
     from rockwobble.compare.storage.manifest import made_now, write_results
     from rockwobble.models.traces.trace_file import case_to_plain, packed
-
-    from ..console.provenance import command_line
 
     case, found = case_to_plain(job.case), trace.to_plain()
     motion = job.case.motion

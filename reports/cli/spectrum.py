@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import rockwobble as rw
+
+from ..console.progress import shown_progress
+from ..console.provenance import command_line
+from ..console.results import show_and_write
 from ..console.terminal import interruptible, user_input
+from ..pages.words.cases import describe
 from .inputs import options
 
 if TYPE_CHECKING:
@@ -91,7 +97,6 @@ def spectrum(
     """
     with interruptible():
         with user_input():
-            from rockwobble.compare import require_writable
             from rockwobble.compare.studies.spectrum.series import intensity_unit
             from rockwobble.compare.studies.spectrum.study import SUPPORTS
 
@@ -116,7 +121,7 @@ def spectrum(
             if not _FINEST <= search_step < math.inf:
                 finest = f"--search-step must be at least {_FINEST:g} and finite"
                 raise ValueError(f"{finest}, got {search_step:g}")
-            require_writable(out)
+            rw.compare.require_writable(out)
         from rockwobble.compare.storage.fingerprint import fingerprint
         from rockwobble.compare.storage.manifest import made_now
         from rockwobble.compare.storage.provenance import reduced_makers
@@ -124,10 +129,6 @@ def spectrum(
         from rockwobble.compare.studies.spectrum.study import overturning_spectrum
         from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
 
-        from ..console.progress import shown_progress
-        from ..console.provenance import command_line
-        from ..console.results import show_and_write
-        from ..pages.case_words import describe
         from ..pages.spectrum import spectrum_page, spectrum_tables
 
         for line in describe(case)[:2]:

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+import rockwobble as rw
+
+from ..console.progress import shown_progress
+from ..console.provenance import command_line
 from ..console.terminal import FAILED, INTERRUPTED, complain, user_input
 from .inputs import options
 from .inputs.estimate import require_sweep
 from .inputs.grid import grid_of
 from .inputs.problem import refuse
 from .results.show import show
-
-if TYPE_CHECKING:
-    from rockwobble.compare import CaseSweep, Grid
 
 _GRID, _WORK = "Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT", "Work"
 # what states a grid: the file of a suite states its own
@@ -112,9 +113,7 @@ def sweep(
     Writes sweep.parquet, one row for each run; rockwobble show prints what it holds.
     """
     with user_input():
-        from rockwobble.compare import require_writable
-
-        plan: Grid | CaseSweep
+        plan: rw.compare.Grid | rw.compare.CaseSweep
         if suite is None:
             plan = grid_of(
                 semidiagonal,
@@ -130,7 +129,7 @@ def sweep(
             refuse(context, _STATED, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
         how_long = require_sweep(plan)
-        require_writable(out)
+        rw.compare.require_writable(out)
     for line in (*_echo(plan), how_long):
         print(line)
     _run(plan, out, scheduler, workers, chunk)
@@ -139,17 +138,15 @@ def sweep(
 
 
 def _run(
-    plan: Grid | CaseSweep, out: Path, scheduler: str | None, workers: int | None, chunk: int | None
+    plan: rw.compare.Grid | rw.compare.CaseSweep,
+    out: Path,
+    scheduler: str | None,
+    workers: int | None,
+    chunk: int | None,
 ) -> None:
-    from rockwobble.compare import SweepIncompleteError
-    from rockwobble.compare import sweep as run
-
-    from ..console.progress import shown_progress
-    from ..console.provenance import command_line
-
     try:
         with user_input(), shown_progress("chunks") as tell:
-            run(
+            rw.compare.sweep(
                 plan,
                 out=out,
                 scheduler=scheduler,
@@ -158,7 +155,7 @@ def _run(
                 progress=tell,
                 command=command_line(),
             )
-    except SweepIncompleteError as error:
+    except rw.compare.SweepIncompleteError as error:
         complain(str(error))
         raise typer.Exit(FAILED) from None
     except KeyboardInterrupt:
@@ -166,26 +163,21 @@ def _run(
         raise typer.Exit(INTERRUPTED) from None
 
 
-def _suite(name: str, models: list[str] | None) -> CaseSweep:
-    from rockwobble import reduced
-    from rockwobble.compare import CaseSweep, default_runs
-    from rockwobble.models import Run, read_suite
-
+def _suite(name: str, models: list[str] | None) -> rw.compare.CaseSweep:
     for model in models or ():
-        if model not in reduced.MODELS:
-            raise ValueError(f"--model must be of {', '.join(reduced.MODELS)}, got {model!r}")
-    suite = read_suite(name)
-    chosen = [Run(None, **{"support": "recess", **reduced.MODELS[model]}) for model in models or ()]
-    return CaseSweep(suite.cases, (*chosen, *(suite.runs or (() if models else default_runs()))))
+        if model not in rw.reduced.MODELS:
+            raise ValueError(f"--model must be of {', '.join(rw.reduced.MODELS)}, got {model!r}")
+    suite = rw.read_suite(name)
+    chosen = [rw.Run(None, **{"support": "recess", **rw.reduced.MODELS[model]}) for model in models or ()]
+    return rw.compare.CaseSweep(
+        suite.cases, (*chosen, *(suite.runs or (() if models else rw.compare.default_runs())))
+    )
 
 
-def _echo(plan: Grid | CaseSweep) -> list[str]:
-    from rockwobble.compare import Grid
-    from rockwobble.models import Cylinder
-
-    if isinstance(plan, Grid):
+def _echo(plan: rw.compare.Grid | rw.compare.CaseSweep) -> list[str]:
+    if isinstance(plan, rw.compare.Grid):
         ends = [
-            Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+            rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(plan.semidiagonals), max(plan.semidiagonals))
             for tan_alpha in (min(plan.tan_alphas), max(plan.tan_alphas))
         ]

@@ -7,6 +7,11 @@ from typing import Annotated
 
 import typer
 
+from rockwobble.compare.storage.files import require_writable
+
+from ..console.progress import shown_progress
+from ..console.provenance import command_line
+from ..console.results import show_and_write
 from ..console.terminal import interruptible, user_input
 from .inputs import options
 
@@ -29,14 +34,9 @@ def tradeoff(quick: Quick = False, out: options.Out = Path("rockwobble-tradeoff"
     """
     with interruptible():
         with user_input():
-            from rockwobble.compare.storage.files import require_writable
-
             require_writable(out)
         from rockwobble.compare.studies.tradeoff import measure_tradeoff
 
-        from ..console.progress import shown_progress
-        from ..console.provenance import command_line
-        from ..console.results import show_and_write
         from ..pages.tradeoff import tradeoff_page
 
         with shown_progress("rounds") as tell:

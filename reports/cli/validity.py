@@ -7,6 +7,11 @@ from typing import Annotated
 
 import typer
 
+from rockwobble.compare.storage.files import require_writable
+
+from ..console.progress import shown_progress
+from ..console.provenance import command_line
+from ..console.results import show_and_write
 from ..console.terminal import interruptible, user_input
 from .inputs import options
 
@@ -38,16 +43,11 @@ def validity(
     """
     with interruptible("what was measured so far is kept, and the next run goes on from there"):
         with user_input():
-            from rockwobble.compare.storage.files import require_writable
-
             if workers is not None and workers < 1:
                 raise ValueError(f"--workers must be at least 1, got {workers}")
             require_writable(out)
         from rockwobble.compare.studies.validity import FULL, QUICK, measure_all, validity_of
 
-        from ..console.progress import shown_progress
-        from ..console.provenance import command_line
-        from ..console.results import show_and_write
         from ..pages.validity import limits_table, validity_page
 
         extent = QUICK if quick else FULL

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from rockwobble.models import Case, Run
+import rockwobble as rw
 
 _PARTS = {
     "model_form": ("model form", "the model of the support minus the one asked about"),
@@ -20,11 +18,9 @@ _ADVICE = {
 }
 
 
-def budget_of_run(case: Case, run: Run, reference: Run) -> list[str]:
+def budget_of_run(case: rw.Case, run: rw.Run, reference: rw.Run) -> list[str]:
     """Return the lines; they rest on runs at finer time steps, made here."""
-    from rockwobble.compare import compare
-
-    comparison = compare(case, runs=[run], budget=True)
+    comparison = rw.compare.compare(case, runs=[run], budget=True)
     found = [budget for key, budget in comparison.budgets.items() if key[2] == str(reference)]
     if not found:
         return ["There is no budget of the difference: traces diverge at once, or there is no finer step."]

@@ -6,6 +6,10 @@ import datetime
 import sys
 from typing import TYPE_CHECKING
 
+import rockwobble as rw
+
+from .progress import shown_progress
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
@@ -22,13 +26,10 @@ def update(bench: Bench, reason: str | None) -> None:
     ValueError
         If there is no reason, or a file cannot be written.
     """
-    from rockwobble.compare import replace_files
     from rockwobble.compare.check.baseline_file import changes, folder, read_baseline, updated
     from rockwobble.compare.check.engines import engine_baseline
     from rockwobble.compare.check.models import reduced_baseline
     from rockwobble.compare.storage.provenance import package_versions
-
-    from .progress import shown_progress
 
     with shown_progress("engine runs") as bench.progress:
         new = {
@@ -49,7 +50,7 @@ def update(bench: Bench, reason: str | None) -> None:
     words = {"reason": reason or "", "date": date}
     for name in (name for name, changed in found.items() if changed):
         text = updated(read_baseline(name), new[name], versions=package_versions(), **words)
-        replace_files(folder(), {f"{name}.json": text.encode()})
+        rw.compare.replace_files(folder(), {f"{name}.json": text.encode()})
         print(f"Written: {folder() / name}.json")
 
 

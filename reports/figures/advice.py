@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.compare.metrics.tilt import overturned
+from rockwobble.compare.studies.advice import Advice
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
 
 from .palette import GREY, Style, model_style, run_styles
-from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Rule, ecdf
-
-if TYPE_CHECKING:
-    import pandas as pd
+from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Pictures, Rule, at_hand, ecdf
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar, x alone", PLANAR_Y: "planar, y alone"}
 GROUPS = {
@@ -26,6 +25,12 @@ GROUPS = {
 SHORT = {"copies": "copies", "acceleration": "same acceleration", "velocity": "same velocity"}
 _STANDS, _FALLS = 1.2, 1.3  # [alpha] where tilts are cut, and where overturned runs are drawn
 _SCALES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+
+
+def pictures(found: Advice) -> Pictures:
+    """Return what makes the picture of an advice, by name; nothing where there is nothing to draw."""
+    picture = advice_picture(found.facts(), found.tables())
+    return {} if picture is None else at_hand(picture)
 
 
 def advice_picture(facts: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Picture | None:

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
+from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.distributions import MARGIN
 from rockwobble.compare.studies.ensemble.tables import pairs
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
-from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf
-
-if TYPE_CHECKING:
-    from rockwobble.compare import Ensemble
+from .picture import Array, Axis, Line, Panel, Picture, Pictures, Rule, Text, at_hand, ecdf
 
 # beyond the largest ratio, and at least beyond the margin
 _ROOM = 1.25
@@ -25,6 +23,11 @@ _MOST_TICKS = 7
 _DOTS, _BEYOND = Style(colour=ORDER[0], dash="none", symbol="circle"), ORDER[1]
 _MEDIAN = Style(colour=DARK, dash="none", symbol="diamond")
 _LINE = 0.5  # inch for a pair of methods
+
+
+def pictures(found: Ensemble) -> Pictures:
+    """Return what makes the picture of an ensemble, by name."""
+    return at_hand(ensemble_picture(found))
 
 
 def main_pairs(found: Ensemble) -> list[dict[str, Any]]:

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
+from rockwobble.compare import Fragility
 from rockwobble.compare.studies.fragility.intensity import MEASURES
 from rockwobble.compare.studies.fragility.limits import OVERTURNED
 from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL
 
 from .palette import DARK, GREY, ORDER, SHADED, Style, pale
-from .picture import Axis, Band, Line, Panel, Picture, Rule
-
-if TYPE_CHECKING:
-    from rockwobble.compare import Fragility
+from .picture import Axis, Band, Line, Panel, Picture, Pictures, Rule, at_hand
 
 # of a panel: the support, and what it is called
 _SUPPORTS: Mapping[str, str] = {
@@ -33,6 +32,11 @@ _TICKS = (0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 50.0)
 _RATIOS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0)
 _LINE = 0.42  # inch for a pair of methods
 _MEDIAN = Style(colour=ORDER[0], dash="none", symbol="diamond")
+
+
+def pictures(found: Fragility) -> Pictures:
+    """Return the pictures by name."""
+    return at_hand(*fragility_pictures(found))
 
 
 def fragility_pictures(found: Fragility) -> list[Picture]:
@@ -191,8 +195,6 @@ def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -
 
 def _grouped(counts: Any) -> Any:
     """Counts of a cloud by tenths of its runs, each at the mean of its logarithms; of stripes as they are."""
-    import pandas as pd
-
     if len(counts) <= 40:
         return counts
     ordered = counts.sort_values("intensity")

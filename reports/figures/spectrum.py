@@ -9,12 +9,17 @@ from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIE
 
 from .heat import Gap, Heat, Shades
 from .palette import Style, model_style, run_styles
-from .picture import Axis, Line, Panel, Picture
+from .picture import Axis, Line, Panel, Picture, Pictures, at_hand
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-south"}
 _OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
 _HEIGHT = 3.4
 _ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: islands side by side
+
+
+def pictures(spectrum: OverturningSpectrum) -> Pictures:
+    """Return what makes the picture of a spectrum, by name."""
+    return at_hand(spectrum_picture(spectrum))
 
 
 def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:

@@ -5,19 +5,20 @@ from __future__ import annotations
 import io
 import textwrap
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import matplotlib as mpl
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Colormap, ListedColormap, Normalize
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
 
 from .heat import Heat, Shades
 from .palette import DARK, DASHES, SYMBOLS
 from .picture import MOST_ENTRIES, Axis, Band, Bars, Line, Panel, Picture, Rule, Text
 from .thinning import kept_points
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.colors import Colormap
-    from matplotlib.figure import Figure
 
 # a column of text on a screen is some 830 pixels wide, 96 to the inch [inch]
 WIDTH = 8.6
@@ -52,8 +53,6 @@ _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
 
 def svg(picture: Picture) -> bytes:
     """Return a picture as SVG."""
-    import matplotlib as mpl
-
     buffer = io.BytesIO()
     with mpl.rc_context(_STYLE):
         figure(picture).savefig(
@@ -64,9 +63,6 @@ def svg(picture: Picture) -> bytes:
 
 def figure(picture: Picture) -> Figure:
     """Return a picture as a matplotlib figure."""
-    import matplotlib as mpl
-    from matplotlib.figure import Figure
-
     heights = [max(panel.height for panel in row) for row in picture.rows]
     many = len(picture.panels) > 1
     with mpl.rc_context(_STYLE):
@@ -226,8 +222,6 @@ _BEHIND = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 1.0}
 
 
 def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
-    from matplotlib.colors import ListedColormap
-
     edges = heat.edges(log_x=panel.x.log, log_y=panel.y.log)
     place = shades.place(heat.values)
     few = heat.values.size <= _VECTOR_CELLS
@@ -253,17 +247,12 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
 
 
 def _colours(shades: Shades) -> Colormap:
-    import matplotlib as mpl
-
     name = _SEQUENTIAL if shades.centre is None else _DIVERGING
     found: Colormap = mpl.colormaps[name]
     return found.resampled(shades.steps) if shades.steps else found
 
 
 def _colour_bar(drawn: Figure, places: Any, shades: Shades) -> None:
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
     scale = ScalarMappable(Normalize(0.0, 1.0), _colours(shades))
     bar = drawn.colorbar(scale, ax=places, location="bottom", shrink=0.6, aspect=45, pad=0.02)
     at, words = zip(*shades.ticks(), strict=True)
@@ -281,8 +270,6 @@ def _handles(panels: Sequence[Axes]) -> tuple[list[Any], list[str]]:
     shown = list(found)[: MOST_ENTRIES - (rest > 0)]
     words = [textwrap.fill(name, 60) for name in shown]
     if rest > 0:
-        from matplotlib.lines import Line2D
-
         return [found[name] for name in shown] + [Line2D([], [], linestyle="none")], [
             *words,
             f"and {rest + 1} more",

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from rockwobble.models import Trace
+
 from .palette import GREY, ORDER, Style
-from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
-from .svg import figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rockwobble.models import Trace
+from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Pictures, Rule, at_hand
 
 _PATH = Style(colour=ORDER[0])
 _CIRCLE = Style(colour=GREY, dash="dash")
 
 
-def draw(trace: Trace) -> Figure:
-    """Return a matplotlib figure of a motion."""
-    return figure(trace_picture(trace))
+def pictures(trace: Trace) -> Pictures:
+    """Return what makes the picture of a motion, by name."""
+    return at_hand(trace_picture(trace))
 
 
 def trace_picture(trace: Trace) -> Picture:

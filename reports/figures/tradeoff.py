@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from functools import partial
 
 import numpy as np
+import pandas as pd
+
+from rockwobble.compare.studies.tradeoff import Tradeoff
 
 from .palette import DARK, GREY, ORDER, SYMBOLS, Style
-from .picture import Axis, Line, Panel, Picture, Rule
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockwobble.compare.studies.tradeoff import Tradeoff
+from .picture import Axis, Line, Panel, Picture, Pictures, Rule
 
 TITLES = {
     "turn": "Angle of turn in free response",
@@ -38,14 +36,19 @@ _BASE = "recess model"
 _OF_MODEL, _OF_ENGINES = ("scipy", "rest threshold"), ("integrator", "contact")  # panels of variants
 
 
+def pictures(found: Tradeoff) -> Pictures:
+    """Return what makes the picture of each problem, by its name."""
+    return {
+        name: partial(_picture, found, name) for name in TITLES if (found.points["problem"] == name).any()
+    }
+
+
 def tradeoff_pictures(found: Tradeoff) -> list[Picture]:
     """Return a picture for each problem; its panels share their axes, and no line has a family of its own."""
-    return [_picture(found, name) for name in TITLES if (found.points["problem"] == name).any()]
+    return [make() for make in pictures(found).values()]
 
 
 def _picture(found: Tradeoff, problem: str) -> Picture:
-    import pandas as pd
-
     points = found.points[(found.points["problem"] == problem) & (found.points["error"] > 0.0)]
     time = _axis("time / that of the recess model", "-", points["ratio"])
     error = _axis(*ERRORS[problem], points["error"])

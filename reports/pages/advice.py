@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas as pd
 
 from rockwobble.compare.storage.manifest import Manifest, read_results
 from rockwobble.compare.studies.advice.advice import KIND
@@ -16,9 +18,6 @@ from rockwobble.models.diagnostic import CODES
 
 from ..figures.advice import GROUPS, SHORT, advice_picture
 from .page import Page
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 # a ring against the recess model in the largest tilt: median of the size of the relative difference, and its
 # range, of published/validity/points.parquet

@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+
+from rich.console import Console
+
+from rockwobble.compare.check import Finding
 
 from .page import Page
 from .table import NONE, Row, Table, columns_of, number
-
-if TYPE_CHECKING:
-    from rich.console import Console
-
-    from rockwobble.compare.check import Finding
 
 LAYER_WORDS = {
     "records": "Records: files of every form, the records that ship, pulses",

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
+from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.distributions import (
     MARGIN,
     POWER,
@@ -17,9 +17,6 @@ from rockwobble.compare.studies.ensemble.study import KIND, stored_ensemble
 
 from ..figures.ensemble import ensemble_picture, main_pairs
 from .page import Page
-
-if TYPE_CHECKING:
-    from rockwobble.compare import Ensemble
 
 
 def ensemble_page(found: Ensemble, manifest: Manifest) -> Page:

@@ -3,18 +3,13 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
-from typing import TYPE_CHECKING
 
-from rockwobble.compare.studies.extremes import FINE, read_extremes
+import pandas as pd
+
+from rockwobble.compare.studies.extremes import FINE, Extremes
 from rockwobble.models.diagnostic import CODES
 
 from .page import Page
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockwobble.compare.studies.extremes import Extremes
 
 # verdict: the word in a table
 WORDS = {
@@ -60,17 +55,6 @@ def extremes_page(found: Extremes) -> Page:
         "about": found.made,
     }
     return Page(name="extremes", template="extremes", values=values)
-
-
-def stored_page(folder: Path) -> Page:
-    """Return the report of what is stored in `folder`.
-
-    Raises
-    ------
-    ValueError
-        If it cannot be read.
-    """
-    return extremes_page(read_extremes(folder))
 
 
 def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:

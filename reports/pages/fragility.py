@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+from rockwobble.compare import Fragility
 from rockwobble.compare.storage.manifest import Manifest, read_results
 from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER
 from rockwobble.compare.studies.fragility.intensity import MEASURES
@@ -16,9 +17,6 @@ from rockwobble.compare.studies.fragility.tables import ALL
 
 from ..figures.fragility import fragility_pictures
 from .page import Page
-
-if TYPE_CHECKING:
-    from rockwobble.compare import Fragility
 
 # below this probability the counts do not follow a lognormal curve
 _POOR = 0.05

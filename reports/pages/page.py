@@ -14,17 +14,19 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from itertools import pairwise
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
+
+import jinja2
+from jinja2 import Environment
+from markdown_it import MarkdownIt
+from rich.console import Console
+from rich.markdown import Markdown
 
 from ..figures.interactive import plots
 from ..figures.picture import Picture
 from ..figures.svg import svg
 from .table import Row, Table, columns_of, number
-from .words import FILTERS
-
-if TYPE_CHECKING:
-    from jinja2 import Environment
-    from rich.console import Console
+from .words.sentences import FILTERS
 
 Output = Literal["terminal", "markdown", "html"]
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")
@@ -104,9 +106,6 @@ class Page:
 
     def show(self, console: Console | None = None) -> None:
         """Print the report in a terminal: its words and tables."""
-        from rich.console import Console
-        from rich.markdown import Markdown
-
         console = console or Console()
         if not console.is_terminal:
             console.width = max(console.width, _LEAST_WIDTH)
@@ -171,8 +170,6 @@ def _html(part: str | Picture | Table | Safe) -> str:
 
 def to_html(text: str) -> str:
     """Return Markdown as HTML; headings have their words as id, as on GitHub."""
-    from markdown_it import MarkdownIt
-
     parser = MarkdownIt("commonmark", {"html": False}).enable("table")
     tokens = parser.parse(text)
     for opening, content in pairwise(tokens):
@@ -183,8 +180,6 @@ def to_html(text: str) -> str:
 
 @cache
 def _environment() -> Environment:
-    import jinja2
-
     environment = jinja2.Environment(
         loader=jinja2.PackageLoader("rockwobble.reports.pages", "templates"),
         autoescape=lambda name: bool(name) and str(name).endswith(".html.j2"),

@@ -4,52 +4,25 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Callable, Mapping
+from operator import attrgetter
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-# kind: what loads it from a folder, and what returns name and content of each page; by name, because a
-# command that shows one of them must not wait for the imports of all
-KINDS: Mapping[str, tuple[str, str]] = {
-    "comparison": (
-        "rockwobble.compare.comparison.result:Comparison.load",
-        "rockwobble.reports.pages.comparison.report:comparison_files",
-    ),
-    "ensemble": (
-        "rockwobble.reports.pages.ensemble:stored_page",
-        "rockwobble.reports.pages.page:Page.files",
-    ),
-    "fragility": (
-        "rockwobble.reports.pages.fragility:stored_page",
-        "rockwobble.reports.pages.page:Page.files",
-    ),
-    "overturning spectrum": (
-        "rockwobble.reports.pages.spectrum:stored_page",
-        "rockwobble.reports.pages.page:Page.files",
-    ),
-    "advice": (
-        "rockwobble.reports.pages.advice:stored_page",
-        "rockwobble.reports.pages.page:Page.files",
-    ),
-    "validity": (
-        "rockwobble.reports.pages.validity:stored_page",
-        "rockwobble.reports.pages.page:Page.files",
-    ),
-    "tradeoff": (
-        "rockwobble.reports.pages.tradeoff:stored_page",
-        "rockwobble.reports.pages.page:Page.files",
-    ),
-    "extremes": (
-        "rockwobble.reports.pages.extremes:stored_page",
-        "rockwobble.reports.pages.page:Page.files",
-    ),
-    "engine versions": (
-        "rockwobble.reports.pages.versions:stored_page",
-        "rockwobble.reports.pages.page:Page.files",
-    ),
-    "paper": (
-        "rockwobble.reports.paper.page:stored_page",
-        "rockwobble.reports.pages.page:Page.files",
-    ),
+if TYPE_CHECKING:
+    from .page import Page
+
+# kind: what reads a folder, and what draws a page or files of that; by name, because a command that shows
+# one of them must not wait for the imports of all
+KINDS: Mapping[str, tuple[str, ...]] = {
+    "comparison": ("compare:Comparison.load", "reports.pages.comparison.report:comparison_files"),
+    "ensemble": ("reports.pages.ensemble:stored_page",),
+    "fragility": ("reports.pages.fragility:stored_page",),
+    "overturning spectrum": ("reports.pages.spectrum:stored_page",),
+    "advice": ("reports.pages.advice:stored_page",),
+    "validity": ("compare.studies.validity:read_validity", "reports.pages.validity:validity_page"),
+    "tradeoff": ("compare.studies.tradeoff:read_tradeoff", "reports.pages.tradeoff:tradeoff_page"),
+    "extremes": ("compare.studies.extremes:read_extremes", "reports.pages.extremes:extremes_page"),
+    "paper": ("reports.paper.page:stored_page",),
 }
 
 
@@ -61,14 +34,14 @@ def redrawn(kind: str, folder: Path) -> dict[str, bytes]:
     ValueError
         If they cannot be read.
     """
-    load, draw = (_named(name) for name in KINDS[kind])
-    pages: dict[str, bytes] = draw(load(folder))
-    return pages
+    found: Any = folder
+    for name in KINDS[kind]:
+        found = _named(name)(found)
+    pages: dict[str, bytes] | Page = found
+    return pages if isinstance(pages, dict) else pages.files()
 
 
-def _named(name: str) -> Callable[..., Any]:
-    module, _, path = name.partition(":")
-    found: Any = importlib.import_module(module)
-    for part in path.split("."):
-        found = getattr(found, part)
-    return found  # type: ignore[no-any-return]
+def _named(name: str) -> Callable[..., object]:
+    module, _, function = name.partition(":")
+    found: Callable[..., object] = attrgetter(function)(importlib.import_module(f"rockwobble.{module}"))
+    return found

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.compare.metrics.order_statistics import share_interval
 from rockwobble.compare.storage.manifest import Manifest, read_results
@@ -24,9 +24,6 @@ from rockwobble.compare.studies.spectrum.verification import AGREEMENT, CHECK_RT
 
 from ..figures.spectrum import spectrum_picture
 from .page import Page
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 def spectrum_page(

@@ -2,26 +2,20 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import TYPE_CHECKING
+import pandas as pd
 
 from rockwobble.compare.studies.tradeoff import (
     ROUNDS,
+    Tradeoff,
     costs,
     engine_factors,
     plateaus,
-    read_tradeoff,
     rest_tilt_price,
 )
 
 from ..figures.tradeoff import ERRORS, TITLES, tradeoff_pictures
 from .page import Page
 from .table import NONE, number
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockwobble.compare.studies.tradeoff import Tradeoff
 
 _NOT_ENGINES = ("reduced", "scipy")
 
@@ -50,17 +44,6 @@ def tradeoff_page(found: Tradeoff) -> Page:
     pictures = tradeoff_pictures(found)
     values["drawn"] = [picture.name for picture in pictures]
     return Page(name="tradeoff", template="tradeoff", values=values, pictures=pictures)
-
-
-def stored_page(folder: Path) -> Page:
-    """Return the report of what is stored in `folder`.
-
-    Raises
-    ------
-    ValueError
-        If it cannot be read.
-    """
-    return tradeoff_page(read_tradeoff(folder))
 
 
 def _rows(table: pd.DataFrame) -> list[dict[str, object]]:

@@ -3,25 +3,19 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.compare.metrics.distributions import MARGIN
-from rockwobble.compare.studies.validity import limits_of, read_validity
+from rockwobble.compare.studies.validity import Validity, limits_of
 from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.limits.engine import damping
 from rockwobble.compare.studies.validity.rings import FREE
 
-from ..figures.validity import METHODS, validity_pictures
+from ..figures.validity.pictures import METHODS, validity_pictures
 from .page import Page
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockwobble.compare.studies.validity import Validity
 
 
 def validity_page(found: Validity) -> Page:
@@ -51,21 +45,8 @@ def validity_page(found: Validity) -> Page:
     return Page(name="validity", template="validity", values=values, pictures=validity_pictures(tables))
 
 
-def stored_page(folder: Path) -> Page:
-    """Return the report of what is stored in `folder`.
-
-    Raises
-    ------
-    ValueError
-        If it cannot be read.
-    """
-    return validity_page(read_validity(folder))
-
-
 def limits_table(found: Validity) -> pd.DataFrame:
     """Return every number of every limit: limit, number, value."""
-    import pandas as pd
-
     rows = [
         {"limit": limit, "number": number, "value": value}
         for limit, numbers in limits_of(found.tables).items()

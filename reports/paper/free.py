@@ -4,18 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, Trace
 
 from ..figures.thinning import kept_samples
 from .statement import Statement, verdict_of
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 SPIN, STEADY, BOTH = "very small spin", "steady wobble", "both"
 SMALLER = "a tenth of the very small spin"  # not drawn: only its greatest force is asked for
@@ -60,8 +57,6 @@ def _release(spin: float) -> InitialState:
 
 def drawn_samples(trace: Trace, points: int = _POINTS) -> pd.DataFrame:
     """Return what a figure shows of a motion: its extremes, and as many samples as can be seen."""
-    import pandas as pd
-
     keep = kept_samples(trace.tilt, trace.tilt_rate, trace.rolling_rate, points=points)
     names = ("time", "tilt", "tilt_rate", "rolling_angle", "rolling_rate")
     table = pd.DataFrame({name: getattr(trace, name)[keep] for name in names})
@@ -71,8 +66,6 @@ def drawn_samples(trace: Trace, points: int = _POINTS) -> pd.DataFrame:
 
 def to_frame(modes: Mapping[str, Trace]) -> pd.DataFrame:
     """Return the samples drawn, one row each, with the mode in the first column."""
-    import pandas as pd
-
     tables = [drawn_samples(trace).assign(mode=mode) for mode, trace in modes.items() if mode != SMALLER]
     return pd.concat(tables, ignore_index=True)
 

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeVar
+from typing import TypeVar
+
+import pandas as pd
 
 from rockwobble.compare.runs.progress import Clock, ProgressCallback
 from rockwobble.compare.storage.fingerprint import fingerprint
@@ -19,9 +21,6 @@ from ..pages.page import Page
 from ..pages.spectrum import spectrum_tables, spectrum_values
 from . import earthquake, free, overturning, period, pictures
 from .statement import from_frame, to_frame
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 R = TypeVar("R")
 KIND = "paper"

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import Cylinder
 
 from .statement import Statement, verdict_of
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -34,8 +30,6 @@ def periods() -> pd.DataFrame:
     Curves: "wobble", steady wobble (24); "rocking", planar rocking, exact; "housner", the same linearised for
     slender bodies (Housner 1963); "disc", a thin disc in a recess, in closed form, at the tilts of `DISC`.
     """
-    import pandas as pd
-
     # closer where the wobble begins like a root and where both periods rise without bound
     tilt = 0.5 * (1.0 - np.cos(np.linspace(0.03, np.pi - 0.03, 240)))
     curves: list[tuple[str, float, Array]] = []

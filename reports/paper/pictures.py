@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.compare.studies.spectrum.result import OverturningSpectrum
@@ -18,9 +18,6 @@ from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
 from ..figures.spectrum import NAMES, spectrum_picture
 from . import earthquake, free, period
 from .overturning import lowest_on_axes
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 

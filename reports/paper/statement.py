@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    import pandas as pd
+import pandas as pd
 
 HOLDS, HOLDS_IN_PART, DOES_NOT_HOLD = "holds", "holds in part", "does not hold"
 
@@ -31,8 +29,6 @@ def verdict_of(*parts: bool) -> str:
 
 def to_frame(statements: Sequence[Statement]) -> pd.DataFrame:
     """Return one row for each number: figure, statement, verdict, number, value."""
-    import pandas as pd
-
     rows = [
         (each.figure, each.name, each.verdict, number, float(value))
         for each in statements

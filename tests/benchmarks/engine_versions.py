@@ -41,13 +41,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = options_of("engine_versions", "Figures of each minor release of the engines.")
     parser.add_argument("--engine", action="append", choices=tuple(SINCE), help="default: all of them")
     parser.add_argument("--version", action="append", help="of the one --engine; default: each minor release")
+    parser.add_argument("--no-sweep", action="store_true", help="leave out the uplift sweep, a minute each")
     parser.add_argument("--out", type=Path, help="folder for table, page and manifest")
     parser.add_argument("--keep", type=Path, help="folder that keeps what is installed; default: none does")
     given = parser.parse_args(arguments)
     with tempfile.TemporaryDirectory() as place:
         folder = given.keep or Path(place)
         rows = [
-            _row(engine, version, folder)
+            _row(engine, version, folder, sweep=not given.no_sweep)
             for engine in given.engine or SINCE
             for version in given.version or minor_releases(listed(engine), *SINCE[engine])
         ]
@@ -96,10 +97,10 @@ def _parts(version: str) -> tuple[int, int, int]:
     return major, minor, patch
 
 
-def _row(engine: str, version: str, folder: Path) -> dict[str, Any]:
+def _row(engine: str, version: str, folder: Path, *, sweep: bool) -> dict[str, Any]:
     print(f"{engine} {version} ...", file=sys.stderr, flush=True)
     row: dict[str, Any] = dict.fromkeys(COLUMNS, math.nan) | {"engine": engine, "version": version}
-    row |= {"uplift": "", "remark": ""}
+    row |= {"uplift": "" if sweep else "not run", "remark": ""}
     place = folder / f"{engine}-{version}"
     package = engine_packages()[engine]
     names = (package, *_COMPANIONS.get(engine, {}).get(_parts(version)[0], ()))
@@ -114,6 +115,7 @@ def _row(engine: str, version: str, folder: Path) -> dict[str, Any]:
     paths = [str(place), str(Path(__file__).resolve().parents[1]), os.environ.get("PYTHONPATH", "")]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, paths))}
     command = [sys.executable, "-m", "benchmarks.version_figures", engine]
+    command += [] if sweep else ["--no-sweep"]
     try:
         done = subprocess.run(
             command, env=environment, capture_output=True, text=True, timeout=_LONGEST, check=False

@@ -6,7 +6,7 @@ import json
 import math
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -24,11 +24,16 @@ SHAKEN, SHAKEN_LENGTH, SHAKEN_STEP = Cylinder(semidiagonal=10.0, tan_alpha=0.1),
 _EXACT = 1e-11  # tolerance of the models
 
 
-def measure(engine: str) -> dict[str, Any]:
-    """Return the figures by name; what the engine cannot run is its reason."""
+def measure(engine: str, *, sweep: bool = True) -> dict[str, Any]:
+    """Return the figures by name; what the engine cannot run is its reason.
+
+    The uplift sweep, which takes most of the time, may be left out.
+    """
     started = time.perf_counter()
     found: dict[str, Any] = {"version": find_engine(engine).version()}
-    for name, figure in (("turn", _turn), ("uplift", _uplift), ("release", _release), ("el_centro", _shaken)):
+    figures: list[tuple[str, Callable[[str], Any]]] = [("turn", _turn), ("release", _release)]
+    figures += [("el_centro", _shaken), *([("uplift", _uplift)] if sweep else [])]
+    for name, figure in figures:
         try:
             found[name] = figure(engine)
         # whatever an old version raises is what there is to say of it
@@ -86,8 +91,8 @@ def _finished(run: Trace) -> Trace:
 
 def main(arguments: Sequence[str]) -> int:
     """Print the figures of the engine that is named, as JSON in the last line."""
-    (engine,) = arguments
-    print(json.dumps(measure(engine)))
+    engine, *rest = arguments
+    print(json.dumps(measure(engine, sweep="--no-sweep" not in rest)))
     return 0
 
 

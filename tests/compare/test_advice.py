@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from showing import shows_itself
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.tilt import overturned
@@ -276,3 +277,7 @@ def test_bad_numbers_are_refused():
     for options in ({"count": 5}, {"support": "glued"}, {"count": 10**6}):
         with pytest.raises(ValueError, match="must be"):
             advise(case(), **options)
+
+
+def test_advice_shows_itself(advice):
+    shows_itself(advice, "recess model", "grade ")

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 import pytest
+from showing import shows_itself
 
 from rockwobble.compare.studies.spectrum.planar_contrast import (
     edge_difference,
@@ -140,3 +141,7 @@ def test_a_single_size_has_a_band():
 def test_edges_must_increase(edges):
     with pytest.raises(ValueError, match="edges must be at least two and increasing"):
         planar_contrast(made_up(["oX"], ["oo"], ["oo"]), edges)
+
+
+def test_a_spectrum_shows_itself():
+    shows_itself(made_up(["ooXoOX"] * 3, ["......"] * 3, ["......"] * 3), "3 from 1 to 3 m", "6 of 18 cells")

@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from tiny_validity import TINY, tiny_tables
+from showing import shows_itself
+from tiny_validity import TINY, tiny_tables, tiny_validity
 
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.validity import FULL, PARTS, QUICK, limits_of, measure_all
@@ -193,3 +194,9 @@ def test_measures_of_limits() -> None:
     # what is infinite counts, what is not known does not
     assert reached(np.array([1.0, 2.0, math.inf, math.nan]), 0.6) == 2.0
     assert reached(np.array([1.0, 2.0, math.inf]), 0.9) == math.inf
+
+
+def test_a_report_shows_itself_by_figure() -> None:
+    found = tiny_validity()
+    shows_itself(found, "records ", "slip ")
+    assert found.plot("slip").axes

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from showing import shows_itself
 from typer.testing import CliRunner
 
 from rockwobble.compare.storage.manifest import made_now
@@ -84,3 +85,7 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
     assert done.exit_code == 2
     assert "the output folder must be a folder" in done.stderr
     assert not re.search(r"\n.+\n", done.stderr)
+
+
+def test_a_scan_shows_itself() -> None:
+    shows_itself(given(SILENT), "runs 4, fine 1, silent 2")

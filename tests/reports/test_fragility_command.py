@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from browser import complaints, needs_chromium
+from showing import shows_itself
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.storage.manifest import Manifest, read_manifests, read_results
@@ -246,3 +247,7 @@ def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words)
     assert error.count("\n") == 1
     assert words in error
     assert not (tmp_path / "out").exists()
+
+
+def test_a_fragility_shows_itself(found):
+    shows_itself(found, "methods ", "runs ")

@@ -26,7 +26,11 @@ def call(*arguments: str) -> int:
         (["--record-x", "a.at2"], "each record needs both horizontal components"),
         (["--units", "g"], "--record-z and --units belong to a record"),
         (["no-such-suite"], "no-such-suite"),
-        (["quick", "--units", "g"], "the records of a suite stand in its file"),
+        (["quick", "--units", "g"], "--units does not go with a suite, got quick"),
+        (["quick", "--semidiagonal", "3"], "--semidiagonal does not go with a suite, got quick"),
+        (["--plane", "1"], "--plane belongs to planar motion, give --model planar and no other"),
+        (["--gravity", "-1"], "--gravity must be positive and finite"),
+        (["--semidiagonal", "1:9:99999", "--scale", "1:9:99999"], "the results take some 3e+03 GB of the"),
     ],
 )
 def test_bad_input_of_a_sweep_gets_one_clear_line(tmp_path, capsys, arguments, words):

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
+from showing import shows_itself
 from typer.testing import CliRunner
 
 from rockwobble.compare.storage.manifest import made_now, read_results, write_results
@@ -102,3 +103,7 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
     assert done.exit_code == 2
     assert "the output folder must be a folder" in done.stderr
     assert done.stderr.count("\n") == 1
+
+
+def test_a_measurement_shows_itself(found: Tradeoff) -> None:
+    shows_itself(found, "problems shaken", "points 9")

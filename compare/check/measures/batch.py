@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -19,7 +18,7 @@ SIZES = (1.5, 6.0, 20.0)
 # no uplift, powers of two, which scale a record without rounding, and one that rounds
 SCALES = (0.25, 1.0, 2.0, 4.0)
 ROUNDED = (1.3, 2.9)
-MODELS: dict[str, dict[str, Any]] = {
+MODELS: dict[str, dict[str, object]] = {
     "recess": {"support": "recess"},
     "flat": {"support": "flat"},
     "planar": {"plane": 0.4, "restitution": "momentum"},

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.traces.trace_source import Known
 
 from ..bench import Array
 from ..problems import PIER
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 RECESS = Run(None, "recess")
 CASE = Case(PIER, duration=20.0, name="made")
@@ -23,7 +21,7 @@ CASE = Case(PIER, duration=20.0, name="made")
 def made(time: Array, tilt: Array, *, energy: Array | None = None, **fields: Any) -> Trace:
     """Return a trace with tilts (n,) at times (n,); fields that are not given are zero, or unknown."""
     none, flat, space = (np.zeros(size) for size in (len(time), (len(time), 2), (len(time), 3)))
-    given: dict[str, Any] = {
+    given: dict[str, object] = {
         "case": CASE,
         "run": RECESS,
         "version": "1",
@@ -46,8 +44,6 @@ def made(time: Array, tilt: Array, *, energy: Array | None = None, **fields: Any
 
 def passes(times: list[float], minima: list[float], resolved: list[bool] | None = None) -> pd.DataFrame:
     """Return a table of passes, each of half a turn; without `resolved` as of a reduced model."""
-    import pandas as pd
-
     table = pd.DataFrame(
         {"time": times, "minimum_tilt": minima, "angle_of_turn": [math.pi] * len(times)}, dtype=float
     )

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -99,7 +98,7 @@ def _cases() -> Finding:
     )
 
 
-def _row(case: Case, run: Run, alone: Trace) -> dict[str, Any]:
+def _row(case: Case, run: Run, alone: Trace) -> dict[str, object]:
     passes = alone.passes
     return {
         "case": case.name,

@@ -22,7 +22,6 @@ import sys
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +31,7 @@ from rockwobble.models import Case
 from ...traces.file import QUATERNION, read_columns
 
 Array = NDArray[np.float64]
-Model = Callable[[Case, str], Any]
+Model = Callable[[Case, str], object]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -68,7 +67,7 @@ def load_model(name: str) -> Model:
     return model
 
 
-def outputs_of(result: Any) -> Outputs:
+def outputs_of(result: object) -> Outputs:
     """Return what a model gave.
 
     Raises
@@ -96,8 +95,8 @@ def outputs_of(result: Any) -> Outputs:
     return Outputs(**told)
 
 
-def _taken(result: Any, key: str) -> Any:
-    if isinstance(result, Mapping) or hasattr(result, "columns"):
+def _taken(result: object, key: str) -> object:
+    if isinstance(result, Mapping):
         return result.get(key)
     return getattr(result, key, None)
 

@@ -6,7 +6,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from types import MappingProxyType
-from typing import Any
 
 from rockwobble.models import Case, Trace
 
@@ -18,6 +17,7 @@ from .frame import Mistake
 from .uplift_difference import uplift_differences
 
 # columns of the summary that only external trajectories have: unit, meaning
+Row = dict[str, float | str | bool]  # of a summary
 VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
         "differs_in": ("", "of an external trajectory: tilt, azimuth, path, uplift_time, uplift_direction"),
@@ -85,10 +85,10 @@ class Verdict:
         """The likely mistakes."""
         return () if self.explanation is None else self.explanation.mistakes
 
-    def columns(self) -> dict[str, Any]:
+    def columns(self) -> Row:
         """Return the columns of the summary."""
         azimuth, path = self.difference.azimuth, self.difference.path
-        own: dict[str, Any] = no_verdict() | {
+        own: Row = no_verdict() | {
             "differs_in": "; ".join(self.differs_in),
             "not_compared": "; ".join(self.not_compared),
             "tilt_bound": self.difference.tilt.bound,
@@ -146,6 +146,6 @@ def judge(trajectory: Trace, reference: Trace, case: Case) -> Verdict:
     return replace(verdict, explanation=explain(trajectory, model, case, start=start))
 
 
-def no_verdict() -> dict[str, Any]:
+def no_verdict() -> Row:
     """Return the columns of a run that is no external trajectory."""
     return {name: "" if name in _TEXTS else math.nan for name in VERDICT_COLUMNS}

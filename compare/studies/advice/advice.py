@@ -7,11 +7,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.shown import Shown
 
 from ...comparison.prediction import Prediction
 from ...metrics.distributions import Contrast
@@ -22,15 +24,12 @@ from .members import COPIES, answers, fall_of
 from .scales import BESIDE, Lowest, planar_chances
 from .trust import Trust, Verification
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 KIND = "advice"
 OTHER = "other support"  # group of the copies on the other support
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Advice:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Advice(Shown):
     """What was run for one case.
 
     Attributes
@@ -67,6 +66,7 @@ class Advice:
     seed : int
     """
 
+    _figures: ClassVar[str] = "advice"
     case: Case
     support: str
     friction_given: bool
@@ -82,10 +82,20 @@ class Advice:
     verification: Verification | None
     trust: Trust
     form: Contrast | None
-    vertical: Mapping[str, Any] | None
+    vertical: Mapping[str, object] | None
     records: str
     perturbation: float
     seed: int
+
+    def _said(self) -> dict[str, str]:
+        tilt = "overturns" if self.overturned else f"{self.peak:.3g} alpha"
+        return {
+            "case": self.case.name,
+            "run": str(self.model),
+            "outcome": self.trace.outcome,
+            "largest tilt": tilt,
+            "grade": overall(self.grades.values()),
+        }
 
     @property
     def model(self) -> Run:
@@ -236,8 +246,6 @@ class Advice:
 
     def tables(self) -> dict[str, pd.DataFrame]:
         """Return the tables by name; tilts of the traces in alpha."""
-        import pandas as pd
-
         alpha = self.case.cylinder.alpha
         engine = self.engine_trace
         return {

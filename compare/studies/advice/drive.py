@@ -5,9 +5,9 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940
 
@@ -74,8 +74,6 @@ def advise(
     >>> found.trust.kind, found.grades["overturning"]
     ('statistics', 'care')
     """
-    import pandas as pd
-
     if run is not None:
         support = run.support
         require_runnable(case, run)
@@ -146,7 +144,7 @@ def advise(
     )
 
 
-def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -> dict[str, Any] | None:
+def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -> dict[str, object] | None:
     """Return what the vertical component of ground motion changes in the largest tilt, copy by copy.
 
     Of the record itself or, where it has none, of El Centro 1940 as strong: what it usually changes.

@@ -5,18 +5,15 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, GroundMotion, Trace
 
 from ...metrics.order_statistics import quantile_interval, share_interval
 from ..ensemble.members import FAR_FIELD_PAIRS, far_field_motions, synthetic_motions
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -114,8 +111,6 @@ def answers(members: pd.DataFrame) -> pd.DataFrame:
     Columns: group, runs, failed, overturned, chance with chance_low and chance_high, and for peak_tilt
     [alpha], infinite where it overturns, and each of `DEMANDS` the percentiles _05, _50 and _95.
     """
-    import pandas as pd
-
     rows = []
     for group, runs in members.groupby("group", sort=False):
         known = runs[runs["outcome"] != "failed"]

@@ -7,9 +7,9 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from rockwobble import reduced
 from rockwobble.models import Case
@@ -20,9 +20,6 @@ from ..spectrum.search import STEP, Array, in_threads, lowest_on_grid, run_searc
 from ..spectrum.series import SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
 from ..spectrum.study import RTOL
 from ..spectrum.verification import CHECK_RTOL, NUDGE
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given
 FACTORS: Array = 2.0 ** (np.arange(-24, 49) / 12.0)
@@ -69,8 +66,6 @@ def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, dict
     dict
         The lowest that overturns, of each series.
     """
-    import pandas as pd
-
     motion = case.motion
     if motion is None or motion.peak == 0.0:
         return pd.DataFrame(columns=["series", "factor", "peak_tilt"]), {}
@@ -102,8 +97,6 @@ def planar_runs(cases: Sequence[Case], support: str = "recess") -> pd.DataFrame:
 
     Columns: member, scale, and the peak tilts 3d, planar_x, planar_y [rad].
     """
-    import pandas as pd
-
     tables = []
     for case in cases:
         assert case.motion is not None

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
 
@@ -16,9 +17,6 @@ from ...comparison.prediction import Prediction, estimated_error, predict, time_
 from ...metrics.agreement import agreement_time
 from ...runs.execution import simulate_run
 from ...traces.pair import make_pair
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 # A trace is lost where the copies are spread over half of the peak tilt. A percent of alpha, the limit of
 # agreement between methods, would be exceeded by the percent that the copies differ by itself.
@@ -98,8 +96,6 @@ def trust_of(methods_until: float, data_until: float, peak_time: float, end: flo
 
 def band_of(case: Case, traces: Sequence[Trace]) -> pd.DataFrame:
     """Return the tilts [alpha] that 5 % and 95 % of the copies do not exceed at each time [s]: low, high."""
-    import pandas as pd
-
     time = np.arange(0.0, case.length, BAND_STEP)
     known = [trace for trace in traces if trace.outcome != "failed"]
     # one that fell stays on its side

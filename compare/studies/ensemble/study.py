@@ -6,9 +6,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import ClassVar
+
+import pandas as pd
 
 from rockwobble.models import Case, Run, Suite, Trace
+from rockwobble.models.shown import Shown
 
 from ...runs.choice import default_runs, own_model, require_runnable, run_labels
 from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
@@ -18,15 +21,12 @@ from ...storage.manifest import Results
 from .members import perturbed_starts
 from .tables import contrast_table, method_table
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 KIND = "ensemble"
 MODELS = (Run(None, "recess"), Run(None, "flat"))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Ensemble:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Ensemble(Shown):
     """Peak tilts of many members by several methods.
 
     Parameters
@@ -48,10 +48,20 @@ class Ensemble:
         model of the support of each method, the seed, and the hash of all inputs.
     """
 
+    _figures: ClassVar[str] = "ensemble"
     members: pd.DataFrame
     methods: pd.DataFrame
     contrasts: pd.DataFrame
-    about: Mapping[str, Any]
+    about: Mapping[str, object]
+
+    def _said(self) -> dict[str, str]:
+        runs = self.methods[["runs", "overturned", "failed"]].sum()
+        return {
+            "members": f"{self.members['member'].nunique()}, {self.about.get('members', '')}",
+            "methods": ", ".join(self.methods["method"]),
+            "overturned": f"{runs['overturned']} of {runs['runs']} runs",
+            "failed": str(runs["failed"]),
+        }
 
 
 def ensemble(
@@ -108,7 +118,7 @@ def ensemble(
     >>> found.methods[["method", "runs", "failed"]].values.tolist()
     [['recess model', 5, 0], ['flat-ground model', 5, 0]]
     """
-    about: dict[str, Any] = {"seed": seed}
+    about: dict[str, object] = {"seed": seed}
     if isinstance(case_or_members, Case):
         members = perturbed_starts(case_or_members, size, perturbation=perturbation, seed=seed)
         about |= {"members": f"starts of {case_or_members.name}, perturbed by {100.0 * perturbation:g} %"}
@@ -133,12 +143,14 @@ def ensemble(
     return ensemble_of(table, about)
 
 
-def ensemble_of(members: pd.DataFrame, about: Mapping[str, Any]) -> Ensemble:
+def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
     """Return the ensemble of a table of members, and of what `Ensemble.about` says of them."""
+    methods = about["methods"]
+    assert isinstance(methods, Mapping)
     return Ensemble(
         members=members,
-        methods=method_table(members, about["methods"]),
-        contrasts=contrast_table(members, about["methods"]),
+        methods=method_table(members, methods),
+        contrasts=contrast_table(members, methods),
         about=about,
     )
 
@@ -162,8 +174,6 @@ def _runs(case_or_members: Case | Suite | Sequence[Case], runs: Iterable[Run] | 
 
 
 def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
-    import pandas as pd
-
     rows = []
     for job, result in zip(jobs, results, strict=True):
         rows.append(

@@ -7,16 +7,13 @@ import itertools
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from ...metrics.distributions import Array, Contrast, Flags, adjusted, contrast, log_ratios
 from ...metrics.order_statistics import Interval, quantile_interval
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -88,8 +85,6 @@ def pairs(
 
 def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:
     """Return one row for each method, see `Ensemble.methods`; `methods` names the own model of each."""
-    import pandas as pd
-
     rows = []
     for method, own in methods.items():
         runs = members[members["method"] == method]
@@ -119,8 +114,6 @@ def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFr
 
 def contrast_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:
     """Return one row for each two methods, see `Ensemble.contrasts`."""
-    import pandas as pd
-
     rows = []
     for against, method in itertools.combinations(methods, 2):
         both = pairs(members, method, against)

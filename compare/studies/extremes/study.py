@@ -7,9 +7,12 @@ from collections import Counter
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
+
+import pandas as pd
 
 from rockwobble.models import Run
+from rockwobble.models.shown import Shown
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 from ...runs.cache import open_table_cache
@@ -22,9 +25,6 @@ from ...storage.provenance import code_digests, package_versions
 from .conditions import Condition, conditions
 from .verdict import Verdict, judge
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 KIND = "extremes"
 MODELS = (Run(None, "flat", plane=0.0), Run(None, "recess"), Run(None, "flat"))
 Task = tuple[str, str, int]  # extreme and value of a condition, and the place of a method
@@ -36,8 +36,8 @@ def methods() -> tuple[Run, ...]:
     return (*MODELS, *engines)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Extremes:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Extremes(Shown):
     """What a scan found.
 
     Attributes
@@ -47,8 +47,13 @@ class Extremes:
     made : Manifest
     """
 
+    _figures: ClassVar[str] = "extremes"
     table: pd.DataFrame
     made: Manifest
+
+    def _said(self) -> dict[str, str]:
+        counts = Counter(self.table["verdict"])
+        return {"runs": str(len(self.table)), **{str(verdict): str(n) for verdict, n in counts.items()}}
 
 
 def measure_extremes(
@@ -74,8 +79,6 @@ def measure_extremes(
     command : str, optional
         That asked for it.
     """
-    import pandas as pd
-
     tried = methods()
     tasks = [
         (condition.extreme, condition.value, place)
@@ -123,8 +126,6 @@ def measure_task(task: Task) -> pd.DataFrame:
 
 def row(task: Task, found: Verdict) -> pd.DataFrame:
     """Return a verdict as a table of one row."""
-    import pandas as pd
-
     extreme, value, place = task
     named = {"extreme": extreme, "value": value, "method": str(methods()[place])}
     return pd.DataFrame([named | dataclasses.asdict(found)])

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from .fit import FITTED, KINDS
 from .intensity import MEASURES
@@ -13,9 +13,6 @@ from .limits import OVERTURNED
 from .resampling import Array, interval, spread_interval
 from .samples import Blocks
 from .tables import exponential, interval_columns
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 # Every run has an intensity of its own in each measure but that of the levels, and so many numbers in each
 # resample: as many resamples as keep this many numbers, and no fewer than give an end of an interval.
@@ -28,8 +25,6 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
     The runs are the same for every measure: from where no motion overturns to where nearly all do, so that
     it matters little by which measure their levels were chosen.
     """
-    import pandas as pd
-
     rows = []
     motions = len(blocks.motions)
     for cylinder in blocks.cylinders:

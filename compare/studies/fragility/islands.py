@@ -7,18 +7,15 @@ overturned above that level may stand, so its curve lies to the left of the one 
 from __future__ import annotations
 
 import itertools
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from .limits import OVERTURNED
 from .resampling import Array, Sample, interval
 from .samples import Blocks
 from .tables import exponential, interval_columns
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 
 def island_table(blocks: Blocks, measure: str, weights: Array) -> pd.DataFrame:
@@ -28,8 +25,6 @@ def island_table(blocks: Blocks, measure: str, weights: Array) -> pd.DataFrame:
     stands), median of all levels and median_incremental, and bias, the second over the first, with the
     interval of the same resamples.
     """
-    import pandas as pd
-
     rows = []
     motions = len(blocks.motions)
     for cylinder, method in itertools.product(blocks.cylinders, blocks.methods):

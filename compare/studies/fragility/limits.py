@@ -5,13 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 OVERTURNED, CONTACT_LOST = "overturned", "contact_lost"
 # name: the tilt that is reached [alpha]; NaN where it is no tilt that decides

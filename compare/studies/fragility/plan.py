@@ -6,9 +6,9 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
@@ -17,9 +17,6 @@ from ...runs.choice import require_runnable
 from .intensity import intensity, measures_of, require_measure
 from .methods import Method
 from .tasks import Shaking, Task
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 # The reduced runs of a task take about a second together: little is lost with it.
 _CHUNK_TIME = 1.0
@@ -103,8 +100,6 @@ class Plan:
     @cached_property
     def points(self) -> pd.DataFrame:
         """One row for each cylinder, motion and level: its place, the factor, and all intensities."""
-        import pandas as pd
-
         rows = []
         for name, cylinder in self.cylinders.items():
             own = measures_of(self.motions, cylinder, gravity=self.gravity, period=self.period)

@@ -4,7 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import Any, ClassVar
+
+import pandas as pd
+
+from rockwobble.models.shown import Shown
 
 from ...storage.manifest import Manifest, Results, made_now
 from .efficiency import efficiency_table
@@ -14,14 +18,11 @@ from .resampling import resamples
 from .samples import blocks_of
 from .tables import contrast_table, count_table, curve_table, drawn_curves, fit_table
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 KIND = "fragility"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Fragility:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Fragility(Shown):
     """Probabilities of exceeding limits by several methods, under the same motions.
 
     Intervals are of 95 %, by resampling the motions; their ends are in columns NAME_low and NAME_high.
@@ -55,6 +56,7 @@ class Fragility:
         inputs.
     """
 
+    _figures: ClassVar[str] = "fragility"
     runs: pd.DataFrame
     points: pd.DataFrame
     counts: pd.DataFrame
@@ -64,6 +66,16 @@ class Fragility:
     efficiency: pd.DataFrame
     islands: pd.DataFrame
     about: Mapping[str, Any]
+
+    def _said(self) -> dict[str, str]:
+        runs = self.runs
+        return {
+            "cylinders": str(runs["cylinder"].nunique()),
+            "motions": str(runs["motion"].nunique()),
+            "methods": ", ".join(dict.fromkeys(runs["method"])),
+            "runs": str(len(runs)),
+            "failed": str(int((runs["outcome"] == "failed").sum())),
+        }
 
     @property
     def tables(self) -> dict[str, pd.DataFrame]:

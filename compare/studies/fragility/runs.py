@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from ...runs.cache import open_table_cache
 from ...runs.progress import ProgressCallback
@@ -16,9 +16,6 @@ from ...runs.task import Lost
 from .methods import Method
 from .plan import Plan
 from .tasks import Task, run_task
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 # a task whose process died is tried this often: the process may have been ended from outside
 _TRIES = 2
@@ -53,8 +50,6 @@ def run_plan(
         method, peak_tilt [alpha], outcome, contact_lost (1, 0, or NaN where nobody asked). A run whose
         process died failed.
     """
-    import pandas as pd
-
     tasks = list(plan.tasks())
     with nullcontext() if folder is None else open_table_cache(folder, kind, Task.key) as cache:
         found = run_tasks(
@@ -106,8 +101,6 @@ def _labelled(task: Task, table: pd.DataFrame, plan: Plan) -> pd.DataFrame:
 
 
 def _lost(task: Task) -> pd.DataFrame:
-    import pandas as pd
-
     count = sum(len(shaking.scales) for shaking in task.shakings)
     return pd.DataFrame(
         {"peak_tilt": [np.nan] * count, "outcome": ["failed"] * count, "contact_lost": [np.nan] * count}

@@ -5,17 +5,15 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from ...metrics.order_statistics import Interval
 from .fit import FITTED, KINDS, Curves, goodness
 from .resampling import Array, Sample, bands, interval, spread_interval
 from .samples import Blocks
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 # of a curve: from half of the lowest intensity to twice the highest
 _POINTS, _BEYOND = 60, 2.0
@@ -28,8 +26,6 @@ def count_table(blocks: Blocks, limits: Sequence[str], measure: str) -> pd.DataF
 
     Of a cloud each run is a row with n = 1.
     """
-    import pandas as pd
-
     rows = []
     for cylinder, method, limit in _keys(blocks, limits):
         x, n, k = blocks.sample(cylinder, method, limit, measure).counts()
@@ -52,8 +48,6 @@ def fit_table(
     blocks: Blocks, limits: Sequence[str], measure: str, drawn: Mapping[Key, Curves]
 ) -> pd.DataFrame:
     """Return the curve of each cylinder, method and limit with its intervals and its goodness of fit."""
-    import pandas as pd
-
     rows = []
     motions = len(blocks.motions)
     for key in _keys(blocks, limits):
@@ -90,8 +84,6 @@ def curve_table(
     blocks: Blocks, limits: Sequence[str], measure: str, drawn: Mapping[Key, Curves]
 ) -> pd.DataFrame:
     """Return the curves point by point, each with its band."""
-    import pandas as pd
-
     tables = []
     for key in _keys(blocks, limits):
         sample = blocks.sample(*key, measure)
@@ -125,8 +117,6 @@ def contrast_table(
     Of the same motions: a run that failed by one method leaves out that of the other, and both curves are of
     the same resamples. Rows of the cylinder "all" are geometric means of the ratios over the cylinders.
     """
-    import pandas as pd
-
     rows: list[dict[str, Any]] = []
     for limit, (against, method) in itertools.product(limits, itertools.combinations(blocks.methods, 2)):
         about = {"limit": limit, "method": method, "against": against}

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
@@ -14,9 +16,6 @@ from ...metrics.tilt import overturned
 from ...runs.execution import simulate_run
 from ...storage.fingerprint import fingerprint
 from ...storage.provenance import engine_makers, reduced_makers
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 # Computing time of a reduced run for each second of its motion, forces included or not, on one core [s]: a
 # rough mean of the models.
@@ -165,6 +164,4 @@ class Task:
 
 def run_task(task: Task) -> pd.DataFrame:
     """Return the table of a task: peak_tilt [alpha], outcome, contact_lost."""
-    import pandas as pd
-
     return pd.DataFrame(task.rows())

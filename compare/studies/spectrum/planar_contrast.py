@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from .result import OverturningSpectrum
 from .series import PLANAR_X, PLANAR_Y, SPATIAL
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 Array = NDArray[np.float64]
 
@@ -58,8 +55,6 @@ def planar_contrast(spectrum: OverturningSpectrum, edges: Sequence[float] | None
     ValueError
         If there are fewer than two edges or they do not increase.
     """
-    import pandas as pd
-
     sizes = spectrum.semidiagonals
     bounds = size_bands(sizes) if edges is None else np.asarray(edges, dtype=np.float64)
     if bounds.ndim != 1 or len(bounds) < 2 or not (np.diff(bounds) > 0.0).all():
@@ -104,7 +99,7 @@ def size_bands(semidiagonals: Array) -> Array:
     return np.arange(first, max(last, first + 1) + 1, dtype=np.float64) * width
 
 
-def _row(spectrum: OverturningSpectrum, group: NDArray[np.intp]) -> dict[str, Any]:
+def _row(spectrum: OverturningSpectrum, group: NDArray[np.intp]) -> dict[str, object]:
     known = ~spectrum.failed()[group]
     space, x, y = (spectrum.overturned(name)[group][known] for name in (SPATIAL, PLANAR_X, PLANAR_Y))
     tilt, tilt_x, tilt_y = (spectrum.peak_tilt[name][group][known] for name in (SPATIAL, PLANAR_X, PLANAR_Y))

@@ -5,28 +5,27 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
+import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import GroundMotion
+from rockwobble.models.shown import Shown
 
 from ...metrics.tilt import overturned
 from ...storage.manifest import Results
 from .search import PROBES, lowest_on_grid
 from .series import SERIES, SPATIAL, intensity_unit
 
-if TYPE_CHECKING:
-    import pandas as pd
-
 Array = NDArray[np.float64]
 KIND = "overturning spectrum"
 _FACTS = ("tan_alpha", "gravity", "support", "rest_tilt", "searched_from", "search_step")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class OverturningSpectrum:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class OverturningSpectrum(Shown):
     """Peak tilts of cylinders of one slenderness under one record, over size and intensity.
 
     Attributes
@@ -62,6 +61,7 @@ class OverturningSpectrum:
         Finest step of that search [-].
     """
 
+    _figures: ClassVar[str] = "spectrum"
     tan_alpha: float
     motion: GroundMotion
     gravity: float
@@ -74,6 +74,16 @@ class OverturningSpectrum:
     below: Mapping[str, Array]
     searched_from: Mapping[str, float]
     search_step: float
+
+    def _said(self) -> dict[str, str]:
+        sizes, levels = self.semidiagonals, self.intensities
+        return {
+            "record": self.motion.name or "record",
+            "tan alpha": f"{self.tan_alpha:g}",
+            "sizes": f"{len(sizes)} from {sizes[0]:g} to {sizes[-1]:g} m",
+            "intensities": f"{len(levels)} from {levels[0]:g} to {levels[-1]:g}",
+            "overturned": f"{int(self.overturned(SPATIAL).sum())} of {len(sizes) * len(levels)} cells",
+        }
 
     @property
     def alpha(self) -> float:
@@ -112,8 +122,6 @@ class OverturningSpectrum:
         Columns: series, semidiagonal [m], intensity [-], scale [-], peak_acceleration [m/s^2] (of what
         drives the series), peak_tilt [rad], peak_tilt_over_alpha [-], overturned.
         """
-        import pandas as pd
-
         sizes, intensities = np.meshgrid(self.semidiagonals, self.intensities, indexing="ij")
         _, scales = np.meshgrid(self.semidiagonals, self.scales, indexing="ij")
         tables = [
@@ -141,8 +149,6 @@ class OverturningSpectrum:
         searched_from and search_step [-]; probed and overturned_below, intensities drawn below and how many
         of them overturned.
         """
-        import pandas as pd
-
         tables = []
         for series in SERIES:
             lowest = self.lowest[series]
@@ -168,8 +174,6 @@ class OverturningSpectrum:
 
 def record_frame(motion: GroundMotion) -> pd.DataFrame:
     """Return the samples of a ground motion, one column for each component [m/s^2]."""
-    import pandas as pd
-
     return pd.DataFrame(dict(zip("xyz", motion.acceleration.T, strict=False)))
 
 
@@ -200,8 +204,6 @@ def safe_islands(spectrum: OverturningSpectrum) -> pd.DataFrame:
     cylinder stands [-], closed, whether a higher one overturns it again. A failed run ends an island, and
     neither opens one nor closes it.
     """
-    import pandas as pd
-
     rows = []
     for series in SERIES:
         tilts, fell = spectrum.peak_tilt[series], spectrum.overturned(series)

@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -146,7 +146,7 @@ def run_searches(
 
 
 def in_threads(
-    function: Callable[..., T], *arguments: Iterable[Any], workers: int | None = None
+    function: Callable[..., T], *arguments: Iterable[object], workers: int | None = None
 ) -> Iterator[T]:
     """Yield what a compiled function gives for each of its arguments, in order; an exception ends all."""
     with ThreadPoolExecutor(workers) as pool:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder
@@ -14,9 +14,6 @@ from rockwobble.models import Case, Cylinder
 from ...metrics.tilt import overturned
 from .result import OverturningSpectrum
 from .series import SERIES, series_options
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 CHECK_RTOL = 1e-9
 # Relative change of the record. A cell that it changes as much as the tolerance of the grid does is a
@@ -60,8 +57,6 @@ def check_cells(
     ValueError
         If `count` is not positive.
     """
-    import pandas as pd
-
     if count < 1:
         raise ValueError(f"count must be at least 1, got {count!r}")
     n_sizes, n_levels = len(spectrum.semidiagonals), len(spectrum.intensities)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import Any
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.shown import Brief
 from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
@@ -54,14 +54,14 @@ class CaseChunk:
         """Return the hash of all that the results depend on."""
         return fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in self.jobs])
 
-    def run(self) -> dict[str, Any]:
+    def run(self) -> dict[str, object]:
         """Return the columns of the results, one row for each run."""
         rows = [_row(job, run_job(job)) for job in self.jobs]
         return {name: [row[name] for row in rows] for name in rows[0]}
 
 
-@dataclass(frozen=True, slots=True, eq=False, init=False)
-class CaseSweep:
+@dataclass(frozen=True, slots=True, eq=False, init=False, repr=False)
+class CaseSweep(Brief):
     """Every case with every method: runs of engines, and reduced models by name.
 
     Parameters
@@ -112,7 +112,7 @@ class CaseSweep:
                     jobs=tuple(Job(case=case, run=run, label=label) for case in self.cases[i : i + step])
                 )
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Return cases and methods, for a file; SI units and radians."""
         return {
             "cases": {case.name: describe_case(case) for case in self.cases},
@@ -123,7 +123,7 @@ class CaseSweep:
         }
 
 
-def _row(job: Job, trace: Trace) -> dict[str, Any]:
+def _row(job: Job, trace: Trace) -> dict[str, object]:
     cylinder, motion, passes = job.case.cylinder, job.case.motion, trace.passes
     return {
         "case": job.case.name,

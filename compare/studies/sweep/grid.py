@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockwobble import reduced
 from rockwobble.models import GroundMotion
+from rockwobble.models.shown import Brief
 
 from ...metrics.tilt import overturned
 from ...storage.fingerprint import fingerprint
@@ -33,7 +35,7 @@ class GridChunk:
     tan_alpha: float
     semidiagonals: tuple[float, ...]
     scales: tuple[float, ...]
-    options: Mapping[str, Any]  # of `reduced.peak_tilts`
+    options: Mapping[str, object]  # of `reduced.peak_tilts`
 
     @property
     def rows(self) -> int:
@@ -60,10 +62,8 @@ class GridChunk:
             }
         )
 
-    def run(self) -> dict[str, Any]:
+    def run(self) -> dict[str, object]:
         """Return the columns of the results, one row for each run."""
-        from rockwobble import reduced
-
         peaks = reduced.peak_tilts(
             self.semidiagonals,
             self.tan_alpha,
@@ -85,8 +85,8 @@ class GridChunk:
         }
 
 
-@dataclass(frozen=True, slots=True, eq=False, init=False)
-class Grid:
+@dataclass(frozen=True, slots=True, eq=False, init=False, repr=False)
+class Grid(Brief):
     """Every size with every slenderness, scale, motion and model, each run from rest for its peak tilt.
 
     Parameters
@@ -115,7 +115,7 @@ class Grid:
     scales: tuple[float, ...]
     motions: tuple[GroundMotion, ...]
     models: tuple[str, ...]
-    options: Mapping[str, Any]
+    options: Mapping[str, object]
 
     def __init__(
         self,
@@ -171,7 +171,7 @@ class Grid:
                             options=self.options,
                         )
 
-    def describe(self) -> dict[str, Any]:
+    def describe(self) -> dict[str, object]:
         """Return the axes and options, for a file; SI units."""
         return {
             "semidiagonals": self.semidiagonals,
@@ -204,8 +204,6 @@ class Grid:
         """Let `reduced.peak_tilts` look at the options here, not first in another process."""
         if not self.options:
             return
-        from rockwobble import reduced
-
         for model in self.models:
             try:
                 reduced.peak_tilts(
@@ -243,10 +241,10 @@ def _axis(name: str, values: ArrayLike, *, above_zero: bool) -> tuple[float, ...
     return numbers
 
 
-def _require_different(name: str, values: Sequence[Any]) -> None:
+def _require_different(name: str, values: Sequence[object]) -> None:
     if not values:
         raise ValueError(f"{name} must hold at least one, got none")
-    seen: set[Any] = set()
+    seen: set[object] = set()
     for value in values:
         if value in seen:
             raise ValueError(f"{name} must differ, got {value!r} twice")

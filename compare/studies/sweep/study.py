@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Suite
 
@@ -22,9 +22,6 @@ from ...storage.manifest import made_now, read_results, write_results
 from ...storage.provenance import engine_makers, reduced_makers
 from .cases import CaseChunk, CaseSweep
 from .grid import Grid, GridChunk
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 KIND = "sweep"
 # a chunk whose process died is tried this often: the process may have been ended from outside
@@ -95,8 +92,6 @@ def sweep(
     >>> sweep(grid, workers=1)[["semidiagonal", "scale", "outcome"]].values.tolist()
     [[2.0, 1.0, 'rocked'], [2.0, 3.0, 'overturned'], [6.0, 1.0, 'rocked'], [6.0, 3.0, 'overturned']]
     """
-    import pandas as pd
-
     whole = _plan(plan)
     if chunk_size is not None and chunk_size < 1:
         raise ValueError(f"chunk_size must be at least 1, got {chunk_size!r}")
@@ -158,8 +153,6 @@ def read_sweep(folder: str | Path) -> pd.DataFrame:
 
 def run_chunk(chunk: Chunk) -> pd.DataFrame:
     """Return the table of a chunk, one row for each run."""
-    import pandas as pd
-
     return pd.DataFrame(chunk.run())
 
 
@@ -184,16 +177,12 @@ def _plan(plan: Grid | CaseSweep | Suite | Iterable[Case]) -> Grid | CaseSweep:
 
 def _motions(plan: Grid | CaseSweep) -> dict[str, pd.DataFrame]:
     """Return the table of the motions of a grid; a component that one does not have is missing, not zero."""
-    import pandas as pd
-
     if not isinstance(plan, Grid):
         return {}
     return {"motions": pd.concat([_samples(motion) for motion in plan.motions], ignore_index=True)}
 
 
 def _samples(motion: GroundMotion) -> pd.DataFrame:
-    import pandas as pd
-
     samples = motion.acceleration
     columns = {f"acceleration_{axis}": np.full(len(samples), np.nan) for axis in "xyz"}
     columns |= {f"acceleration_{axis}": column for axis, column in zip("xyz", samples.T, strict=False)}

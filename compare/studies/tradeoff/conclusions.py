@@ -3,15 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from .methods import BASE_LINE
 from .problem import FINE_REST_TILT
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 # in the unit of each problem: errors that are asked for
 TARGETS = {"turn": (0.1, 0.01, 1e-3), "shaken": (1e-2, 1e-3, 1e-4), "peaks": (0.05, 1e-2, 1e-3)}
@@ -38,8 +35,6 @@ def costs(points: pd.DataFrame) -> pd.DataFrame:
     DataFrame
         The columns of the points, and target; families that do not reach it have no row. Cheapest first.
     """
-    import pandas as pd
-
     rows = []
     for (problem, _), chosen in points.groupby(["problem", "support"], sort=False):
         for target in TARGETS[str(problem)]:
@@ -64,8 +59,6 @@ def plateaus(points: pd.DataFrame) -> pd.DataFrame:
         than that power; begins [s], the step from which on nothing is gained, NaN where it falls; level,
         the median error from there on, or the smallest; best, the step of the smallest error [s].
     """
-    import pandas as pd
-
     rows = []
     engines = points[(points["knob"] == "time step") & points["error"].notna()]
     names = ["problem", "support", "panel", "line"]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -170,7 +169,7 @@ def _line(
     engine: str,
     support: str,
     steps: Sequence[float],
-    settings: Mapping[str, Any],
+    settings: Mapping[str, object],
     contact_steps: float = math.nan,
 ) -> Iterator[Method]:
     for step in steps:

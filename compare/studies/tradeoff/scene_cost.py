@@ -11,17 +11,14 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 from rockwobble.multibody.engines.scene_counts import SceneCounts
 from rockwobble.multibody.scene_of_case import open_scene
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 ROUNDS = 9
 STEPS = 2000  # that are timed, 0.2 s of the cylinder of 6 m
@@ -53,7 +50,7 @@ class Variant:
     option: str
     standing: bool = False
     components: str = ""
-    settings: Mapping[str, Any] = field(default_factory=dict)
+    settings: Mapping[str, object] = field(default_factory=dict)
 
 
 def variants(engine: str) -> list[Variant]:
@@ -122,8 +119,6 @@ def scene_costs(
     ValueError
         If an engine is unknown or not installed, or a number is not positive.
     """
-    import pandas as pd
-
     if rounds < 1 or steps < 1:
         raise ValueError(f"rounds and steps must be positive, got {rounds} and {steps}")
     names = engines or own_engines()

@@ -12,9 +12,11 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import cos, sin
-from typing import Any, Literal
+from typing import Literal
 
+import numba
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from rockwobble import reduced
 from rockwobble.models import Case, GroundMotion
@@ -22,6 +24,7 @@ from rockwobble.reduced.solution import Solution
 
 from .problem import TIGHT, Array, Problem
 
+RatesFunction = Callable[[float, Array], list[float]]  # (t, y) -> y'
 SolverName = Literal["RK45", "DOP853", "LSODA"]
 SOLVERS: tuple[SolverName, ...] = ("RK45", "DOP853", "LSODA")
 # of tilt, its rate, rolling angle and momentum: times the relative tolerance they are the absolute ones
@@ -44,7 +47,7 @@ class Rates:
         Tilt [rad], its rate [rad/s], rolling angle [rad] and momentum per mass [m^2/s] at the start.
     """
 
-    function: Callable[..., Any]
+    function: RatesFunction
     start: float
     end: float
     state: Array
@@ -59,19 +62,19 @@ def start_of(case: Case, *, compiled: bool) -> Rates:
     return Rates(function=function, start=begin, end=case.length, state=reach.source.states[-1, :4])
 
 
-def rates_of(case: Case, *, compiled: bool) -> Callable[..., Any]:
+def rates_of(case: Case, *, compiled: bool) -> RatesFunction:
     """Return the equations of a case, (t, y) -> y', as plain Python or compiled."""
     motion = case.motion or GroundMotion(np.zeros((2, 2)), case.length)
     # a sample more than the run is long: the last stage of a solver stands at its end
     padded = np.vstack([motion.acceleration[:, :2], np.zeros((2, 2))])
     # numbers of Python are quicker than those of an array, where nothing compiles
-    samples: Any = padded if compiled else [tuple(row) for row in padded.tolist()]
+    samples: Array | list[tuple[float, ...]] = padded if compiled else [tuple(row) for row in padded.tolist()]
     per_second, cylinder = 1.0 / motion.time_step, case.cylinder
     b, h = cylinder.base_radius, cylinder.half_height
     I1, I2, g = (3.0 * b * b + 4.0 * h * h) / 12.0, 0.5 * b * b, 9.81
     A, J, C, E = I1 + h * h + b * b, I1 + h * h, I2 + b * b, h * b
 
-    def rates(t: float, y: Any) -> list[float]:
+    def rates(t: float, y: Array) -> list[float]:
         theta, omega, phi, L = y
         position = t * per_second
         i = int(position)
@@ -91,9 +94,7 @@ def rates_of(case: Case, *, compiled: bool) -> Callable[..., Any]:
 
     if not compiled:
         return rates
-    import numba
-
-    found: Callable[..., Any] = numba.njit(rates)
+    found: RatesFunction = numba.njit()(rates)
     return found
 
 
@@ -109,8 +110,6 @@ def _departure(case: Case) -> float:
 
 def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: float) -> Array:
     """Return what a problem asks, by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
-    from scipy.integrate import solve_ivp
-
     step, reference = problem.sample_step, problem.references["recess"].quantities[0]
     times = step * np.arange(math.ceil(rates.start / step), math.floor(rates.end / step) + 2)
     times = times[: int(np.searchsorted(times, rates.end + 1e-9))]

@@ -8,11 +8,13 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.models import Case
+from rockwobble.models.shown import Shown
 
 from ...runs.progress import Clock, ProgressCallback
 from ...storage.manifest import Manifest, made_now, read_results
@@ -20,9 +22,6 @@ from .conclusions import engine_factors
 from .methods import Answer, Method, methods_for
 from .problem import Problem, problems, sampling_distance
 from .scene_cost import scene_costs
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 KIND = "tradeoff"
 # a run shorter than this is repeated, so that a tick of the clock does not show [s]
@@ -33,8 +32,8 @@ ROUNDS = 3  # of a single case; an ensemble has as many as members
 _COSTS = {"turn": 1.0, "shaken": 4.0, "peaks": 3.0, "scenes": 0.5}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Tradeoff:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Tradeoff(Shown):
     """What was measured.
 
     Attributes
@@ -55,11 +54,20 @@ class Tradeoff:
     made : Manifest
     """
 
+    _figures: ClassVar[str] = "tradeoff"
     points: pd.DataFrame
     scenes: pd.DataFrame
     problems: pd.DataFrame
     load: tuple[float, float]
     made: Manifest
+
+    def _said(self) -> dict[str, str]:
+        low, high = engine_factors(self.points)
+        return {
+            "problems": ", ".join(dict.fromkeys(self.points["problem"])),
+            "points": str(len(self.points)),
+            "engine over recess model": f"{low:.3g} to {high:.3g} times the time",
+        }
 
 
 def measure_tradeoff(
@@ -76,8 +84,6 @@ def measure_tradeoff(
     command : str, optional
         That asked for it.
     """
-    import pandas as pd
-
     before = _load()
     scene_rounds = 3 if quick else 9
     asked = list(problems(quick=quick))
@@ -132,8 +138,6 @@ def read_tradeoff(folder: str | Path) -> Tradeoff:
 
 
 def _described(problem: Problem) -> pd.DataFrame:
-    import pandas as pd
-
     many = len(problem.cases) > 1
     return pd.DataFrame(
         {
@@ -149,8 +153,6 @@ def _described(problem: Problem) -> pd.DataFrame:
 
 
 def _points(problem: Problem, methods: list[Method], tell: Callable[[], None]) -> pd.DataFrame:
-    import pandas as pd
-
     visits = list(problem.cases) if len(problem.cases) > 1 else list(problem.cases) * ROUNDS
     answers: list[list[Answer]] = [[] for _ in methods]
     seconds = np.full((len(visits), len(methods)), np.nan)

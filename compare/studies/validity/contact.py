@@ -57,6 +57,6 @@ PART = Part(
     title="contact that gives, in the engine",
     tasks=_tasks,
     measure=measure,
-    cost=lambda inputs: 1.0,
+    cost=lambda **_: 1.0,
     engine=ENGINE,
 )

@@ -57,6 +57,6 @@ PART = Part(
     title="traces under El Centro in the engine",
     tasks=_tasks,
     measure=measure,
-    cost=lambda inputs: 0.04 * float(inputs["duration"]),
+    cost=lambda duration, **_: 0.04 * duration,
     engine=ENGINE,
 )

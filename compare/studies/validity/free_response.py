@@ -76,5 +76,5 @@ PART = Part(
     title="free response, recess against flat ground",
     tasks=_tasks,
     measure=measure,
-    cost=lambda inputs: 0.02 * len(inputs["releases"]) * len(inputs["spins"]),
+    cost=lambda releases, spins, **_: 0.02 * len(releases) * len(spins),
 )

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 from .extent import Extent
 
 ENGINE = "mujoco"
-Inputs = Mapping[str, Any]  # arguments of `Part.measure` by name: numbers, text and tuples of them
+Inputs = Mapping[str, object]  # arguments of `Part.measure` by name: numbers, text and tuples of them
 Row = dict[str, float | str | bool]
 
 
@@ -28,7 +27,7 @@ class Part:
     measure : callable
         Returns the rows of one task; depends on nothing but its inputs.
     cost : callable
-        Rough computing time of a task [s].
+        Rough computing time of a task [s], of the same inputs.
     engine : str
         The engine that it runs; empty where it runs the reduced models alone.
     """
@@ -37,5 +36,5 @@ class Part:
     title: str
     tasks: Callable[[Extent], Iterable[Inputs]]
     measure: Callable[..., list[Row]]
-    cost: Callable[[Inputs], float]
+    cost: Callable[..., float]
     engine: str = ""

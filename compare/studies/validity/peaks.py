@@ -79,5 +79,5 @@ PART = Part(
     title="peak tilt over records",
     tasks=_tasks,
     measure=measure,
-    cost=lambda inputs: 0.03 * len(inputs["intensities"]),
+    cost=lambda intensities, **_: 0.03 * len(intensities),
 )

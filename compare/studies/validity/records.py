@@ -72,6 +72,6 @@ PART = Part(
     title="peak tilt over records in the engine",
     tasks=_tasks,
     measure=measure,
-    cost=lambda inputs: 16.0 * 2e-4 / float(inputs["time_step"]),
+    cost=lambda time_step, **_: 16.0 * 2e-4 / time_step,
     engine=ENGINE,
 )

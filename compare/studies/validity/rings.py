@@ -151,6 +151,6 @@ PART = Part(
     title="a ring of walls in the engine",
     tasks=_tasks,
     measure=measure,
-    cost=lambda inputs: (0.8 if inputs["support"] == "ring" else 0.25) * float(inputs["length"]),
+    cost=lambda support, length, **_: (0.8 if support == "ring" else 0.25) * length,
     engine=ENGINE,
 )

@@ -59,6 +59,6 @@ PART = Part(
     title="the friction at which the engine slips",
     tasks=_tasks,
     measure=measure,
-    cost=lambda inputs: 0.5 * len(inputs["shares"]),
+    cost=lambda shares, **_: 0.5 * len(shares),
     engine=ENGINE,
 )

@@ -7,7 +7,11 @@ import inspect
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import ClassVar
+
+import pandas as pd
+
+from rockwobble.models.shown import Shown
 
 from ...runs.cache import open_table_cache
 from ...runs.progress import ProgressCallback
@@ -22,16 +26,13 @@ from .limits import limits_of
 from .part import Inputs, Part
 from .parts import PARTS, part_named
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-KIND = "validity"
+KIND = "validity.pictures"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
 _ENDS = {"least": "least median", "largest": "largest median", "05": "5 %", "95": "95 %"}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Validity:
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Validity(Shown):
     """What was measured.
 
     Attributes
@@ -43,9 +44,13 @@ class Validity:
     made : Manifest
     """
 
+    _figures: ClassVar[str] = "validity.pictures"
     tables: Mapping[str, pd.DataFrame]
     records: str
     made: Manifest
+
+    def _said(self) -> dict[str, str]:
+        return {"records": self.records} | {name: f"{len(table)} rows" for name, table in self.tables.items()}
 
 
 def measure_all(
@@ -77,15 +82,13 @@ def measure_all(
     RuntimeError
         If a process ended in a task; what was finished is kept.
     """
-    import pandas as pd
-
     tasks: list[Task] = [(part.name, dict(inputs)) for part in parts for inputs in part.tasks(extent)]
     with open_table_cache(folder, KIND, name=task_name) as cache:
         found = run_tasks(
             measure_task,
             tasks,
             workers=workers,
-            cost=lambda task: part_named(task[0]).cost(task[1]),
+            cost=lambda task: part_named(task[0]).cost(**task[1]),
             label=lambda task: part_named(task[0]).title,
             progress=progress,
             cache=cache,
@@ -108,8 +111,6 @@ def measure_all(
 
 def measure_task(task: Task) -> pd.DataFrame:
     """Return the rows of one task."""
-    import pandas as pd
-
     name, inputs = task
     return pd.DataFrame(part_named(name).measure(**inputs))
 

@@ -63,6 +63,6 @@ PART = Part(
     title="free response in the engine",
     tasks=_tasks,
     measure=measure,
-    cost=lambda inputs: 1.5,
+    cost=lambda **_: 1.5,
     engine=ENGINE,
 )

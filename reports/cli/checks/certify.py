@@ -9,6 +9,8 @@ from typing import Annotated
 
 import typer
 
+import rockwobble as rw
+
 from ...console.terminal import interruptible, user_input
 
 # of the checks, those that make claims; with an engine, also those that need its runs
@@ -49,12 +51,10 @@ def certify(
     Exit code 0 if it is written, 2 for bad input or a check that fails.
     """
     with interruptible(), user_input():
-        from rockwobble import reduced
         from rockwobble.compare.certificate import certify as make
         from rockwobble.compare.certificate import engine_method, reduced_method
         from rockwobble.compare.certificate.certificate import write_certificate
         from rockwobble.compare.check import LAYERS, Bench, run_checks
-        from rockwobble.models import read_suite
 
         if time_step is not None and engine is None:
             raise ValueError("--time-step belongs to --engine, got it alone")
@@ -65,7 +65,7 @@ def certify(
         if out.is_dir() or not out.absolute().parent.is_dir():
             raise ValueError(f"--out must be a file in a folder that exists, got {out}")
         method = reduced_method() if engine is None else engine_method(engine, time_step)
-        findings = run_checks(Bench(reduced=reduced, suite=read_suite("quick")), layers)
+        findings = run_checks(Bench(reduced=rw.reduced, suite=rw.read_suite("quick")), layers)
         found = make(method, findings)
         write_certificate(found, out)
     print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")

@@ -9,7 +9,11 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import rockwobble as rw
+
+from ...console.progress import shown_progress
 from ...console.terminal import FAILED, complain, interruptible, user_input
+from ..inputs.suite_choice import chosen_runs, without_missing
 from .check_outside import Model, Support, Tolerance, Trajectory, outside_findings, print_outside
 
 if TYPE_CHECKING:
@@ -130,23 +134,17 @@ def check(
 
 
 def _bench(suite: str, workers: int | None) -> Bench:
-    from rockwobble import reduced
-    from rockwobble.compare import require_runnable
     from rockwobble.compare.check import Bench
-    from rockwobble.models import Suite as Cases
-    from rockwobble.models import read_suite
 
-    from ..inputs.suite_choice import chosen_runs, without_missing
-
-    read = read_suite(suite)
+    read = rw.read_suite(suite)
     runs, missing = without_missing(chosen_runs(read, None, None, None), None)
     for engine in missing:
         complain(f"{engine} is not installed here and is left out")
     for case in read.cases:
         for run in runs:
-            require_runnable(case, run)
-    cases = Cases(read.cases, runs, read.bounds)
-    return Bench(reduced=reduced, suite=cases, shipped=suite == "quick", workers=workers)
+            rw.compare.require_runnable(case, run)
+    cases = rw.Suite(read.cases, runs, read.bounds)
+    return Bench(reduced=rw.reduced, suite=cases, shipped=suite == "quick", workers=workers)
 
 
 def _run(bench: Bench, layers: list[str]) -> tuple[list[Finding], float]:
@@ -155,7 +153,6 @@ def _run(bench: Bench, layers: list[str]) -> tuple[list[Finding], float]:
 
     from rockwobble.compare.check import run_checks
 
-    from ...console.progress import shown_progress
     from ...pages.check import print_layer
 
     console = Console()
@@ -173,16 +170,15 @@ def _run(bench: Bench, layers: list[str]) -> tuple[list[Finding], float]:
 def _write(
     findings: list[Finding], seconds: float, json: Path | None, junit: Path | None, markdown: Path | None
 ) -> None:
-    from rockwobble.compare import replace_files
     from rockwobble.compare.storage.provenance import package_versions
 
     from ...pages.check import as_json, as_junit, headline, page
 
     versions = package_versions()
     if json is not None:
-        replace_files(json.parent, {json.name: as_json(findings, versions, seconds).encode()})
+        rw.compare.replace_files(json.parent, {json.name: as_json(findings, versions, seconds).encode()})
     if junit is not None:
-        replace_files(junit.parent, {junit.name: as_junit(findings, seconds).encode()})
+        rw.compare.replace_files(junit.parent, {junit.name: as_junit(findings, seconds).encode()})
     if markdown is not None:
         # the summary of a CI job may hold pages of other steps
         with markdown.open("a", encoding="utf-8") as file:

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+import rockwobble as rw
+
 if TYPE_CHECKING:
     from rockwobble.compare.check import Finding
 
@@ -47,14 +49,13 @@ def outside_findings(
         If both are given, one cannot be read, or the suite has more than one case.
     """
     from rockwobble.compare.check.outside import check_model, check_trajectory, load_model, read_outputs
-    from rockwobble.models import read_suite
 
     if model is not None and trajectory is not None:
         raise ValueError("--model and --trajectory exclude each other, got both")
     if model is not None:
         return list(check_model(load_model(model), support=support, tolerance=tolerance))
     assert trajectory is not None
-    cases = read_suite(suite).cases
+    cases = rw.read_suite(suite).cases
     if len(cases) != 1:
         raise ValueError(f"--trajectory needs a --suite with one case, got {len(cases)} in {suite}")
     given = read_outputs(trajectory)

@@ -6,11 +6,8 @@ import math
 import os
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from rockwobble.compare import CaseSweep, Grid
-    from rockwobble.models import Case, Run
+import rockwobble as rw
 
 _SAMPLE_COST = 1e-5  # computing time of a sample of a reduced model [s]: good enough to say how long
 _UNIT_COST = 1e-5  # and of one unit of time sqrt(R/g), of which a pass takes some [s]
@@ -26,7 +23,7 @@ _ROW_BYTES = 300
 _CASE_BYTES = 3000
 
 
-def time_needed(cases: Sequence[Case], runs: Sequence[Run], *, always: bool = False) -> Iterator[str]:
+def time_needed(cases: Sequence[rw.Case], runs: Sequence[rw.Run], *, always: bool = False) -> Iterator[str]:
     """Yield a line that says how long it may take; none where that is not worth a word."""
     seconds = _all_seconds(cases, runs)
     if always or seconds > _WORTH_A_WORD:
@@ -34,7 +31,7 @@ def time_needed(cases: Sequence[Case], runs: Sequence[Run], *, always: bool = Fa
 
 
 def require_feasible(
-    cases: Sequence[Case], runs: Sequence[Run], *, members: int = 1, samples: bool = True
+    cases: Sequence[rw.Case], runs: Sequence[rw.Run], *, members: int = 1, samples: bool = True
 ) -> None:
     """Refuse runs that would take years, or whose samples do not fit into the memory of this machine.
 
@@ -64,7 +61,7 @@ def require_feasible(
     )
 
 
-def require_sweep(plan: Grid | CaseSweep) -> str:
+def require_sweep(plan: rw.compare.Grid | rw.compare.CaseSweep) -> str:
     """Return how long a sweep may take, and refuse one that takes years or does not fit into memory.
 
     Raises
@@ -72,10 +69,9 @@ def require_sweep(plan: Grid | CaseSweep) -> str:
     ValueError
         Saying what it takes and what there is.
     """
-    from rockwobble.compare import Grid
     from rockwobble.models.cpus import usable_cpus
 
-    if isinstance(plan, Grid):
+    if isinstance(plan, rw.compare.Grid):
         lengths = math.fsum(motion.duration for motion in plan.motions) / len(plan.motions)
         seconds, row = plan.rows * lengths * _CELL_COST, _ROW_BYTES
     else:
@@ -94,11 +90,11 @@ def _require(seconds: float, needed: float, less_memory: str, less_time: str) ->
         raise ValueError(f"the runs take some {seconds / _YEAR:.3g} years of computing: {less_time}")
 
 
-def _all_seconds(cases: Sequence[Case], runs: Sequence[Run]) -> float:
+def _all_seconds(cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> float:
     return math.fsum(_seconds(case, run) for case in cases for run in runs)
 
 
-def _seconds(case: Case, run: Run) -> float:
+def _seconds(case: rw.Case, run: rw.Run) -> float:
     from rockwobble.compare.runs.execution import SAMPLE_STEP, equal_step
     from rockwobble.multibody.engines.registry import engine_facts
     from rockwobble.multibody.scene.froude import froude_scale

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-if TYPE_CHECKING:
-    from rockwobble.compare import Grid
-    from rockwobble.models import GroundMotion
+import rockwobble as rw
 
 _MOST_VALUES = 100_000
 Records = tuple[list[Path] | None, list[Path] | None, list[Path] | None, str | None]
@@ -24,7 +22,7 @@ def grid_of(
     gravity: float,
     plane: float | None,
     restitution: float | Literal["momentum"] | None,
-) -> Grid:
+) -> rw.compare.Grid:
     """Return the grid that the options state.
 
     Raises
@@ -32,8 +30,6 @@ def grid_of(
     ValueError
         If one is out of range, two do not go together, or a record cannot be read.
     """
-    from rockwobble.compare import Grid
-
     planar = {"plane": plane, "restitution": restitution}
     given = {name: value for name, value in planar.items() if value is not None}
     if given and models != ["planar"]:
@@ -41,7 +37,7 @@ def grid_of(
     if not 0.0 < gravity < math.inf:
         raise ValueError(f"--gravity must be positive and finite [m/s^2], got {gravity:g}")
     options = given if gravity == 9.81 else {**given, "gravity": gravity}  # the default of every case
-    return Grid(
+    return rw.compare.Grid(
         semidiagonals=values_of("--semidiagonal", sizes),
         tan_alphas=values_of("--tan-alpha", slendernesses),
         scales=values_of("--scale", scales),
@@ -77,20 +73,18 @@ def values_of(option: str, text: str) -> list[float]:
 
 def _motions(
     x: list[Path] | None, y: list[Path] | None, z: list[Path] | None, units: str | None
-) -> list[GroundMotion]:
-    from rockwobble.models import el_centro_1940, read_record
-
+) -> list[rw.GroundMotion]:
     x, y, z = x or [], y or [], z or []
     if not x and not y:
         if z or units:
             raise ValueError(
                 "--record-z and --units belong to a record, give --record-x and --record-y as well"
             )
-        return [el_centro_1940()]
+        return [rw.el_centro_1940()]
     if len(x) != len(y) or len(z) not in (0, len(x)):
         raise ValueError(
             f"each record needs both horizontal components, and all a vertical one or none: "
             f"got {len(x)}, {len(y)} and {len(z)} files"
         )
     ups: list[Path | None] = list(z) if z else [None] * len(x)
-    return [read_record(east, north, up, units=units) for east, north, up in zip(x, y, ups, strict=True)]
+    return [rw.read_record(east, north, up, units=units) for east, north, up in zip(x, y, ups, strict=True)]

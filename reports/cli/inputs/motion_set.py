@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-if TYPE_CHECKING:
-    from rockwobble.models import GroundMotion
+import rockwobble as rw
 
 DEFAULT_COUNT = 100  # of made-up motions, where the user does not say
 
 
 def motions_of(
     p695: bool, records: Path | None, synthetic: int | None, units: str | None, seed: int
-) -> tuple[list[GroundMotion], str]:
+) -> tuple[list[rw.GroundMotion], str]:
     """Return the ground motions and what they are.
 
     Raises
@@ -21,7 +19,6 @@ def motions_of(
     ValueError
         If two sources are asked for, or one cannot be read.
     """
-    from rockwobble.compare import synthetic_motions
     from rockwobble.compare.studies.fragility.motions import read_records, recorded_far_field
 
     if p695 + (records is not None) + (synthetic is not None) > 1:
@@ -33,4 +30,4 @@ def motions_of(
     if records is not None:
         return read_records(records, units=units), f"records of {records.name}"
     count = DEFAULT_COUNT if synthetic is None else synthetic
-    return synthetic_motions(count, peak=1.0, seed=seed), f"made-up ground motions, seed {seed}"
+    return rw.compare.synthetic_motions(count, peak=1.0, seed=seed), f"made-up ground motions, seed {seed}"

@@ -7,14 +7,13 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import wraps
-from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
+from typing import Annotated, Any, get_type_hints
 
 import typer
 
-from . import options
+import rockwobble as rw
 
-if TYPE_CHECKING:
-    from rockwobble.models import Case, Cylinder, GroundMotion
+from . import options
 
 # length of a free response where the user does not say [s]
 FREE_DURATION = 10.0
@@ -44,7 +43,7 @@ class Problem:
     rolling_rate: options.RollingRate = 0.0
     duration: options.Duration = None
 
-    def case(self) -> Case:
+    def case(self) -> rw.Case:
         """Return the case that they state.
 
         Raises
@@ -52,19 +51,19 @@ class Problem:
         ValueError
             If an option is out of range, or two do not go together.
         """
-        from rockwobble.models import Case, InitialState
-
         released = self.release_tilt_deg is not None
         if self.rolling_rate and not released:
             raise ValueError("--rolling-rate needs a release, give --release-tilt-deg [deg] as well")
         cylinder, motion = self.cylinder(), self._motion(still=released)
         initial = None
         if self.release_tilt_deg is not None:
-            initial = InitialState(tilt=math.radians(self.release_tilt_deg), rolling_rate=self.rolling_rate)
+            initial = rw.InitialState(
+                tilt=math.radians(self.release_tilt_deg), rolling_rate=self.rolling_rate
+            )
         duration = FREE_DURATION if motion is None and self.duration is None else self.duration
         scaled = f" × {self.scale:g}" if self.scale != 1.0 else ""
         name = "free response" if motion is None else motion.name + scaled
-        return Case(
+        return rw.Case(
             cylinder,
             motion,
             initial=initial,
@@ -74,10 +73,8 @@ class Problem:
             name=name,
         )
 
-    def cylinder(self) -> Cylinder:
+    def cylinder(self) -> rw.Cylinder:
         """Return the cylinder, by semidiagonal and slenderness or by diameter and height."""
-        from rockwobble.models import Cylinder
-
         inertias = {
             "transverse_inertia": self.transverse_inertia,
             "axial_inertia": self.axial_inertia,
@@ -87,7 +84,7 @@ class Problem:
                 raise ValueError("--diameter and --height stand in place of --semidiagonal and --tan-alpha")
             if not self.diameter > 0.0:
                 raise ValueError(f"--diameter must be positive [m], got {self.diameter:g}")
-            return Cylinder.from_dimensions(
+            return rw.Cylinder.from_dimensions(
                 base_radius=0.5 * self.diameter,
                 height=self.height,
                 mass_centre_height=self.mass_centre_height,
@@ -97,15 +94,13 @@ class Problem:
             raise ValueError("--diameter and --height go together, got one without the other")
         if self.mass_centre_height is not None:
             raise ValueError("--mass-centre-height goes with --diameter and --height")
-        return Cylinder(
+        return rw.Cylinder(
             semidiagonal=SEMIDIAGONAL if self.semidiagonal is None else self.semidiagonal,
             tan_alpha=TAN_ALPHA if self.tan_alpha is None else self.tan_alpha,
             **inertias,
         )
 
-    def _motion(self, *, still: bool) -> GroundMotion | None:
-        from rockwobble.models import el_centro_1940, read_record
-
+    def _motion(self, *, still: bool) -> rw.GroundMotion | None:
         x, y, z, scale = self.record_x, self.record_y, self.record_z, self.scale
         whole = self.record
         if not (math.isfinite(scale) and scale > 0.0):
@@ -113,14 +108,14 @@ class Problem:
         if whole is not None:
             if any(path is not None for path in (x, y, z)):
                 raise ValueError("--record holds all components, got --record-x, -y or -z beside it")
-            return read_record(whole, units=self.units).scaled(scale)
+            return rw.read_record(whole, units=self.units).scaled(scale)
         if x is None and y is None:
             if z is not None or self.units is not None:
                 raise ValueError(
                     "--record-z and --units belong to a record, give --record-x and --record-y as well"
                 )
             if not still:
-                return el_centro_1940().scaled(scale)
+                return rw.el_centro_1940().scaled(scale)
             if scale != 1.0:
                 raise ValueError("--scale belongs to a record, give --record-x and --record-y as well")
             return None
@@ -130,7 +125,7 @@ class Problem:
                 f"both horizontal components are needed, got {given} without {missing}; one file of all is "
                 "given by --record"
             )
-        return read_record(x, y, z, units=self.units).scaled(scale)
+        return rw.read_record(x, y, z, units=self.units).scaled(scale)
 
 
 def states_problem(command: Callable[..., None]) -> Callable[..., None]:

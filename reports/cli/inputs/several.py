@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
-if TYPE_CHECKING:
-    from rockwobble.models import Cylinder, Run
+import rockwobble as rw
 
 
-def cylinders_of(given: Sequence[str] | None, semidiagonal: float, tan_alpha: float) -> dict[str, Cylinder]:
+def cylinders_of(
+    given: Sequence[str] | None, semidiagonal: float, tan_alpha: float
+) -> dict[str, rw.Cylinder]:
     """Return the cylinders of texts NAME=R,TAN_ALPHA; without any the one of the two numbers.
 
     Raises
@@ -17,12 +18,10 @@ def cylinders_of(given: Sequence[str] | None, semidiagonal: float, tan_alpha: fl
     ValueError
         If a text has another form, or a name comes twice.
     """
-    from rockwobble.models import Cylinder
-
     if not given:
-        body = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
+        body = rw.Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
         return {f"R = {semidiagonal:g} m, tan α = {tan_alpha:g}": body}
-    found: dict[str, Cylinder] = {}
+    found: dict[str, rw.Cylinder] = {}
     for text in given:
         name, sign, numbers = (part.strip() for part in text.partition("="))
         sizes = numbers.split(",")
@@ -34,18 +33,18 @@ def cylinders_of(given: Sequence[str] | None, semidiagonal: float, tan_alpha: fl
             raise ValueError(f"--cylinder must be NAME=R,TAN_ALPHA such as pier=6,0.2, got {text!r}")
         if name in found:
             raise ValueError(f"--cylinder {name} is given twice")
-        found[name] = Cylinder(semidiagonal=size, tan_alpha=slenderness)
+        found[name] = rw.Cylinder(semidiagonal=size, tan_alpha=slenderness)
     return found
 
 
 def methods_of(
-    body: Cylinder,
+    body: rw.Cylinder,
     models: Sequence[str] | None,
     engines: Sequence[str] | None,
     supports: Sequence[str] | None,
     given: Mapping[str, Any],
     time_step: float | Literal["auto"] | None,
-) -> list[str | Run]:
+) -> list[str | rw.Run]:
     """Return reduced models by name, and each engine with those of the supports that it has.
 
     Parameters
@@ -64,17 +63,15 @@ def methods_of(
     ValueError
         If an engine has none of the supports, or nothing has a setting.
     """
-    from rockwobble.compare import default_runs, with_settings
     from rockwobble.compare.studies.fragility.methods import MODELS
-    from rockwobble.models import Case, Run, el_centro_1940
     from rockwobble.multibody.engines.registry import find_engine
 
-    chosen: list[str | Run] = [] if models == ["none"] else list(models or MODELS)
+    chosen: list[str | rw.Run] = [] if models == ["none"] else list(models or MODELS)
     if not engines:
         if supports or given or time_step is not None:
             raise ValueError("--support, --set and --time-step are for engines, give --engine as well")
         return chosen
-    runs: list[Run] = []
+    runs: list[rw.Run] = []
     for name in engines:
         able = [each for each in supports or () if each in find_engine(name).supports]
         if supports and len(able) < len(supports):
@@ -82,9 +79,9 @@ def methods_of(
             if not able:
                 raise ValueError(f"{name} has no support {', '.join(lacks)}")
             print(f"{name} has no support {', '.join(lacks)} and is left out there")
-        runs += default_runs([name], able or None)
+        runs += rw.compare.default_runs([name], able or None)
     if time_step is not None:
-        runs = [Run(run.engine, run.support, time_step) for run in runs]
+        runs = [rw.Run(run.engine, run.support, time_step) for run in runs]
     if given:
-        runs = list(with_settings(Case(body, el_centro_1940()), runs, given))
+        runs = list(rw.compare.with_settings(rw.Case(body, rw.el_centro_1940()), runs, given))
     return [*chosen, *runs]

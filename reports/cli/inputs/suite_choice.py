@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import typer
 
-from ...pages.case_words import group_of
+import rockwobble as rw
+
+from ...pages.words.cases import group_of
 from .estimate import time_needed
 from .problem import PROBLEM, refuse
-
-if TYPE_CHECKING:
-    from rockwobble.models import Case, Run, Suite
 
 
 def refuse_problem_options(context: typer.Context, suite: str) -> None:
@@ -27,36 +26,33 @@ def refuse_problem_options(context: typer.Context, suite: str) -> None:
 
 
 def chosen_runs(
-    suite: Suite, engines: Sequence[str] | None, supports: Sequence[str] | None, time_step: Any
-) -> list[Run]:
+    suite: rw.Suite, engines: Sequence[str] | None, supports: Sequence[str] | None, time_step: Any
+) -> list[rw.Run]:
     """Return the runs of a suite, with those of the options in their place.
 
     Engines and supports that are named choose among the runs of the file; one that the file does not have
     is added with each of the others. A time step replaces all others.
     """
-    from rockwobble.compare import default_runs
-    from rockwobble.models import Run
-
     runs = list(suite.runs)
     if not runs:
-        runs = list(default_runs(engines or None, supports or None))
+        runs = list(rw.compare.default_runs(engines or None, supports or None))
     else:
         if engines:
             places = list(dict.fromkeys(run.support for run in runs))
             known = {run.engine for run in runs}
             runs = [run for run in runs if run.engine in engines]
-            runs += [Run(engine, place) for engine in engines if engine not in known for place in places]
+            runs += [rw.Run(engine, place) for engine in engines if engine not in known for place in places]
         if supports:
             makers = list(dict.fromkeys(run.engine for run in runs))
             known = {run.support for run in runs}
             runs = [run for run in runs if run.support in supports]
-            runs += [Run(maker, place) for place in supports if place not in known for maker in makers]
+            runs += [rw.Run(maker, place) for place in supports if place not in known for maker in makers]
     if time_step is not None:
-        runs = [Run(run.engine, run.support, time_step, **run.settings) for run in runs]
+        runs = [rw.Run(run.engine, run.support, time_step, **run.settings) for run in runs]
     return runs
 
 
-def without_missing(runs: Sequence[Run], named: Sequence[str] | None) -> tuple[list[Run], list[str]]:
+def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> tuple[list[rw.Run], list[str]]:
     """Return the runs whose engines are installed or named by the user, and the engines left out.
 
     Raises
@@ -64,9 +60,7 @@ def without_missing(runs: Sequence[Run], named: Sequence[str] | None) -> tuple[l
     ValueError
         If none is left.
     """
-    from rockwobble.compare import missing_engines
-
-    missing = [name for name in missing_engines() if name not in (named or ())]
+    missing = [name for name in rw.compare.missing_engines() if name not in (named or ())]
     kept = [run for run in runs if run.engine not in missing]
     left_out = [name for name in missing if any(run.engine == name for run in runs)]
     if not kept:
@@ -74,7 +68,7 @@ def without_missing(runs: Sequence[Run], named: Sequence[str] | None) -> tuple[l
     return kept, left_out
 
 
-def describe_suite(name: str, cases: Sequence[Case], runs: Sequence[Run]) -> Iterator[str]:
+def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
     """Yield the lines that echo what will run, and how long it may take."""
     from rockwobble.compare.runs.choice import run_labels
 

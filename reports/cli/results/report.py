@@ -7,7 +7,10 @@ from typing import Annotated
 
 import typer
 
+from rockwobble.compare.storage.files import require_writable
+
 from ...console.terminal import interruptible, user_input
+from ...pages.registry import KINDS, redrawn
 
 Folder = Annotated[Path, typer.Argument(help="Folder that a command has written.", show_default=False)]
 Out = Annotated[
@@ -28,10 +31,7 @@ def report(folder: Folder, out: Out = None) -> None:
     """
     place = folder if out is None else out
     with interruptible(), user_input():
-        from rockwobble.compare.storage.files import require_writable
         from rockwobble.compare.storage.manifest import read_manifests, write_pages
-
-        from ...pages.registry import KINDS, redrawn
 
         require_writable(place)
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ...console.terminal import user_input
+from ...pages.table import number
 
 if TYPE_CHECKING:
     from rockwobble.compare.storage.manifest import Manifest
@@ -59,8 +60,6 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from ...pages.table import number
-
     table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
     table.add_column(no_wrap=True)
     table.add_column(overflow="fold")
@@ -87,8 +86,6 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
 
 
 def _text(value: object) -> str:
-    from ...pages.table import number
-
     if isinstance(value, Mapping):
         return str(value.get("name", value.get("label", "")))
     if isinstance(value, list):

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
+import rockwobble as rw
+
+from ...console.progress import shown_progress
 from ...console.provenance import command_line
 from ...console.terminal import complain, interruptible, user_input
+from ...pages.words.cases import describe
 from ..inputs import options
+from ..inputs.estimate import require_feasible, time_needed
 from ..inputs.method_values import settings
 from ..inputs.problem import Problem, given_options, refuse, states_problem
-
-if TYPE_CHECKING:
-    from rockwobble.compare import Comparison
 
 Stored = Annotated[
     Path | None,
@@ -54,48 +56,34 @@ def view(
     """
     with interruptible():
         with user_input():
-            from rockwobble.compare import (
-                Comparison,
-                compare,
-                replace_files,
-                require_runnable,
-                require_writable,
-                with_settings,
-            )
-            from rockwobble.models import Run
-
-            from ..inputs.estimate import require_feasible
-
             if folder is not None:
                 others = set(given_options(context)) - {"folder", "case_name", "out", "opened"}
                 refuse(context, others, "states a run and does not go with a stored one")
-                comparison = Comparison.load(folder)
+                comparison = rw.Comparison.load(folder)
                 name = _chosen_case(comparison, case_name)
             elif case_name is not None:
                 raise ValueError("--case chooses from a folder, give the folder of a comparison as well")
             else:
                 case = problem.case()
-                (run,) = with_settings(case, [Run(engine, support, time_step)], settings(setting))
+                (run,) = rw.compare.with_settings(
+                    case, [rw.Run(engine, support, time_step)], settings(setting)
+                )
                 require_feasible([case], [run])
-                require_runnable(case, run)
+                rw.compare.require_runnable(case, run)
                 name = case.name
-            require_writable(out)
+            rw.compare.require_writable(out)
         if folder is None:
-            from ...console.progress import shown_progress
-            from ...pages.case_words import describe
-            from ..inputs.estimate import time_needed
-
             for line in (*describe(case), *time_needed([case], [run])):
                 print(line)
             with user_input(), shown_progress() as tell:
-                comparison = compare(case, runs=[run], progress=tell)
+                comparison = rw.compare.compare(case, runs=[run], progress=tell)
         with user_input():
             from ...pages.comparison.report import view_page
 
             page = view_page(comparison, name, command_line())
             if page is None:
                 raise ValueError(f"there is nothing to play in {name!r}: the cylinder never uplifts")
-            replace_files(out, {"view.html": page.html().encode()})
+            rw.compare.replace_files(out, {"view.html": page.html().encode()})
     print(f"\nWritten to {out}: view.html")
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser
@@ -103,7 +91,7 @@ def view(
         webbrowser.open((out / "view.html").resolve().as_uri())
 
 
-def _chosen_case(comparison: Comparison, name: str | None) -> str:
+def _chosen_case(comparison: rw.Comparison, name: str | None) -> str:
     names = list(comparison.cases)
     if name is None and len(names) > 1:
         complain(f"{len(names)} cases, the first is shown; --case chooses: {'; '.join(names[:6])} ...")

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget
+from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, Comparison, ErrorBudget
 
 from ..heat import names
 from ..palette import Style, pale
@@ -16,9 +15,6 @@ from ..picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text
 from ..thinning import envelope
 from .tilt import WINDOW
 from .view import CaseView, rows_of
-
-if TYPE_CHECKING:
-    from rockwobble.compare import Comparison
 
 # blue, pale orange and vermilion of Okabe and Ito: apart in every kind of colour vision and in grey
 PARTS = {

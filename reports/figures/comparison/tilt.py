@@ -4,22 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from functools import partial
 
 import numpy as np
 
-from rockwobble.compare import AGREEMENT, make_pair
+from rockwobble.compare import AGREEMENT, Comparison, make_pair
 
 from ..palette import Style
-from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
-from ..svg import figure
+from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Pictures, Rule
 from ..thinning import envelope
 from .view import CaseView, case_views
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from rockwobble.compare import Comparison
 
 # smaller differences are drawn here: a logarithm has no zero [alpha]
 SMALLEST = 1e-7
@@ -29,10 +23,9 @@ _FALLS = 1.5  # [alpha] where tilts are cut if one goes farther
 _HEIGHT = 2.3  # [inch]
 
 
-def draw(comparison: Comparison, case: str) -> Figure:
-    """Return a matplotlib figure of one case."""
-    (view,) = (view for view in case_views(comparison) if view.case.name == case)
-    return figure(tilt_picture(view))
+def pictures(comparison: Comparison) -> Pictures:
+    """Return what makes the picture of each case, by its name."""
+    return {view.case.name: partial(tilt_picture, view) for view in case_views(comparison)}
 
 
 def tilt_picture(view: CaseView, name: str = "figure") -> Picture:

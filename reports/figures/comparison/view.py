@@ -5,17 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from rockwobble.compare import own_model
+import pandas as pd
+
+from rockwobble.compare import Comparison, ErrorBudget, own_model
 from rockwobble.models import Case, Diagnostic, Run, Trace
 
 from ..palette import Style, label_styles
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockwobble.compare import Comparison, ErrorBudget
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)

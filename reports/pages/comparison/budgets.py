@@ -2,17 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import pandas as pd
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING, findings
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
 from ...figures.comparison.view import rows_of
-from ..words import sentence
+from ..words.sentences import sentence
 from .findings import WORDS
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 _LISTED = 10
 

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas as pd
 
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
 from ...figures.comparison.view import rows_of
 from ..table import Row
-from ..words import sentence
-
-if TYPE_CHECKING:
-    import pandas as pd
+from ..words.sentences import sentence
 
 WORDS = "comparison/external.md.j2"
 

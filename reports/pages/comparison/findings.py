@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas as pd
 
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
-from ..diagnostic_words import counted, failure, sentences
-from ..words import sentence
+from ..words.diagnostics import counted, failure, sentences
+from ..words.sentences import sentence
 from .external import external_sentences, mistakes, scope, within
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 WORDS = "comparison/findings.md.j2"
 

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
 
-from rockwobble.compare import WORTH_EXPLAINING
+from rockwobble.compare import WORTH_EXPLAINING, Comparison
 
 from ...figures.comparison.budget import all_budgets_picture, budget_picture, parts_picture
 from ...figures.comparison.contact import azimuth_picture, contact_picture, turn_picture
@@ -18,17 +17,14 @@ from ...figures.comparison.view import CaseView, case_views, own_rows
 from ...figures.picture import Layer, Line, Picture
 from ...figures.svg import svg
 from ...figures.thinning import kept_points
-from ..case_words import describe, group_of
 from ..page import Page
-from ..words import fragment
+from ..words.cases import describe, group_of
+from ..words.sentences import fragment
 from .budgets import budget_sentences, divergence_sentences
 from .external import external_rows
 from .findings import counted_remarks, finding_sentences, headline
 from .matrix import matrix_tables
 from .tables import all_columns, diverging_runs, group_rows, main_rows, meanings, worst_first
-
-if TYPE_CHECKING:
-    from rockwobble.compare import Comparison
 
 # up to so many cases each has a part of the report of its own
 SINGLY = 3

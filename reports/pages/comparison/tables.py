@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import pandas as pd
 
 from rockwobble.compare import SUMMARY_COLUMNS
 
 from ...figures.comparison.view import own_rows, rows_of
-from ..case_words import group_of
 from ..table import Row
-
-if TYPE_CHECKING:
-    import pandas as pd
+from ..words.cases import group_of
 
 
 def main_rows(rows: pd.DataFrame) -> list[Row]:

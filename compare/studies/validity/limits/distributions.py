@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from ....metrics.distributions import log_ratios
 from ....metrics.order_statistics import quantile_interval
@@ -13,9 +13,6 @@ from ...ensemble.tables import contrast_row, pairs
 from ..motions import EL_CENTRO
 from ..records import FLAT, HALVED, PERTURBED, RECESS
 from .numbers import Array, Numbers, Tables, column, largest, quantile, reached
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 POINT = ["tan_alpha", "semidiagonal", "intensity"]
 # what is held against what, and its name in the numbers; the last says how far a ring has converged
@@ -41,8 +38,6 @@ def contrasts(tables: Tables) -> pd.DataFrame:
         of the two peaks of a record the median, what 5 % and 95 % of the records do not exceed, each with its
         95 % interval, and more. 0 and infinity: it overturns by one of the two alone.
     """
-    import pandas as pd
-
     rows = []
     for point, runs in tables["records"].groupby(POINT, sort=False):
         for method, against in CONTRASTS:
@@ -104,8 +99,6 @@ def cells(tables: Tables) -> pd.DataFrame:
         overturning: friction_90 over tan(alpha), normal_10 [weights] and moment_90, which nine in ten do not
         exceed, or keep, and lost, the share that loses contact.
     """
-    import pandas as pd
-
     rows = []
     table = tables["peaks"]
     for point, members in table[table["motion"] != EL_CENTRO].groupby(POINT, sort=False):

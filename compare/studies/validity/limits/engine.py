@@ -3,16 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
 from ....comparison.prediction import IN_TIME
 from ..rings import FREE
 from .numbers import Numbers, Tables, column, first_failing, largest, quantile, up_to
-
-if TYPE_CHECKING:
-    import pandas as pd
 
 ALIKE = 0.01  # of period or angle of turn: below what a test on a shake table would see
 SMALL = 0.05  # of the peak tilt: less cannot be told from chance
@@ -140,8 +137,6 @@ def soft_contact(tables: Tables) -> Numbers:
 
 def damping(tables: Tables) -> pd.DataFrame:
     """Return the least and largest ratio of the peak, and the largest loss, by the damping of contact."""
-    import pandas as pd
-
     rows = []
     for ratio, own in tables["contact"].groupby("damping"):
         failed = (own["free_outcome"] == "failed") | (own["outcome"] == "failed")

@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING
 
 import numpy as np
+import pandas as pd
 
+from rockwobble.compare.studies.validity import Validity
+from rockwobble.compare.studies.validity.limits import Tables
 from rockwobble.compare.studies.validity.limits.distributions import CONTRASTS, POINT, ratios
 from rockwobble.compare.studies.validity.limits.numbers import Array, column
 from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
 from rockwobble.compare.studies.validity.rings import FREE
 
-from .palette import DARK, GREY, ORDER, Style, mark_styles
-from .picture import Axis, Line, Panel, Picture, Rule, ecdf
-from .validity_maps import map_pictures
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockwobble.compare.studies.validity.limits import Tables
+from ..palette import DARK, GREY, ORDER, Style, mark_styles
+from ..picture import Axis, Line, Panel, Picture, Pictures, Rule, at_hand, ecdf
+from .maps import map_pictures
 
 # of a method, in words
 METHODS = {
@@ -40,6 +37,11 @@ _STYLES = {
 _RATIO_ENDS = (0.2, 5.0)  # a ratio beyond is drawn at the end
 _LEAST = 1e-9  # what a logarithmic axis shows of nothing
 _ONE = Rule(at=1.0, axis="y", colour=GREY, dash="solid")
+
+
+def pictures(found: Validity) -> Pictures:
+    """Return what makes each figure of the report, by its name."""
+    return at_hand(*validity_pictures(found.tables))
 
 
 def validity_pictures(tables: Tables) -> list[Picture]:

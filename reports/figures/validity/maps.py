@@ -2,21 +2,16 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import pandas as pd
 
+from rockwobble.compare.studies.validity.limits import Tables
 from rockwobble.compare.studies.validity.limits.distributions import cells
 from rockwobble.compare.studies.validity.limits.needs import MODERATE
 
-from .heat import Gap, Heat, Shades, contour, names
-from .palette import DARK, GREY, ORDER, PALE, Style
-from .picture import Array, Axis, Line, Panel, Picture
-
-if TYPE_CHECKING:
-    import pandas as pd
-
-    from rockwobble.compare.studies.validity.limits import Tables
+from ..heat import Gap, Heat, Shades, contour, names
+from ..palette import DARK, GREY, ORDER, PALE, Style
+from ..picture import Array, Axis, Line, Panel, Picture
 
 _FREE_PANELS = 4
 _FAR = 1e3  # what infinite is drawn as: beyond every scale

@@ -1,0 +1,46 @@
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from rockwobble.compare.storage.manifest import made_now, read_results, write_results
+from rockwobble.reports.pages.registry import redrawn
+from rockwobble.reports.pages.versions import KIND, versions_page
+
+from .engine_versions import COLUMNS, made_table, minor_releases
+
+
+def test_the_last_patch_of_each_minor_release() -> None:
+    listed = ["4.0.0", "3.10.0", "3.9.0", "3.4.1", "3.4.0", "3.3.7", "3.2.9"]
+    assert minor_releases(listed, (3, 3)) == ["3.3.7", "3.4.1", "3.9.0", "3.10.0", "4.0.0"]
+    # the newest is always among them
+    assert minor_releases(listed, (3, 3), 2) == ["3.3.7", "3.9.0", "4.0.0"]
+
+
+@pytest.fixture
+def table() -> pd.DataFrame:
+    row = dict.fromkeys(COLUMNS, math.nan) | {"engine": "mujoco", "uplift": "holds", "remark": ""}
+    broken = row | {"version": "3.3.7", "uplift": "", "remark": "turn: AttributeError: no such name"}
+    return made_table(
+        [broken, row | {"version": "3.4.0", "el_centro": 1e-5}, row | {"version": "4.0.0", "el_centro": 4e-5}]
+    )
+
+
+def test_the_page_names_the_release_that_moved_a_figure(table: pd.DataFrame) -> None:
+    text = versions_page(table, made_now(KIND)).markdown()
+    assert (
+        "**1 release has moved the error under El Centro by more than a tenth: MuJoCo 4.0.0 (4 times).**"
+        in text
+    )
+    assert "no such name" in text
+
+
+def test_the_page_is_drawn_again_from_its_files(table: pd.DataFrame, tmp_path: Path) -> None:
+    made = made_now(KIND)
+    pages = versions_page(table, made).files()
+    write_results(tmp_path, made, {"versions": table}, pages=pages)
+    assert read_results(tmp_path, KIND).table("versions").equals(table)
+    assert set(redrawn(KIND, tmp_path)) == set(pages) == {"versions.md", "versions.html"}

@@ -1,0 +1,87 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from showing import LONGEST, shows_itself
+
+import rockwobble as rw
+from rockwobble.models.shown import Brief
+
+PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0)
+
+
+@pytest.fixture(scope="module")
+def comparison() -> rw.Comparison:
+    other = rw.Case(PIER, initial=RELEASE.initial, duration=1.0, gravity=9.0, name="lighter")
+    suite = rw.Suite([RELEASE, other], [])
+    return rw.compare.compare(suite, runs=[rw.Run(None, "flat")], reference=rw.Run(None, "recess"))
+
+
+def test_trace_shows_itself():
+    shows_itself(rw.simulate(RELEASE), "recess model", "completed at 1 s")
+
+
+def test_comparison_shows_itself_case_by_case(comparison):
+    shows_itself(comparison, "cases 2")
+    first, second = comparison.plot(), comparison.plot("lighter")
+    assert "lighter" not in first.get_suptitle()
+    assert not np.array_equal(*(each.axes[0].lines[0].get_ydata() for each in (first, second)))
+
+
+def test_ensemble_shows_itself():
+    found = rw.ensemble(RELEASE, runs=[], size=4, workers=1)
+    shows_itself(found, "4, starts of free response", "recess model, flat-ground model", "overturned 0 of 8")
+
+
+def test_values_are_a_line(comparison):
+    trace, *_ = comparison.traces.values()
+    pair = rw.compare.make_pair(PIER, trace, trace)
+    record = rw.el_centro_1940()
+    values = [
+        PIER,
+        record,
+        RELEASE,
+        RELEASE.initial,
+        trace.run,
+        pair,
+        rw.Suite(
+            [rw.Case(PIER, record.scaled(scale), name=str(scale)) for scale in (1.0, 2.0, 3.0, 4.0)], []
+        ),
+        rw.External(path="shake table.csv"),
+        rw.compare.Grid(semidiagonals=range(1, 100), tan_alphas=[0.2], scales=[1.0], motions=[record]),
+        rw.compare.CaseSweep([RELEASE], [rw.Run(None, "recess")]),
+        rw.compare.Job(case=RELEASE, run=trace.run),
+        *trace.diagnostics,
+    ]
+    for value in values:
+        line = repr(value)
+        assert line.startswith(type(value).__name__)
+        assert line.isprintable()
+        assert len(line) <= LONGEST, line
+    assert f"time=array({len(pair.time)},)" in repr(pair)
+    assert "99 items" in repr(values[8])
+
+
+def test_a_line_says_of_what_is_long_how_much_there_is():
+    import dataclasses
+
+    @dataclasses.dataclass(repr=False)
+    class Made(Brief):
+        share: float
+        few: tuple[int, ...]
+        many: list[int]
+        table: np.ndarray
+        words: str
+
+    made = Made(1.0 / 3.0, (1, 2), [1] * 9, np.zeros((4, 2)), "x" * 200)
+    assert repr(made) == "Made(share=0.333333, few=(1, 2), many=9 items, table=array(4, 2), words=a str)"
+
+
+def test_names_are_told_to_whoever_completes_them():
+    assert {"simulate", "Case", "compare", "__version__"} <= set(dir(rw))
+    assert set(rw.compare.__all__) <= set(dir(rw.compare))
+    for name in rw.compare.__all__:
+        assert getattr(rw.compare, name) is not None
+    with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
+        _ = rw.compare.nothing
