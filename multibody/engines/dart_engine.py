@@ -21,7 +21,6 @@ from __future__ import annotations
 import contextlib
 import math
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 
@@ -29,6 +28,7 @@ from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
 from .dart_scene import DartScene, build, quaternions, rotation_vector
+from .declared import Declared
 from .scene_counts import SceneCounts
 from .settings.dart import DartSettings
 
@@ -45,34 +45,10 @@ _FACTS = EngineFacts(
 )
 
 
-class DartEngine:
+class DartEngine(Declared):
     """DART 6: free joint, ground plane, contact found by ODE."""
 
-    @property
-    def supports(self) -> tuple[str, ...]:
-        """Supports that it has."""
-        return ("recess", "flat")
-
-    @property
-    def uplifts(self) -> bool:
-        """The base is in contact as well as the rim."""
-        return True
-
-    @property
-    def facts(self) -> EngineFacts:
-        """Measured by halving the step."""
-        return _FACTS
-
-    def version(self) -> str:
-        """Version of the package."""
-        from importlib.metadata import version
-
-        return version("dartpy")
-
-    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
-        """Return every setting; see `DartSettings`."""
-        resolved = DartSettings.resolve(given, scene.time_step * scene.unit_time)
-        return {name: getattr(resolved, name) for name in DartSettings.__dataclass_fields__}
+    package, settings_type, facts = "dartpy", DartSettings, _FACTS
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:

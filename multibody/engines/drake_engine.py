@@ -20,6 +20,7 @@ from ..facts import EngineFacts
 from ..kinematics import about_vertical, axis_of, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
 from ..scene.friction import body_friction
+from .declared import Declared
 from .scene_counts import SceneCounts
 from .settings.drake import DrakeSettings
 
@@ -34,34 +35,10 @@ _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 _FACTS = EngineFacts(title="Drake", step_time=8e-5, release_error=2e-4, uplift_error=5e-5, smooth_uplift=True)
 
 
-class DrakeEngine:
+class DrakeEngine(Declared):
     """Drake: multibody plant in discrete time, half space, cylinder with points on its rim."""
 
-    @property
-    def supports(self) -> tuple[str, ...]:
-        """Supports that it has."""
-        return ("recess", "flat")
-
-    @property
-    def uplifts(self) -> bool:
-        """The points of the rim carry a flat base."""
-        return True
-
-    @property
-    def facts(self) -> EngineFacts:
-        """Measured by halving the step."""
-        return _FACTS
-
-    def version(self) -> str:
-        """Version of the package."""
-        from importlib.metadata import version
-
-        return version("drake")
-
-    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
-        """Return every setting; see `DrakeSettings`."""
-        resolved = DrakeSettings.resolve(given, scene.time_step * scene.unit_time)
-        return {name: getattr(resolved, name) for name in DrakeSettings.__dataclass_fields__}
+    package, settings_type, facts = "drake", DrakeSettings, _FACTS  # its points of the rim carry a flat base
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:

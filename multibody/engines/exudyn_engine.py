@@ -19,40 +19,19 @@ from ..facts import EngineFacts
 from ..kinematics import axis_of
 from ..protocol import Array, Scene, Settings, Stepper, Steps
 from ..start import Start
+from .declared import Declared
 from .scene_counts import SceneCounts
 from .settings.exudyn import ExudynSettings
 
 _FACTS = EngineFacts(title="Exudyn", step_time=4e-5, order=2.0)
 
 
-class ExudynEngine:
+class ExudynEngine(Declared):
     """Exudyn: rigid body on Euler parameters, joint of a rolling disc, implicit integration."""
 
-    @property
-    def supports(self) -> tuple[str, ...]:
-        """Open ground only: the joint lets the rim roll out."""
-        return ("flat",)
-
-    @property
-    def uplifts(self) -> bool:
-        """The joint knows the rim only, not the base."""
-        return False
-
-    @property
-    def facts(self) -> EngineFacts:
-        """Both of its rules are of second order."""
-        return _FACTS
-
-    def version(self) -> str:
-        """Version of the package."""
-        from importlib.metadata import version
-
-        return version("exudyn")
-
-    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
-        """Return every setting; see `ExudynSettings`."""
-        resolved = ExudynSettings.resolve(given)
-        return {name: getattr(resolved, name) for name in ExudynSettings.__dataclass_fields__}
+    package, settings_type, facts = "exudyn", ExudynSettings, _FACTS  # both rules are of second order
+    supports = ("flat",)  # open ground only: the joint lets the rim roll out
+    uplifts = False  # the joint knows the rim only, not the base
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:

@@ -13,6 +13,7 @@ from ..kinematics import axis_of
 from ..protocol import Array, Scene, Settings, Stepper, Steps, Wall
 from ..scene.ring_geometry import check_start
 from ..scene.ring_settings import RingSettings, take_ring
+from .declared import Declared
 from .mujoco_scene import compile_scene
 from .mujoco_start import set_start, to_world
 from .scene_counts import SceneCounts
@@ -60,38 +61,18 @@ _FACTS = EngineFacts(
 )
 
 
-class MujocoEngine:
+class MujocoEngine(Declared):
     """MuJoCo 4: free joint, ground plane, analytic plane-cylinder contact."""
 
-    @property
-    def supports(self) -> tuple[str, ...]:
-        """Supports that have a scene file."""
-        return ("recess", "flat", "ring")
-
-    @property
-    def uplifts(self) -> bool:
-        """The base is in contact as well as the rim."""
-        return True
-
-    @property
-    def facts(self) -> EngineFacts:
-        """Measured by halving the step."""
-        return _FACTS
-
-    def version(self) -> str:
-        """Version of the package."""
-        import mujoco
-
-        return str(mujoco.__version__)
+    package, settings_type, facts = "mujoco", MujocoSettings, _FACTS
+    supports = ("recess", "flat", "ring")
 
     def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
         """Return every setting; see `MujocoSettings` and, for the support "ring", `RingSettings`."""
         others, ring = take_ring(given, scene.support, scene.body.tan_alpha)
         if ring is not None:
             check_start(ring, scene)
-        resolved = MujocoSettings.resolve(others, scene.time_step * scene.unit_time)
-        found = {name: getattr(resolved, name) for name in MujocoSettings.__dataclass_fields__}
-        return found | (ring.as_dict() if ring is not None else {})
+        return super().settings(others, scene) | (ring.as_dict() if ring is not None else {})
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:

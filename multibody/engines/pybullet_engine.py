@@ -20,6 +20,7 @@ import numpy as np
 from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
+from .declared import Declared
 from .pybullet_scene import make_cylinder, make_ground, quiet
 from .scene_counts import SceneCounts
 from .settings.pybullet import PybulletSettings
@@ -40,34 +41,10 @@ _FACTS = EngineFacts(
 )
 
 
-class PybulletEngine:
+class PybulletEngine(Declared):
     """Bullet 3 in double precision: plane, cylinder shape made in code, multibody solver."""
 
-    @property
-    def supports(self) -> tuple[str, ...]:
-        """Supports that it has."""
-        return ("recess", "flat")
-
-    @property
-    def uplifts(self) -> bool:
-        """The base is in contact as well as the rim."""
-        return True
-
-    @property
-    def facts(self) -> EngineFacts:
-        """Measured by halving the step."""
-        return _FACTS
-
-    def version(self) -> str:
-        """Version of the package; the module itself tells only its interface number."""
-        from importlib.metadata import version
-
-        return version("pybullet")
-
-    def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
-        """Return every setting; see `PybulletSettings`."""
-        resolved = PybulletSettings.resolve(given, scene.time_step * scene.unit_time)
-        return {name: getattr(resolved, name) for name in PybulletSettings.__dataclass_fields__}
+    package, settings_type, facts = "pybullet", PybulletSettings, _FACTS
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:

@@ -43,7 +43,7 @@ class ExudynSettings:
     iterations: int = 25
 
     @classmethod
-    def resolve(cls, given: Mapping[str, Any]) -> ExudynSettings:
+    def resolve(cls, given: Mapping[str, Any], time_step: float) -> ExudynSettings:
         """Return the settings, with those `given` in place of the defaults.
 
         Raises
