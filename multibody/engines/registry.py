@@ -54,13 +54,13 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             standard=_WHEEL,
         ),
         "dart": _Entry(
-            "dartpy", ".dart_engine:DartEngine", "pip install 'rockwobble[dart]'", standard=not _WHEEL
+            "dartpy", ".dart_engine:DartEngine", "pip install 'dartpy>=6.20,<7'", standard=not _WHEEL
         ),
         "drake": _Entry(
-            "drake", ".drake_engine:DrakeEngine", "pip install 'rockwobble[drake]'", "pydrake", standard=False
+            "drake", ".drake_engine:DrakeEngine", "pip install 'drake>=1.51'", "pydrake", standard=False
         ),
         "exudyn": _Entry(
-            "exudyn", ".exudyn_engine:ExudynEngine", "pip install 'rockwobble[exudyn]'", standard=False
+            "exudyn", ".exudyn_engine:ExudynEngine", "pip install 'exudyn>=1.13.6,<2'", standard=False
         ),
     }
 )

