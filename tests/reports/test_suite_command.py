@@ -19,7 +19,7 @@ from rockwobble.models import Case, Cylinder, InitialState, Run, read_suite
 from rockwobble.reports.cli.inputs.suite_choice import chosen_runs
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.comparison import report
-from rockwobble.reports.pages.words.sentences.cases import group_of
+from rockwobble.reports.pages.words.cases import group_of
 
 PAGE_LIMIT = 8_000_000  # [bytes]
 CASES = 6
