@@ -11,7 +11,8 @@ Contact has no stiffness to choose: after a step the rim's lowest point rests or
   under the load, and then under the lean: ground that is the same in every direction knows no difference.
 * Dantzig's method bounds friction by what the load would be without it, and lets a squat rim slip; the
   nonsmooth Gauss-Seidel method does not, and is exact for one contact. With four it takes hundreds of sweeps,
-  so it has the rim, and Dantzig's method what stands.
+  so it has the rim, and Dantzig's method what stands. There its friction is a box, which is turned into the
+  load: a base that slides across its load feels up to 41 % more.
 * Rotation vectors below 1e-3 rad lose a sixth of their cube in each step. So the cylinder, which is round, is
   turned about its axis by one radian.
 """
@@ -34,7 +35,8 @@ from .settings.dart import DartSettings
 
 _LEANS = 1e-8  # [rad] from which a lean has a direction that is not of what stood
 _OPEN = 1e-8  # [rad] lean at which the base is open; standing it stays below 5e-9
-# of b, eccentricities of the load: from the first the scene follows it, at the second the base may open
+# eccentricities of the load: from the first, of b, or of the friction, the scene follows it, at the second,
+# of b, the base may open
 _LOADED, _OPENING = 0.5, 0.999
 _REDUCTION, _FASTEST_REDUCTION = 0.01, 1e-3  # [-], [m/s] by which DART itself reduces a depth
 _FAR = 1e3  # of the height: ODE ends the process where something is too far away
@@ -114,6 +116,7 @@ class _DartStepper:
         cosine, sine, root = math.cos, math.sin, math.sqrt
         b, h, arm = body.base_radius, body.mass_centre_height, body.mass_centre_height / body.base_radius
         excited, gravity, heading = bool(self._scene.components), self._scene.gravity, self._heading
+        followed = _LOADED * min(1.0, self._scene.friction * arm)
         turn_x, turn_y = cosine(heading), sine(heading)
         spin_x, spin_y = cosine(0.5 * _SPIN), sine(0.5 * _SPIN)
         target, gain = self._settings.depth, self._settings.depth_gain / self._step
@@ -139,7 +142,7 @@ class _DartStepper:
             if b * lean < depth:
                 load = math.hypot(ax, ay) * arm / (gravity + az)
                 self._use_for(opening=lean > _OPEN or load > _OPENING)
-                if lean > _LEANS or load > _LOADED:
+                if lean > _LEANS or load > followed:
                     # a load pushes against the acceleration
                     along = math.atan2(axis_y, axis_x) + heading if lean > _LEANS else math.atan2(-ay, -ax)
                     self._turn(along)

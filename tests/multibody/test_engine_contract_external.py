@@ -11,7 +11,7 @@ import pytest
 from rockwobble import multibody
 from rockwobble.compare import default_runs, require_runnable, reserved_engines
 from rockwobble.models import Case, Cylinder, InitialState, Run
-from rockwobble.multibody import contract
+from rockwobble.multibody.contract import interface, mechanics
 from rockwobble.multibody.engines.registry import find_engine
 from rockwobble.multibody.testing import ContractCheck, check_engine, leaves_no_trace
 
@@ -127,16 +127,16 @@ def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(insta
 @pytest.mark.parametrize(
     ("fault", "rule", "words"),
     [
-        ("Backwards", contract.takes_the_work_of_the_ground, "energy less work over its scale changes: by"),
-        ("OneSided", contract.does_not_tell_left_from_right, "the tilt of the mirror image differs: by"),
-        ("Heavy", contract.wobbles_steadily, "the tilt of a steady wobble over alpha changes: by"),
-        ("Heavy", contract.keeps_its_energy, "energy of the free response over its scale changes: by"),
-        ("Random", contract.repeats_bit_for_bit, "two runs of the same differ"),
+        ("Backwards", mechanics.takes_the_work_of_the_ground, "energy less work over its scale changes: by"),
+        ("OneSided", mechanics.does_not_tell_left_from_right, "the tilt of the mirror image differs: by"),
+        ("Heavy", mechanics.wobbles_steadily, "the tilt of a steady wobble over alpha changes: by"),
+        ("Heavy", mechanics.keeps_its_energy, "energy of the free response over its scale changes: by"),
+        ("Random", interface.repeats_bit_for_bit, "two runs of the same differ"),
         ("Loud", leaves_no_trace, r"it printed 'version 1\\n'"),
-        ("Careless", contract.refuses_what_it_does_not_know, "it is not refused: .*no_such_setting"),
-        ("Absolute", contract.is_the_same_at_every_size, "the tilt depends on the size: by"),
-        ("Early", contract.starts_as_stated, "the first step does not go on from the start: by"),
-        ("Slippery", contract.keeps_momentum_or_rolls, "slip over b: by"),
+        ("Careless", interface.refuses_what_it_does_not_know, "it is not refused: .*no_such_setting"),
+        ("Absolute", interface.is_the_same_at_every_size, "the tilt depends on the size: by"),
+        ("Early", interface.starts_as_stated, "the first step does not go on from the start: by"),
+        ("Slippery", mechanics.keeps_momentum_or_rolls, "slip over b: by"),
     ],
 )
 def test_a_fault_is_found(install: Install, fault: str, rule: Callable[[str, str], None], words: str) -> None:
