@@ -81,7 +81,7 @@ class Solution:
         return np.column_stack([horizontal, b * s + h * c])
 
     def residual_displacement(self) -> float:
-        """Return the horizontal distance of the base centre from O at the last sample [m]; NaN without one."""
+        """Return the horizontal distance of the base centre from O at the last sample [m], or NaN."""
         if not len(self.states):
             return math.nan
         theta, phi = self.states[-1, 0], self.states[-1, 2]
