@@ -81,7 +81,9 @@ class Solution:
         return np.column_stack([horizontal, b * s + h * c])
 
     def residual_displacement(self) -> float:
-        """Return the horizontal distance of the base centre from O at the last sample [m]."""
+        """Return the horizontal distance of the base centre from O at the last sample [m], or NaN."""
+        if not len(self.states):
+            return math.nan
         theta, phi = self.states[-1, 0], self.states[-1, 2]
         inward = self.problem.cylinder.base_radius * 2.0 * math.sin(0.5 * theta) ** 2
         x, y = self.roll_out[-1]

@@ -105,12 +105,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     options = options_of("false_alarms", "False alarms of the check, and wrong models that it finds.")
     options.add_argument("--cases", type=int, default=4, help="how many more to run (%(default)s)")
+    options.add_argument("--first", type=int, default=0, help="number of the first case (%(default)s)")
     options.add_argument("--kept", type=Path, default=_KEPT, help="file of rows (%(default)s)")
     options.add_argument("--workers", type=int, help="processes; default: one for each core")
     given = options.parse_args(arguments)
     table = pd.read_csv(given.kept) if given.kept.is_file() else pd.DataFrame()
     motions = records()
-    done = table["case"].nunique() if len(table) else 0
+    done = given.first + (table["case"].nunique() if len(table) else 0)
     for number in range(done, done + given.cases):
         case = case_of(number, motions)
         print(f"{case.name}, {'' if case.motion is None else case.motion.name} ...", file=sys.stderr)

@@ -14,6 +14,7 @@ from rockwobble.compare import (
 )
 from rockwobble.compare.runs.choice import references_of, require_runnable, run_labels, unsupported
 from rockwobble.models import Case, Cylinder, InitialState, Run
+from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 
 # of two seconds: 3e-7 of the tilt by its own model was measured, 5e-4 by the other
 FOLLOWS = 1e-2
@@ -25,23 +26,25 @@ def case(cylinder):
 
 
 def test_default_runs_are_every_installed_engine_guided_and_free():
-    runs = default_runs(engines=("mujoco", "pybullet"))
+    first, second = standard_engines()
+    runs = default_runs(engines=(first, second))
     assert [(run.engine, run.support) for run in runs] == [
-        ("mujoco", "recess"),
-        ("pybullet", "recess"),
-        ("mujoco", "flat"),
-        ("pybullet", "flat"),
+        (first, "recess"),
+        (second, "recess"),
+        (first, "flat"),
+        (second, "flat"),
     ]
 
 
 def test_an_engine_without_a_wheel_is_left_out_and_refused_by_name(monkeypatch, case):
-    find = importlib.util.find_spec
-    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "pybullet" else find(name))
-    assert "pybullet" not in installed_engines()
-    assert "pybullet" in missing_engines()
-    assert "pybullet" not in {run.engine for run in default_runs()}
-    with pytest.raises(ValueError, match=r"'pybullet' is not installed here: pip install pybullet"):
-        require_runnable(case, Run("pybullet", "recess"))
+    name = standard_engines()[1]  # PyBullet, or what takes its place where that has no wheel
+    package, find = engine_packages()[name], importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda asked: None if asked == package else find(asked))
+    assert name not in installed_engines()
+    assert name in missing_engines()
+    assert name not in {run.engine for run in default_runs()}
+    with pytest.raises(ValueError, match=f"'{name}' is not installed here: pip install '?{package}"):
+        require_runnable(case, Run(name, "recess"))
 
 
 def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeypatch, case):
