@@ -62,6 +62,7 @@ class _DrakeStepper:
             self._simulator.Initialize()
         self._input = self._plant.get_applied_generalized_force_input_port()
         self._count = 0
+        self._warning = ""
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         start = scene.start
         self._depth = scene.gravity / settings.contact_stiffness
@@ -82,7 +83,7 @@ class _DrakeStepper:
 
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
-        rows = np.array([self._one(each) for each in acceleration])
+        rows = np.array([self._caught(each) for each in acceleration])
         quaternion, position, heading = rows[:, :4].copy(), rows[:, 4:7], rows[:, 7]
         quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
         position = about_vertical(position, heading)
@@ -93,14 +94,23 @@ class _DrakeStepper:
         return Steps(position, quaternion, velocity, spin)
 
     def warnings(self) -> str:
-        """Drake raises where it cannot go on."""
-        return ""
+        """Return what Drake raised where it could not go on."""
+        return self._warning
 
     def counts(self) -> SceneCounts:
         """Return what the last step solved: a normal and two directions of friction for each contact."""
         port = self._plant.get_contact_results_output_port()
         contacts = port.Eval(self._context).num_point_pair_contacts()
         return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
+
+    def _caught(self, acceleration: Array) -> Array:
+        """Take one step, if Drake can: it raises where the state is not finite or nothing converges."""
+        if not self._warning:
+            try:
+                return self._one(acceleration)
+            except RuntimeError as error:
+                self._warning = str(error).partition("\n")[0]
+        return np.full(8, math.nan)
 
     def _one(self, acceleration: Array) -> Array:
         """Take one step; return quaternion, position and heading of the scene."""

@@ -189,7 +189,7 @@ def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, 
     assert page.count("<template id=") == CASES
     assert page.count("Plotly.newPlot(") >= CASES * 4
     # with as many points for six cases as 44 would get, all of them would fit
-    monkeypatch.setattr(report, "_ALL_POINTS", 125_000 * CASES // 44)
+    monkeypatch.setattr(report, "_ALL_POINTS", 115_000 * CASES // 44)
     thinned = len(report.comparison_page(many).html().encode())
     of_a_case = (thinned - len(get_plotlyjs().encode())) / CASES
     assert len(get_plotlyjs().encode()) + 44 * of_a_case < PAGE_LIMIT

@@ -29,7 +29,7 @@ from .tables import all_columns, diverging_runs, group_rows, main_rows, meanings
 # up to so many cases each has a part of the report of its own
 SINGLY = 3
 # points of all lines of a page together: ten bytes each, and the page stays below 8 MB
-_ALL_POINTS = 125_000
+_ALL_POINTS = 115_000
 # more are not to be seen, fewer are no curve
 _MOST_POINTS, _FEWEST_POINTS = 1500, 120
 _BESIDE = ("figure", "budget")  # pictures that stand beside the page as files
