@@ -26,7 +26,7 @@ from .limits import limits_of
 from .part import Inputs, Part
 from .parts import PARTS, part_named
 
-KIND = "validity.pictures"
+KIND = "validity"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
 _ENDS = {"least": "least median", "largest": "largest median", "05": "5 %", "95": "95 %"}
 
