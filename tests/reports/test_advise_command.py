@@ -52,7 +52,7 @@ def options_of(records: Path, **names: str) -> list[str]:
         ({"x": "x", "y": "y", "z": "z"}, ["--scale", "2"], ["It is in this record: with it"]),
         ({"x": "x", "y": "y"}, ["--scale", "0.3"], ["The cylinder stays at rest: it takes"]),
         ({"x": "still", "y": "y"}, ["--scale", "2"], ["This motion stays in one plane"]),
-        ({"x": "x", "y": "y"}, ["--scale", "6"], ["It overturns as given; overturning: 100 %"]),
+        ({"x": "x", "y": "y"}, ["--scale", "6"], ["It overturns as given. Overturning: 100 %"]),
         ({"x": "x", "y": "y"}, ["--friction", "0.1"], ["A friction of 0.1 is below b/h = 0.2"]),
         ({"x": "x", "y": "y"}, ["--support", "flat"], ["flat-ground model", "rolling out of its place"]),
         ({}, ["--release-tilt-deg", "5", "--rolling-rate", "0.5"], ["knows no release out of its plane"]),
