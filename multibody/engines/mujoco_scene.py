@@ -82,6 +82,8 @@ def _set_contact(
     if count:
         # the rounding of the rim's depth would make it hop
         spec.delete(next(pair for pair in spec.pairs if pair.geomname2 == "cylinder" and _on_ground(pair)))
+        # without its pair it would meet the ground as any two geometries do, with a friction of its own
+        spec.geom("cylinder").contype = spec.geom("cylinder").conaffinity = 0
     for index in range(_PRISMS):
         name = f"prism{index}"
         if index >= count:
