@@ -67,9 +67,9 @@ def test_share_and_time_of_a_drift() -> None:
     error[450:] = -0.003
     error[700] = -0.005
     found = watch(energy, error)
-    assert found.remark(math.inf) == (pytest.approx(0.4), pytest.approx(-0.0025))
+    assert found.remark(math.inf) == (pytest.approx(0.4), pytest.approx(-0.0025), DRIFT)
     # up to the block of 0.1 s in which it happens
-    assert found.remark(0.65) == (pytest.approx(0.4), pytest.approx(-0.0015))
+    assert found.remark(0.65) == (pytest.approx(0.4), pytest.approx(-0.0015), DRIFT)
     assert math.isnan(found.remark(0.3)[0])
     assert found.remark(math.inf)[1] == -watch(energy, -error).remark(math.inf)[1]
     # the same error is a thousandth of a larger motion, and the energy of the balance a bound from below

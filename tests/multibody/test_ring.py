@@ -31,11 +31,13 @@ def ring(
     tilt: float = 0.5,
     rolling_rate: float = 0.5,
     duration: float = 2.0,
+    friction: float = 1.0,
     **settings: Any,
 ) -> Trace:
     """Release at a tilt in alpha."""
     initial = InitialState(tilt * cylinder.alpha, rolling_rate=rolling_rate)
-    return multibody.simulate(Case(cylinder, initial=initial, duration=duration), support="ring", **settings)
+    case = Case(cylinder, initial=initial, duration=duration, friction=friction)
+    return multibody.simulate(case, support="ring", **settings)
 
 
 @pytest.mark.parametrize(
@@ -64,7 +66,7 @@ def ring(
             {"support": "flat", "ring_clearance": 0.1, "ring_facets": 8},
             "ring_clearance, ring_facets is for support 'ring' only, got support 'flat'",
         ),
-        ({"engine": "pybullet"}, "support must be one of guided, free in pybullet, got 'ring'"),
+        ({"engine": "pybullet"}, "support must be one of recess, flat in pybullet, got 'ring'"),
     ],
 )
 def test_what_is_refused(settings: dict[str, Any], message: str) -> None:
