@@ -93,5 +93,5 @@ def test_code_and_versions_are_in_the_name(monkeypatch):
     monkeypatch.setattr("rockwobble.compare.storage.provenance._source_digest", lambda folder: "another")
     assert job_fingerprint(job()) != before
     monkeypatch.undo()
-    monkeypatch.setattr("importlib.metadata.version", lambda package: "0")
+    monkeypatch.setattr("rockwobble.compare.storage.provenance._version", lambda package: "0")
     assert job_fingerprint(job()) != before

@@ -198,5 +198,5 @@ def test_measures_of_limits() -> None:
 
 def test_a_report_shows_itself_by_figure() -> None:
     found = tiny_validity()
-    shows_itself(found, "records ", "slip ")
+    shows_itself(found, "motions ", "records 14 rows")
     assert found.plot("slip").axes

@@ -50,7 +50,7 @@ class Validity(Shown):
     made: Manifest
 
     def _said(self) -> dict[str, str]:
-        return {"records": self.records} | {name: f"{len(table)} rows" for name, table in self.tables.items()}
+        return {"motions": self.records} | {name: f"{len(table)} rows" for name, table in self.tables.items()}
 
 
 def measure_all(
