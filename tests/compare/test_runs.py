@@ -65,9 +65,7 @@ def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeyp
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name == "exudyn" else find(name))
     # an extra that is not installed is nobody's loss, until it is named
     assert "exudyn" not in missing_engines()
-    with pytest.raises(
-        ValueError, match=r"'exudyn' is not installed here: pip install 'exudyn"
-    ):
+    with pytest.raises(ValueError, match=r"'exudyn' is not installed here: pip install 'exudyn"):
         require_runnable(released, Run("exudyn", "flat"))
 
 
