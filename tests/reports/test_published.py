@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from rockwobble.compare.certificate.verdict import CHANGED
-from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
+from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests, read_results
 from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.advice import RING
 from rockwobble.reports.pages.registry import KINDS, redrawn
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
@@ -46,6 +47,12 @@ def test_its_words_are_what_its_tables_say_today(folder: Path, kind: str) -> Non
     assert pages
     for name, page in pages.items():
         assert (folder / name).read_text(encoding="utf-8") == page.decode()
+
+
+def test_what_an_advice_says_of_a_ring_is_in_the_published_limits() -> None:
+    limits = read_results(PUBLISHED / "validity", "validity").table("limits")
+    known = limits[limits["limit"] == "records"].set_index("number")["value"]
+    assert {name: round(known[name], 2) for name in RING} == RING
 
 
 @pytest.mark.parametrize("name", ["reduced", "mujoco"])
