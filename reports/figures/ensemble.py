@@ -116,7 +116,7 @@ def _ratios(found: Ensemble, rows: list[dict[str, Any]]) -> Panel:
         ticks.append((float(place), f"{row['method']}\n/ {row['against']}, n = {has.sum()}"))
     return Panel(
         x=Axis(
-            label="ratio of peak tilts",
+            label="ratio of peaks",
             unit="-",
             log=True,
             low=low,
