@@ -18,9 +18,9 @@ TITLES = {
     "peaks": "Distribution of peak tilt",
 }
 ERRORS = {
-    "turn": ("error of the angle of turn", "deg"),
-    "shaken": ("largest error of the tilt", "α"),
-    "peaks": ("distance of the distributions", "α"),
+    "turn": ("error of turn", "deg"),
+    "shaken": ("error of tilt", "α"),
+    "peaks": ("distance", "α"),
 }
 # support and panel, in the order of the picture
 _PANELS = {

@@ -221,7 +221,7 @@ def _rings(table: pd.DataFrame) -> Picture:
         panels=[
             Panel(
                 x=clearance,
-                y=Axis(label="peak / that of the recess model", unit="-"),
+                y=Axis(label="peak ratio", unit="-"),
                 layers=[_ONE, *lines("ratio", shaken, 1e-3)],
                 title="peak tilt",
             ),
@@ -272,7 +272,7 @@ def _contact(table: pd.DataFrame) -> Picture:
         panels=[
             Panel(
                 x=softness,
-                y=Axis(label="peak / that of the recess model", unit="-"),
+                y=Axis(label="peak ratio", unit="-"),
                 layers=[_ONE, *marks("ratio"), crosses],
             ),
             Panel(x=softness, y=Axis(label="lost in a pass", unit="-", log=True), layers=marks("lost")),
