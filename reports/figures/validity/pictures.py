@@ -152,7 +152,7 @@ def _verification(table: pd.DataFrame) -> Picture:
         "that its contact does not resolve.",
         panels=[
             Panel(
-                x=Axis(label="recess model − flat-ground model", unit="deg", log=True),
+                x=Axis(label="recess − flat model", unit="deg", log=True),
                 y=Axis(label="engine − its model", unit="deg", log=True),
                 layers=layers,
                 height=3.2,
