@@ -122,7 +122,7 @@ def test_a_step_that_does_not_converge_ends_the_run_in_silence(
 ) -> None:
     run = free(pier, InitialState(pier.alpha / 2, rolling_rate=0.5), duration=0.2, iterations=1)
     assert run.outcome == "failed"
-    assert run.facts[0].code == "warning"
+    assert run.facts[0].code == "not_finite"
     assert run.facts[0].detail.startswith("Newton's iteration did not converge")
     assert capfd.readouterr() == ("", "")
 
