@@ -41,7 +41,7 @@ STUDIES = {
     "fragility/p695": f"fragility --p695 {_BODIES} --friction 3 --step-factor 8 {_ENGINES}",
     "fragility/synthetic": f"fragility --synthetic 2000 --seed 16 {_BODIES}",
     "extremes": "extremes",
-    "tradeoff": "tradeoff --quick",
+    "tradeoff": "tradeoff",
     "validity": "validity",
 }
 # what the code did that made them: a test fails once it does something else

@@ -13,7 +13,7 @@ from rockwobble.compare.storage.manifest import read_results
 from rockwobble.compare.studies.advice.advice import KIND
 from rockwobble.models import el_centro_1940
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.advice import advice_page, advice_values, stored_page
+from rockwobble.reports.pages.advice import advice_page, advice_values
 from rockwobble.reports.pages.registry import redrawn
 
 PAGE_LIMIT = 8e6  # bytes, of every page
@@ -143,7 +143,8 @@ ENGINE = {
 )
 def test_words_turn_with_the_numbers(stored, changes, words):
     assert words in said(stored, **changes)
-    assert words not in stored_page(stored).markdown()
+    # which records are installed is the machine's affair
+    assert words not in said(stored, records="p695")
 
 
 def test_planar_analysis_is_called_unconservative_only_where_the_interval_says_so(stored):

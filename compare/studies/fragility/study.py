@@ -105,8 +105,9 @@ def fragility(
     >>> column = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
     >>> shaking = synthetic_motions(8, peak=1.0, seed=1)
     >>> found = fragility(column, shaking, methods=["recess"], levels=[1.5, 3, 6], resamples=50, workers=1)
-    >>> found.counts[found.counts["limit"] == "overturned"][["intensity", "n", "k"]].values.tolist()
-    [[1.5, 8, 0], [3.0, 8, 0], [6.0, 8, 5]]
+    >>> overturned = found.counts[found.counts["limit"] == "overturned"]
+    >>> list(zip(overturned["intensity"], overturned["k"], overturned["n"]))
+    [(1.5, 0, 8), (3.0, 6, 8), (6.0, 8, 8)]
     """
     bodies = _named(cylinders)
     if levels is not None and scales is not None:

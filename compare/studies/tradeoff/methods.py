@@ -157,9 +157,10 @@ def _variants(problem: Problem, engine: str, quick: bool) -> Iterator[Method]:
         if name == "RK4" or (name and not quick):
             yield from _line(problem, name, "integrator", engine, "recess", steps, given)
     held = {facts.contact_time: _HELD}
-    yield from _line(problem, f"in {_HELD:g} s", "contact", engine, "recess", steps, held)
+    yield from _line(problem, f"contact time {_HELD:g} s", "contact", engine, "recess", steps, held)
     for count in (20.0,) if quick else (4.0, 20.0):
-        yield from _line(problem, f"in {count:g} steps", "contact", engine, "recess", steps, {}, count)
+        line = f"contact time {count:g} steps"
+        yield from _line(problem, line, "contact", engine, "recess", steps, {}, count)
 
 
 def _line(
