@@ -22,25 +22,23 @@ _NO_ENGINE = "none"
 
 Engine = Annotated[
     str | None,
-    typer.Option(
+    options.of(
+        "Method",
         "--engine",
-        help="mujoco, pybullet or exudyn, whose one run verifies the prediction; none leaves it out. "
+        "mujoco, pybullet or exudyn, whose one run verifies the prediction; none leaves it out. "
         "Default: mujoco.",
-        rich_help_panel="Method",
     ),
 ]
 Support = Annotated[
     str,
-    typer.Option(
+    options.of(
+        "Method",
         "--support",
-        help="What holds the cylinder: recess (ideal), flat (flat ground) or ring (walls with clearance).",
-        rich_help_panel="Method",
+        "What holds the cylinder: recess (ideal), flat (flat ground) or ring (walls with clearance).",
     ),
 ]
-Copies = Annotated[
-    int, typer.Option("--copies", help="Number of perturbed copies.", rich_help_panel="Method")
-]
-Seed = Annotated[int, typer.Option("--seed", help="Of the perturbed copies.", rich_help_panel="Method")]
+Copies = Annotated[int, options.of("Method", "--copies", "Number of perturbed copies.")]
+Seed = Annotated[int, options.of("Method", "--seed", "Of the perturbed copies.")]
 
 
 @states_problem

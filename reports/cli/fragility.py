@@ -6,8 +6,6 @@ import math
 from pathlib import Path
 from typing import Annotated
 
-import typer
-
 import rockwobble as rw
 
 from ..console.progress import shown_progress
@@ -25,123 +23,110 @@ _MOTIONS, _LEVELS, _STATISTICS = "Ground motions", "Intensity", "Statistics"
 
 Cylinders = Annotated[
     list[str] | None,
-    typer.Option(
+    options.of(
+        "Cylinder",
         "--cylinder",
-        help="A cylinder by name, as NAME=R,TAN_ALPHA such as pier=6,0.2; may be repeated.",
+        "A cylinder by name, as NAME=R,TAN_ALPHA such as pier=6,0.2; may be repeated.",
         metavar="NAME=R,TAN_ALPHA",
-        rich_help_panel="Cylinder",
     ),
 ]
 FarField = Annotated[
-    bool,
-    typer.Option(
-        "--p695", help="The 22 far-field pairs of FEMA P-695 (extra records).", rich_help_panel=_MOTIONS
-    ),
+    bool, options.of(_MOTIONS, "--p695", "The 22 far-field pairs of FEMA P-695 (extra records).")
 ]
 Records = Annotated[
     Path | None,
-    typer.Option(
+    options.of(
+        _MOTIONS,
         "--records",
-        help="A folder of records with a table records.csv: columns x and y (files), maybe z, name, units "
+        "A folder of records with a table records.csv: columns x and y (files), maybe z, name, units "
         "and scale.",
-        rich_help_panel=_MOTIONS,
     ),
 ]
 Synthetic = Annotated[
     int | None,
-    typer.Option(
-        "--synthetic",
-        help=f"So many made-up motions. Default, without records: {DEFAULT_COUNT}.",
-        rich_help_panel=_MOTIONS,
+    options.of(
+        _MOTIONS, "--synthetic", f"So many made-up motions. Default, without records: {DEFAULT_COUNT}."
     ),
 ]
 MeasureName = Annotated[
     str,
-    typer.Option(
+    options.of(
+        _LEVELS,
         "--measure",
-        help="Intensity: peak_acceleration (over g tan alpha), peak_velocity (times p over g tan alpha), "
+        "Intensity: peak_acceleration (over g tan alpha), peak_velocity (times p over g tan alpha), "
         "pga, pgv, sa or sa_mean.",
-        rich_help_panel=_LEVELS,
     ),
 ]
 Levels = Annotated[
     str | None,
-    typer.Option(
+    options.of(
+        _LEVELS,
         "--levels",
-        help="Intensities to which every motion is scaled: a list 1.5,2,3 or FROM:TO:COUNT, evenly in the "
+        "Intensities to which every motion is scaled: a list 1.5,2,3 or FROM:TO:COUNT, evenly in the "
         "logarithm. Default: 20, from a little above uplift to where most overturn.",
-        rich_help_panel=_LEVELS,
     ),
 ]
 Cloud = Annotated[
     str | None,
-    typer.Option(
+    options.of(
+        _LEVELS,
         "--cloud",
-        help="Motions as they are in the place of levels, times each of these factors: 1, or 0.5,1,2.",
-        rich_help_panel=_LEVELS,
+        "Motions as they are in the place of levels, times each of these factors: 1, or 0.5,1,2.",
     ),
 ]
-Period = Annotated[float, typer.Option("--period", help="Of sa and sa_mean, in s.", rich_help_panel=_LEVELS)]
+Period = Annotated[float, options.of(_LEVELS, "--period", "Of sa and sa_mean, in s.")]
 Models = Annotated[
     list[str] | None,
-    typer.Option(
+    options.of(
+        "Method",
         "--model",
-        help="Reduced model: recess, flat, planar-x, planar-y, worse-plane (of the two), or none; may be "
+        "Reduced model: recess, flat, planar-x, planar-y, worse-plane (of the two), or none; may be "
         "repeated. Default: all.",
-        rich_help_panel="Method",
     ),
 ]
 Engines = Annotated[
     list[str] | None,
-    typer.Option(
+    options.of(
+        "Method",
         "--engine",
-        help="mujoco, pybullet, dart, drake or another that is installed; may be repeated. Default: none.",
-        rich_help_panel="Method",
+        "mujoco, pybullet, dart, drake or another that is installed; may be repeated. Default: none.",
     ),
 ]
 Restitution = Annotated[
     str,
-    typer.Option(
+    options.of(
+        "Method",
         "--restitution",
-        help="Of the planar models: a number, or momentum for Housner's. Default: 1, as the models in three "
+        "Of the planar models: a number, or momentum for Housner's. Default: 1, as the models in three "
         "dimensions.",
-        rich_help_panel="Method",
     ),
 ]
 StepFactor = Annotated[
     float,
-    typer.Option(
+    options.of(
+        "Method",
         "--step-factor",
-        help="On the default time step of the engines: a share of many runs needs less than a trace.",
-        rich_help_panel="Method",
+        "On the default time step of the engines: a share of many runs needs less than a trace.",
     ),
 ]
 Limits = Annotated[
     list[str] | None,
-    typer.Option(
+    options.of(
+        _STATISTICS,
         "--limit",
-        help='uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned or contact_lost; may be '
+        'uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned or contact_lost; may be '
         "repeated. Default: all but the last, which takes the forces of every run.",
-        rich_help_panel=_STATISTICS,
     ),
 ]
 Margin = Annotated[
-    float,
-    typer.Option(
-        "--margin", help="Within which two medians count as equivalent.", rich_help_panel=_STATISTICS
-    ),
+    float, options.of(_STATISTICS, "--margin", "Within which two medians count as equivalent.")
 ]
-Resamples = Annotated[
-    int,
-    typer.Option("--resamples", min=2, help="Of the motions, for intervals.", rich_help_panel=_STATISTICS),
-]
-Seed = Annotated[int, typer.Option("--seed", help="Of everything random.", rich_help_panel=_STATISTICS)]
+Resamples = Annotated[int, options.of(_STATISTICS, "--resamples", "Of the motions, for intervals.", min=2)]
+Seed = Annotated[int, options.of(_STATISTICS, "--seed", "Of everything random.")]
 
 
 def fragility(
-    semidiagonal: Annotated[
-        float, typer.Option("--semidiagonal", help="R, in m.", rich_help_panel="Cylinder")
-    ] = 6.0,
+    semidiagonal: Annotated[float, options.of("Cylinder", "--semidiagonal", "R, in m.")] = 6.0,
     tan_alpha: Annotated[float, options.TAN_ALPHA] = 0.2,
     cylinder: Cylinders = None,
     p695: FarField = False,

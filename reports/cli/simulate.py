@@ -22,10 +22,10 @@ from .inputs.problem import Problem, states_problem
 
 RestTilt = Annotated[
     float | None,
-    typer.Option(
+    options.of(
+        options.REDUCED,
         "--rest-tilt",
-        help="Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out.",
-        rich_help_panel=options.REDUCED,
+        "Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out.",
     ),
 ]
 

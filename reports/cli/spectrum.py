@@ -6,8 +6,6 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 import rockwobble as rw
 
 from ..console.progress import shown_progress
@@ -27,39 +25,26 @@ _MOST_POINTS = 2000
 # a search in smaller steps would take a day
 _FINEST = 1e-5
 
-Smallest = Annotated[
-    float, typer.Option("--smallest", help="Smallest semidiagonal R, in m.", rich_help_panel=_GRID)
-]
-Largest = Annotated[
-    float, typer.Option("--largest", help="Largest semidiagonal R, in m.", rich_help_panel=_GRID)
-]
-Sizes = Annotated[int, typer.Option("--sizes", help="Number of sizes.", rich_help_panel=_GRID)]
+Smallest = Annotated[float, options.of(_GRID, "--smallest", "Smallest semidiagonal R, in m.")]
+Largest = Annotated[float, options.of(_GRID, "--largest", "Largest semidiagonal R, in m.")]
+Sizes = Annotated[int, options.of(_GRID, "--sizes", "Number of sizes.")]
 Weakest = Annotated[
-    float,
-    typer.Option(
-        "--weakest", help="Lowest peak of the horizontal resultant, in g tan alpha.", rich_help_panel=_GRID
-    ),
+    float, options.of(_GRID, "--weakest", "Lowest peak of the horizontal resultant, in g tan alpha.")
 ]
 Strongest = Annotated[
-    float,
-    typer.Option("--strongest", help="Highest peak of the resultant, in g tan alpha.", rich_help_panel=_GRID),
+    float, options.of(_GRID, "--strongest", "Highest peak of the resultant, in g tan alpha.")
 ]
-Intensities = Annotated[
-    int, typer.Option("--intensities", help="Number of intensities.", rich_help_panel=_GRID)
-]
+Intensities = Annotated[int, options.of(_GRID, "--intensities", "Number of intensities.")]
 SearchStep = Annotated[
     float,
-    typer.Option(
+    options.of(
+        "Method",
         "--search-step",
-        help="Finest step of the search for the lowest intensity that overturns, in g tan alpha.",
-        rich_help_panel="Method",
+        "Finest step of the search for the lowest intensity that overturns, in g tan alpha.",
     ),
 ]
 Support = Annotated[
-    str,
-    typer.Option(
-        "--support", help="Of the model in three dimensions: recess or flat.", rich_help_panel="Method"
-    ),
+    str, options.of("Method", "--support", "Of the model in three dimensions: recess or flat.")
 ]
 
 

@@ -34,53 +34,43 @@ SuiteFile = Annotated[
         show_default=False,
     ),
 ]
-Sizes = Annotated[str, typer.Option("--semidiagonal", help="R, in m.", rich_help_panel=_GRID)]
-Slendernesses = Annotated[str, typer.Option("--tan-alpha", help="Slenderness b/h.", rich_help_panel=_GRID)]
-Scales = Annotated[str, typer.Option("--scale", help="Factors on the records.", rich_help_panel=_GRID)]
+Sizes = Annotated[str, options.of(_GRID, "--semidiagonal", "R, in m.")]
+Slendernesses = Annotated[str, options.of(_GRID, "--tan-alpha", "Slenderness b/h.")]
+Scales = Annotated[str, options.of(_GRID, "--scale", "Factors on the records.")]
 Models = Annotated[
     list[str] | None,
-    typer.Option(
+    options.of(
+        _GRID,
         "--model",
-        help="recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs.",
-        rich_help_panel=_GRID,
+        "recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs.",
     ),
 ]
 RecordsX = Annotated[
     list[Path] | None,
-    typer.Option(
+    options.of(
+        _GRID,
         "--record-x",
-        help="East-west component; may be repeated for several records. Default: El Centro 1940.",
-        rich_help_panel=_GRID,
+        "East-west component; may be repeated for several records. Default: El Centro 1940.",
     ),
 ]
-RecordsY = Annotated[
-    list[Path] | None,
-    typer.Option("--record-y", help="North-south component of each.", rich_help_panel=_GRID),
-]
+RecordsY = Annotated[list[Path] | None, options.of(_GRID, "--record-y", "North-south component of each.")]
 RecordsZ = Annotated[
-    list[Path] | None,
-    typer.Option("--record-z", help="Vertical component of each, or of none.", rich_help_panel=_GRID),
+    list[Path] | None, options.of(_GRID, "--record-z", "Vertical component of each, or of none.")
 ]
 Workers = Annotated[
-    int | None,
-    typer.Option(
-        "--workers", min=1, help="Processes on this machine. Default: one a core.", rich_help_panel=_WORK
-    ),
+    int | None, options.of(_WORK, "--workers", "Processes on this machine. Default: one a core.", min=1)
 ]
 Scheduler = Annotated[
     str | None,
-    typer.Option(
+    options.of(
+        _WORK,
         "--scheduler",
-        help="Dask scheduler that has the work done, such as tcp://10.0.0.1:8786: started by dask scheduler, "
+        "Dask scheduler that has the work done, such as tcp://10.0.0.1:8786: started by dask scheduler, "
         "and on each machine dask worker tcp://10.0.0.1:8786. Needs pip install 'dask[distributed]'.",
-        rich_help_panel=_WORK,
     ),
 ]
 ChunkSize = Annotated[
-    int | None,
-    typer.Option(
-        "--chunk", min=1, help="Runs in a chunk. Default: about a second of work.", rich_help_panel=_WORK
-    ),
+    int | None, options.of(_WORK, "--chunk", "Runs in a chunk. Default: about a second of work.", min=1)
 ]
 
 

@@ -13,6 +13,7 @@ import rockwobble as rw
 
 from ...console.progress import shown_progress
 from ...console.terminal import FAILED, complain, interruptible, user_input
+from ..inputs import options
 from ..inputs.suite_choice import chosen_runs, without_missing
 from .check_outside import Model, Support, Tolerance, Trajectory, outside_findings, print_outside
 
@@ -33,19 +34,11 @@ Only = Annotated[
         "properties, order, residual, metrics, studies, traces, agreement, baseline. Default: all.",
     ),
 ]
-Json = Annotated[
-    Path | None, typer.Option("--json", help="Write all findings as JSON.", rich_help_panel=_OUTPUT)
-]
-Junit = Annotated[
-    Path | None, typer.Option("--junit", help="Write a JUnit report (XML).", rich_help_panel=_OUTPUT)
-]
+Json = Annotated[Path | None, options.of(_OUTPUT, "--json", "Write all findings as JSON.")]
+Junit = Annotated[Path | None, options.of(_OUTPUT, "--junit", "Write a JUnit report (XML).")]
 Markdown = Annotated[
     Path | None,
-    typer.Option(
-        "--markdown",
-        help="Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.",
-        rich_help_panel=_OUTPUT,
-    ),
+    options.of(_OUTPUT, "--markdown", "Append a page for a CI job, such as $GITHUB_STEP_SUMMARY."),
 ]
 Workers = Annotated[
     int | None,

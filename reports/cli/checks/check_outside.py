@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import typer
-
 import rockwobble as rw
+
+from ..inputs import options
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Finding
@@ -15,27 +15,23 @@ if TYPE_CHECKING:
 _PANEL = "A model or a trajectory of somebody else"
 Model = Annotated[
     str | None,
-    typer.Option(
+    options.of(
+        _PANEL,
         "--model",
+        "Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
         metavar="MODULE:FUNCTION",
-        help="Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
-        rich_help_panel=_PANEL,
     ),
 ]
 Trajectory = Annotated[
     Path | None,
-    typer.Option(
+    options.of(
+        _PANEL,
         "--trajectory",
-        help="Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite.",
-        rich_help_panel=_PANEL,
+        "Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite.",
     ),
 ]
-Support = Annotated[
-    str, typer.Option("--support", help="What it models: recess or flat.", rich_help_panel=_PANEL)
-]
-Tolerance = Annotated[
-    float, typer.Option("--tolerance", help="How exact it claims to be.", rich_help_panel=_PANEL)
-]
+Support = Annotated[str, options.of(_PANEL, "--support", "What it models: recess or flat.")]
+Tolerance = Annotated[float, options.of(_PANEL, "--tolerance", "How exact it claims to be.")]
 
 
 def outside_findings(

@@ -13,7 +13,8 @@ import typer
 from .method_values import restitution, time_step
 
 
-def _of(panel: str, name: str, help_text: str, **more: Any) -> Any:
+def of(panel: str, name: str, help_text: str, **more: Any) -> Any:
+    """Return an option in a panel of the help text; `more` is for `typer.Option`."""
     return typer.Option(name, help=help_text, rich_help_panel=panel, **more)
 
 
@@ -21,16 +22,16 @@ _BODY, _GROUND, _RELEASE, _METHOD = "Cylinder", "Ground motion", "Release", "Met
 REDUCED = "Reduced model"
 _EXTERNAL = "Trajectory of a shake table or another code"
 
-Semidiagonal = Annotated[float | None, _of(_BODY, "--semidiagonal", "R = sqrt(b^2 + h^2), in m. Default: 6.")]
-TAN_ALPHA = _of(_BODY, "--tan-alpha", "Slenderness b/h, radius over half the height.")
+Semidiagonal = Annotated[float | None, of(_BODY, "--semidiagonal", "R = sqrt(b^2 + h^2), in m. Default: 6.")]
+TAN_ALPHA = of(_BODY, "--tan-alpha", "Slenderness b/h, radius over half the height.")
 TanAlpha = Annotated[float, TAN_ALPHA]
 Diameter = Annotated[
-    float | None, _of(_BODY, "--diameter", "2b, in m; with --height in place of the two above.")
+    float | None, of(_BODY, "--diameter", "2b, in m; with --height in place of the two above.")
 ]
-Height = Annotated[float | None, _of(_BODY, "--height", "2h, in m.")]
+Height = Annotated[float | None, of(_BODY, "--height", "2h, in m.")]
 MassCentreHeight = Annotated[
     float | None,
-    _of(
+    of(
         _BODY,
         "--mass-centre-height",
         "Of the mass centre above the base, in m; with --diameter and --height. Default: half of that.",
@@ -38,35 +39,35 @@ MassCentreHeight = Annotated[
 ]
 TransverseInertia = Annotated[
     float | None,
-    _of(
+    of(
         _BODY,
         "--transverse-inertia",
         "I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.",
     ),
 ]
-AxialInertia = Annotated[float | None, _of(_BODY, "--axial-inertia", "I2/m about the axis, in m2.")]
+AxialInertia = Annotated[float | None, of(_BODY, "--axial-inertia", "I2/m about the axis, in m2.")]
 Record = Annotated[
     Path | None,
-    _of(_GROUND, "--record", "Text or CSV of time, x, y and perhaps z, in place of the files below."),
+    of(_GROUND, "--record", "Text or CSV of time, x, y and perhaps z, in place of the files below."),
 ]
 RecordX = Annotated[
     Path | None,
-    _of(
+    of(
         _GROUND,
         "--record-x",
         "East-west component: PEER AT2, two-column text or CSV. Default: El Centro 1940.",
     ),
 ]
-RecordY = Annotated[Path | None, _of(_GROUND, "--record-y", "North-south component.")]
-RecordZ = Annotated[Path | None, _of(_GROUND, "--record-z", "Vertical component, may be left out.")]
+RecordY = Annotated[Path | None, of(_GROUND, "--record-y", "North-south component.")]
+RecordZ = Annotated[Path | None, of(_GROUND, "--record-z", "Vertical component, may be left out.")]
 Units = Annotated[
-    str | None, _of(_GROUND, "--units", "g, m/s2 or cm/s2; required where the files do not say.")
+    str | None, of(_GROUND, "--units", "g, m/s2 or cm/s2; required where the files do not say.")
 ]
-Scale = Annotated[float, _of(_GROUND, "--scale", "Factor on all components.")]
-Gravity = Annotated[float, _of(_GROUND, "--gravity", "g, in m/s2.")]
+Scale = Annotated[float, of(_GROUND, "--scale", "Factor on all components.")]
+Gravity = Annotated[float, of(_GROUND, "--gravity", "g, in m/s2.")]
 Friction = Annotated[
     float,
-    _of(
+    of(
         _GROUND,
         "--friction",
         "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
@@ -75,16 +76,16 @@ Friction = Annotated[
 ]
 ReleaseTilt = Annotated[
     float | None,
-    _of(
+    of(
         _RELEASE,
         "--release-tilt-deg",
         "Release at this tilt, in deg; without a record the ground is then still.",
     ),
 ]
-RollingRate = Annotated[float, _of(_RELEASE, "--rolling-rate", "Rolling rate at release, in rad/s.")]
+RollingRate = Annotated[float, of(_RELEASE, "--rolling-rate", "Rolling rate at release, in rad/s.")]
 Duration = Annotated[
     float | None,
-    _of(
+    of(
         _RELEASE,
         "--duration",
         "Length of the run, in s. Default: that of the ground motion, 10 s without one.",
@@ -92,21 +93,20 @@ Duration = Annotated[
 ]
 _ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only)"
-Engine = Annotated[str | None, _of(_METHOD, "--engine", f"{_ENGINES}. Default: the reduced model.")]
+Engine = Annotated[str | None, of(_METHOD, "--engine", f"{_ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"
-Engines = Annotated[list[str] | None, _of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}.")]
+Engines = Annotated[list[str] | None, of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}.")]
 EnginesOrAll = Annotated[
     list[str] | None,
-    _of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed."),
+    of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed."),
 ]
-Support = Annotated[str, _of(_METHOD, "--support", f"{_SUPPORTS}.")]
+Support = Annotated[str, of(_METHOD, "--support", f"{_SUPPORTS}.")]
 Supports = Annotated[
-    list[str] | None,
-    _of(_METHOD, "--support", f"{_SUPPORTS}; may be repeated. Default: recess and flat."),
+    list[str] | None, of(_METHOD, "--support", f"{_SUPPORTS}; may be repeated. Default: recess and flat.")
 ]
 TimeStep = Annotated[
     Any,  # a number, a word or None: typer knows no type for that, `time_step` makes it
-    _of(
+    of(
         _METHOD,
         "--time-step",
         "Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size. auto "
@@ -118,7 +118,7 @@ TimeStep = Annotated[
 ]
 Settings = Annotated[
     list[str] | None,
-    _of(
+    of(
         _METHOD,
         "--set",
         "Setting of the method, such as ring_clearance=0.01, integrator=discrete or rtol=1e-10, for each run "
@@ -128,21 +128,17 @@ Settings = Annotated[
 ]
 Plane = Annotated[
     float | None,
-    typer.Option(
-        "--plane",
-        help="Planar motion: azimuth of the vertical plane that holds it, in rad.",
-        rich_help_panel=REDUCED,
-    ),
+    of(REDUCED, "--plane", "Planar motion: azimuth of the vertical plane that holds it, in rad."),
 ]
 Restitution = Annotated[
     Any,  # a number, "momentum" or None: typer knows no type for that
-    typer.Option(
+    of(
+        REDUCED,
         "--restitution",
+        "Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from "
+        "the moment of momentum about the new pivot.",
         parser=restitution,
         metavar="FLOAT|momentum",
-        help="Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from "
-        "the moment of momentum about the new pivot.",
-        rich_help_panel=REDUCED,
     ),
 ]
 SuiteName = Annotated[
@@ -155,7 +151,7 @@ SuiteName = Annotated[
 ]
 Trajectories = Annotated[
     list[Path] | None,
-    _of(
+    of(
         _EXTERNAL,
         "--trajectory",
         "CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a shake "
@@ -163,19 +159,15 @@ Trajectories = Annotated[
     ),
 ]
 TrajectoryAngles = Annotated[
-    str | None, _of(_EXTERNAL, "--trajectory-angles", "deg or rad, where its header does not say.")
+    str | None, of(_EXTERNAL, "--trajectory-angles", "deg or rad, where its header does not say.")
 ]
 TrajectoryOffset = Annotated[
     float,
-    _of(
-        _EXTERNAL,
-        "--trajectory-offset",
-        "Added to its times, in s, so that 0 is the start of the run.",
-    ),
+    of(_EXTERNAL, "--trajectory-offset", "Added to its times, in s, so that 0 is the start of the run."),
 ]
 TrajectoryNoise = Annotated[
     float | None,
-    _of(
+    of(
         _EXTERNAL,
         "--trajectory-noise-deg",
         "Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least 1e-4 "
@@ -184,7 +176,7 @@ TrajectoryNoise = Annotated[
 ]
 Budget = Annotated[
     bool,
-    _of(
+    of(
         _METHOD,
         "--budget",
         "Split each difference into model form, numerics and what stays unexplained, by runs at finer "
