@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from itertools import permutations
-from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from rockwobble.models import Case, Trace
@@ -17,19 +16,17 @@ if TYPE_CHECKING:
     import pandas as pd
 
 # name: (unit, meaning); the order is that of the table
-MATRIX_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {
-        "case": ("", "name of the case"),
-        "support": ("", "of both"),
-        "run": ("", "label of an engine's run, or of the reduced model of the support"),
-        "other": ("", "label of what it is held against"),
-        "tilt_rms": ("alpha", "root mean square of the tilt difference"),
-        "tilt_rms_relative": ("", "the same over the root mean square of the other's tilt"),
-        "peak_tilt_difference": ("alpha", "run minus other"),
-        "agreement_time": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
-        "diverged": ("", "whether there was such a difference"),
-    }
-)
+MATRIX_COLUMNS: Mapping[str, tuple[str, str]] = {
+    "case": ("", "name of the case"),
+    "support": ("", "of both"),
+    "run": ("", "label of an engine's run, or of the reduced model of the support"),
+    "other": ("", "label of what it is held against"),
+    "tilt_rms": ("alpha", "root mean square of the tilt difference"),
+    "tilt_rms_relative": ("", "the same over the root mean square of the other's tilt"),
+    "peak_tilt_difference": ("alpha", "run minus other"),
+    "agreement_time": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
+    "diverged": ("", "whether there was such a difference"),
+}
 
 
 def agreement_matrix(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from types import MappingProxyType
 
 from rockwobble.models import Case, Trace
 
@@ -23,58 +22,56 @@ from .prediction import Prediction, close_pass, verdict
 REDUCED = "reduced"  # the engine of a reduced model, in tables
 
 # name: (unit, meaning); the order is that of the table
-SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {
-        "case": ("", "name of the case"),
-        "engine": ("", 'multibody engine, or "reduced"'),
-        "support": ("", "what holds the cylinder in place: recess, flat or ring"),
-        "reference_engine": ("", 'what the run is held against: an engine, or "reduced"'),
-        "reference_support": ("", "its support"),
-        "time_step": ("s", "time step of the engine"),
-        "outcome": ("", "how the run ended: rest, completed, overturned or failed"),
-        "reference_outcome": ("", "how the reference ended"),
-        "diagnostics": ("", "codes of what ended or limits the run: see `rockwobble.models.diagnostic`"),
-        "peak_tilt": ("alpha", "largest tilt of the run"),
-        "reference_peak_tilt": ("alpha", "largest tilt of the reference"),
-        "peak_tilt_difference": ("alpha", "run minus reference"),
-        "tilt_rms": ("alpha", "root mean square of the tilt difference"),
-        "tilt_rms_relative": ("", "the same over the root mean square of the reference's tilt"),
-        "contact_rms": ("b", "RMS distance of the contact points where both tilts exceed 5 % of the peak"),
-        "turn_difference": ("deg", "how far apart the contact points have rolled at the end of agreement"),
-        "uplift_time_difference": ("s", "run minus reference"),
-        "uplift_direction_difference": ("rad", "azimuth of the contact point at uplift or release"),
-        "agreement_time": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
-        "diverged": ("", "whether there was such a difference; if not, the time is the length of the run"),
-        "agreed_passes": ("", "passes within the agreement"),
-        "predicted_agreement_time": ("s", "when the traces have to diverge, from the reduced models alone"),
-        "residual_displacement": ("b", "distance of the base centre from its old place at the end"),
-        "residual_twist": ("deg", "turn of the cylinder about its axis at the end"),
-        "energy_loss": ("", "energy lost by the run over the largest energy reached"),
-        "wall_time": ("s", "computing time of the run"),
-        "time_ratio": ("", "the same over that of the reference"),
-        "reference_wall_time": ("s", "computing time of the reference"),
-        "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine's contact resolves"),
-        "closest_pass": ("alpha", "smallest minimum tilt of the reference's passes within the agreement"),
-        "engine_version": ("", "version of the engine"),
-        "run": ("", "label of the run, as in the files of samples and in the figures"),
-        "reference": ("", "label of the reference"),
-        "predicted_by": ("", "what ends the agreement there: a pass, growth or model form; empty: nothing"),
-        "divergence": (
-            "",
-            "in time: within a factor of 2 of the prediction; later, earlier, or after it touched a wall",
-        ),
-        "estimated_error": ("alpha", "RMS error of the engine in its first second, on which growth rests"),
-        "whole_rms": ("alpha", "RMS of the tilt difference until 80 % of the agreement; with a budget only"),
-        "model_form_rms": ("alpha", "of it: reduced model of the support minus the reference"),
-        "numerics_rms": ("alpha", "of it: engine minus the engine extrapolated to a step of zero"),
-        "unexplained_rms": ("alpha", "of it: engine extrapolated minus reduced model of its support"),
-        "unexplained_share": ("", "unexplained over whole; above 0.2 it is a finding"),
-        "limit_error": ("alpha", "uncertainty of the extrapolation"),
-        "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
-        "finest_step": ("s", "smallest time step that the extrapolation rests on"),
-        **VERDICT_COLUMNS,
-    }
-)
+SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
+    "case": ("", "name of the case"),
+    "engine": ("", 'multibody engine, or "reduced"'),
+    "support": ("", "what holds the cylinder in place: recess, flat or ring"),
+    "reference_engine": ("", 'what the run is held against: an engine, or "reduced"'),
+    "reference_support": ("", "its support"),
+    "time_step": ("s", "time step of the engine"),
+    "outcome": ("", "how the run ended: rest, completed, overturned or failed"),
+    "reference_outcome": ("", "how the reference ended"),
+    "diagnostics": ("", "codes of what ended or limits the run: see `rockwobble.models.diagnostic`"),
+    "peak_tilt": ("alpha", "largest tilt of the run"),
+    "reference_peak_tilt": ("alpha", "largest tilt of the reference"),
+    "peak_tilt_difference": ("alpha", "run minus reference"),
+    "tilt_rms": ("alpha", "root mean square of the tilt difference"),
+    "tilt_rms_relative": ("", "the same over the root mean square of the reference's tilt"),
+    "contact_rms": ("b", "RMS distance of the contact points where both tilts exceed 5 % of the peak"),
+    "turn_difference": ("deg", "how far apart the contact points have rolled at the end of agreement"),
+    "uplift_time_difference": ("s", "run minus reference"),
+    "uplift_direction_difference": ("rad", "azimuth of the contact point at uplift or release"),
+    "agreement_time": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
+    "diverged": ("", "whether there was such a difference; if not, the time is the length of the run"),
+    "agreed_passes": ("", "passes within the agreement"),
+    "predicted_agreement_time": ("s", "when the traces have to diverge, from the reduced models alone"),
+    "residual_displacement": ("b", "distance of the base centre from its old place at the end"),
+    "residual_twist": ("deg", "turn of the cylinder about its axis at the end"),
+    "energy_loss": ("", "energy lost by the run over the largest energy reached"),
+    "wall_time": ("s", "computing time of the run"),
+    "time_ratio": ("", "the same over that of the reference"),
+    "reference_wall_time": ("s", "computing time of the reference"),
+    "contact_resolution": ("rad", "smallest minimum tilt of a pass that the engine's contact resolves"),
+    "closest_pass": ("alpha", "smallest minimum tilt of the reference's passes within the agreement"),
+    "engine_version": ("", "version of the engine"),
+    "run": ("", "label of the run, as in the files of samples and in the figures"),
+    "reference": ("", "label of the reference"),
+    "predicted_by": ("", "what ends the agreement there: a pass, growth or model form; empty: nothing"),
+    "divergence": (
+        "",
+        "in time: within a factor of 2 of the prediction; later, earlier, or after it touched a wall",
+    ),
+    "estimated_error": ("alpha", "RMS error of the engine in its first second, on which growth rests"),
+    "whole_rms": ("alpha", "RMS of the tilt difference until 80 % of the agreement; with a budget only"),
+    "model_form_rms": ("alpha", "of it: reduced model of the support minus the reference"),
+    "numerics_rms": ("alpha", "of it: engine minus the engine extrapolated to a step of zero"),
+    "unexplained_rms": ("alpha", "of it: engine extrapolated minus reduced model of its support"),
+    "unexplained_share": ("", "unexplained over whole; above 0.2 it is a finding"),
+    "limit_error": ("alpha", "uncertainty of the extrapolation"),
+    "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
+    "finest_step": ("s", "smallest time step that the extrapolation rests on"),
+    **VERDICT_COLUMNS,
+}
 
 
 def summary_row(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 
 # M. Okabe and K. Ito, Color Universal Design, 2008; without black (the reference) and the pale yellow
 ORDER = ("#0072B2", "#D55E00", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
@@ -12,25 +11,21 @@ DARK, GREY, PALE = "#222222", "#9a9a9a", "#e8eef4"
 SHADED = "#f3e3c3"  # a strip behind lines
 
 # the dashes of plotly, and what they are in matplotlib
-DASHES: Mapping[str, str | tuple[float, tuple[float, ...]]] = MappingProxyType(
-    {
-        "solid": "-",
-        "dash": (0, (5, 2)),
-        "dashdot": (0, (5, 2, 1, 2)),
-        "dot": (0, (1, 1.5)),
-        "longdash": (0, (9, 3)),
-        "longdashdot": (0, (9, 3, 1, 3)),
-        "none": "none",
-    }
-)
+DASHES: Mapping[str, str | tuple[float, tuple[float, ...]]] = {
+    "solid": "-",
+    "dash": (0, (5, 2)),
+    "dashdot": (0, (5, 2, 1, 2)),
+    "dot": (0, (1, 1.5)),
+    "longdash": (0, (9, 3)),
+    "longdashdot": (0, (9, 3, 1, 3)),
+    "none": "none",
+}
 # the symbols of plotly, and what they are in matplotlib
-SYMBOLS: Mapping[str, str] = MappingProxyType(
-    {
-        **{"circle": "o", "square": "s", "triangle-up": "^", "diamond": "D", "triangle-down": "v"},
-        **{"star": "*", "cross": "P", "x": "X", "pentagon": "p", "hexagon": "h"},
-        **{"triangle-left": "<", "triangle-right": ">", "cross-thin": "+", "x-thin": "x"},
-    }
-)
+SYMBOLS: Mapping[str, str] = {
+    **{"circle": "o", "square": "s", "triangle-up": "^", "diamond": "D", "triangle-down": "v"},
+    **{"star": "*", "cross": "P", "x": "X", "pentagon": "p", "hexagon": "h"},
+    **{"triangle-left": "<", "triangle-right": ">", "cross-thin": "+", "x-thin": "x"},
+}
 _REFERENCE = {"recess": ("#000000", "solid"), "flat": ("#666666", "dash"), "flat-ground": ("#666666", "dash")}
 _REST = ("#000000", "dot")
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from types import MappingProxyType
 
 from rockwobble.models import Case, Trace
 
@@ -18,29 +17,27 @@ from .uplift_difference import uplift_differences
 
 # columns of the summary that only external trajectories have: unit, meaning
 Row = dict[str, float | str | bool]  # of a summary
-VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = MappingProxyType(
-    {
-        "differs_in": ("", "of an external trajectory: tilt, azimuth, path, uplift_time, uplift_direction"),
-        "not_compared": (
-            "",
-            "azimuth or path, where not given or where the tilts agree over too little motion",
-        ),
-        "azimuth_rms": ("deg", "difference of the azimuths while the tilts agree, weighted by the tilt"),
-        "azimuth_differs_from": ("s", "time of the first difference of the azimuths above its bound"),
-        "path_rms": ("b", "distance of the mass centres while the tilts agree"),
-        "path_differs_from": ("s", "time of the first distance above its bound"),
-        "tilt_bound": ("alpha", "tilt difference that ends the agreement: 1 % of alpha, and more with noise"),
-        "noise": ("alpha", "standard deviation of the scatter of the samples"),
-        "uplift_time_uncertainty": ("s", "how well the samples tell the difference of the uplift times"),
-        "uplift_direction_uncertainty": ("rad", "how well they tell that of the directions"),
-        "likely_mistake": ("", "codes of what explains the differences: see `Mistake`"),
-        "likely_mistake_value": ("", "their values, in the units of the codes"),
-        "alternative_mistake": ("", "what explains the azimuth just as well"),
-        "alternative_mistake_value": ("", "its value"),
-        "differs_without_mistake": ("", "what still differs, of tilt, azimuth and path"),
-        "agreement_without_mistake": ("s", "from uplift or release, as it would be without them"),
-    }
-)
+VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
+    "differs_in": ("", "of an external trajectory: tilt, azimuth, path, uplift_time, uplift_direction"),
+    "not_compared": (
+        "",
+        "azimuth or path, where not given or where the tilts agree over too little motion",
+    ),
+    "azimuth_rms": ("deg", "difference of the azimuths while the tilts agree, weighted by the tilt"),
+    "azimuth_differs_from": ("s", "time of the first difference of the azimuths above its bound"),
+    "path_rms": ("b", "distance of the mass centres while the tilts agree"),
+    "path_differs_from": ("s", "time of the first distance above its bound"),
+    "tilt_bound": ("alpha", "tilt difference that ends the agreement: 1 % of alpha, and more with noise"),
+    "noise": ("alpha", "standard deviation of the scatter of the samples"),
+    "uplift_time_uncertainty": ("s", "how well the samples tell the difference of the uplift times"),
+    "uplift_direction_uncertainty": ("rad", "how well they tell that of the directions"),
+    "likely_mistake": ("", "codes of what explains the differences: see `Mistake`"),
+    "likely_mistake_value": ("", "their values, in the units of the codes"),
+    "alternative_mistake": ("", "what explains the azimuth just as well"),
+    "alternative_mistake_value": ("", "its value"),
+    "differs_without_mistake": ("", "what still differs, of tilt, azimuth and path"),
+    "agreement_without_mistake": ("s", "from uplift or release, as it would be without them"),
+}
 _TEXTS = (
     *("differs_in", "not_compared", "likely_mistake", "likely_mistake_value"),
     *("alternative_mistake", "alternative_mistake_value", "differs_without_mistake"),

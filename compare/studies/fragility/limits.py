@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
@@ -12,17 +11,15 @@ from numpy.typing import NDArray
 
 OVERTURNED, CONTACT_LOST = "overturned", "contact_lost"
 # name: the tilt that is reached [alpha]; NaN where it is no tilt that decides
-LIMITS: Mapping[str, float] = MappingProxyType(
-    {
-        "uplift": 0.0,
-        "0.1 alpha": 0.1,
-        "0.25 alpha": 0.25,
-        "0.5 alpha": 0.5,
-        "1 alpha": 1.0,
-        OVERTURNED: math.nan,
-        CONTACT_LOST: math.nan,
-    }
-)
+LIMITS: Mapping[str, float] = {
+    "uplift": 0.0,
+    "0.1 alpha": 0.1,
+    "0.25 alpha": 0.25,
+    "0.5 alpha": 0.5,
+    "1 alpha": 1.0,
+    OVERTURNED: math.nan,
+    CONTACT_LOST: math.nan,
+}
 DEFAULT_LIMITS = tuple(name for name in LIMITS if name != CONTACT_LOST)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 from rockwobble.models import Run
@@ -15,15 +14,13 @@ from ...runs.choice import run_labels
 # The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
 WORSE_PLANE = "worse-plane"
 _PLANES = {"planar-x": 0.0, "planar-y": 0.5 * math.pi}
-MODELS: Mapping[str, str] = MappingProxyType(
-    {
-        "recess": "recess model",
-        "flat": "flat-ground model",
-        "planar-x": "planar x",
-        "planar-y": "planar y",
-        WORSE_PLANE: "worse plane",
-    }
-)
+MODELS: Mapping[str, str] = {
+    "recess": "recess model",
+    "flat": "flat-ground model",
+    "planar-x": "planar x",
+    "planar-y": "planar y",
+    WORSE_PLANE: "worse plane",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
-from types import MappingProxyType
 
 from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import FAILURES
@@ -23,90 +22,84 @@ _NOT_EXTRAPOLATED = {
     "parted": "the runs part there",
     "no_closer": "the runs do not come closer to one another",
 }
-_WORDS: Mapping[str, Callable[[Diagnostic], str]] = MappingProxyType(
-    {
-        "step_budget": lambda fact: (
-            f"the {fact.size:.0f} steps allowed were used up{_at(fact)}: the motion chatters near upright, "
-            "which a larger rest threshold ends"
-        ),
-        "tolerance": lambda fact: f"no step met the tolerance of {fact.bound:g}{_at(fact)}",
-        "slip": lambda fact: f"contact slipped{_from(fact)}",
-        "lift_off": lambda fact: f"the cylinder left the ground{_at(fact)}",
-        "tension": lambda fact: (
-            f"contact is lost{_at(fact)}: a joint holds the rim down"
+_WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
+    "step_budget": lambda fact: (
+        f"the {fact.size:.0f} steps allowed were used up{_at(fact)}: the motion chatters near upright, "
+        "which a larger rest threshold ends"
+    ),
+    "tolerance": lambda fact: f"no step met the tolerance of {fact.bound:g}{_at(fact)}",
+    "slip": lambda fact: f"contact slipped{_from(fact)}",
+    "lift_off": lambda fact: f"the cylinder left the ground{_at(fact)}",
+    "tension": lambda fact: (
+        f"contact is lost{_at(fact)}: a joint holds the rim down"
+        if math.isnan(fact.size)
+        else f"contact is lost{_at(fact)}, for {_s(fact.duration)} in all: the ground would have to pull "
+        f"(normal force {fact.size:.3g} weights)"
+    ),
+    "friction_needed": lambda fact: (
+        f"a joint holds the rim{_at(fact)}, where the friction of the case would let it slip"
+        if math.isnan(fact.size)
+        else f"the rim would slip{_at(fact)}, for {_s(fact.duration)} in all: it needs a friction of "
+        f"{fact.size:.3g}, where there is {fact.bound:g}"
+    ),
+    "wall_contact": lambda fact: f"the cylinder touched a wall{_from(fact)}",
+    "energy": lambda fact: (
+        f"contact {'made' if fact.size > 0.0 else 'took'} {abs(fact.size):.1e} of the energy of the "
+        f"motion, which shows{_from(fact)}"
+    ),
+    "undecided": lambda _: "it ends in the middle of a fall, and whether that overturns it is not decided",
+    "solver": lambda fact: (
+        f"the solver had not converged in {fact.size:.0f} of the {fact.bound:.0f} steps looked at"
+    ),
+    "unresolved_pass": lambda fact: (
+        f"{_count(fact.size, 'pass', 'is', 'are')} closer to upright than the {fact.bound:.1e} rad that "
+        f"contact resolves, first{_at(fact)}"
+    ),
+    "settled": lambda fact: (
+        f"the tilt is, until {_s(fact.duration)}, within {fact.size:.1e} alpha of its limit for a "
+        f"vanishing step, by Richardson with order {fact.bound:.2g}"
+    ),
+    "unsettled": lambda fact: (
+        f"the tilt has not settled by halving the step: {_UNSETTLED.get(fact.detail, fact.detail)}"
+        + (
+            ""
             if math.isnan(fact.size)
-            else f"contact is lost{_at(fact)}, for {_s(fact.duration)} in all: the ground would have to pull "
-            f"(normal force {fact.size:.3g} weights)"
-        ),
-        "friction_needed": lambda fact: (
-            f"a joint holds the rim{_at(fact)}, where the friction of the case would let it slip"
-            if math.isnan(fact.size)
-            else f"the rim would slip{_at(fact)}, for {_s(fact.duration)} in all: it needs a friction of "
-            f"{fact.size:.3g}, where there is {fact.bound:g}"
-        ),
-        "wall_contact": lambda fact: f"the cylinder touched a wall{_from(fact)}",
-        "energy": lambda fact: (
-            f"contact {'made' if fact.size > 0.0 else 'took'} {abs(fact.size):.1e} of the energy of the "
-            f"motion, which shows{_from(fact)}"
-        ),
-        "undecided": lambda _: (
-            "it ends in the middle of a fall, and whether that overturns it is not decided"
-        ),
-        "solver": lambda fact: (
-            f"the solver had not converged in {fact.size:.0f} of the {fact.bound:.0f} steps looked at"
-        ),
-        "unresolved_pass": lambda fact: (
-            f"{_count(fact.size, 'pass', 'is', 'are')} closer to upright than the {fact.bound:.1e} rad that "
-            f"contact resolves, first{_at(fact)}"
-        ),
-        "settled": lambda fact: (
-            f"the tilt is, until {_s(fact.duration)}, within {fact.size:.1e} alpha of its limit for a "
-            f"vanishing step, by Richardson with order {fact.bound:.2g}"
-        ),
-        "unsettled": lambda fact: (
-            f"the tilt has not settled by halving the step: {_UNSETTLED.get(fact.detail, fact.detail)}"
-            + (
-                ""
-                if math.isnan(fact.size)
-                else f"; until {_s(fact.duration)} it differs by {fact.size:.1e} alpha from that at twice "
-                "the step"
-            )
-        ),
-        "extrapolated": lambda fact: (
-            f"the motion is, until {_s(fact.duration)}, what runs at three time steps tend to, with order "
-            f"{fact.bound:.0f}: within {fact.size:.1e} alpha, by estimate"
-        ),
-        "not_extrapolated": lambda fact: (
-            f"it is not extrapolated{_from(fact) if fact.time > 0.0 else ''}, but the run at the finest time "
-            f"step: {_NOT_EXTRAPOLATED.get(fact.detail, fact.detail)}"
-        ),
-        "side": lambda fact: (
-            f"it passed through upright itself, first{_at(fact)}: the ground had moved in one plane, and the "
-            "side of such a pass is undetermined"
-        ),
-        "note": lambda fact: fact.detail,
-        "missed_pass": lambda fact: (
-            f"{_count(fact.size, 'near pass', 'fell', 'fell')} between two samples, first{_at(fact)}"
-        ),
-    }
-)
+            else f"; until {_s(fact.duration)} it differs by {fact.size:.1e} alpha from that at twice "
+            "the step"
+        )
+    ),
+    "extrapolated": lambda fact: (
+        f"the motion is, until {_s(fact.duration)}, what runs at three time steps tend to, with order "
+        f"{fact.bound:.0f}: within {fact.size:.1e} alpha, by estimate"
+    ),
+    "not_extrapolated": lambda fact: (
+        f"it is not extrapolated{_from(fact) if fact.time > 0.0 else ''}, but the run at the finest time "
+        f"step: {_NOT_EXTRAPOLATED.get(fact.detail, fact.detail)}"
+    ),
+    "side": lambda fact: (
+        f"it passed through upright itself, first{_at(fact)}: the ground had moved in one plane, and the "
+        "side of such a pass is undetermined"
+    ),
+    "note": lambda fact: fact.detail,
+    "missed_pass": lambda fact: (
+        f"{_count(fact.size, 'near pass', 'fell', 'fell')} between two samples, first{_at(fact)}"
+    ),
+}
 # what each is called where many runs are counted
-_MANY: Mapping[str, str] = MappingProxyType(
-    {
-        "slip": "slipped",
-        "lift_off": "left the ground",
-        "wall_contact": "touched a wall",
-        "tension": "lost contact but for a joint",
-        "friction_needed": "needed more friction than there is",
-        "energy": "lost or gained energy",
-        "solver": "had steps whose solver did not converge",
-        "unsettled": "did not settle with the time step",
-        "not_extrapolated": "could not be extrapolated in the time step to the end",
-        "unresolved_pass": "had passes closer to upright than contact resolves",
-        "undecided": "ended in the middle of a fall",
-        "side": "passed through upright itself",
-    }
-)
+_MANY: Mapping[str, str] = {
+    "slip": "slipped",
+    "lift_off": "left the ground",
+    "wall_contact": "touched a wall",
+    "tension": "lost contact but for a joint",
+    "friction_needed": "needed more friction than there is",
+    "energy": "lost or gained energy",
+    "solver": "had steps whose solver did not converge",
+    "unsettled": "did not settle with the time step",
+    "not_extrapolated": "could not be extrapolated in the time step to the end",
+    "unresolved_pass": "had passes closer to upright than contact resolves",
+    "undecided": "ended in the middle of a fall",
+    "side": "passed through upright itself",
+}
 
 
 def sentence(fact: Diagnostic) -> str:

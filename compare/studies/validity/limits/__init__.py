@@ -3,27 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from types import MappingProxyType
 
 from .distributions import records, single_peaks, vertical
 from .engine import free_response, rings, soft_contact, traces
 from .needs import contact, friction, restraining_moment
 from .numbers import Numbers, Tables
 
-LIMITS: Mapping[str, Callable[[Tables], Numbers]] = MappingProxyType(
-    {
-        "records": records,
-        "single_peaks": single_peaks,
-        "traces": traces,
-        "free_response": free_response,
-        "friction": friction,
-        "contact": contact,
-        "restraining_moment": restraining_moment,
-        "rings": rings,
-        "soft_contact": soft_contact,
-        "vertical": vertical,
-    }
-)
+LIMITS: Mapping[str, Callable[[Tables], Numbers]] = {
+    "records": records,
+    "single_peaks": single_peaks,
+    "traces": traces,
+    "free_response": free_response,
+    "friction": friction,
+    "contact": contact,
+    "restraining_moment": restraining_moment,
+    "rings": rings,
+    "soft_contact": soft_contact,
+    "vertical": vertical,
+}
 
 
 def limits_of(tables: Tables) -> dict[str, Numbers]:
