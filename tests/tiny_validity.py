@@ -7,7 +7,8 @@ import tempfile
 from functools import cache
 from typing import TYPE_CHECKING
 
-from rockwobble.compare.studies.validity import QUICK, Ring, Validity, measure_all, validity_of
+from rockwobble.compare.studies.validity.extent import QUICK, Ring
+from rockwobble.compare.studies.validity.study import Validity, measure_all, validity_of
 
 if TYPE_CHECKING:
     import pandas as pd

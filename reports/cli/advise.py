@@ -10,9 +10,8 @@ import typer
 import rockwobble as rw
 
 from ..console.progress import shown_progress
-from ..console.provenance import command_line
 from ..console.results import show_and_write
-from ..console.terminal import FAILED, complain, interruptible, user_input
+from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
 from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible
@@ -74,8 +73,8 @@ def advise(
         from rockwobble.compare.runs.execution import Job, job_fingerprint
         from rockwobble.compare.storage.fingerprint import fingerprint
         from rockwobble.compare.storage.manifest import made_now
-        from rockwobble.compare.studies.advice import advise as ask
         from rockwobble.compare.studies.advice.advice import KIND
+        from rockwobble.compare.studies.advice.drive import advise as ask
 
         from ..pages.advice import advice_page
 

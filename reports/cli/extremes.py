@@ -10,9 +10,8 @@ import typer
 from rockwobble.compare.storage.files import require_writable
 
 from ..console.progress import shown_progress
-from ..console.provenance import command_line
 from ..console.results import show_and_write
-from ..console.terminal import FAILED, interruptible, user_input
+from ..console.terminal import FAILED, command_line, interruptible, user_input
 from .inputs import options
 
 Quick = Annotated[
@@ -41,7 +40,7 @@ def extremes(
     with interruptible("what was run so far is kept, and the next call goes on from there"):
         with user_input():
             require_writable(out)
-        from rockwobble.compare.studies.extremes import KIND, measure_extremes
+        from rockwobble.compare.studies.extremes.study import KIND, measure_extremes
 
         from ..pages.extremes import extremes_page
 

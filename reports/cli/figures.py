@@ -10,9 +10,8 @@ import typer
 from rockwobble.compare.storage.files import require_writable
 
 from ..console.progress import shown_progress
-from ..console.provenance import command_line
 from ..console.results import show_and_write
-from ..console.terminal import interruptible, user_input
+from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 
 # three sizes make bands to compare, and a map

@@ -9,9 +9,8 @@ from typing import Annotated
 import rockwobble as rw
 
 from ..console.progress import shown_progress
-from ..console.provenance import command_line
 from ..console.results import show_and_write
-from ..console.terminal import interruptible, user_input
+from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 from .inputs.grid import values_of
 from .inputs.method_values import settings

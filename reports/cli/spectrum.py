@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import rockwobble as rw
 
 from ..console.progress import shown_progress
-from ..console.provenance import command_line
 from ..console.results import show_and_write
-from ..console.terminal import interruptible, user_input
+from ..console.terminal import command_line, interruptible, user_input
 from ..pages.words.cases import describe
 from .inputs import options
 

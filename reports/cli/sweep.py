@@ -11,8 +11,7 @@ import typer
 import rockwobble as rw
 
 from ..console.progress import shown_progress
-from ..console.provenance import command_line
-from ..console.terminal import FAILED, INTERRUPTED, complain, user_input
+from ..console.terminal import FAILED, INTERRUPTED, command_line, complain, user_input
 from .inputs import options
 from .inputs.estimate import require_sweep
 from .inputs.grid import grid_of

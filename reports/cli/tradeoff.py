@@ -10,9 +10,8 @@ import typer
 from rockwobble.compare.storage.files import require_writable
 
 from ..console.progress import shown_progress
-from ..console.provenance import command_line
 from ..console.results import show_and_write
-from ..console.terminal import interruptible, user_input
+from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 
 Quick = Annotated[
@@ -35,7 +34,7 @@ def tradeoff(quick: Quick = False, out: options.Out = Path("rockwobble-tradeoff"
     with interruptible():
         with user_input():
             require_writable(out)
-        from rockwobble.compare.studies.tradeoff import measure_tradeoff
+        from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
 
         from ..pages.tradeoff import tradeoff_page
 

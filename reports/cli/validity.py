@@ -10,9 +10,8 @@ import typer
 from rockwobble.compare.storage.files import require_writable
 
 from ..console.progress import shown_progress
-from ..console.provenance import command_line
 from ..console.results import show_and_write
-from ..console.terminal import interruptible, user_input
+from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 
 Quick = Annotated[
@@ -46,7 +45,8 @@ def validity(
             if workers is not None and workers < 1:
                 raise ValueError(f"--workers must be at least 1, got {workers}")
             require_writable(out)
-        from rockwobble.compare.studies.validity import FULL, QUICK, measure_all, validity_of
+        from rockwobble.compare.studies.validity.extent import FULL, QUICK
+        from rockwobble.compare.studies.validity.study import measure_all, validity_of
 
         from ..pages.validity import limits_table, validity_page
 

@@ -1,10 +1,11 @@
-"""How a command ends: exit codes, one clear line for bad input, a clean stop on Ctrl-C, a lost terminal."""
+"""A command as it was typed, and how it ends: exit codes, a line for bad input, Ctrl-C, a lost terminal."""
 
 from __future__ import annotations
 
 import codecs
 import io
 import os
+import shlex
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -33,6 +34,11 @@ _PLAIN = {
     **{"▲": "^", "✓": "ok", "\u00a0": " ", "é": "e"},
     **dict(zip("⁻⁰¹²³⁴⁵⁶⁷⁸⁹", "-0123456789", strict=True)),
 }
+
+
+def command_line() -> str:
+    """Return the command that runs, as it would be typed."""
+    return shlex.join(["rockwobble", *sys.argv[1:]])
 
 
 def complain(message: str) -> None:

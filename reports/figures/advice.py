@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.tilt import overturned
-from rockwobble.compare.studies.advice import Advice
+from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
 
 from .palette import GREY, Style, model_style, run_styles

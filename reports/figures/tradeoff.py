@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.tradeoff import Tradeoff
+from rockwobble.compare.studies.tradeoff.study import Tradeoff
 
 from .palette import DARK, GREY, ORDER, SYMBOLS, Style
 from .picture import Axis, Line, Panel, Picture, Pictures, Rule

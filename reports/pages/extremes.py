@@ -6,7 +6,8 @@ import math
 
 import pandas as pd
 
-from rockwobble.compare.studies.extremes import FINE, Extremes
+from rockwobble.compare.studies.extremes.study import Extremes
+from rockwobble.compare.studies.extremes.verdict import FINE
 from rockwobble.models.diagnostic import CODES
 
 from .page import Page

@@ -19,9 +19,9 @@ KINDS: Mapping[str, tuple[str, ...]] = {
     "fragility": ("reports.pages.fragility:stored_page",),
     "overturning spectrum": ("reports.pages.spectrum:stored_page",),
     "advice": ("reports.pages.advice:stored_page",),
-    "validity": ("compare.studies.validity:read_validity", "reports.pages.validity:validity_page"),
-    "tradeoff": ("compare.studies.tradeoff:read_tradeoff", "reports.pages.tradeoff:tradeoff_page"),
-    "extremes": ("compare.studies.extremes:read_extremes", "reports.pages.extremes:extremes_page"),
+    "validity": ("compare.studies.validity.study:read_validity", "reports.pages.validity:validity_page"),
+    "tradeoff": ("compare.studies.tradeoff.study:read_tradeoff", "reports.pages.tradeoff:tradeoff_page"),
+    "extremes": ("compare.studies.extremes.study:read_extremes", "reports.pages.extremes:extremes_page"),
     "engine versions": ("reports.pages.versions:stored_page",),
     "paper": ("reports.paper.page:stored_page",),
 }

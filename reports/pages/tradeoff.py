@@ -4,14 +4,8 @@ from __future__ import annotations
 
 import pandas as pd
 
-from rockwobble.compare.studies.tradeoff import (
-    ROUNDS,
-    Tradeoff,
-    costs,
-    engine_factors,
-    plateaus,
-    rest_tilt_price,
-)
+from rockwobble.compare.studies.tradeoff.conclusions import costs, engine_factors, plateaus, rest_tilt_price
+from rockwobble.compare.studies.tradeoff.study import ROUNDS, Tradeoff
 
 from ..figures.tradeoff import ERRORS, TITLES, tradeoff_pictures
 from .page import Page

@@ -8,11 +8,12 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.distributions import MARGIN
-from rockwobble.compare.studies.validity import Validity, limits_of
 from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
+from rockwobble.compare.studies.validity.limits import limits_of
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.limits.engine import damping
 from rockwobble.compare.studies.validity.rings import FREE
+from rockwobble.compare.studies.validity.study import Validity
 
 from ..figures.validity.pictures import METHODS, validity_pictures
 from .page import Page

@@ -12,9 +12,8 @@ from showing import shows_itself
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.tilt import overturned
-from rockwobble.compare.studies.advice import advise
 from rockwobble.compare.studies.advice.advice import Advice
-from rockwobble.compare.studies.advice.drive import vertical_effect
+from rockwobble.compare.studies.advice.drive import advise, vertical_effect
 from rockwobble.compare.studies.advice.grades import (
     BROKEN,
     NEAR,

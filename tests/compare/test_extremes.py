@@ -9,8 +9,10 @@ import numpy as np
 import pytest
 
 from rockwobble.compare.runs.execution import simulate_run
-from rockwobble.compare.studies.extremes import EXTREMES, FINE, Condition, judge, methods, verdict
-from rockwobble.compare.studies.extremes.conditions import conditions
+from rockwobble.compare.studies.extremes import verdict
+from rockwobble.compare.studies.extremes.conditions import EXTREMES, Condition, conditions
+from rockwobble.compare.studies.extremes.study import methods
+from rockwobble.compare.studies.extremes.verdict import FINE, judge
 from rockwobble.models import Case, Diagnostic, InitialState, Run, Trace
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 

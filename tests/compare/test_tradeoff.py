@@ -12,8 +12,9 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.runs.progress import Progress
-from rockwobble.compare.studies.tradeoff import costs, engine_factors, plateaus, rest_tilt_price, study
 from rockwobble.compare.studies.tradeoff import problem as problems
+from rockwobble.compare.studies.tradeoff import study
+from rockwobble.compare.studies.tradeoff.conclusions import costs, engine_factors, plateaus, rest_tilt_price
 from rockwobble.compare.studies.tradeoff.methods import BASE_LINE, BASE_TOLERANCE, Method, methods_for
 from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, Problem
 

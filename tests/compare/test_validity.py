@@ -13,14 +13,14 @@ from showing import shows_itself
 from tiny_validity import TINY, tiny_tables, tiny_validity
 
 from rockwobble.compare.runs.progress import Progress
-from rockwobble.compare.studies.validity import FULL, PARTS, QUICK, limits_of, measure_all
-from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
-from rockwobble.compare.studies.validity.limits import LIMITS
+from rockwobble.compare.studies.validity.extent import FULL, LARGEST_PEAK, QUICK
+from rockwobble.compare.studies.validity.limits import LIMITS, limits_of
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.limits.engine import damping
 from rockwobble.compare.studies.validity.limits.numbers import first_failing, reached, up_to
-from rockwobble.compare.studies.validity.parts import part_named
+from rockwobble.compare.studies.validity.parts import PARTS, part_named
 from rockwobble.compare.studies.validity.records import HALVED, RECESS
+from rockwobble.compare.studies.validity.study import measure_all
 from rockwobble.models import Cylinder
 from rockwobble.reduced import body, problem
 from rockwobble.reduced.body import Body

@@ -12,9 +12,9 @@ from showing import shows_itself
 from typer.testing import CliRunner
 
 from rockwobble.compare.storage.manifest import made_now
-from rockwobble.compare.studies import extremes as study
-from rockwobble.compare.studies.extremes import KIND, Extremes, Verdict, measure_extremes
 from rockwobble.compare.studies.extremes import study as scan
+from rockwobble.compare.studies.extremes.study import KIND, Extremes, measure_extremes
+from rockwobble.compare.studies.extremes.verdict import Verdict
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.extremes import extremes_page
 
@@ -41,7 +41,7 @@ SILENT = Verdict(verdict="silent", error=0.3, reference="model", begins=0.5)
 def test_the_exit_code_tells_whether_anything_is_silently_wrong(
     worst: Verdict, code: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(study, "measure_extremes", lambda *_, **__: given(worst))
+    monkeypatch.setattr(scan, "measure_extremes", lambda *_, **__: given(worst))
     done = CliRunner().invoke(app, ["extremes", "--out", str(tmp_path)])
     assert done.exit_code == code
     printed = " ".join(done.stdout.split())

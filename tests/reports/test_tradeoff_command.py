@@ -11,8 +11,8 @@ from showing import shows_itself
 from typer.testing import CliRunner
 
 from rockwobble.compare.storage.manifest import made_now, read_results, write_results
-from rockwobble.compare.studies import tradeoff as study
-from rockwobble.compare.studies.tradeoff import KIND, Tradeoff, read_tradeoff
+from rockwobble.compare.studies.tradeoff import study
+from rockwobble.compare.studies.tradeoff.study import KIND, Tradeoff, read_tradeoff
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.tradeoff import tradeoff_page
 

@@ -12,9 +12,10 @@ from tiny_validity import tiny_validity
 from typer.testing import CliRunner
 
 from rockwobble.compare.storage.manifest import write_results
-from rockwobble.compare.studies import validity as study
-from rockwobble.compare.studies.validity import Validity, limits_of, read_validity
+from rockwobble.compare.studies.validity import study
+from rockwobble.compare.studies.validity.limits import limits_of
 from rockwobble.compare.studies.validity.records import RECESS
+from rockwobble.compare.studies.validity.study import Validity, read_validity
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.validity import limits_table, validity_page
 

@@ -1,6 +1,1 @@
 """What to make of one case: how it ends, which of its results to trust, and what the support must supply."""
-
-from .advice import Advice
-from .drive import advise
-
-__all__ = ["Advice", "advise"]

@@ -11,8 +11,7 @@ import typer
 import rockwobble as rw
 
 from ...console.progress import shown_progress
-from ...console.provenance import command_line
-from ...console.terminal import complain, interruptible, user_input
+from ...console.terminal import command_line, complain, interruptible, user_input
 from ...pages.words.cases import describe
 from ..inputs import options
 from ..inputs.estimate import require_feasible, time_needed

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.validity.limits import Tables
 from rockwobble.compare.studies.validity.limits.distributions import cells
 from rockwobble.compare.studies.validity.limits.needs import MODERATE
+from rockwobble.compare.studies.validity.limits.numbers import Tables
 
 from ..heat import Gap, Heat, Shades, contour, names
 from ..palette import DARK, GREY, ORDER, PALE, Style

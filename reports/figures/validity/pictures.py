@@ -7,12 +7,11 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.validity import Validity
-from rockwobble.compare.studies.validity.limits import Tables
 from rockwobble.compare.studies.validity.limits.distributions import CONTRASTS, POINT, ratios
-from rockwobble.compare.studies.validity.limits.numbers import Array, column
+from rockwobble.compare.studies.validity.limits.numbers import Array, Tables, column
 from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
 from rockwobble.compare.studies.validity.rings import FREE
+from rockwobble.compare.studies.validity.study import Validity
 
 from ..palette import DARK, GREY, ORDER, Style, mark_styles
 from ..picture import Axis, Line, Panel, Picture, Pictures, Rule, at_hand, ecdf

@@ -32,6 +32,3 @@ def limits_of(tables: Tables) -> dict[str, Numbers]:
         Of each part by its name, as `measure_all` returns them.
     """
     return {name: limit(tables) for name, limit in LIMITS.items()}
-
-
-__all__ = ["LIMITS", "Numbers", "Tables", "limits_of"]
