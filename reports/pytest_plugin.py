@@ -43,6 +43,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Finding
@@ -128,8 +129,8 @@ class SuiteFile(pytest.File):
             suite = rw.read_suite(self.path)
         except ValueError as error:
             raise self.CollectError(str(error)) from None
-        runs = suite.runs or rw.compare.default_runs()
-        absent = rw.compare.missing_engines()
+        runs = suite.runs or rc.default_runs()
+        absent = rc.missing_engines()
         for case in suite.cases:
             for run, label in zip(runs, run_labels(runs), strict=True):
                 item: SuiteItem = SuiteItem.from_parent(

@@ -13,8 +13,8 @@ import importlib
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rockwobble import compare, models, multibody, reduced, reports
-    from rockwobble.compare import Comparison, External, ensemble, fragility, simulate, sweep
+    from rockwobble import models, multibody, reduced, reports
+    from rockwobble.compare import Comparison, External, compare, ensemble, fragility, simulate, sweep
     from rockwobble.models import (
         Case,
         Cylinder,
@@ -45,7 +45,7 @@ __all__ = [
     "Run",
     "Suite",
     "Trace",
-    "compare",  # may be called: that is its function `compare`
+    "compare",  # the module, which may be called; to a type checker its function `compare`
     "el_centro_1940",
     "ensemble",
     "fragility",

@@ -8,7 +8,6 @@ the agreement ends, and peaks are kept of many copies instead.
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -20,9 +19,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case, GroundMotion, Run, Trace
+from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
 
+from ..studies.ensemble.members import perturbed
 from .short_cases import G, ShortCase, short_cases
 from .verdict import Entry, Sample
 
@@ -162,27 +162,13 @@ def _apart(copy: Array, values: Array) -> Array:
 
 
 def _copies(case: Case, share: float) -> list[Case]:
-    return [_scaled(case, 1.0 + share, 1.0 + share), _scaled(case, 1.0 - share, 1.0 + 0.5 * share)]
+    return [perturbed(case, 1.0 + share, 1.0 + share), perturbed(case, 1.0 - share, 1.0 + 0.5 * share)]
 
 
 def _members(case: Case, share: float) -> list[Case]:
     random = Random(1940)
     factors = [(1.0 + share * random.gauss(0, 1), 1.0 + share * random.gauss(0, 1)) for _ in range(_MEMBERS)]
-    return [_scaled(case, *pair) for pair in factors]
-
-
-def _scaled(case: Case, first: float, second: float) -> Case:
-    initial, motion = case.initial, case.motion
-    if initial is not None:
-        other = dataclasses.replace(
-            initial, tilt=initial.tilt * first, rolling_rate=initial.rolling_rate * second
-        )
-        return dataclasses.replace(case, initial=other)
-    assert motion is not None
-    factors = np.array([first, second, 1.0])[: motion.acceleration.shape[1]]
-    return dataclasses.replace(
-        case, motion=GroundMotion(motion.acceleration * factors, motion.time_step, motion.name)
-    )
+    return [perturbed(case, *pair) for pair in factors]
 
 
 def _known(value: float) -> float | None:

@@ -25,6 +25,7 @@ from rockwobble.models.shown import Brief
 from rockwobble.multibody.time_step.extrapolated import to_zero_step
 
 from ..metrics.agreement import Agreement
+from ..traces.pair import start_of
 
 Array = NDArray[np.float64]
 
@@ -145,7 +146,7 @@ def error_budget(
     horizon : Agreement
         Agreement of engine and reference.
     """
-    start = reference.uplift_time if math.isfinite(reference.uplift_time) else 0.0
+    start = start_of(reference)
     times = (engine.time, reference.time, own.time, limit.time)
     count = common_count(times)
     keep = slice(

@@ -26,7 +26,7 @@ from rockwobble.models import Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
 
 from ..metrics.agreement import agreement_time
-from ..traces.pair import FloatArray, make_pair
+from ..traces.pair import FloatArray, is_release, make_pair, start_of
 from .error_budget import ErrorBudget
 
 # a prediction is in time if the measured agreement time is within this factor of it, either way
@@ -77,8 +77,7 @@ def estimated_error(case: Case, engine: str | None, time_step: float) -> float:
         return _SMALLEST_ERROR
     facts = engine_facts(engine)
     step = time_step / time_scale(case) / _REFERENCE_STEP
-    released = case.initial is not None and case.initial.tilt > 0.0
-    error = facts.release_error * case.cylinder.tan_alpha**2 if released else facts.uplift_error
+    error = facts.release_error * case.cylinder.tan_alpha**2 if is_release(case) else facts.uplift_error
     return max(error * math.pow(step, facts.order), _SMALLEST_ERROR)
 
 
@@ -93,7 +92,7 @@ def close_pass(reference: Trace, contact_resolution: float, length: float) -> Pr
     end = _close_pass(reference, contact_resolution, length)
     if end >= length:
         return Prediction(length=length, reason="")
-    return Prediction(length=max(0.0, end - _start(reference)), reason="pass")
+    return Prediction(length=max(0.0, end - start_of(reference)), reason="pass")
 
 
 def predict(
@@ -122,7 +121,7 @@ def predict(
         Runs a reduced model on a case; for the perturbed copy.
     """
     length = case.length
-    start = _start(reference)
+    start = start_of(reference)
     ends = {
         "model form": length if own is reference else _diverges(case, reference, own),
         "pass": _close_pass(own, contact_resolution, length),
@@ -172,10 +171,6 @@ def time_scale(case: Case) -> float:
     return math.sqrt(case.cylinder.semidiagonal / _REFERENCE_SIZE * _REFERENCE_GRAVITY / case.gravity)
 
 
-def _start(trace: Trace) -> float:
-    return trace.uplift_time if math.isfinite(trace.uplift_time) else 0.0
-
-
 def _diverges(case: Case, reference: Trace, other: Trace) -> float:
     """Time at which two responses part [s]; the length of the run where they do not."""
     horizon = agreement_time(make_pair(case.cylinder, reference, other, until=case.length))
@@ -193,7 +188,7 @@ def _copy_diverges(case: Case, own: Trace, error: float, simulate: Simulate) -> 
         return case.length
     disturbed = simulate(_disturbed(case, _TRIAL), own.run)
     trial = make_pair(case.cylinder, own, disturbed, until=case.length)
-    distance = early_rms(case, trial.time, trial.tilt_difference, _start(own))
+    distance = early_rms(case, trial.time, trial.tilt_difference, start_of(own))
     if distance == 0.0:
         return case.length
     disturbance = min(_TRIAL * error / distance, _LARGEST)

@@ -21,6 +21,7 @@ from rockwobble.multibody.simulation import STEP_SETTINGS
 from rockwobble.multibody.time_step.extrapolated import EXTRAPOLATED
 
 from ..runs.execution import SAMPLE_STEP, Job
+from ..traces.pair import is_release, start_of
 from .error_budget import COVERED, WORTH_EXPLAINING, Limit, common_count, extrapolated
 
 # of the step of the run: always two, and one more where the limit is uncertain
@@ -59,7 +60,7 @@ class Refined:
     def smooth(self) -> bool:
         """Whether the error of the run is a power series in the step: from rest not in every engine."""
         assert self.run.engine is not None  # only runs of engines are refined
-        return _released(self.case) or engine_facts(self.run.engine).smooth_uplift
+        return is_release(self.case) or engine_facts(self.run.engine).smooth_uplift
 
     @property
     def extrapolated(self) -> bool:
@@ -108,10 +109,6 @@ def finer_case(refined: Refined) -> Case:
     return dataclasses.replace(case, duration=max(end, SAMPLE_STEP))
 
 
-def _released(case: Case) -> bool:
-    return case.initial is not None and case.initial.tilt > 0.0
-
-
 def _job(refined: Refined, level: int) -> Job:
     run = refined.run
     step = refined.trajectory.time_step * 0.5**level
@@ -141,8 +138,7 @@ def _is_uncertain(refined: Refined, traces: Sequence[Trace]) -> bool:
     if limit is None or not refined.smooth:
         return False
     # the stretch that the budget covers, from the uplift on: before it there is nothing to err in
-    uplift = refined.trajectory.uplift_time
-    start = uplift if math.isfinite(uplift) else 0.0
+    start = start_of(refined.trajectory)
     covered = (limit.time >= start) & (limit.time <= start + COVERED * (refined.end - start))
     error = _rms(limit.error[covered]) / refined.case.cylinder.alpha
     whole = _rms(refined.difference[: math.ceil(COVERED * len(refined.difference))])

@@ -127,13 +127,20 @@ class Comparison(Shown):
         return agreement_matrix(self.cases, self.traces, until=self.until)
 
     def _tables(self) -> dict[str, pd.DataFrame]:
+        run = ["case", "run"]
+        known = {
+            key: trace for key, trace in self.traces.items() if len(trace.time)
+        }  # the process of others died
         tables = {
             "summary": self.summary,
-            "traces": self._stacked(),
-            "passes": self._passes(),
+            "traces": _stacked({key: trace.to_frame() for key, trace in known.items()}, run),
+            "passes": _stacked({key: trace.passes for key, trace in known.items()}, run),
             "excitation": self._excitation(),
         }
-        return tables | ({"budget": self._budget()} if self.budgets else {})
+        if self.budgets:
+            parts = {key: budget.to_frame() for key, budget in self.budgets.items()}
+            tables["budget"] = _stacked(parts, [*run, "reference"])
+        return tables
 
     def _said(self) -> dict[str, str]:
         diverged = int(self.summary["diverged"].sum())
@@ -142,37 +149,6 @@ class Comparison(Shown):
     def _repr_html_(self) -> str:
         names = ["case", "run", "reference", "outcome", "peak_tilt", "tilt_rms_relative", "agreement_time"]
         return str(self.summary[[*names, "diverged", "diagnostics"]].to_html(index=False))
-
-    def _stacked(self) -> pd.DataFrame:
-        tables = []
-        for (case, label), trace in self.traces.items():
-            if not len(trace.time):  # its process died
-                continue
-            table = trace.to_frame()
-            table.insert(0, "case", case)
-            table.insert(1, "run", label)
-            tables.append(table)
-        whole: pd.DataFrame = pd.concat(tables, ignore_index=True)
-        return whole
-
-    def _budget(self) -> pd.DataFrame:
-        tables = []
-        for key, budget in self.budgets.items():
-            table = budget.to_frame()
-            for place, (name, value) in enumerate(zip(("case", "run", "reference"), key, strict=True)):
-                table.insert(place, name, value)
-            tables.append(table)
-        whole: pd.DataFrame = pd.concat(tables, ignore_index=True)
-        return whole
-
-    def _passes(self) -> pd.DataFrame:
-        tables = [
-            trace.passes.assign(case=case, run=label)
-            for (case, label), trace in self.traces.items()
-            if len(trace.time)
-        ]
-        passes: pd.DataFrame = pd.concat(tables, ignore_index=True)
-        return passes.set_index(["case", "run"]).reset_index()
 
     def _excitation(self) -> pd.DataFrame:
         tables = []
@@ -184,6 +160,14 @@ class Comparison(Shown):
             columns |= {f"acceleration_{axis}": a[:, i] for i, axis in enumerate("xyz"[: a.shape[1]])}
             tables.append(pd.DataFrame(columns))
         return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame({"case": [], "time": []})
+
+
+def _stacked(
+    tables: Mapping[tuple[str, str], pd.DataFrame] | Mapping[tuple[str, str, str], pd.DataFrame],
+    names: list[str],
+) -> pd.DataFrame:
+    """One table below the other, each with its key in the first columns."""
+    return pd.concat(tables, names=names).reset_index(names).reset_index(drop=True)
 
 
 def describe_case(case: Case) -> dict[str, object]:

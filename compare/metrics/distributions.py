@@ -83,10 +83,7 @@ class Contrast:
     @property
     def verdict(self) -> str:
         """Whether the median ratio is known to be within the margin of 1: "within", "beyond", "undecided"."""
-        low, high = 1.0 / (1.0 + MARGIN), 1.0 + MARGIN
-        if self.ratio.inside(low, high):
-            return "within"
-        return "beyond" if self.ratio.outside(low, high) else "undecided"
+        return self.ratio.about_one(MARGIN)
 
 
 def contrast(peaks: Array, against: Array, overturned: Flags, against_overturned: Flags) -> Contrast:

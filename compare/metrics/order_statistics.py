@@ -35,13 +35,12 @@ class Interval:
     low: float
     high: float
 
-    def inside(self, low: float, high: float) -> bool:
-        """Return whether the whole interval lies between two numbers."""
-        return low <= self.low and self.high <= high
-
-    def outside(self, low: float, high: float) -> bool:
-        """Return whether no part of the interval lies between two numbers."""
-        return self.high < low or self.low > high
+    def about_one(self, margin: float) -> str:
+        """Return whether a ratio is known to be within a margin of 1: "within", "beyond" or "undecided"."""
+        low, high = 1.0 / (1.0 + margin), 1.0 + margin
+        if low <= self.low and self.high <= high:
+            return "within"
+        return "beyond" if self.high < low or self.low > high else "undecided"
 
 
 def quantile_interval(values: Array, share: float) -> Interval:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder, Trace
+from rockwobble.models import Case, Cylinder, Trace
 from rockwobble.models.shown import Brief
 
 FloatArray = NDArray[np.float64]
@@ -84,7 +84,7 @@ def make_pair(cylinder: Cylinder, reference: Trace, trial: Trace, *, until: floa
     time = reference.time[:keep]
     return Pair(
         cylinder=cylinder,
-        start=reference.uplift_time if math.isfinite(reference.uplift_time) else 0.0,
+        start=start_of(reference),
         time=time,
         tilt=_sampled(trial.time, trial.tilt, time),
         reference_tilt=reference.tilt[:keep],
@@ -93,6 +93,16 @@ def make_pair(cylinder: Cylinder, reference: Trace, trial: Trace, *, until: floa
         contact_point=_sampled(trial.time, trial.contact_point, time),
         reference_contact_point=reference.contact_point[:keep],
     )
+
+
+def start_of(trace: Trace) -> float:
+    """Return uplift or release of a trace [s]; 0 where there is none."""
+    return trace.uplift_time if math.isfinite(trace.uplift_time) else 0.0
+
+
+def is_release(case: Case) -> bool:
+    """Return whether a case starts tilted."""
+    return case.initial is not None and case.initial.tilt > 0.0
 
 
 def _finite_end(trace: Trace) -> float:

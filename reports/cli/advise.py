@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_write
@@ -69,7 +70,7 @@ def advise(
             run = _run(case, engine, support, time_step)
             require_feasible([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
             _require_numbers(copies, seed)
-            rw.compare.require_writable(out)
+            rc.require_writable(out)
         from rockwobble.compare.runs.execution import Job, job_fingerprint
         from rockwobble.compare.storage.fingerprint import fingerprint
         from rockwobble.compare.storage.manifest import made_now
@@ -112,7 +113,7 @@ def _run(case: rw.Case, engine: str | None, support: str, time_step: float | Non
 
     if engine == _NO_ENGINE and time_step is not None:
         raise ValueError("--time-step belongs to an engine, got it with --engine none")
-    missing = engine is None and "mujoco" not in rw.compare.installed_engines()
+    missing = engine is None and "mujoco" not in rc.installed_engines()
     if missing:
         complain("mujoco is not installed here: the prediction stays unverified")
     if missing or engine == _NO_ENGINE:
@@ -120,7 +121,7 @@ def _run(case: rw.Case, engine: str | None, support: str, time_step: float | Non
             raise ValueError(f"--support must be one of {', '.join(SUPPORTS)}, got {support!r}")
         return None
     run = rw.Run(engine or "mujoco", support, time_step)
-    rw.compare.require_runnable(case, run)
+    rc.require_runnable(case, run)
     return run
 
 

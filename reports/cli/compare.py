@@ -10,6 +10,7 @@ from typing import Any
 import typer
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
@@ -66,12 +67,12 @@ def compare(
                 cases = [problem.case()]
                 runs = _runs(cases[0], engine, support, time_step, alone=bool(trajectory))
             if setting:
-                runs = list(rw.compare.with_settings(cases[0], runs, settings(setting)))
-            rw.compare.require_writable(out)
+                runs = list(rc.with_settings(cases[0], runs, settings(setting)))
+            rc.require_writable(out)
             require_feasible(cases, runs)
             for each in cases:
                 for run in runs:
-                    rw.compare.require_runnable(each, run)
+                    rc.require_runnable(each, run)
             external = _external(
                 trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
             )
@@ -83,7 +84,7 @@ def compare(
         elif not engine and suite is None:
             _say_what_is_left_out(support or [])
         with user_input(), shown_progress() as tell:
-            comparison = rw.compare.compare(
+            comparison = rw.compare(
                 rw.Suite(cases, runs),
                 runs=runs,
                 progress=tell,
@@ -127,11 +128,7 @@ def _runs(
     if engines == ["none"] and alone:
         return []
     every = engines == [ALL]
-    runs = (
-        all_runs([case], supports or None)
-        if every
-        else rw.compare.default_runs(engines or None, supports or None)
-    )
+    runs = all_runs([case], supports or None) if every else rc.default_runs(engines or None, supports or None)
     return [rw.Run(run.engine, run.support, time_step) for run in runs]
 
 
@@ -157,14 +154,14 @@ def _external(
     noise = None if noise_deg is None else math.radians(noise_deg)
     external = [rw.External(path=path, angle_unit=angles, time_offset=offset, noise=noise) for path in paths]
     for each in external:  # whatever is wrong with a file is said before anything runs
-        rw.compare.read_trajectory(each, cases[0])
+        rc.read_trajectory(each, cases[0])
     return external
 
 
 def _say_what_is_left_out(supports: list[str]) -> None:
     from rockwobble.compare.runs.choice import unsupported
 
-    for name in rw.compare.missing_engines():
+    for name in rc.missing_engines():
         complain(f"{name} is not installed here and is left out")
     for reason in unsupported(supports):
         complain(reason)

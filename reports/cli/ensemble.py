@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_write
@@ -74,7 +75,7 @@ def ensemble(
     """
     with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
         with user_input():
-            rw.compare.require_writable(out)
+            rc.require_writable(out)
             stated: rw.Case | rw.Suite | list[rw.Case]
             if suite is not None:
                 stated = _suite(context, suite)
@@ -96,7 +97,7 @@ def ensemble(
         from ..pages.ensemble import ensemble_page
 
         with user_input(), shown_progress() as tell:
-            found = rw.compare.ensemble(
+            found = rw.ensemble(
                 stated,
                 runs=runs,
                 size=members,
@@ -140,9 +141,9 @@ def _motions(
         raise ValueError("the members are made-up ground motions or those of FEMA P-695, got both options")
     uplift = case.gravity * case.cylinder.tan_alpha
     if far_field is not None:
-        return rw.compare.far_field_motions(peak=far_field * uplift)
+        return rc.far_field_motions(peak=far_field * uplift)
     if synthetic is not None:
-        return rw.compare.synthetic_motions(members, peak=synthetic * uplift, seed=seed)
+        return rc.synthetic_motions(members, peak=synthetic * uplift, seed=seed)
     return []
 
 
@@ -159,7 +160,7 @@ def _runs(
         return []
     if stated and not (engines or supports or time_step):
         return None
-    chosen = rw.compare.default_runs(engines or None, supports or None)
+    chosen = rc.default_runs(engines or None, supports or None)
     return [rw.Run(run.engine, run.support, time_step) for run in chosen]
 
 

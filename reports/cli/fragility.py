@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Annotated
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_write
@@ -170,7 +171,7 @@ def fragility(
 
     with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
         with user_input():
-            rw.compare.require_writable(out)
+            rc.require_writable(out)
             bodies = cylinders_of(cylinder, semidiagonal, tan_alpha)
             motions, source = motions_of(p695, records, synthetic, units, seed)
             methods = methods_of(
@@ -186,7 +187,7 @@ def fragility(
         from ..pages.fragility import count_files, fragility_page
 
         with user_input(), shown_progress() as tell:
-            found = rw.compare.fragility(
+            found = rw.fragility(
                 bodies,
                 motions,
                 methods=methods,

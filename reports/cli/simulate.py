@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
@@ -53,14 +54,14 @@ def simulate(
             case = problem.case()
             if plane is not None and case.initial is not None:  # it leans in the plane that holds it
                 case = replace(case, initial=replace(case.initial, rolling_angle=plane))
-            rw.compare.require_writable(out)
+            rc.require_writable(out)
             model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
             run = _with_settings(case, rw.Run(engine, support, time_step), setting, model)
             require_feasible([case], [run])
-            rw.compare.require_runnable(case, run)
+            rc.require_runnable(case, run)
         for line in (*describe(case), *time_needed([case], [run])):
             print(line)
-        job = rw.compare.Job(case=case, run=run)
+        job = rc.Job(case=case, run=run)
         trace = _run(job)
         with user_input():
             written = _save(out, job, trace)
@@ -80,16 +81,16 @@ def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model:
         raise ValueError(f"{option} belongs to the reduced models, got --engine {run.engine}")
     if twice := model.keys() & settings(setting).keys():
         raise ValueError(f"{min(twice)} is given twice, by an option and by --set")
-    (whole,) = rw.compare.with_settings(case, [run], settings(setting) | model)
+    (whole,) = rc.with_settings(case, [run], settings(setting) | model)
     return whole
 
 
-def _run(job: rw.compare.Job) -> rw.Trace:
+def _run(job: rc.Job) -> rw.Trace:
     from ..pages.words.diagnostics import sentences
 
     with user_input(), shown_progress() as tell:
         # in a process of its own, so that Ctrl-C also stops an engine in the middle of a long call
-        trace = rw.compare.simulate_all([job], workers=2, progress=tell)[0]
+        trace = rc.simulate_all([job], workers=2, progress=tell)[0]
     if not len(trace.time):
         complain(f"{job.label} left no result: {sentences(trace.facts)}")
         raise typer.Exit(FAILED)
@@ -143,7 +144,7 @@ def _facts(trace: rw.Trace) -> dict[str, str]:
     return facts
 
 
-def _save(out: Path, job: rw.compare.Job, trace: rw.Trace) -> list[str]:
+def _save(out: Path, job: rc.Job, trace: rw.Trace) -> list[str]:
     from rockwobble.compare.runs.execution import job_fingerprint
     from rockwobble.compare.storage.manifest import made_now, write_results
     from rockwobble.models.traces.trace_file import case_to_plain, packed

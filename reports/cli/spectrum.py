@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-import rockwobble as rw
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_write
@@ -109,7 +109,7 @@ def spectrum(
             if not _FINEST <= search_step < math.inf:
                 finest = f"--search-step must be at least {_FINEST:g} and finite"
                 raise ValueError(f"{finest}, got {search_step:g}")
-            rw.compare.require_writable(out)
+            rc.require_writable(out)
         from rockwobble.compare.storage.fingerprint import fingerprint
         from rockwobble.compare.storage.manifest import made_now
         from rockwobble.compare.storage.provenance import reduced_makers

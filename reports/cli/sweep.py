@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.terminal import FAILED, INTERRUPTED, command_line, complain, user_input
@@ -102,7 +103,7 @@ def sweep(
     Writes sweep.parquet, one row for each run; rockwobble show prints what it holds.
     """
     with user_input():
-        plan: rw.compare.Grid | rw.compare.CaseSweep
+        plan: rc.Grid | rc.CaseSweep
         if suite is None:
             plan = grid_of(
                 semidiagonal,
@@ -118,7 +119,7 @@ def sweep(
             refuse(context, _STATED, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
         how_long = require_sweep(plan)
-        rw.compare.require_writable(out)
+        rc.require_writable(out)
     for line in (*_echo(plan), how_long):
         print(line)
     _run(plan, out, scheduler, workers, chunk)
@@ -127,7 +128,7 @@ def sweep(
 
 
 def _run(
-    plan: rw.compare.Grid | rw.compare.CaseSweep,
+    plan: rc.Grid | rc.CaseSweep,
     out: Path,
     scheduler: str | None,
     workers: int | None,
@@ -135,7 +136,7 @@ def _run(
 ) -> None:
     try:
         with user_input(), shown_progress("chunks") as tell:
-            rw.compare.sweep(
+            rw.sweep(
                 plan,
                 out=out,
                 scheduler=scheduler,
@@ -144,7 +145,7 @@ def _run(
                 progress=tell,
                 command=command_line(),
             )
-    except rw.compare.SweepIncompleteError as error:
+    except rc.SweepIncompleteError as error:
         complain(str(error))
         raise typer.Exit(FAILED) from None
     except KeyboardInterrupt:
@@ -152,19 +153,17 @@ def _run(
         raise typer.Exit(INTERRUPTED) from None
 
 
-def _suite(name: str, models: list[str] | None) -> rw.compare.CaseSweep:
+def _suite(name: str, models: list[str] | None) -> rc.CaseSweep:
     for model in models or ():
         if model not in rw.reduced.MODELS:
             raise ValueError(f"--model must be of {', '.join(rw.reduced.MODELS)}, got {model!r}")
     suite = rw.read_suite(name)
     chosen = [rw.Run(None, **{"support": "recess", **rw.reduced.MODELS[model]}) for model in models or ()]
-    return rw.compare.CaseSweep(
-        suite.cases, (*chosen, *(suite.runs or (() if models else rw.compare.default_runs())))
-    )
+    return rc.CaseSweep(suite.cases, (*chosen, *(suite.runs or (() if models else rc.default_runs()))))
 
 
-def _echo(plan: rw.compare.Grid | rw.compare.CaseSweep) -> list[str]:
-    if isinstance(plan, rw.compare.Grid):
+def _echo(plan: rc.Grid | rc.CaseSweep) -> list[str]:
+    if isinstance(plan, rc.Grid):
         ends = [
             rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(plan.semidiagonals), max(plan.semidiagonals))

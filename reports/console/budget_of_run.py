@@ -20,7 +20,7 @@ _ADVICE = {
 
 def budget_of_run(case: rw.Case, run: rw.Run, reference: rw.Run) -> list[str]:
     """Return the lines; they rest on runs at finer time steps, made here."""
-    comparison = rw.compare.compare(case, runs=[run], budget=True)
+    comparison = rw.compare(case, runs=[run], budget=True)
     found = [budget for key, budget in comparison.budgets.items() if key[2] == str(reference)]
     if not found:
         return ["There is no budget of the difference: traces diverge at once, or there is no finer step."]

@@ -6,7 +6,7 @@ import datetime
 import sys
 from typing import TYPE_CHECKING
 
-import rockwobble as rw
+import rockwobble.compare as rc
 
 from .progress import shown_progress
 
@@ -50,7 +50,7 @@ def update(bench: Bench, reason: str | None) -> None:
     words = {"reason": reason or "", "date": date}
     for name in (name for name, changed in found.items() if changed):
         text = updated(read_baseline(name), new[name], versions=package_versions(), **words)
-        rw.compare.replace_files(folder(), {f"{name}.json": text.encode()})
+        rc.replace_files(folder(), {f"{name}.json": text.encode()})
         print(f"Written: {folder() / name}.json")
 
 

@@ -16,7 +16,6 @@ from functools import cache
 from itertools import pairwise
 from typing import Literal
 
-import jinja2
 from jinja2 import Environment
 from markdown_it import MarkdownIt
 from rich.console import Console
@@ -26,7 +25,7 @@ from ..figures.interactive import plots
 from ..figures.picture import Picture
 from ..figures.svg import svg
 from .table import Row, Table, columns_of, number
-from .words.sentences import FILTERS
+from .words.sentences import environment
 
 Output = Literal["terminal", "markdown", "html"]
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")
@@ -180,18 +179,9 @@ def to_html(text: str) -> str:
 
 @cache
 def _environment() -> Environment:
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("rockwobble.reports.pages", "templates"),
-        autoescape=lambda name: bool(name) and str(name).endswith(".html.j2"),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        finalize=_escaped,
-    )
-    environment.filters |= FILTERS | {"number": number}
-    environment.filters["code"] = lambda text: Safe(f"`{text}`")
-    environment.filters["md"] = Safe
-    return environment
+    found = environment(autoescape=lambda name: str(name).endswith(".html.j2"), finalize=_escaped)
+    found.filters |= {"number": number, "code": lambda text: Safe(f"`{text}`"), "md": Safe}
+    return found
 
 
 def _escaped(value: object) -> object:

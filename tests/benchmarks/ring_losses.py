@@ -12,12 +12,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from rockwobble import reduced
+from rockwobble.compare.metrics.tilt import tilt_rms_relative
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.scheduler import run_tasks
 from rockwobble.compare.runs.task import Lost
 from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case
-from rockwobble.compare.studies.validity.rings import against_models, has_room, losses, release_of
-from rockwobble.models import Case, Run
+from rockwobble.compare.studies.validity.rings import has_room, losses, release_of
+from rockwobble.compare.traces.pair import make_pair
+from rockwobble.models import Case, Run, Trace
 
 from .console import options_of, tell
 
@@ -60,6 +63,15 @@ def measure(task: tuple[str, Case, Run]) -> dict[str, object]:
     trace = simulate_run(case, run)
     changed = " ".join(f"{key.removeprefix('ring_')} {value:g}" for key, value in run.settings.items())
     return {"case": name, "run": changed or run.support, **losses(trace), **against_models(trace)}
+
+
+def against_models(trace: Trace) -> dict[str, float]:
+    """Return the RMS of the tilt difference over that of the model's tilt, by the support of the model."""
+    models = {support: reduced.simulate(trace.case, support=support) for support in ("recess", "flat")}
+    cylinder = trace.case.cylinder
+    return {
+        support: tilt_rms_relative(make_pair(cylinder, model, trace)) for support, model in models.items()
+    }
 
 
 def medians(rows: pd.DataFrame) -> pd.DataFrame:

@@ -5,6 +5,7 @@ import pytest
 from showing import LONGEST, shows_itself
 
 import rockwobble as rw
+import rockwobble.compare as rc
 from rockwobble.models.shown import Brief
 
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -15,7 +16,7 @@ RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_r
 def comparison() -> rw.Comparison:
     other = rw.Case(PIER, initial=RELEASE.initial, duration=1.0, gravity=9.0, name="lighter")
     suite = rw.Suite([RELEASE, other], [])
-    return rw.compare.compare(suite, runs=[rw.Run(None, "flat")], reference=rw.Run(None, "recess"))
+    return rw.compare(suite, runs=[rw.Run(None, "flat")], reference=rw.Run(None, "recess"))
 
 
 def test_trace_shows_itself():
@@ -36,7 +37,7 @@ def test_ensemble_shows_itself():
 
 def test_values_are_a_line(comparison):
     trace, *_ = comparison.traces.values()
-    pair = rw.compare.make_pair(PIER, trace, trace)
+    pair = rc.make_pair(PIER, trace, trace)
     record = rw.el_centro_1940()
     values = [
         PIER,
@@ -49,9 +50,9 @@ def test_values_are_a_line(comparison):
             [rw.Case(PIER, record.scaled(scale), name=str(scale)) for scale in (1.0, 2.0, 3.0, 4.0)], []
         ),
         rw.External(path="shake table.csv"),
-        rw.compare.Grid(semidiagonals=range(1, 100), tan_alphas=[0.2], scales=[1.0], motions=[record]),
-        rw.compare.CaseSweep([RELEASE], [rw.Run(None, "recess")]),
-        rw.compare.Job(case=RELEASE, run=trace.run),
+        rc.Grid(semidiagonals=range(1, 100), tan_alphas=[0.2], scales=[1.0], motions=[record]),
+        rc.CaseSweep([RELEASE], [rw.Run(None, "recess")]),
+        rc.Job(case=RELEASE, run=trace.run),
         *trace.diagnostics,
     ]
     for value in values:
@@ -80,8 +81,8 @@ def test_a_line_says_of_what_is_long_how_much_there_is():
 
 def test_names_are_told_to_whoever_completes_them():
     assert {"simulate", "Case", "compare", "__version__"} <= set(dir(rw))
-    assert set(rw.compare.__all__) <= set(dir(rw.compare))
-    for name in rw.compare.__all__:
+    assert set(rc.__all__) <= set(dir(rw.compare))
+    for name in rc.__all__:
         assert getattr(rw.compare, name) is not None
     with pytest.raises(AttributeError, match="has no attribute 'nothing'"):
-        _ = rw.compare.nothing
+        _ = rc.nothing

@@ -22,7 +22,7 @@ from ...metrics.energy import energy_loss
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import own_model
 from ...runs.execution import Job
-from ...traces.pair import make_pair
+from ...traces.pair import is_release, make_pair
 from ..bench import Bench, why
 from ..finding import Bound, Finding, at_most, not_run
 from . import own_bounds
@@ -105,7 +105,7 @@ def _as_measured_once(job: Job, name: str, model: Trace, trace: Trace, predictio
 def tilt_bound(case: Case, time_step: float | None) -> float:
     """Return the largest RMS difference of tilts that the step and its contact explain [alpha]."""
     step = 1.0 if time_step is None else max(1.0, time_step / (1e-4 * time_scale(case)))
-    if case.initial is not None and case.initial.tilt > 0.0 and case.motion is None:
+    if is_release(case) and case.motion is None:
         return step * max(RELEASED * case.cylinder.tan_alpha**2, RELEASED_LEAST)
     return step * FROM_REST
 

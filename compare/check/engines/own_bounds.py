@@ -25,6 +25,7 @@ from ...comparison.prediction import early_rms, estimated_error, landings, time_
 from ...metrics.agreement import AGREEMENT
 from ...runs.choice import require_runnable
 from ...runs.execution import Job
+from ...traces.pair import is_release
 from ..bench import Array, Bench, rms, why
 from ..finding import Bound, Finding, at_most, not_run
 from .suspects import suspect
@@ -47,7 +48,7 @@ def held(bench: Bench, job: Job, name: str, model: Trace, trace: Trace) -> Itera
     yield _held(bench, job, name, model, trace, clean=False)
     if (other := _in_motion(job)) is not None:
         (trace,) = bench.traces([other])
-        words = "first seconds" if starts_in_motion(job.case) else "met rocking"
+        words = "first seconds" if is_release(job.case) else "met rocking"
         name = f"{name}, {words}"
         model = bench.solve(other.case, model.run.support)
         if trace.outcome == "failed":
@@ -64,18 +65,13 @@ def prepare(bench: Bench, jobs: Sequence[Job], traces: Sequence[Trace]) -> None:
     bench.traces([other_step(job, trace)[0] for job, trace in known if trace.outcome != "failed"])
 
 
-def starts_in_motion(case: Case) -> bool:
-    """Return whether a case begins with a release."""
-    return case.initial is not None and case.initial.tilt > 0.0
-
-
 def in_motion(case: Case) -> Case | None:
     """Return the first seconds of a release, or the strongest of a motion as a rocking cylinder meets them.
 
     None where nothing moves.
     """
     motion, unit = case.motion, time_scale(case)
-    if starts_in_motion(case):
+    if is_release(case):
         return dataclasses.replace(case, duration=min(case.length, _LENGTH * unit))
     if motion is None or motion.peak == 0.0:
         return None

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from rockwobble.models import Case, Trace
 
 from ...traces.motion import motion_of
+from ...traces.pair import start_of
 from ...traces.trajectory import external_motion, measurement
 from .difference import Difference, Part, difference
 from .explanation import Explanation, explain
@@ -120,7 +121,7 @@ def _columns_of(name: str, mistakes: tuple[Mistake, ...]) -> dict[str, str]:
 def judge(trajectory: Trace, reference: Trace, case: Case) -> Verdict:
     """Hold an external trajectory of a case against the trace of a model."""
     model, motion = motion_of(reference), external_motion(trajectory)
-    start = reference.uplift_time if math.isfinite(reference.uplift_time) else 0.0
+    start = start_of(reference)
     found = difference(model, motion, cylinder=case.cylinder, start=start)
     time, direction = uplift_differences(trajectory, reference)
     verdict = Verdict(

@@ -18,6 +18,7 @@ from rockwobble.models.shown import Shown
 from ...comparison.prediction import Prediction
 from ...metrics.distributions import Contrast
 from ...metrics.tilt import overturned
+from ...traces.pair import is_release
 from ..spectrum.series import SPATIAL, uplift_factor
 from .grades import Grade, grade_engine, grade_intensity, grade_overturning, grade_share, overall
 from .members import COPIES, answers, fall_of
@@ -194,7 +195,7 @@ class Advice(Shown):
         case, trace, cylinder = self.case, self.trace, self.case.cylinder
         copies = self.members[self.members["group"] == COPIES]
         known = copies.loc[copies["outcome"] != "failed", "peak_tilt"]
-        moved = case.motion is not None and not (case.initial is not None and case.initial.tilt > 0.0)
+        moved = case.motion is not None and not is_release(case)
         held = trace.assumptions_until(fall_of(trace)) if self.moves else None
         return {
             "name": case.name,
@@ -217,7 +218,7 @@ class Advice(Shown):
             "peak_time": float(trace.time[int(trace.tilt.argmax())]),
             "peak_rank": float((known < self.peak).mean()) if len(known) else math.nan,
             "in_one_plane": self.moves and not np.any(trace.rolling_rate),
-            "released": case.initial is not None and case.initial.tilt > 0.0,
+            "released": is_release(case),
             "alpha": cylinder.alpha,
             "b": cylinder.base_radius,
             "h": cylinder.half_height,

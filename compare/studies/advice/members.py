@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, GroundMotion, Trace
 
 from ...metrics.order_statistics import quantile_interval, share_interval
+from ...traces.pair import is_release
 from ..ensemble.members import FAR_FIELD_PAIRS, far_field_motions, synthetic_motions
 
 Array = NDArray[np.float64]
@@ -72,7 +73,7 @@ def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
     release and without a ground motion.
     """
     motion = case.motion
-    if motion is None or motion.peak == 0.0 or (case.initial is not None and case.initial.tilt > 0.0):
+    if motion is None or motion.peak == 0.0 or is_release(case):
         return {}, ""
     try:
         motions, source = far_field_motions(peak=motion.peak), "p695"

@@ -16,6 +16,7 @@ from rockwobble.models import Case
 
 from ...metrics.order_statistics import share_interval
 from ...metrics.tilt import overturned
+from ...traces.pair import is_release
 from ..spectrum.search import STEP, Array, in_threads, lowest_on_grid, run_searches, search_lowest
 from ..spectrum.series import SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
 from ..spectrum.study import RTOL
@@ -50,11 +51,6 @@ class Lowest:
     start: float
 
 
-def released(case: Case) -> bool:
-    """Return whether a case starts tilted."""
-    return case.initial is not None and case.initial.tilt > 0.0
-
-
 def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, dict[str, Lowest]]:
     """Run a case over scales of its ground motion; nothing where there is none to scale.
 
@@ -72,7 +68,7 @@ def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, dict
     tan_alpha, gravity = case.cylinder.tan_alpha, case.gravity
     step = STEP * intensity_unit(tan_alpha, motion, gravity)
     tables, lowest = [], {}
-    for name in (SPATIAL,) if released(case) else SERIES:
+    for name in (SPATIAL,) if is_release(case) else SERIES:
         run = partial(_peak, case, name, support)
 
         def at(_: list[int], factor: float, run: Callable[[float], float] = run) -> Array:
@@ -81,7 +77,7 @@ def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, dict
         run(FACTORS[0])  # compiles, where that is due, once and not in each thread
         peaks = np.array(list(in_threads(run, FACTORS)))
         start = 0.0
-        if not released(case):
+        if not is_release(case):
             start = uplift_of_series(name, motion, tan_alpha, gravity, until=case.length)
         search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=case.cylinder.alpha)
         found = run_searches([search], at)[0]

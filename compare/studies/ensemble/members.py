@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, GroundMotion, p695_far_field
 
+from ...traces.pair import is_release
+
 # of the Kanai-Tajimi filter, firm soil: K. Kanai 1957, H. Tajimi 1960
 _GROUND_FREQUENCY, _GROUND_DAMPING = 5.0 * math.pi, 0.6
 # a second, high-pass filter (R. W. Clough, J. Penzien) takes what a ground cannot do: drift away
@@ -45,14 +47,15 @@ def perturbed_starts(case: Case, count: int, *, perturbation: float, seed: int) 
         raise ValueError(f"perturbation must be above 0 and at most 0.1, got {perturbation!r}")
     factors = 1.0 + perturbation * np.random.default_rng(seed).standard_normal((count, 2))
     return [
-        dataclasses.replace(_perturbed(case, *map(float, pair)), name=f"{case.name} #{index + 1}")
+        dataclasses.replace(perturbed(case, *map(float, pair)), name=f"{case.name} #{index + 1}")
         for index, pair in enumerate(factors)
     ]
 
 
-def _perturbed(case: Case, first: float, second: float) -> Case:
+def perturbed(case: Case, first: float, second: float) -> Case:
+    """Return a release with its tilt and rolling rate, or a motion with its two components, times factors."""
     initial, motion = case.initial, case.motion
-    if initial is not None and initial.tilt > 0.0:
+    if initial is not None and is_release(case):
         released = dataclasses.replace(
             initial, tilt=initial.tilt * first, rolling_rate=initial.rolling_rate * second
         )

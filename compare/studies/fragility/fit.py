@@ -56,29 +56,6 @@ class Curves:
         return np.asarray(ndtr(z), dtype=np.float64)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Goodness:
-    """How well counts follow a curve.
-
-    Attributes
-    ----------
-    deviance : float
-        Twice the log-likelihood that the counts lack to shares of their own.
-    degrees : int
-        Levels, or groups of a cloud, less the two parameters.
-    p : float
-        Probability of a larger deviance if the curve is right and all runs are independent. The levels share
-        their motions, so that the deviance is rather smaller and this rather too large.
-    largest : float
-        Largest difference of share and curve.
-    """
-
-    deviance: float
-    degrees: int
-    p: float
-    largest: float
-
-
 def fit_curves(x: Array, n: Array, k: Array) -> Curves:
     """Fit a curve to each of B sets of counts at the same intensities.
 
@@ -117,16 +94,17 @@ def fit_curves(x: Array, n: Array, k: Array) -> Curves:
     return Curves(centre=centre, dispersion=dispersion, kinds=kinds)
 
 
-def log_likelihood(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> float:
-    """Return the binomial log-likelihood of a curve, without the coefficients."""
-    from scipy.special import log_ndtr
+def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> dict[str, float]:
+    """Hold the shares against a curve that was fitted to them; many intensities are put into groups.
 
-    eta = (x - centre) / dispersion
-    return float((k * log_ndtr(eta) + (n - k) * log_ndtr(-eta)).sum())
-
-
-def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> Goodness:
-    """Hold the shares against a curve that was fitted to them; many intensities are put into groups."""
+    Returns
+    -------
+    dict
+        deviance, twice the log-likelihood that the counts lack to shares of their own; degrees, levels, or
+        groups of a cloud, less the two parameters; p, probability of a larger deviance if the curve is right
+        and all runs are independent (the levels share their motions, so that the deviance is rather smaller
+        and this rather too large); largest, difference of share and curve.
+    """
     from scipy.special import ndtr, xlogy
     from scipy.stats import chi2
 
@@ -143,12 +121,9 @@ def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> 
         n - k, (n - k) / np.maximum(n - expected, tiny)
     )
     deviance, degrees = max(2.0 * float(lacking.sum()), 0.0), max(len(n) - 2, 0)
-    return Goodness(
-        deviance=deviance,
-        degrees=degrees,
-        p=float(chi2.sf(deviance, degrees)) if degrees else math.nan,
-        largest=float(np.abs(k / n - expected / n).max()),
-    )
+    p = float(chi2.sf(deviance, degrees)) if degrees else math.nan
+    largest = float(np.abs(k / n - expected / n).max())
+    return {"deviance": deviance, "degrees": degrees, "p": p, "largest": largest}
 
 
 def _newton(u: Array, n: Array, k: Array) -> tuple[Array, Array]:

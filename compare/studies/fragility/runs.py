@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import nullcontext
 from pathlib import Path
 
@@ -105,8 +104,3 @@ def _lost(task: Task) -> pd.DataFrame:
     return pd.DataFrame(
         {"peak_tilt": [np.nan] * count, "outcome": ["failed"] * count, "contact_lost": [np.nan] * count}
     )
-
-
-def methods_in(runs: pd.DataFrame) -> Sequence[str]:
-    """Return the labels of the methods in the order in which they were run."""
-    return list(dict.fromkeys(runs["method"]))

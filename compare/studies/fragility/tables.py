@@ -19,6 +19,7 @@ from .samples import Blocks
 _POINTS, _BEYOND = 60, 2.0
 Key = tuple[str, str, str]  # cylinder, method, limit
 ALL = "all"  # cylinders
+_NO_FIT = {"deviance": math.nan, "degrees": 0, "p": math.nan, "largest": math.nan}
 
 
 def count_table(blocks: Blocks, limits: Sequence[str], measure: str) -> pd.DataFrame:
@@ -58,7 +59,7 @@ def fit_table(
         kind = KINDS[found.kinds[0]]
         median = interval(centre, many.centre, motions)
         spread = spread_interval(dispersion, many.dispersion, motions)
-        held = goodness(x, n[0], k[0], centre, dispersion) if kind == FITTED else None
+        held = goodness(x, n[0], k[0], centre, dispersion) if kind == FITTED else _NO_FIT
         rows.append(
             {
                 **dict(zip(("cylinder", "method", "limit"), key, strict=True)),
@@ -71,10 +72,7 @@ def fit_table(
                 # beyond the intensities that were run the curve is a guess
                 "extrapolated": not x.min() <= centre <= x.max(),
                 "without_curve": float((many.kinds != KINDS.index(FITTED)).mean()),
-                "deviance": held.deviance if held else math.nan,
-                "degrees": held.degrees if held else 0,
-                "p": held.p if held else math.nan,
-                "largest": held.largest if held else math.nan,
+                **held,
             }
         )
     return pd.DataFrame(rows)
@@ -162,16 +160,8 @@ def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dic
         **interval_columns("ratio", ratio),
         **interval_columns("dispersion_difference", interval(float(spread), spreads, motions)),
         "within": margin_of(ratio),
-        "verdict": verdict(ratio, margin),
+        "verdict": ratio.about_one(margin),
     }
-
-
-def verdict(ratio: Interval, margin: float) -> str:
-    """Return whether a ratio is known to be within a margin of 1: "within", "beyond" or "undecided"."""
-    low, high = 1.0 / (1.0 + margin), 1.0 + margin
-    if ratio.inside(low, high):
-        return "within"
-    return "beyond" if ratio.outside(low, high) else "undecided"
 
 
 def margin_of(ratio: Interval) -> float:

@@ -13,9 +13,8 @@ from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 from rockwobble.multibody.scene.ring_geometry import clearance_needed
 from rockwobble.multibody.scene.ring_settings import take_ring
 
-from ...metrics.tilt import tilt_rms_relative
 from ...runs.execution import simulate_run
-from ...traces.pair import FloatArray, make_pair
+from ...traces.pair import FloatArray
 from .extent import Extent
 from .motions import AMPLE, EL_CENTRO, REFERENCE_SIZE, shaken_case
 from .part import ENGINE, Inputs, Part, Row
@@ -122,15 +121,6 @@ def losses(trace: Trace) -> Row:
         "residual": trace.residual_displacement / trace.case.cylinder.base_radius,
         "twist": trace.residual_twist,
         "peak": trace.peak_tilt / trace.case.cylinder.alpha,
-    }
-
-
-def against_models(trace: Trace) -> dict[str, float]:
-    """Return the RMS of the tilt difference over that of the model's tilt, by the support of the model."""
-    models = {support: reduced.simulate(trace.case, support=support) for support in ("recess", "flat")}
-    cylinder = trace.case.cylinder
-    return {
-        support: tilt_rms_relative(make_pair(cylinder, model, trace)) for support, model in models.items()
     }
 
 

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ...console.progress import shown_progress
 from ...console.terminal import FAILED, complain, interruptible, user_input
@@ -135,7 +136,7 @@ def _bench(suite: str, workers: int | None) -> Bench:
         complain(f"{engine} is not installed here and is left out")
     for case in read.cases:
         for run in runs:
-            rw.compare.require_runnable(case, run)
+            rc.require_runnable(case, run)
     cases = rw.Suite(read.cases, runs, read.bounds)
     return Bench(reduced=rw.reduced, suite=cases, shipped=suite == "quick", workers=workers)
 
@@ -169,9 +170,9 @@ def _write(
 
     versions = package_versions()
     if json is not None:
-        rw.compare.replace_files(json.parent, {json.name: as_json(findings, versions, seconds).encode()})
+        rc.replace_files(json.parent, {json.name: as_json(findings, versions, seconds).encode()})
     if junit is not None:
-        rw.compare.replace_files(junit.parent, {junit.name: as_junit(findings, seconds).encode()})
+        rc.replace_files(junit.parent, {junit.name: as_junit(findings, seconds).encode()})
     if markdown is not None:
         # the summary of a CI job may hold pages of other steps
         with markdown.open("a", encoding="utf-8") as file:

@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 _SAMPLE_COST = 1e-5  # computing time of a sample of a reduced model [s]: good enough to say how long
 _UNIT_COST = 1e-5  # and of one unit of time sqrt(R/g), of which a pass takes some [s]
@@ -61,7 +62,7 @@ def require_feasible(
     )
 
 
-def require_sweep(plan: rw.compare.Grid | rw.compare.CaseSweep) -> str:
+def require_sweep(plan: rc.Grid | rc.CaseSweep) -> str:
     """Return how long a sweep may take, and refuse one that takes years or does not fit into memory.
 
     Raises
@@ -71,7 +72,7 @@ def require_sweep(plan: rw.compare.Grid | rw.compare.CaseSweep) -> str:
     """
     from rockwobble.models.cpus import usable_cpus
 
-    if isinstance(plan, rw.compare.Grid):
+    if isinstance(plan, rc.Grid):
         lengths = math.fsum(motion.duration for motion in plan.motions) / len(plan.motions)
         seconds, row = plan.rows * lengths * _CELL_COST, _ROW_BYTES
     else:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Literal
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 _MOST_VALUES = 100_000
 Records = tuple[list[Path] | None, list[Path] | None, list[Path] | None, str | None]
@@ -22,7 +23,7 @@ def grid_of(
     gravity: float,
     plane: float | None,
     restitution: float | Literal["momentum"] | None,
-) -> rw.compare.Grid:
+) -> rc.Grid:
     """Return the grid that the options state.
 
     Raises
@@ -37,7 +38,7 @@ def grid_of(
     if not 0.0 < gravity < math.inf:
         raise ValueError(f"--gravity must be positive and finite [m/s^2], got {gravity:g}")
     options = given if gravity == 9.81 else {**given, "gravity": gravity}  # the default of every case
-    return rw.compare.Grid(
+    return rc.Grid(
         semidiagonals=values_of("--semidiagonal", sizes),
         tan_alphas=values_of("--tan-alpha", slendernesses),
         scales=values_of("--scale", scales),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 DEFAULT_COUNT = 100  # of made-up motions, where the user does not say
 
@@ -30,4 +31,4 @@ def motions_of(
     if records is not None:
         return read_records(records, units=units), f"records of {records.name}"
     count = DEFAULT_COUNT if synthetic is None else synthetic
-    return rw.compare.synthetic_motions(count, peak=1.0, seed=seed), f"made-up ground motions, seed {seed}"
+    return rc.synthetic_motions(count, peak=1.0, seed=seed), f"made-up ground motions, seed {seed}"

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 
 def cylinders_of(
@@ -79,9 +80,9 @@ def methods_of(
             if not able:
                 raise ValueError(f"{name} has no support {', '.join(lacks)}")
             print(f"{name} has no support {', '.join(lacks)} and is left out there")
-        runs += rw.compare.default_runs([name], able or None)
+        runs += rc.default_runs([name], able or None)
     if time_step is not None:
         runs = [rw.Run(run.engine, run.support, time_step) for run in runs]
     if given:
-        runs = list(rw.compare.with_settings(rw.Case(body, rw.el_centro_1940()), runs, given))
+        runs = list(rc.with_settings(rw.Case(body, rw.el_centro_1940()), runs, given))
     return [*chosen, *runs]

@@ -8,6 +8,7 @@ from typing import Any
 import typer
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ...pages.words.cases import group_of
 from .estimate import time_needed
@@ -35,7 +36,7 @@ def chosen_runs(
     """
     runs = list(suite.runs)
     if not runs:
-        runs = list(rw.compare.default_runs(engines or None, supports or None))
+        runs = list(rc.default_runs(engines or None, supports or None))
     else:
         if engines:
             places = list(dict.fromkeys(run.support for run in runs))
@@ -60,7 +61,7 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> tupl
     ValueError
         If none is left.
     """
-    missing = [name for name in rw.compare.missing_engines() if name not in (named or ())]
+    missing = [name for name in rc.missing_engines() if name not in (named or ())]
     kept = [run for run in runs if run.engine not in missing]
     left_out = [name for name in missing if any(run.engine == name for run in runs)]
     if not kept:

@@ -9,6 +9,7 @@ from typing import Annotated
 import typer
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ...console.progress import shown_progress
 from ...console.terminal import command_line, complain, interruptible, user_input
@@ -64,25 +65,23 @@ def view(
                 raise ValueError("--case chooses from a folder, give the folder of a comparison as well")
             else:
                 case = problem.case()
-                (run,) = rw.compare.with_settings(
-                    case, [rw.Run(engine, support, time_step)], settings(setting)
-                )
+                (run,) = rc.with_settings(case, [rw.Run(engine, support, time_step)], settings(setting))
                 require_feasible([case], [run])
-                rw.compare.require_runnable(case, run)
+                rc.require_runnable(case, run)
                 name = case.name
-            rw.compare.require_writable(out)
+            rc.require_writable(out)
         if folder is None:
             for line in (*describe(case), *time_needed([case], [run])):
                 print(line)
             with user_input(), shown_progress() as tell:
-                comparison = rw.compare.compare(case, runs=[run], progress=tell)
+                comparison = rw.compare(case, runs=[run], progress=tell)
         with user_input():
             from ...pages.comparison.report import view_page
 
             page = view_page(comparison, name, command_line())
             if page is None:
                 raise ValueError(f"there is nothing to play in {name!r}: the cylinder never uplifts")
-            rw.compare.replace_files(out, {"view.html": page.html().encode()})
+            rc.replace_files(out, {"view.html": page.html().encode()})
     print(f"\nWritten to {out}: view.html")
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser

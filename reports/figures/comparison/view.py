@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.compare import Comparison, ErrorBudget, own_model
+from rockwobble.compare.traces.pair import start_of
 from rockwobble.models import Case, Diagnostic, Run, Trace
 
 from ..palette import Style, label_styles
@@ -66,12 +67,7 @@ class CaseView:
 
     def divergence(self, row: Any) -> float:
         """Return when a run diverges from its reference, in the time of the run [s]; inf if never."""
-        return start(self.traces[row.reference]) + row.agreement_time if row.diverged else math.inf
-
-
-def start(trace: Trace) -> float:
-    """Return uplift or release [s], 0 where there is none."""
-    return trace.uplift_time if math.isfinite(trace.uplift_time) else 0.0
+        return start_of(self.traces[row.reference]) + row.agreement_time if row.diverged else math.inf
 
 
 def rows_of(table: pd.DataFrame) -> Iterator[Any]:

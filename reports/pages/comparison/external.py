@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Any
 
 import pandas as pd
@@ -17,52 +16,28 @@ from ..words.sentences import sentence
 WORDS = "comparison/external.md.j2"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Told:
-    """What the codes of a row of an external trajectory say.
+def told(row: Any) -> dict[str, object]:
+    """Return what the codes of a row of an external trajectory say.
 
-    Attributes
-    ----------
-    row : namedtuple
-        Of the summary.
-    differs, left : list of str
-        Parts that differ, and that still do without the mistake.
-    missing : list of (str, str)
-        Parts that were not compared, and why.
-    mistakes, alternatives : list of str
-        Likely mistakes in words, and what explains the azimuth just as well.
+    Returns
+    -------
+    dict
+        row, of the summary; differs and left, parts that differ, and that still do without the mistake;
+        agrees and wrong, what does and does not besides the tilt; missing, parts that were not compared, and
+        why; mistakes and alternatives, likely mistakes in words, and what explains the azimuth just as well.
     """
-
-    row: Any
-    differs: list[str]
-    left: list[str]
-    missing: list[tuple[str, str]]
-    mistakes: list[str]
-    alternatives: list[str]
-
-    @property
-    def agrees(self) -> list[str]:
-        """What agrees besides the tilt."""
-        known = [part for part in ("azimuth", "path") if math.isfinite(getattr(self.row, f"{part}_rms"))]
-        return [part for part in known if part not in self.differs]
-
-    @property
-    def wrong(self) -> list[str]:
-        """What differs besides the tilt."""
-        return [part for part in self.differs if part != "tilt"]
-
-
-def told(row: Any) -> Told:
-    """Return what the codes of a row say."""
-    missing = [each.split(": ", 1) for each in _split(row.not_compared)]
-    return Told(
-        row=row,
-        differs=_split(row.differs_in),
-        left=_split(row.differs_without_mistake),
-        missing=[(part, why) for part, why in missing],
-        mistakes=mistakes(row),
-        alternatives=mistakes(row, "alternative_mistake"),
-    )
+    differs = _split(row.differs_in)
+    known = [part for part in ("azimuth", "path") if math.isfinite(getattr(row, f"{part}_rms"))]
+    return {
+        "row": row,
+        "differs": differs,
+        "left": _split(row.differs_without_mistake),
+        "agrees": [part for part in known if part not in differs],
+        "wrong": [part for part in differs if part != "tilt"],
+        "missing": [each.split(": ", 1) for each in _split(row.not_compared)],
+        "mistakes": mistakes(row),
+        "alternatives": mistakes(row, "alternative_mistake"),
+    }
 
 
 def mistakes(row: Any, column: str = "likely_mistake") -> list[str]:

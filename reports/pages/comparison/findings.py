@@ -122,22 +122,6 @@ def counted_remarks(summary: pd.DataFrame) -> list[str]:
     return [sentence(WORDS, "remarks", counts)] if counts else []
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Group:
-    """The runs of one support, held against their own model, for a headline."""
-
-    support: str
-    names: list[str]
-    references: list[str]
-    rows: int
-    bound: str
-    diverged: bool
-    shortest: float
-    longest: float
-    length: float
-    scope: str = ""
-
-
 def headline(rows: pd.DataFrame, length: float) -> str:
     """Return what stands above the rows of a case: how long runs of each support follow their own model."""
     rows = own_rows(rows[rows["outcome"] != "failed"])
@@ -157,19 +141,20 @@ def headline(rows: pd.DataFrame, length: float) -> str:
     return " ".join([*parts, *(["Once traces have diverged, compare distributions."] if diverged else [])])
 
 
-def _group(rows: pd.DataFrame, length: float) -> Group:
+def _group(rows: pd.DataFrame, length: float) -> dict[str, object]:
+    """What a headline says of the runs of one support, held against their own model."""
     first = next(iter(rows_of(rows)))
     external = first.support == EXTERNAL
     names = rows["engine"].where(rows["engine"] != "reduced", rows["run"].map(lambda run: f"the {run}"))
-    return Group(
-        support=str(first.support),
-        names=list(names.unique()),
-        references=list(rows["reference"].unique()),
-        rows=len(rows),
-        bound=within(first) if external else "1 % of alpha",
-        diverged=bool(rows["diverged"].any()),
-        shortest=float(rows["agreement_time"].min()),
-        longest=float(rows["agreement_time"].max()),
-        length=length,
-        scope=scope(first) if external else "",
-    )
+    return {
+        "support": str(first.support),
+        "names": list(names.unique()),
+        "references": list(rows["reference"].unique()),
+        "rows": len(rows),
+        "bound": within(first) if external else "1 % of alpha",
+        "diverged": bool(rows["diverged"].any()),
+        "shortest": float(rows["agreement_time"].min()),
+        "longest": float(rows["agreement_time"].max()),
+        "length": length,
+        "scope": scope(first) if external else "",
+    }

@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from functools import cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     import jinja2
@@ -51,20 +51,28 @@ def the(label: str) -> str:
 
 
 # what templates know besides what jinja2 does
-FILTERS = {"seconds": seconds, "small": small, "listed": listed, "the": the, "degrees": math.degrees}
+_FILTERS = {
+    **{"seconds": seconds, "small": small, "listed": listed, "the": the, "degrees": math.degrees},
+    "lookup": lambda name, table: table[name],
+}
+
+
+def environment(**options: Any) -> jinja2.Environment:
+    """Return what reads the templates; more options are those of `jinja2.Environment`."""
+    import jinja2
+
+    found = jinja2.Environment(
+        loader=jinja2.PackageLoader("rockwobble.reports.pages", "templates"),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        **options,
+    )
+    found.filters |= _FILTERS
+    found.tests["known"] = math.isfinite
+    return found
 
 
 @cache
 def _environment(*, html: bool) -> jinja2.Environment:
-    import jinja2
-
-    environment = jinja2.Environment(
-        loader=jinja2.PackageLoader("rockwobble.reports.pages", "templates"),
-        autoescape=html,  # of sentences, what shows them escapes them
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    environment.filters |= FILTERS | {"lookup": lambda name, table: table[name]}
-    environment.tests["known"] = math.isfinite
-    return environment
+    return environment(autoescape=html)  # of sentences, what shows them escapes them
