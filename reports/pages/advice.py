@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
-from rockwobble.compare.storage.manifest import Manifest, read_results
-from rockwobble.compare.studies.advice.advice import KIND
+from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.advice.grades import CRITERIA
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y
 from rockwobble.compare.studies.spectrum.verification import CHECK_RTOL, NUDGE
@@ -39,9 +37,8 @@ def advice_page(tables: Mapping[str, pd.DataFrame], manifest: Manifest) -> Page:
     )
 
 
-def stored_page(folder: Path) -> Page:
-    """Return the page of the advice that is stored in a folder."""
-    results = read_results(folder, KIND)
+def stored_page(results: Results) -> Page:
+    """Return the page of the advice that is stored."""
     names = ("members", "band", "scales", "trace", "engine")
     return advice_page({name: results.table(name) for name in names}, results.manifest)
 

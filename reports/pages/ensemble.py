@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.distributions import (
     MARGIN,
@@ -12,8 +10,8 @@ from rockwobble.compare.metrics.distributions import (
     fewest_to_tell,
     largest_share_unseen,
 )
-from rockwobble.compare.storage.manifest import Manifest, read_results
-from rockwobble.compare.studies.ensemble.study import KIND, stored_ensemble
+from rockwobble.compare.storage.manifest import Manifest, Results
+from rockwobble.compare.studies.ensemble.study import stored_ensemble
 
 from ..figures.ensemble import ensemble_picture, main_pairs
 from .page import Page
@@ -29,9 +27,8 @@ def ensemble_page(found: Ensemble, manifest: Manifest) -> Page:
     )
 
 
-def stored_page(folder: Path) -> Page:
-    """Return the page of the ensemble that is stored in a folder."""
-    results = read_results(folder, KIND)
+def stored_page(results: Results) -> Page:
+    """Return the page of the ensemble that is stored."""
     return ensemble_page(stored_ensemble(results), results.manifest)
 
 

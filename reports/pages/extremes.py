@@ -6,7 +6,8 @@ import math
 
 import pandas as pd
 
-from rockwobble.compare.studies.extremes.study import Extremes
+from rockwobble.compare.storage.manifest import Results
+from rockwobble.compare.studies.extremes.study import Extremes, stored_extremes
 from rockwobble.compare.studies.extremes.verdict import FINE
 from rockwobble.models.diagnostic import CODES
 
@@ -56,6 +57,11 @@ def extremes_page(found: Extremes) -> Page:
         "about": found.made,
     }
     return Page(name="extremes", template="extremes", values=values)
+
+
+def stored_page(results: Results) -> Page:
+    """Return the report on what is stored."""
+    return extremes_page(stored_extremes(results))
 
 
 def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:

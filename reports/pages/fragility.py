@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 from typing import Any
 
 from rockwobble.compare import Fragility
-from rockwobble.compare.storage.manifest import Manifest, read_results
+from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER
 from rockwobble.compare.studies.fragility.intensity import MEASURES
 from rockwobble.compare.studies.fragility.limits import OVERTURNED
 from rockwobble.compare.studies.fragility.questions import main_contrasts
-from rockwobble.compare.studies.fragility.result import KIND, stored_fragility
+from rockwobble.compare.studies.fragility.result import stored_fragility
 from rockwobble.compare.studies.fragility.tables import ALL
 
 from ..figures.fragility import fragility_pictures
@@ -34,9 +33,8 @@ def fragility_page(found: Fragility, manifest: Manifest) -> Page:
     )
 
 
-def stored_page(folder: Path) -> Page:
-    """Return the page of the fragility that is stored in a folder."""
-    results = read_results(folder, KIND)
+def stored_page(results: Results) -> Page:
+    """Return the page of the fragility that is stored."""
     return fragility_page(stored_fragility(results), results.manifest)
 
 

@@ -1,29 +1,30 @@
-"""What can be drawn again from a folder of results: each kind, how it is read, and what draws its pages."""
+"""What can be drawn again from a folder of results: each kind, and what draws its pages."""
 
 from __future__ import annotations
 
 import importlib
-from collections.abc import Callable, Mapping
-from operator import attrgetter
+from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from rockwobble.compare.storage.manifest import read_results
 
 if TYPE_CHECKING:
     from .page import Page
 
-# kind: what reads a folder, and what draws a page or files of that; by name, because a command that shows
-# one of them must not wait for the imports of all
-KINDS: Mapping[str, tuple[str, ...]] = {
-    "comparison": ("compare:Comparison.load", "reports.pages.comparison.report:comparison_files"),
-    "ensemble": ("reports.pages.ensemble:stored_page",),
-    "fragility": ("reports.pages.fragility:stored_page",),
-    "overturning spectrum": ("reports.pages.spectrum:stored_page",),
-    "advice": ("reports.pages.advice:stored_page",),
-    "validity": ("compare.studies.validity.study:read_validity", "reports.pages.validity:validity_page"),
-    "tradeoff": ("compare.studies.tradeoff.study:read_tradeoff", "reports.pages.tradeoff:tradeoff_page"),
-    "extremes": ("compare.studies.extremes.study:read_extremes", "reports.pages.extremes:extremes_page"),
-    "engine versions": ("reports.pages.versions:stored_page",),
-    "paper": ("reports.paper.page:stored_page",),
+# kind: the module whose `stored_page` draws it; by name, because a command that shows one of them must not
+# wait for the imports of all
+KINDS: Mapping[str, str] = {
+    "comparison": "pages.comparison.report",
+    "ensemble": "pages.ensemble",
+    "fragility": "pages.fragility",
+    "overturning spectrum": "pages.spectrum",
+    "advice": "pages.advice",
+    "validity": "pages.validity",
+    "tradeoff": "pages.tradeoff",
+    "extremes": "pages.extremes",
+    "engine versions": "pages.versions",
+    "paper": "paper.page",
 }
 
 
@@ -35,14 +36,6 @@ def redrawn(kind: str, folder: Path) -> dict[str, bytes]:
     ValueError
         If they cannot be read.
     """
-    found: Any = folder
-    for name in KINDS[kind]:
-        found = _named(name)(found)
-    pages: dict[str, bytes] | Page = found
+    drawer = importlib.import_module(f"rockwobble.reports.{KINDS[kind]}")
+    pages: dict[str, bytes] | Page = drawer.stored_page(read_results(folder, kind))
     return pages if isinstance(pages, dict) else pages.files()
-
-
-def _named(name: str) -> Callable[..., object]:
-    module, _, function = name.partition(":")
-    found: Callable[..., object] = attrgetter(function)(importlib.import_module(f"rockwobble.{module}"))
-    return found

@@ -4,16 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.order_statistics import share_interval
-from rockwobble.compare.storage.manifest import Manifest, read_results
+from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast, unconservative_from
 from rockwobble.compare.studies.spectrum.result import (
-    KIND,
     OverturningSpectrum,
     record_frame,
     safe_islands,
@@ -38,9 +36,8 @@ def spectrum_page(
     )
 
 
-def stored_page(folder: Path) -> Page:
-    """Return the page of the spectrum that is stored in a folder."""
-    results = read_results(folder, KIND)
+def stored_page(results: Results) -> Page:
+    """Return the page of the spectrum that is stored."""
     tables = {name: results.table(name) for name in ("lowest", "islands", "contrast", "checked")}
     return spectrum_page(spectrum_of(results), tables, results.manifest)
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import pandas as pd
 
+from rockwobble.compare.storage.manifest import Results
 from rockwobble.compare.studies.tradeoff.conclusions import costs, engine_factors, plateaus, rest_tilt_price
-from rockwobble.compare.studies.tradeoff.study import ROUNDS, Tradeoff
+from rockwobble.compare.studies.tradeoff.study import ROUNDS, Tradeoff, stored_tradeoff
 
 from ..figures.tradeoff import ERRORS, TITLES, tradeoff_pictures
 from .page import Page
@@ -38,6 +39,11 @@ def tradeoff_page(found: Tradeoff) -> Page:
     pictures = tradeoff_pictures(found)
     values["drawn"] = [picture.name for picture in pictures]
     return Page(name="tradeoff", template="tradeoff", values=values, pictures=pictures)
+
+
+def stored_page(results: Results) -> Page:
+    """Return the report on what is stored."""
+    return tradeoff_page(stored_tradeoff(results))
 
 
 def _rows(table: pd.DataFrame) -> list[dict[str, object]]:

@@ -8,12 +8,13 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.distributions import MARGIN
+from rockwobble.compare.storage.manifest import Results
 from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
 from rockwobble.compare.studies.validity.limits import limits_of
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.limits.engine import damping
 from rockwobble.compare.studies.validity.rings import FREE
-from rockwobble.compare.studies.validity.study import Validity
+from rockwobble.compare.studies.validity.study import Validity, stored_validity
 
 from ..figures.validity.pictures import METHODS, validity_pictures
 from .page import Page
@@ -44,6 +45,11 @@ def validity_page(found: Validity) -> Page:
         "about": found.made,
     }
     return Page(name="validity", template="validity", values=values, pictures=validity_pictures(tables))
+
+
+def stored_page(results: Results) -> Page:
+    """Return the report on what is stored."""
+    return validity_page(stored_validity(results))
 
 
 def limits_table(found: Validity) -> pd.DataFrame:

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockwobble.compare.storage.manifest import Manifest, read_results
+from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.multibody.engines.registry import engine_facts
 
 from .page import Page
@@ -27,16 +26,9 @@ def versions_page(table: pd.DataFrame, made: Manifest) -> Page:
     return Page(name="versions", template="versions", values=values)
 
 
-def stored_page(folder: Path) -> Page:
-    """Return the page of what is stored in `folder`.
-
-    Raises
-    ------
-    ValueError
-        If it cannot be read.
-    """
-    stored = read_results(folder, KIND)
-    return versions_page(stored.table("versions"), stored.manifest)
+def stored_page(results: Results) -> Page:
+    """Return the page of what is stored."""
+    return versions_page(results.table("versions"), results.manifest)
 
 
 def _moved(table: pd.DataFrame) -> list[Row]:

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from pathlib import Path
 from typing import TypeVar
 
 import pandas as pd
 
 from rockwobble.compare.runs.progress import Clock, ProgressCallback
 from rockwobble.compare.storage.fingerprint import fingerprint
-from rockwobble.compare.storage.manifest import Manifest, made_now, read_results
+from rockwobble.compare.storage.manifest import Manifest, Results, made_now
 from rockwobble.compare.storage.provenance import code_digests, package_versions
 from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, spectrum_of
 from rockwobble.compare.studies.spectrum.study import overturning_spectrum
@@ -85,9 +84,8 @@ def paper_page(tables: dict[str, pd.DataFrame], manifest: Manifest, spectrum: Ov
     )
 
 
-def stored_page(folder: Path) -> Page:
-    """Return the page of the results in a folder."""
-    results = read_results(folder, KIND)
+def stored_page(results: Results) -> Page:
+    """Return the page of what is stored."""
     names = [name.removesuffix(".parquet") for name in results.manifest.files]
     tables = {name: results.table(name) for name in names}
     return paper_page(tables, results.manifest, spectrum_of(results))

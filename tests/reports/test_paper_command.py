@@ -11,8 +11,8 @@ import pytest
 
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.registry import redrawn
 from rockwobble.reports.paper import earthquake
-from rockwobble.reports.paper.page import stored_page
 
 SVG_LIMIT = 400_000  # bytes, of each committed picture
 
@@ -66,7 +66,7 @@ def test_numbers_on_the_page_are_those_of_the_tables(made):
 
 
 def test_the_report_is_drawn_again_from_what_is_kept(made):
-    again = stored_page(made).files()
+    again = redrawn("paper", made)
     assert {name: (made / name).read_bytes() for name in again} == again
 
 

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from rockwobble.compare.storage.manifest import made_now, read_results, write_results
 from rockwobble.compare.studies.tradeoff import study
-from rockwobble.compare.studies.tradeoff.study import KIND, Tradeoff, read_tradeoff
+from rockwobble.compare.studies.tradeoff.study import KIND, Tradeoff, stored_tradeoff
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.tradeoff import tradeoff_page
 
@@ -70,7 +70,7 @@ def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
     assert page.count("plotly-graph-div") >= 2
     assert "The load of the machine was 0.1 before and 1.2 after." in page
     assert len(page) < 8e6
-    stored = read_tradeoff(tmp_path)
+    stored = stored_tradeoff(read_results(tmp_path, KIND))
     assert stored.load == found.load
     for name in TABLES:
         pd.testing.assert_frame_equal(getattr(stored, name), getattr(found, name), check_exact=True)

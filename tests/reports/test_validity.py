@@ -11,11 +11,11 @@ import pytest
 from tiny_validity import tiny_validity
 from typer.testing import CliRunner
 
-from rockwobble.compare.storage.manifest import write_results
+from rockwobble.compare.storage.manifest import read_results, write_results
 from rockwobble.compare.studies.validity import study
 from rockwobble.compare.studies.validity.limits import limits_of
 from rockwobble.compare.studies.validity.records import RECESS
-from rockwobble.compare.studies.validity.study import Validity, read_validity
+from rockwobble.compare.studies.validity.study import KIND, Validity, stored_validity
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.validity import limits_table, validity_page
 
@@ -93,7 +93,7 @@ def test_the_command_stores_what_its_pages_are_drawn_from(
     done = CliRunner().invoke(app, ["validity", "--quick", "--out", str(tmp_path)])
     assert done.exit_code == 0
     assert "What must hold" in done.stdout
-    stored = read_validity(tmp_path)
+    stored = stored_validity(read_results(tmp_path, KIND))
     limits = pd.read_parquet(tmp_path / "limits.parquet")
     pd.testing.assert_frame_equal(limits, limits_table(stored), check_exact=True)
     assert limits_of(stored.tables).keys() == set(limits["limit"])

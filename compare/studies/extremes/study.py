@@ -20,7 +20,7 @@ from ...runs.progress import ProgressCallback
 from ...runs.scheduler import run_tasks
 from ...runs.task import Lost
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Manifest, made_now, read_results
+from ...storage.manifest import Manifest, Results, made_now
 from ...storage.provenance import code_digests, package_versions
 from .conditions import Condition, conditions
 from .verdict import Verdict, judge
@@ -107,15 +107,8 @@ def measure_extremes(
     return Extremes(table=table, made=made_now(KIND, command=command, headline=headline))
 
 
-def read_extremes(folder: str | Path) -> Extremes:
-    """Return a scan that was stored.
-
-    Raises
-    ------
-    ValueError
-        If it is not there, or a file is missing or damaged.
-    """
-    results = read_results(folder, KIND)
+def stored_extremes(results: Results) -> Extremes:
+    """Return a scan that was stored."""
     return Extremes(table=results.table(KIND), made=results.manifest)
 
 

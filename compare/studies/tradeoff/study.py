@@ -7,7 +7,6 @@ import os
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
 from typing import ClassVar
 
 import numpy as np
@@ -17,7 +16,7 @@ from rockwobble.models import Case
 from rockwobble.models.shown import Shown
 
 from ...runs.progress import Clock, ProgressCallback
-from ...storage.manifest import Manifest, made_now, read_results
+from ...storage.manifest import Manifest, Results, made_now
 from .conclusions import engine_factors
 from .methods import Answer, Method, methods_for
 from .problem import Problem, problems, sampling_distance
@@ -118,15 +117,8 @@ def measure_tradeoff(
     )
 
 
-def read_tradeoff(folder: str | Path) -> Tradeoff:
-    """Return a measurement that was stored.
-
-    Raises
-    ------
-    ValueError
-        If it is not there, or a file is missing or damaged.
-    """
-    results = read_results(folder, KIND)
+def stored_tradeoff(results: Results) -> Tradeoff:
+    """Return a measurement that was stored."""
     before, after = results.manifest.about["load"]
     return Tradeoff(
         points=results.table("points"),

@@ -18,7 +18,7 @@ from ...runs.progress import ProgressCallback
 from ...runs.scheduler import run_tasks
 from ...runs.task import Lost
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Manifest, made_now, read_results
+from ...storage.manifest import Manifest, Results, made_now
 from ...storage.provenance import engine_makers, reduced_makers
 from . import motions
 from .extent import Extent
@@ -133,15 +133,8 @@ def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent, command: str
     return Validity(tables=tables, records=records, made=made)
 
 
-def read_validity(folder: str | Path) -> Validity:
-    """Return a measurement that was stored; what is installed here has no part in it.
-
-    Raises
-    ------
-    ValueError
-        If it is not there, or a file is missing or damaged.
-    """
-    results = read_results(folder, KIND)
+def stored_validity(results: Results) -> Validity:
+    """Return a measurement that was stored; what is installed here has no part in it."""
     tables = {part.name: results.table(part.name) for part in PARTS}
     return Validity(tables=tables, records=results.manifest.about["records"], made=results.manifest)
 

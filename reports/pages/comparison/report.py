@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Iterator, Sequence
 
 from rockwobble.compare import WORTH_EXPLAINING, Comparison
+from rockwobble.compare.storage.manifest import Results
 
 from ...figures.comparison.budget import all_budgets_picture, budget_picture, parts_picture
 from ...figures.comparison.contact import azimuth_picture, contact_picture, turn_picture
@@ -44,6 +45,11 @@ def comparison_files(comparison: Comparison, command: str = "") -> dict[str, byt
         "report.md": page.markdown().encode(),
         **{f"{picture.name}.svg": svg(picture) for picture in page.pictures if picture.name in _BESIDE},
     }
+
+
+def stored_page(results: Results) -> dict[str, bytes]:
+    """Return what a person opens of a comparison that is stored."""
+    return comparison_files(Comparison.load(results.folder))
 
 
 def comparison_page(comparison: Comparison, command: str = "", *, drawn: bool = True) -> Page:
