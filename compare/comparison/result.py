@@ -14,6 +14,7 @@ import pandas as pd
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.shown import Shown
 
+from ..runs.execution import case_inputs
 from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Manifest, made_now, read_results, write_results
 from .error_budget import ErrorBudget
@@ -93,7 +94,7 @@ class Comparison(Shown):
         relative = self.summary["tilt_rms_relative"]
         return made_now(
             KIND,
-            inputs=fingerprint([_inputs(case) for case in self.cases.values()]),
+            inputs=fingerprint([case_inputs(case) for case in self.cases.values()]),
             command=command,
             versions=self.versions,
             headline={
@@ -205,16 +206,3 @@ def describe_case(case: Case) -> dict[str, object]:
 def _number(value: float) -> float | None:
     """JSON knows no NaN."""
     return float(value) if math.isfinite(value) else None
-
-
-def _inputs(case: Case) -> dict[str, object]:
-    """What a case depends on, without the names of it and its motion."""
-    motion = case.motion
-    return {
-        "cylinder": case.cylinder,
-        "motion": None if motion is None else (motion.acceleration, motion.time_step),
-        "initial": case.initial,
-        "length": case.length,
-        "gravity": case.gravity,
-        "friction": case.friction,
-    }

@@ -214,20 +214,21 @@ def makers_of(job: Job) -> dict[str, str]:
 
 def job_fingerprint(job: Job) -> str:
     """Return the hash of everything that the result of a job depends on."""
-    case, motion = job.case, job.case.motion
-    return fingerprint(
-        {
-            "cylinder": case.cylinder,
-            "motion": None if motion is None else (motion.acceleration, motion.time_step),
-            "initial": case.initial,
-            "length": case.length,
-            "gravity": case.gravity,
-            "friction": case.friction,
-            "method": job.run,
-            "sample step": SAMPLE_STEP,
-            "made with": makers_of(job),
-        }
-    )
+    own = {"method": job.run, "sample step": SAMPLE_STEP, "made with": makers_of(job)}
+    return fingerprint(case_inputs(job.case) | own)
+
+
+def case_inputs(case: Case) -> dict[str, object]:
+    """Return what runs of a case depend on, without the names of it and its motion."""
+    motion = case.motion
+    return {
+        "cylinder": case.cylinder,
+        "motion": None if motion is None else (motion.acceleration, motion.time_step),
+        "initial": case.initial,
+        "length": case.length,
+        "gravity": case.gravity,
+        "friction": case.friction,
+    }
 
 
 def _cost(job: Job) -> float:

@@ -33,7 +33,7 @@ from rockwobble.compare.studies.fragility.resampling import (
     resamples,
     spread_interval,
 )
-from rockwobble.compare.studies.fragility.tables import margin_of, verdict
+from rockwobble.compare.studies.fragility.tables import margin_of
 
 TABLE = Path(__file__).parents[1] / "reference" / "probit_fits.csv"
 # the digits of the table, and the tolerance of the solver that wrote it
@@ -223,7 +223,7 @@ def test_equivalence_is_an_interval_inside_a_margin():
     close, far, wide = (
         Interval(value=1.0, low=low, high=high) for low, high in ((0.97, 1.06), (1.2, 1.5), (0.9, 1.2))
     )
-    assert [verdict(each, 0.1) for each in (close, far, wide)] == ["within", "beyond", "undecided"]
+    assert [each.about_one(0.1) for each in (close, far, wide)] == ["within", "beyond", "undecided"]
     assert margin_of(close) == pytest.approx(0.06)
     assert margin_of(Interval(value=1.0, low=0.8, high=1.1)) == pytest.approx(0.25)
     assert margin_of(Interval(value=1.0, low=0.0, high=1.1)) == math.inf

@@ -10,6 +10,7 @@ import itertools
 import math
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pytest
@@ -17,8 +18,8 @@ from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from rockwobble.models import Cylinder, GroundMotion, InitialState
-from rockwobble.multibody import available_engines
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
+from rockwobble.multibody import available_engines, simulate
 from rockwobble.multibody.engines.registry import find_engine
 
 Array = NDArray[np.float64]
@@ -192,6 +193,25 @@ def engine(request: pytest.FixtureRequest) -> str:
 @pytest.fixture
 def solve_free() -> Callable[..., Solution]:
     return free_response
+
+
+@pytest.fixture
+def run_release(solve_free: Callable[..., Solution]) -> Callable[..., tuple[Trace, Solution]]:
+    """A release at half of alpha in an engine, which tells how far it is, and the solution of its model."""
+
+    def run(
+        engine: str, support: str, tan_alpha: float, *, duration: float, **options: Any
+    ) -> tuple[Trace, Solution]:
+        cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
+        release = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
+        told: list[float] = []
+        case = Case(cylinder, initial=release, duration=duration)
+        trace = simulate(case, engine=engine, support=support, progress=told.append, **options)
+        assert told == sorted(told)
+        assert told[-1] == 1.0
+        return trace, solve_free(cylinder, release, trace.time, rolls_out=support == "flat")
+
+    return run
 
 
 @pytest.fixture
