@@ -152,8 +152,8 @@ def test_goodness_is_twice_what_the_likelihood_lacks():
     share = k / n
     own = (k * np.log(share) + (n - k) * np.log(1.0 - share)).sum()
     assert held["deviance"] == pytest.approx(2.0 * (own - log_likelihood(X, n, k, centre, spread)), rel=1e-9)
-    assert held.degrees == 3
-    assert held.largest == pytest.approx(np.abs(share - norm.cdf((X - centre) / spread)).max())
+    assert held["degrees"] == 3
+    assert held["largest"] == pytest.approx(np.abs(share - norm.cdf((X - centre) / spread)).max())
     # counts that no lognormal curve follows
     poor = np.array([0.0, 10.0, 10.0, 10.0, 20.0])
     bent = fit_curves(X, n[None], poor[None])

@@ -1,1 +1,1 @@
-"""The pages of the study: comparison."""
+"""The report of a comparison: its words, rows and tables."""
