@@ -45,7 +45,7 @@ class Shape:
     g: float
 
 
-def shape_of(cylinder: Cylinder, gravity: float = 9.81) -> Shape:
+def shape_of(cylinder: Cylinder) -> Shape:
     """Return the constants of a cylinder, homogeneous where it has no inertias of its own: (16)."""
     b, h = cylinder.base_radius, cylinder.mass_centre_height
     I1, I2 = cylinder.transverse_inertia, cylinder.axial_inertia
@@ -55,7 +55,7 @@ def shape_of(cylinder: Cylinder, gravity: float = 9.81) -> Shape:
         h=h,
         I1=b * b / 4.0 + height * height / 12.0 if I1 is None else I1,
         I2=b * b / 2.0 if I2 is None else I2,
-        g=gravity,
+        g=9.81,
     )
 
 

@@ -101,7 +101,7 @@ def _taken(result: object, key: str) -> object:
     return getattr(result, key, None)
 
 
-def read_outputs(path: Path, angle_unit: str | None = None) -> Outputs:
+def read_outputs(path: Path) -> Outputs:
     """Read the file of a trajectory, with tilt and azimuth or with quaternions.
 
     Raises
@@ -109,7 +109,7 @@ def read_outputs(path: Path, angle_unit: str | None = None) -> Outputs:
     ValueError
         If the file cannot be read, or has neither.
     """
-    given = read_columns(path, angle_unit)
+    given = read_columns(path, None)
     time = given.complete("time")
     if set(QUATERNION) <= set(given.values):
         w, x, y, z = (given.complete(name) for name in QUATERNION)

@@ -12,8 +12,8 @@ from .result import Fragility
 Row = dict[str, Any]
 
 
-def main_contrasts(found: Fragility, limit: str = OVERTURNED) -> dict[str, list[Row]]:
-    """Return the rows of the contrasts that answer the three questions, by question.
+def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
+    """Return the rows of the contrasts that answer the three questions on overturning, by question.
 
     "planar": each planar method against the recess model; "support": the same method on another support
     against the recess; "engine": an engine against the model of its support, and another engine on it.
@@ -22,7 +22,7 @@ def main_contrasts(found: Fragility, limit: str = OVERTURNED) -> dict[str, list[
     answers: dict[str, list[Row]] = {"planar": [], "support": [], "engine": []}
     rows = found.contrasts.to_dict("records") if len(found.contrasts) else []
     for row in rows:
-        if row["limit"] != limit:
+        if row["limit"] != OVERTURNED:
             continue
         question, turned = _question(methods, str(row["method"]), str(row["against"]))
         if question:

@@ -28,8 +28,6 @@ def check_cells(
     count: int = CELLS,
     *,
     series: Sequence[str] = SERIES,
-    nudge: float = NUDGE,
-    seed: int = 0,
 ) -> pd.DataFrame:
     """Run randomly chosen cells again as single runs, each beside a twin whose record differs by a hair.
 
@@ -40,10 +38,6 @@ def check_cells(
         Number of cells, drawn without repetition; at most those there are.
     series : sequence of str, optional
         From which to draw.
-    nudge : float, optional
-        By how much, relatively, the record of the twin differs.
-    seed : int, optional
-        Of the choice.
 
     Returns
     -------
@@ -59,32 +53,29 @@ def check_cells(
     """
     if count < 1:
         raise ValueError(f"count must be at least 1, got {count!r}")
-    n_sizes, n_levels = len(spectrum.semidiagonals), len(spectrum.intensities)
-    cells = len(series) * n_sizes * n_levels
-    chosen = np.random.default_rng(seed).choice(cells, size=min(count, cells), replace=False)
+    shape = len(series), len(spectrum.semidiagonals), len(spectrum.intensities)
+    cells = math.prod(shape)
+    chosen = np.random.default_rng(0).choice(cells, size=min(count, cells), replace=False)
     rows = []
-    for cell in np.sort(chosen):
-        which, rest = divmod(int(cell), n_sizes * n_levels)
-        i, j = divmod(rest, n_levels)
+    for which, i, j in zip(*np.unravel_index(np.sort(chosen), shape), strict=True):
         name = series[which]
         peak = float(spectrum.peak_tilt[name][i, j])
         single, twin = (
-            _single(spectrum, name, i, float(spectrum.scales[j]) * factor) for factor in (1.0, 1.0 + nudge)
+            _single(spectrum, name, i, float(spectrum.scales[j]) * factor) for factor in (1.0, 1.0 + NUDGE)
         )
         rows.append(
-            (
-                name,
-                float(spectrum.semidiagonals[i]),
-                float(spectrum.intensities[j]),
-                peak,
-                single,
-                twin,
-                _agree(peak, single),
-                not _agree(twin, single),
-            )
+            {
+                "series": name,
+                "semidiagonal": float(spectrum.semidiagonals[i]),
+                "intensity": float(spectrum.intensities[j]),
+                "peak_tilt": peak,
+                "single_peak_tilt": single,
+                "twin_peak_tilt": twin,
+                "agrees": _agree(peak, single),
+                "sensitive": not _agree(twin, single),
+            }
         )
-    names = ["series", "semidiagonal", "intensity", "peak_tilt", "single_peak_tilt", "twin_peak_tilt"]
-    return pd.DataFrame(rows, columns=[*names, "agrees", "sensitive"])
+    return pd.DataFrame(rows)
 
 
 def confirm_lowest(spectrum: OverturningSpectrum, *, nudge: float = NUDGE) -> pd.DataFrame:

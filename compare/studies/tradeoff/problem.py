@@ -43,6 +43,7 @@ _SAMPLE = 0.02  # [s]
 _MEMBER_LENGTH = 10.0  # [s]
 # about half of the members rock beyond a fifth of alpha, few overturn
 _MEMBER_PEAK = 0.45 * 9.81  # [m/s^2]
+_DRAWS = 500  # of a bootstrap
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -163,14 +164,14 @@ def peaks(*, quick: bool = False) -> Problem:
     )
 
 
-def sampling_distance(problem: Problem, support: str, *, draws: int = 500, seed: int = 0) -> float:
+def sampling_distance(problem: Problem, support: str) -> float:
     """Return how far apart two ensembles as large as this one are by chance: median of a bootstrap [alpha].
 
     No method needs to be better than that, because another earthquake changes more.
     """
     found = np.concatenate(problem.references[support].quantities)
-    random = np.random.default_rng(seed)
-    samples = np.sort(random.choice(found, (2, draws, len(found))), axis=2)
+    random = np.random.default_rng(0)
+    samples = np.sort(random.choice(found, (2, _DRAWS, len(found))), axis=2)
     return float(np.median(np.abs(samples[0] - samples[1]).mean(axis=1)))
 
 

@@ -56,7 +56,7 @@ def budget_picture(view: CaseView, name: str) -> Picture:
     return _stacked(bars, name)
 
 
-def all_budgets_picture(comparison: Comparison, name: str = "budget") -> Picture:
+def all_budgets_picture(comparison: Comparison) -> Picture:
     """Return a bar for each row of the summary with a budget, the findings on top.
 
     The order is: rows above the bound, the worst first; then those worth explaining; then the rest, which
@@ -76,7 +76,7 @@ def all_budgets_picture(comparison: Comparison, name: str = "budget") -> Picture
         )
         for row in rows_of(ordered.head(_MOST))
     ]
-    return _stacked(bars, name)
+    return _stacked(bars, "budget")
 
 
 def _stacked(bars: Sequence[Bar], name: str) -> Picture:
