@@ -207,6 +207,12 @@ def equal_step(case: Case, run: Run) -> float:
     return unit_time * _EQUAL_STEPS.get(run.time_step, REFERENCE_TIME_STEP)
 
 
+def engine_time(case: Case, run: Run) -> float:
+    """Return the rough computing time of a run of an engine [s]."""
+    assert run.engine is not None
+    return case.length / equal_step(case, run) * engine_facts(run.engine).step_time
+
+
 def makers_of(job: Job) -> dict[str, str]:
     """Return versions and code on which a job depends."""
     return reduced_makers() if job.run.engine is None else engine_makers(job.run.engine)
@@ -235,4 +241,4 @@ def _cost(job: Job) -> float:
     """Rough computing time of a job [s]."""
     if job.run.engine is None:
         return math.inf  # may compile
-    return job.case.length / equal_step(job.case, job.run) * engine_facts(job.run.engine).step_time
+    return engine_time(job.case, job.run)

@@ -114,10 +114,7 @@ def _suite(
         return list(suite.cases), [
             rw.Run(run.engine, run.support, time_step) for run in all_runs(suite.cases, asked)
         ]
-    runs, missing = without_missing(chosen_runs(suite, engines, supports, time_step), engines)
-    for engine in missing:
-        complain(f"{engine} is not installed here and is left out")
-    return list(suite.cases), runs
+    return list(suite.cases), without_missing(chosen_runs(suite, engines, supports, time_step), engines)
 
 
 def _runs(

@@ -13,7 +13,7 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ...console.progress import shown_progress
-from ...console.terminal import FAILED, complain, interruptible, user_input
+from ...console.terminal import FAILED, interruptible, user_input
 from ..inputs import options
 from ..inputs.suite_choice import chosen_runs, without_missing
 from .check_outside import Model, Support, Tolerance, Trajectory, outside_findings, print_outside
@@ -131,9 +131,7 @@ def _bench(suite: str, workers: int | None) -> Bench:
     from rockwobble.compare.check import Bench
 
     read = rw.read_suite(suite)
-    runs, missing = without_missing(chosen_runs(read, None, None, None), None)
-    for engine in missing:
-        complain(f"{engine} is not installed here and is left out")
+    runs = without_missing(chosen_runs(read, None, None, None), None)
     for case in read.cases:
         for run in runs:
             rc.require_runnable(case, run)

@@ -96,20 +96,18 @@ def _all_seconds(cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> float:
 
 
 def _seconds(case: rw.Case, run: rw.Run) -> float:
-    from rockwobble.compare.runs.execution import SAMPLE_STEP, equal_step
-    from rockwobble.multibody.engines.registry import engine_facts
+    from rockwobble.compare.runs.execution import SAMPLE_STEP, engine_time
     from rockwobble.multibody.scene.froude import froude_scale
 
+    if run.engine is not None:
+        return engine_time(case, run)
     unit = froude_scale(case.cylinder.semidiagonal, case.gravity).time
-    if run.engine is None:
-        return case.length * (_SAMPLE_COST / SAMPLE_STEP + _UNIT_COST / unit)
-    return case.length / equal_step(case, run) * engine_facts(run.engine).step_time
+    return case.length * (_SAMPLE_COST / SAMPLE_STEP + _UNIT_COST / unit)
 
 
 def _memory() -> float:
     """Memory that this process may still take [bytes]; infinite where the system does not say."""
-    found = [_available(), _limit_of_group(), _limit_of_process()]
-    return min(found)
+    return min(_available(), _limit_of_group(), _limit_of_process())
 
 
 def _available() -> float:

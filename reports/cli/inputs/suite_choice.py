@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 from typing import Any
 
@@ -10,6 +11,7 @@ import typer
 import rockwobble as rw
 import rockwobble.compare as rc
 
+from ...console.terminal import complain
 from ...pages.words.cases import group_of
 from .estimate import time_needed
 from .problem import PROBLEM, refuse
@@ -53,8 +55,8 @@ def chosen_runs(
     return runs
 
 
-def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> tuple[list[rw.Run], list[str]]:
-    """Return the runs whose engines are installed or named by the user, and the engines left out.
+def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list[rw.Run]:
+    """Return the runs whose engines are installed or named by the user, and say which are left out.
 
     Raises
     ------
@@ -66,16 +68,16 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> tupl
     left_out = [name for name in missing if any(run.engine == name for run in runs)]
     if not kept:
         raise ValueError(f"no engine of this suite is installed here: {', '.join(left_out)}")
-    return kept, left_out
+    for engine in left_out:
+        complain(f"{engine} is not installed here and is left out")
+    return kept
 
 
 def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
     """Yield the lines that echo what will run, and how long it may take."""
     from rockwobble.compare.runs.choice import run_labels
 
-    groups: dict[str, int] = {}
-    for case in cases:
-        groups[group_of(case.name)] = groups.get(group_of(case.name), 0) + 1
+    groups = Counter(group_of(case.name) for case in cases)
     yield f"Suite {name}: {len(cases)} cases x {len(runs)} runs = {len(cases) * len(runs)} runs of engines"
     counted = (f"{group} ({count})" if count > 1 else group for group, count in groups.items())
     yield f"Cases: {', '.join(counted)}"
