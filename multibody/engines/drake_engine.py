@@ -12,12 +12,14 @@ import contextlib
 import logging
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from ..body import Body
 from ..facts import EngineFacts
-from ..kinematics import about_vertical, axis_of, turning
+from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
 from ..scene.friction import body_friction
 from .declared import Declared
@@ -69,12 +71,12 @@ class _DrakeStepper:
         self._position, self._quaternion = start.position, start.quaternion
         place = np.concatenate([start.quaternion, start.position - [0.0, 0.0, self._depth]])
         velocity = np.concatenate([start.angular_velocity, start.velocity])
-        self._put(place, velocity)
+        self._place, self._velocity = place, velocity
+        self._heave = 0.0  # speed of the frame, upwards, in which the ground keeps still in a step [m/s]
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
             self._advance_once(np.zeros(6))
-            after = self._plant.GetVelocities(self._context)
-            self._put(place, 1.5 * velocity - 0.5 * after)
+            self._place, self._velocity = place, 1.5 * velocity - 0.5 * self._velocity
 
     @property
     def hold_centre(self) -> float:
@@ -114,42 +116,87 @@ class _DrakeStepper:
 
     def _one(self, acceleration: Array) -> Array:
         """Take one step; return quaternion, position and heading of the scene."""
-        place = self._plant.GetPositions(self._context)
-        axis = axis_of(place[None, :4])[0]
-        lean, body = float(np.hypot(axis[0], axis[1])), self._scene.body
-        if lean < _FLAT:
+        rim = self._rim()
+        if rim.lean < _FLAT:
+            body = self._scene.body
             push = float(np.hypot(acceleration[0], acceleration[1])) * body.mass_centre_height
             load = push / (body.base_radius * (self._scene.gravity + acceleration[2]))
-            if lean > _LEANS:
-                self._turn(place, self._heading + math.atan2(axis[1], axis[0]))
+            if rim.lean > _LEANS:
+                self._turn(self._heading + math.atan2(rim.axis_y, rim.axis_x))
             elif load > _LOADED:
-                self._turn(place, math.atan2(-acceleration[1], -acceleration[0]))
+                self._turn(math.atan2(-acceleration[1], -acceleration[0]))
+            rim = self._rim()
         force = np.zeros(6)
         force[3:] = about_vertical(-acceleration[None], -self._heading)[0]
         if self._stiffness:
-            w, x, y, z = self._plant.GetPositions(self._context)[:4]
+            w, x, y, z = self._place[:4]
             # along the vertical plus the axis, proportional to the twist
             pair = -4.0 * self._stiffness * math.atan2(z, w)
             force[:3] = pair * np.array([x * z + w * y, y * z - w * x, 1.0 - x * x - y * y])
         self._advance_once(force)
-        return np.append(self._plant.GetPositions(self._context), self._heading)
+        rise = self._step * (self._heave + rim.upwards(self._velocity))
+        self._place[6] += self._step * self._heave
+        after = self._rim()
+        rolls = rim.lean > _LEANS and rim.depth > 0.0 and rim.goes_on_to(after)
+        heave = (after.depth - rim.depth + rise) / self._step if rolls else 0.0
+        self._velocity[5] += self._heave - heave
+        self._heave = heave
+        return np.append(self._place, self._heading)
+
+    def _rim(self) -> _Rim:
+        return _Rim.of(self._place, self._scene.body)
 
     def _advance_once(self, force: Array) -> None:
         self._input.FixValue(self._context, force)
+        self._plant.SetPositionsAndVelocities(self._context, np.concatenate([self._place, self._velocity]))
         self._count += 1
         self._simulator.AdvanceTo(self._count * self._step)
+        state = self._plant.GetPositionsAndVelocities(self._context)
+        self._place, self._velocity = state[:7], state[7:]
 
-    def _turn(self, place: Array, heading: float) -> None:
+    def _turn(self, heading: float) -> None:
         """Turn the x axis of the scene into an azimuth [rad]: its vectors turn back."""
         angle, self._heading = self._heading - heading, heading
-        velocity = self._plant.GetVelocities(self._context)
-        turned = [place[1:4], place[4:], velocity[:3], velocity[3:]]
-        vector, position, spin, speed = about_vertical(np.array(turned), angle)
-        self._put(np.concatenate([place[:1], vector, position]), np.concatenate([spin, speed]))
+        place, velocity = self._place, self._velocity
+        turned = np.array([place[1:4], place[4:], velocity[:3], velocity[3:]])
+        place[1:4], place[4:], velocity[:3], velocity[3:] = about_vertical(turned, angle)
 
-    def _put(self, place: Array, velocity: Array) -> None:
-        self._plant.SetPositions(self._context, place)
-        self._plant.SetVelocities(self._context, velocity)
+
+@dataclass(frozen=True, slots=True)
+class _Rim:
+    """The lowest point of the rim, of a pose.
+
+    Attributes
+    ----------
+    axis_x, axis_y, lean : float
+        Horizontal part of the axis of the cylinder, and its size.
+    depth : float
+        Below the ground [m].
+    reach : float
+        Horizontally from the mass centre along the lean, over the lean [m].
+    """
+
+    axis_x: float
+    axis_y: float
+    lean: float
+    depth: float
+    reach: float
+
+    @classmethod
+    def of(cls, place: Array, body: Body) -> _Rim:
+        w, x, y, z, _, _, height = place.tolist()
+        axis_x, axis_y, axis_z = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
+        lean, b, h = math.hypot(axis_x, axis_y), body.base_radius, body.mass_centre_height
+        reach = b * axis_z / lean - h if lean else 0.0
+        return cls(axis_x, axis_y, lean, b * lean + h * axis_z - height, reach)
+
+    def upwards(self, velocity: Array) -> float:
+        """Return the speed of the material point there, from angular velocity and velocity (6,) [m/s]."""
+        return float(velocity[5] + self.reach * (velocity[0] * self.axis_y - velocity[1] * self.axis_x))
+
+    def goes_on_to(self, after: _Rim) -> bool:
+        """Return whether it stays on its side of upright."""
+        return self.axis_x * after.axis_x + self.axis_y * after.axis_y > 0.0
 
 
 def _build(scene: Scene, settings: DrakeSettings) -> tuple[Any, Any]:
@@ -166,6 +213,7 @@ def _build(scene: Scene, settings: DrakeSettings) -> tuple[Any, Any]:
     kinds = plants.DiscreteContactApproximation
     names = {"lagged": kinds.kLagged, "similar": kinds.kSimilar, "tamsi": kinds.kTamsi, "sap": kinds.kSap}
     plant.set_discrete_contact_approximation(names[settings.approximation])
+    plant.set_stiction_tolerance(settings.stiction_tolerance)
     transverse, axial = shape.transverse_inertia, shape.axial_inertia
     inertia = RotationalInertia(transverse, transverse, axial)
     origin: Any = np.zeros(3)

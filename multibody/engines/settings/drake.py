@@ -31,6 +31,7 @@ class DrakeSettings:
     approximation: str = "lagged"
     contact_stiffness: float = 1e10
     dissipation: float = 0.0
+    stiction_tolerance: float = 1e-6
 
     @classmethod
     def resolve(cls, given: Mapping[str, Any], time_step: float) -> DrakeSettings:
@@ -46,4 +47,5 @@ class DrakeSettings:
         one_of(settings, "approximation", ("lagged", "similar", "tamsi", "sap"))
         in_range(settings, "contact_stiffness", 0.0)
         in_range(settings, "dissipation", 0.0, inclusive=True)
+        in_range(settings, "stiction_tolerance", 0.0)
         return settings
