@@ -27,7 +27,7 @@ from .scene_counts import SceneCounts
 from .settings.drake import DrakeSettings
 
 _POINTS = 4
-_POINT_SIZE = 1e-6  # of b: a sphere this small reaches out of the rim by 1e-6 theta^2/2
+_POINT_SIZE = 1e-9  # of b: a sphere this small reaches out of the rim by 1e-9 theta^2/2
 # [rad] lean up to which a point carries the rim: on the contact found for the cylinder itself the rim gains
 # energy at leans of 1e-4 to 1e-3 rad, and under El Centro the guard ends the run
 _FLAT = 0.01
