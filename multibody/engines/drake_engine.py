@@ -72,6 +72,7 @@ class _DrakeStepper:
         place = np.concatenate([start.quaternion, start.position - [0.0, 0.0, self._depth]])
         velocity = np.concatenate([start.angular_velocity, start.velocity])
         self._place, self._velocity = place, velocity
+        self._sinks = math.nan
         self._heave = 0.0  # speed of the frame, upwards, in which the ground keeps still in a step [m/s]
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
@@ -138,9 +139,12 @@ class _DrakeStepper:
         self._place[6] += self._step * self._heave
         after = self._rim()
         rolls = rim.lean > _LEANS and rim.depth > 0.0 and rim.goes_on_to(after)
-        heave = (after.depth - rim.depth + rise) / self._step if rolls else 0.0
+        sinks = (after.depth - rim.depth + rise) / self._step if rolls else math.nan
+        # where it sinks by next, from the last two steps
+        ahead = 2.0 * sinks - self._sinks
+        heave = ahead if math.isfinite(ahead) else 0.0
         self._velocity[5] += self._heave - heave
-        self._heave = heave
+        self._heave, self._sinks = heave, sinks
         return np.append(self._place, self._heading)
 
     def _rim(self) -> _Rim:
@@ -153,6 +157,8 @@ class _DrakeStepper:
         self._simulator.AdvanceTo(self._count * self._step)
         state = self._plant.GetPositionsAndVelocities(self._context)
         self._place, self._velocity = state[:7], state[7:]
+        # Drake adds the rate times the step, which makes it longer each time
+        self._place[:4] /= np.linalg.norm(self._place[:4])
 
     def _turn(self, heading: float) -> None:
         """Turn the x axis of the scene into an azimuth [rad]: its vectors turn back."""
