@@ -28,9 +28,7 @@ from .settings.drake import DrakeSettings
 
 _POINTS = 4
 _POINT_SIZE = 1e-9  # of b: a sphere this small reaches out of the rim by 1e-9 theta^2/2
-# [rad] lean up to which a point carries the rim: on the contact found for the cylinder itself the rim gains
-# energy at leans of 1e-4 to 1e-3 rad, and under El Centro the guard ends the run
-_FLAT = 0.01
+_FLAT = 2e-3  # [rad] lean up to which a point carries the rim: below 1e-3 none is found for the cylinder itself
 _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 
@@ -66,6 +64,7 @@ class _DrakeStepper:
         self._count = 0
         self._warning = ""
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
+        self._spun = 0.0  # angle about its axis that has been taken off the cylinder [rad]
         start = scene.start
         self._depth = scene.gravity / settings.contact_stiffness
         self._position, self._quaternion = start.position, start.quaternion
@@ -87,7 +86,8 @@ class _DrakeStepper:
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         rows = np.array([self._caught(each) for each in acceleration])
-        quaternion, position, heading = rows[:, :4].copy(), rows[:, 4:7], rows[:, 7]
+        position, heading = rows[:, 4:7], rows[:, 7]
+        quaternion = _spin(rows[:, :4], rows[:, 8])
         quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
         position = about_vertical(position, heading)
         position[:, 2] += self._depth
@@ -113,10 +113,10 @@ class _DrakeStepper:
                 return self._one(acceleration)
             except RuntimeError as error:
                 self._warning = str(error).partition("\n")[0]
-        return np.full(8, math.nan)
+        return np.full(9, math.nan)
 
     def _one(self, acceleration: Array) -> Array:
-        """Take one step; return quaternion, position and heading of the scene."""
+        """Take one step; return quaternion, position, heading of the scene, and what it has spun."""
         rim = self._rim()
         if rim.lean < _FLAT:
             body = self._scene.body
@@ -132,7 +132,7 @@ class _DrakeStepper:
         if self._stiffness:
             w, x, y, z = self._place[:4]
             # along the vertical plus the axis, proportional to the twist
-            pair = -4.0 * self._stiffness * math.atan2(z, w)
+            pair = -4.0 * self._stiffness * (math.atan2(z, w) + 0.5 * self._spun)
             force[:3] = pair * np.array([x * z + w * y, y * z - w * x, 1.0 - x * x - y * y])
         self._advance_once(force)
         rise = self._step * (self._heave + rim.upwards(self._velocity))
@@ -145,7 +145,7 @@ class _DrakeStepper:
         heave = ahead if math.isfinite(ahead) else 0.0
         self._velocity[5] += self._heave - heave
         self._heave, self._sinks = heave, sinks
-        return np.append(self._place, self._heading)
+        return np.array([*self._place, self._heading, self._spun])
 
     def _rim(self) -> _Rim:
         return _Rim.of(self._place, self._scene.body)
@@ -161,11 +161,24 @@ class _DrakeStepper:
         self._place[:4] /= np.linalg.norm(self._place[:4])
 
     def _turn(self, heading: float) -> None:
-        """Turn the x axis of the scene into an azimuth [rad]: its vectors turn back."""
+        """Turn the x axis of the scene into an azimuth [rad], and that of the cylinder, which is round.
+
+        The vectors of the scene turn back.
+        """
         angle, self._heading = self._heading - heading, heading
         place, velocity = self._place, self._velocity
+        twist = 2.0 * math.atan2(place[3], place[0])
+        place[:4] = _spin(place[None, :4], np.array([-twist]))[0]
+        self._spun += twist
         turned = np.array([place[1:4], place[4:], velocity[:3], velocity[3:]])
         place[1:4], place[4:], velocity[:3], velocity[3:] = about_vertical(turned, angle)
+
+
+def _spin(quaternion: Array, angle: Array) -> Array:
+    """Return quaternions (n, 4), scalar first, after a turn about the axis of the cylinder (n,) [rad]."""
+    w, x, y, z = quaternion.T
+    c, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
+    return np.column_stack([w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s])
 
 
 @dataclass(frozen=True, slots=True)

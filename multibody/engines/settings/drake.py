@@ -30,7 +30,7 @@ class DrakeSettings:
     guide_stiffness: float
     approximation: str = "lagged"
     contact_stiffness: float = 1e10
-    dissipation: float = 0.0
+    dissipation: float = 100.0
     stiction_tolerance: float = 1e-6
 
     @classmethod
