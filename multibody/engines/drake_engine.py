@@ -1,9 +1,15 @@
 """Drake: point contact in discrete time, solved as a convex problem with a lagged friction cone.
 
-Its cylinder finds one contact on the ground, on which a flat base does not stand. So the rim has four points
-besides, spheres of a millionth of its radius. As fixed corners they would be a polygon: while the
-base is nearly flat the scene is turned about the vertical until one of them is under the load, and then under
-the lean.
+What it needs:
+
+* Its cylinder finds one contact on the ground, on which a flat base does not stand. So the rim has four
+  points besides, tiny spheres. As fixed corners they would be a polygon: while the base is nearly flat the scene, and
+  the cylinder about its axis, are turned until one of them is under the load, and then under the lean.
+* The lagged cone takes for the load of a step how deep the rim is when it starts. Stiff contact yields to the
+  weight by 1e-9 m; by as much the lowest point sinks or rises in a step along the curvature of its path, which
+  no velocity shows. A rim that rises would have no friction, and hop. So each step is taken in a frame that
+  moves up by what the last two steps sank, and the rim starts it as deep as its load presses it.
+* A quaternion that is stepped by its rate grows, and with it the lean that it tells: it is brought back.
 """
 
 from __future__ import annotations
@@ -13,7 +19,6 @@ import logging
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -21,14 +26,12 @@ from ..body import Body
 from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
-from ..scene.friction import body_friction
 from .declared import Declared
+from .drake_scene import build
 from .scene_counts import SceneCounts
 from .settings.drake import DrakeSettings
 
-_POINTS = 4
-_POINT_SIZE = 1e-9  # of b: a sphere this small reaches out of the rim by 1e-9 theta^2/2
-_FLAT = 2e-3  # [rad] lean up to which a point carries the rim: below 1e-3 none is found for the cylinder itself
+_FLAT = 2e-3  # [rad] lean up to which a point carries the rim: the cylinder itself is not found below 1e-3
 _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 
@@ -55,7 +58,7 @@ class _DrakeStepper:
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
         self._stiffness = stiffness if scene.support == "recess" else 0.0
         with _quiet():
-            diagram, self._plant = _build(scene, settings)
+            diagram, self._plant = build(scene, settings)
             root = diagram.CreateDefaultContext()
             self._context = self._plant.GetMyMutableContextFromRoot(root)
             self._simulator = Simulator(diagram, root)
@@ -216,45 +219,6 @@ class _Rim:
     def goes_on_to(self, after: _Rim) -> bool:
         """Return whether it stays on its side of upright."""
         return self.axis_x * after.axis_x + self.axis_y * after.axis_y > 0.0
-
-
-def _build(scene: Scene, settings: DrakeSettings) -> tuple[Any, Any]:
-    """Make ground and cylinder; return the diagram and its plant."""
-    from pydrake.geometry import AddContactMaterial, Cylinder, HalfSpace, ProximityProperties, Sphere
-    from pydrake.math import RigidTransform
-    from pydrake.multibody import plant as plants
-    from pydrake.multibody.tree import RotationalInertia, SpatialInertia
-    from pydrake.systems.framework import DiagramBuilder
-
-    shape = scene.body
-    builder = DiagramBuilder()
-    plant, _ = plants.AddMultibodyPlantSceneGraph(builder, scene.time_step)
-    kinds = plants.DiscreteContactApproximation
-    names = {"lagged": kinds.kLagged, "similar": kinds.kSimilar, "tamsi": kinds.kTamsi, "sap": kinds.kSap}
-    plant.set_discrete_contact_approximation(names[settings.approximation])
-    plant.set_stiction_tolerance(settings.stiction_tolerance)
-    transverse, axial = shape.transverse_inertia, shape.axial_inertia
-    inertia = RotationalInertia(transverse, transverse, axial)
-    origin: Any = np.zeros(3)
-    body = plant.AddRigidBody("cylinder", SpatialInertia.MakeFromCentralInertia(1.0, origin, inertia))
-    friction, _ = body_friction(scene.friction, "pair")
-    contact = ProximityProperties()
-    # two bodies in series are half as stiff as each
-    cone = plants.CoulombFriction(friction, friction)
-    AddContactMaterial(settings.dissipation, 2.0 * settings.contact_stiffness, cone, contact)
-    middle: Any = np.array([0.0, 0.0, 0.5 * shape.height - shape.mass_centre_height])
-    size = _POINT_SIZE * shape.base_radius
-    plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform(), HalfSpace(), "ground", contact)
-    outline = Cylinder(shape.base_radius, shape.height)
-    plant.RegisterCollisionGeometry(body, RigidTransform(middle), outline, "outline", contact)
-    for index in range(_POINTS):
-        azimuth = 2.0 * math.pi * index / _POINTS
-        x, y = shape.base_radius * math.cos(azimuth), shape.base_radius * math.sin(azimuth)
-        place: Any = np.array([x, y, size - shape.mass_centre_height])
-        plant.RegisterCollisionGeometry(body, RigidTransform(place), Sphere(size), f"point {index}", contact)
-    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -scene.gravity])
-    plant.Finalize()
-    return builder.Build(), plant
 
 
 @contextlib.contextmanager
