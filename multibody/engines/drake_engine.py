@@ -3,12 +3,12 @@
 What it needs:
 
 * Its cylinder finds one contact on the ground, on which a flat base does not stand. So the rim has four
-  points besides, tiny spheres. As fixed corners they would be a polygon: while the base is nearly flat the scene, and
-  the cylinder about its axis, are turned until one of them is under the load, and then under the lean.
+  points besides, tiny spheres. As fixed corners they would be a polygon: while the base is nearly flat the
+  scene, and the cylinder about its axis, are turned until one is under the load, and then under the lean.
 * The lagged cone takes for the load of a step how deep the rim is when it starts. Stiff contact yields to the
-  weight by 1e-9 m; by as much the lowest point sinks or rises in a step along the curvature of its path, which
-  no velocity shows. A rim that rises would have no friction, and hop. So each step is taken in a frame that
-  moves up by what the last two steps sank, and the rim starts it as deep as its load presses it.
+  weight by 1e-9 m; by as much the lowest point sinks or rises in a step along the curvature of its path,
+  which no velocity shows. A rim that rises would have no friction, and hop. So each step is taken in a frame
+  that moves up by what the last two steps sank, and the rim starts it as deep as its load presses it.
 * A quaternion that is stepped by its rate grows, and with it the lean that it tells: it is brought back.
 """
 
