@@ -27,11 +27,13 @@ from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
 from .declared import Declared
-from .drake_scene import build
+from .drake_scene import POINTS, build
 from .scene_counts import SceneCounts
 from .settings.drake import DrakeSettings
 
 _FLAT = 2e-3  # [rad] lean up to which a point carries the rim: the cylinder itself is not found below 1e-3
+_BETWEEN = 2.0 * math.pi / POINTS  # [rad] between two points
+_NEAR = 0.05  # [rad] to a point: the lowest point of the rim turns by less in a step at leans above
 _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 
@@ -132,6 +134,8 @@ class _DrakeStepper:
             elif load > _LOADED:
                 self._turn(math.atan2(-acceleration[1], -acceleration[0]))
             rim = self._rim()
+        else:
+            self._keep_points_away()
         force = np.zeros(6)
         force[3:] = about_vertical(-acceleration[None], -self._heading)[0]
         if self._stiffness:
@@ -165,6 +169,18 @@ class _DrakeStepper:
         # Drake adds the rate times the step, which makes it longer each time
         self._place[:4] /= np.linalg.norm(self._place[:4])
 
+    def _keep_points_away(self) -> None:
+        """Turn the cylinder, where a rim that rolls would meet a point, so that it does not."""
+        w, x, y, z = self._place[:4].tolist()
+        lowest = math.atan2(-y * z - w * x, w * y - x * z)  # azimuth in the cylinder
+        if abs(math.remainder(lowest, _BETWEEN)) < _NEAR:
+            self._take_off(0.5 * _BETWEEN)
+
+    def _take_off(self, angle: float) -> None:
+        """Turn the cylinder back about its axis [rad]."""
+        self._place[:4] = _spin(self._place[None, :4], np.array([-angle]))[0]
+        self._spun += angle
+
     def _turn(self, heading: float) -> None:
         """Turn the x axis of the scene into an azimuth [rad], and that of the cylinder, which is round.
 
@@ -172,9 +188,7 @@ class _DrakeStepper:
         """
         angle, self._heading = self._heading - heading, heading
         place, velocity = self._place, self._velocity
-        twist = 2.0 * math.atan2(place[3], place[0])
-        place[:4] = _spin(place[None, :4], np.array([-twist]))[0]
-        self._spun += twist
+        self._take_off(2.0 * math.atan2(place[3], place[0]))
         turned = np.array([place[1:4], place[4:], velocity[:3], velocity[3:]])
         place[1:4], place[4:], velocity[:3], velocity[3:] = about_vertical(turned, angle)
 

@@ -11,7 +11,7 @@ from ..protocol import Scene
 from ..scene.friction import body_friction
 from .settings.drake import DrakeSettings
 
-_POINTS = 4
+POINTS = 4  # of the rim, which carry a flat base
 _POINT_SIZE = 1e-9  # of b: a sphere this small reaches out of the rim by 1e-9 theta^2/2
 
 
@@ -44,8 +44,8 @@ def build(scene: Scene, settings: DrakeSettings) -> tuple[Any, Any]:
     plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform(), HalfSpace(), "ground", contact)
     outline = Cylinder(shape.base_radius, shape.height)
     plant.RegisterCollisionGeometry(body, RigidTransform(middle), outline, "outline", contact)
-    for index in range(_POINTS):
-        azimuth = 2.0 * math.pi * index / _POINTS
+    for index in range(POINTS):
+        azimuth = 2.0 * math.pi * index / POINTS
         x, y = shape.base_radius * math.cos(azimuth), shape.base_radius * math.sin(azimuth)
         place: Any = np.array([x, y, size - shape.mass_centre_height])
         plant.RegisterCollisionGeometry(body, RigidTransform(place), Sphere(size), f"point {index}", contact)
