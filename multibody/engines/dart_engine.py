@@ -4,7 +4,9 @@ Contact has no stiffness to choose: after a step the rim's lowest point rests or
 
 * That point sinks and rises by a curvature of its path that no velocity shows, second order in the step. The
   ground takes it back by a velocity of its own, so that the rim stays as deep as it was: without it the rim
-  would hop through a gap for a fifth of the steps.
+  would hop through a gap for a fifth of the steps. Where a base lands, the other side of its rim is in the
+  ground by what a step has moved it. Taken back in one step that would throw the cylinder as high as it fell
+  from, so it is taken back slowly.
 * Where the centre of the base is below the ground, ODE's detector finds four corners along the axes of the
   scene; where it is above, the lowest point, whose radius is off by 1e-16/lean^2. So the rim is kept at a
   depth of 1e-6 m, and where there are corners the scene is turned about the vertical until one of them is
@@ -39,6 +41,7 @@ _OPEN = 1e-8  # [rad] lean at which the base is open; standing it stays below 5e
 # of b, the base may open
 _LOADED, _OPENING = 0.5, 0.999
 _REDUCTION, _FASTEST_REDUCTION = 0.01, 1e-3  # [-], [m/s] by which DART itself reduces a depth
+_LANDED = 2.0  # depths of the rim by which a closed base is deeper than it was kept where it has landed
 _FAR = 1e3  # of the height: ODE ends the process where something is too far away
 _SPIN = 1.0  # [rad] about the axis of the cylinder
 
@@ -66,6 +69,7 @@ class _DartStepper:
         self._stiffness = stiffness if scene.support == "recess" else 0.0
         self._dart: DartScene = build(scene, settings)
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
+        self._kept = settings.depth  # depth at which the rim is kept just now [m]
         self._open = False
         self._lost = False
         start = scene.start
@@ -116,11 +120,13 @@ class _DartStepper:
         cosine, sine, root = math.cos, math.sin, math.sqrt
         b, h, arm = body.base_radius, body.mass_centre_height, body.mass_centre_height / body.base_radius
         excited, gravity, heading = bool(self._scene.components), self._scene.gravity, self._heading
-        followed = _LOADED * min(1.0, self._scene.friction * arm)
+        friction = self._scene.friction
+        followed = _LOADED * min(1.0, friction * arm)
         turn_x, turn_y = cosine(heading), sine(heading)
         spin_x, spin_y = cosine(0.5 * _SPIN), sine(0.5 * _SPIN)
         target, gain = self._settings.depth, self._settings.depth_gain / self._step
         reduction, fastest = _REDUCTION / self._step, _FASTEST_REDUCTION
+        kept, landed, back = self._kept, _LANDED * target, fastest * self._step
         far = _FAR * body.height
         rows: list[list[float]] = []
         row = get().tolist()
@@ -138,10 +144,16 @@ class _DartStepper:
             axis_x, axis_y = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i)
             lean = root(axis_x * axis_x + axis_y * axis_y)
             depth = b * lean + h * (1.0 - 2.0 * (i * i + j * j)) - height
-            rise(2, gain * (depth - target) - min(reduction * max(depth, 0.0), fastest))
-            if b * lean < depth:
-                load = math.hypot(ax, ay) * arm / (gravity + az)
-                self._use_for(opening=lean > _OPEN or load > _OPENING)
+            closed, lies = b * lean < depth, kept > landed
+            if closed and depth > kept + landed:
+                kept = depth
+            rise(2, gain * (depth - kept) - min(reduction * max(depth, 0.0), fastest))
+            kept = max(kept - back, target)
+            if closed:
+                # of a base that slides, friction is all the load
+                load = min(math.hypot(ax, ay) / (gravity + az), friction) * arm
+                # what lies after its landing leans by what it has sunk, and does not open
+                self._use_for(opening=load > _OPENING or (lean > _OPEN and not lies))
                 if lean > _LEANS or load > followed:
                     # a load pushes against the acceleration
                     along = math.atan2(axis_y, axis_x) + heading if lean > _LEANS else math.atan2(-ay, -ax)
@@ -161,6 +173,7 @@ class _DartStepper:
             step()
             row = get().tolist()
             rows.append([*row, heading])
+        self._kept = kept
         return rows
 
     def _use_for(self, *, opening: bool) -> None:

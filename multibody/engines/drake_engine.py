@@ -1,9 +1,15 @@
 """Drake: point contact in discrete time, solved as a convex problem with a lagged friction cone.
 
-Its cylinder finds one contact on the ground, on which a flat base does not stand. So the rim has four points
-besides, spheres of a millionth of its radius. As fixed corners they would be a polygon: while the
-base is nearly flat the scene is turned about the vertical until one of them is under the load, and then under
-the lean.
+What it needs:
+
+* Its cylinder finds one contact on the ground, on which a flat base does not stand. So the rim has four
+  points besides, tiny spheres. As fixed corners they would be a polygon: while the base is nearly flat the
+  scene, and the cylinder about its axis, are turned until one is under the load, and then under the lean.
+* The lagged cone takes for the load of a step how deep the rim is when it starts. Stiff contact yields to the
+  weight by 1e-9 m; by as much the lowest point sinks or rises in a step along the curvature of its path,
+  which no velocity shows. A rim that rises would have no friction, and hop. So each step is taken in a frame
+  that moves up by what the last two steps sank, and the rim starts it as deep as its load presses it.
+* A quaternion that is stepped by its rate grows, and with it the lean that it tells: it is brought back.
 """
 
 from __future__ import annotations
@@ -12,27 +18,28 @@ import contextlib
 import logging
 import math
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
 
+from ..body import Body
 from ..facts import EngineFacts
-from ..kinematics import about_vertical, axis_of, turning
+from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
-from ..scene.friction import body_friction
 from .declared import Declared
+from .drake_scene import POINTS, build
 from .scene_counts import SceneCounts
 from .settings.drake import DrakeSettings
 
-_POINTS = 4
-_POINT_SIZE = 1e-6  # of b: a sphere this small reaches out of the rim by 1e-6 theta^2/2
-# [rad] lean up to which a point carries the rim: on the contact found for the cylinder itself the rim gains
-# energy at leans of 1e-4 to 1e-3 rad, and under El Centro the guard ends the run
-_FLAT = 0.01
+_FLAT = 2e-3  # [rad] lean up to which a point carries the rim: the cylinder itself is not found below 1e-3
+_BETWEEN = 2.0 * math.pi / POINTS  # [rad] between two points
+_NEAR = 0.05  # [rad] to a point: the lowest point of the rim turns by less in a step at leans above
 _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 
-_FACTS = EngineFacts(title="Drake", step_time=8e-5, release_error=2e-4, uplift_error=5e-5, smooth_uplift=True)
+_FACTS = EngineFacts(
+    title="Drake", step_time=1.1e-4, release_error=8e-6, uplift_error=5e-5, smooth_uplift=True
+)
 
 
 class DrakeEngine(Declared):
@@ -55,7 +62,7 @@ class _DrakeStepper:
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
         self._stiffness = stiffness if scene.support == "recess" else 0.0
         with _quiet():
-            diagram, self._plant = _build(scene, settings)
+            diagram, self._plant = build(scene, settings)
             root = diagram.CreateDefaultContext()
             self._context = self._plant.GetMyMutableContextFromRoot(root)
             self._simulator = Simulator(diagram, root)
@@ -64,17 +71,19 @@ class _DrakeStepper:
         self._count = 0
         self._warning = ""
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
+        self._spun = 0.0  # angle about its axis that has been taken off the cylinder [rad]
         start = scene.start
         self._depth = scene.gravity / settings.contact_stiffness
         self._position, self._quaternion = start.position, start.quaternion
         place = np.concatenate([start.quaternion, start.position - [0.0, 0.0, self._depth]])
         velocity = np.concatenate([start.angular_velocity, start.velocity])
-        self._put(place, velocity)
+        self._place, self._velocity = place, velocity
+        self._sinks = math.nan
+        self._heave = 0.0  # speed of the frame, upwards, in which the ground keeps still in a step [m/s]
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
             self._advance_once(np.zeros(6))
-            after = self._plant.GetVelocities(self._context)
-            self._put(place, 1.5 * velocity - 0.5 * after)
+            self._place, self._velocity = place, 1.5 * velocity - 0.5 * self._velocity
 
     @property
     def hold_centre(self) -> float:
@@ -84,7 +93,8 @@ class _DrakeStepper:
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         rows = np.array([self._caught(each) for each in acceleration])
-        quaternion, position, heading = rows[:, :4].copy(), rows[:, 4:7], rows[:, 7]
+        position, heading = rows[:, 4:7], rows[:, 7]
+        quaternion = _spin(rows[:, :4], rows[:, 8])
         quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
         position = about_vertical(position, heading)
         position[:, 2] += self._depth
@@ -110,84 +120,121 @@ class _DrakeStepper:
                 return self._one(acceleration)
             except RuntimeError as error:
                 self._warning = str(error).partition("\n")[0]
-        return np.full(8, math.nan)
+        return np.full(9, math.nan)
 
     def _one(self, acceleration: Array) -> Array:
-        """Take one step; return quaternion, position and heading of the scene."""
-        place = self._plant.GetPositions(self._context)
-        axis = axis_of(place[None, :4])[0]
-        lean, body = float(np.hypot(axis[0], axis[1])), self._scene.body
-        if lean < _FLAT:
+        """Take one step; return quaternion, position, heading of the scene, and what it has spun."""
+        rim = self._rim()
+        if rim.lean < _FLAT:
+            body = self._scene.body
             push = float(np.hypot(acceleration[0], acceleration[1])) * body.mass_centre_height
             load = push / (body.base_radius * (self._scene.gravity + acceleration[2]))
-            if lean > _LEANS:
-                self._turn(place, self._heading + math.atan2(axis[1], axis[0]))
+            if rim.lean > _LEANS:
+                self._turn(self._heading + math.atan2(rim.axis_y, rim.axis_x))
             elif load > _LOADED:
-                self._turn(place, math.atan2(-acceleration[1], -acceleration[0]))
+                self._turn(math.atan2(-acceleration[1], -acceleration[0]))
+            rim = self._rim()
+        else:
+            self._keep_points_away()
         force = np.zeros(6)
         force[3:] = about_vertical(-acceleration[None], -self._heading)[0]
         if self._stiffness:
-            w, x, y, z = self._plant.GetPositions(self._context)[:4]
+            w, x, y, z = self._place[:4]
             # along the vertical plus the axis, proportional to the twist
-            pair = -4.0 * self._stiffness * math.atan2(z, w)
+            pair = -4.0 * self._stiffness * (math.atan2(z, w) + 0.5 * self._spun)
             force[:3] = pair * np.array([x * z + w * y, y * z - w * x, 1.0 - x * x - y * y])
         self._advance_once(force)
-        return np.append(self._plant.GetPositions(self._context), self._heading)
+        rise = self._step * (self._heave + rim.upwards(self._velocity))
+        self._place[6] += self._step * self._heave
+        after = self._rim()
+        rolls = rim.lean > _LEANS and rim.depth > 0.0 and rim.goes_on_to(after)
+        sinks = (after.depth - rim.depth + rise) / self._step if rolls else math.nan
+        # where it sinks by next, from the last two steps
+        ahead = 2.0 * sinks - self._sinks
+        heave = ahead if math.isfinite(ahead) else 0.0
+        self._velocity[5] += self._heave - heave
+        self._heave, self._sinks = heave, sinks
+        return np.array([*self._place, self._heading, self._spun])
+
+    def _rim(self) -> _Rim:
+        return _Rim.of(self._place, self._scene.body)
 
     def _advance_once(self, force: Array) -> None:
         self._input.FixValue(self._context, force)
+        self._plant.SetPositionsAndVelocities(self._context, np.concatenate([self._place, self._velocity]))
         self._count += 1
         self._simulator.AdvanceTo(self._count * self._step)
+        state = self._plant.GetPositionsAndVelocities(self._context)
+        self._place, self._velocity = state[:7], state[7:]
+        # Drake adds the rate times the step, which makes it longer each time
+        self._place[:4] /= np.linalg.norm(self._place[:4])
 
-    def _turn(self, place: Array, heading: float) -> None:
-        """Turn the x axis of the scene into an azimuth [rad]: its vectors turn back."""
+    def _keep_points_away(self) -> None:
+        """Turn the cylinder, where a rim that rolls would meet a point, so that it does not."""
+        w, x, y, z = self._place[:4].tolist()
+        lowest = math.atan2(-y * z - w * x, w * y - x * z)  # azimuth in the cylinder
+        if abs(math.remainder(lowest, _BETWEEN)) < _NEAR:
+            self._take_off(0.5 * _BETWEEN)
+
+    def _take_off(self, angle: float) -> None:
+        """Turn the cylinder back about its axis [rad]."""
+        self._place[:4] = _spin(self._place[None, :4], np.array([-angle]))[0]
+        self._spun += angle
+
+    def _turn(self, heading: float) -> None:
+        """Turn the x axis of the scene into an azimuth [rad], and that of the cylinder, which is round.
+
+        The vectors of the scene turn back.
+        """
         angle, self._heading = self._heading - heading, heading
-        velocity = self._plant.GetVelocities(self._context)
-        turned = [place[1:4], place[4:], velocity[:3], velocity[3:]]
-        vector, position, spin, speed = about_vertical(np.array(turned), angle)
-        self._put(np.concatenate([place[:1], vector, position]), np.concatenate([spin, speed]))
-
-    def _put(self, place: Array, velocity: Array) -> None:
-        self._plant.SetPositions(self._context, place)
-        self._plant.SetVelocities(self._context, velocity)
+        place, velocity = self._place, self._velocity
+        self._take_off(2.0 * math.atan2(place[3], place[0]))
+        turned = np.array([place[1:4], place[4:], velocity[:3], velocity[3:]])
+        place[1:4], place[4:], velocity[:3], velocity[3:] = about_vertical(turned, angle)
 
 
-def _build(scene: Scene, settings: DrakeSettings) -> tuple[Any, Any]:
-    """Make ground and cylinder; return the diagram and its plant."""
-    from pydrake.geometry import AddContactMaterial, Cylinder, HalfSpace, ProximityProperties, Sphere
-    from pydrake.math import RigidTransform
-    from pydrake.multibody import plant as plants
-    from pydrake.multibody.tree import RotationalInertia, SpatialInertia
-    from pydrake.systems.framework import DiagramBuilder
+def _spin(quaternion: Array, angle: Array) -> Array:
+    """Return quaternions (n, 4), scalar first, after a turn about the axis of the cylinder (n,) [rad]."""
+    w, x, y, z = quaternion.T
+    c, s = np.cos(0.5 * angle), np.sin(0.5 * angle)
+    return np.column_stack([w * c - z * s, x * c + y * s, y * c - x * s, z * c + w * s])
 
-    shape = scene.body
-    builder = DiagramBuilder()
-    plant, _ = plants.AddMultibodyPlantSceneGraph(builder, scene.time_step)
-    kinds = plants.DiscreteContactApproximation
-    names = {"lagged": kinds.kLagged, "similar": kinds.kSimilar, "tamsi": kinds.kTamsi, "sap": kinds.kSap}
-    plant.set_discrete_contact_approximation(names[settings.approximation])
-    transverse, axial = shape.transverse_inertia, shape.axial_inertia
-    inertia = RotationalInertia(transverse, transverse, axial)
-    origin: Any = np.zeros(3)
-    body = plant.AddRigidBody("cylinder", SpatialInertia.MakeFromCentralInertia(1.0, origin, inertia))
-    friction, _ = body_friction(scene.friction, "pair")
-    contact = ProximityProperties()
-    # two bodies in series are half as stiff as each
-    cone = plants.CoulombFriction(friction, friction)
-    AddContactMaterial(settings.dissipation, 2.0 * settings.contact_stiffness, cone, contact)
-    middle: Any = np.array([0.0, 0.0, 0.5 * shape.height - shape.mass_centre_height])
-    size = _POINT_SIZE * shape.base_radius
-    plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform(), HalfSpace(), "ground", contact)
-    outline = Cylinder(shape.base_radius, shape.height)
-    plant.RegisterCollisionGeometry(body, RigidTransform(middle), outline, "outline", contact)
-    for index in range(_POINTS):
-        azimuth = 2.0 * math.pi * index / _POINTS
-        x, y = shape.base_radius * math.cos(azimuth), shape.base_radius * math.sin(azimuth)
-        place: Any = np.array([x, y, size - shape.mass_centre_height])
-        plant.RegisterCollisionGeometry(body, RigidTransform(place), Sphere(size), f"point {index}", contact)
-    plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -scene.gravity])
-    plant.Finalize()
-    return builder.Build(), plant
+
+@dataclass(frozen=True, slots=True)
+class _Rim:
+    """The lowest point of the rim, of a pose.
+
+    Attributes
+    ----------
+    axis_x, axis_y, lean : float
+        Horizontal part of the axis of the cylinder, and its size.
+    depth : float
+        Below the ground [m].
+    reach : float
+        Horizontally from the mass centre along the lean, over the lean [m].
+    """
+
+    axis_x: float
+    axis_y: float
+    lean: float
+    depth: float
+    reach: float
+
+    @classmethod
+    def of(cls, place: Array, body: Body) -> _Rim:
+        w, x, y, z, _, _, height = place.tolist()
+        axis_x, axis_y, axis_z = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
+        lean, b, h = math.hypot(axis_x, axis_y), body.base_radius, body.mass_centre_height
+        reach = b * axis_z / lean - h if lean else 0.0
+        return cls(axis_x, axis_y, lean, b * lean + h * axis_z - height, reach)
+
+    def upwards(self, velocity: Array) -> float:
+        """Return the speed of the material point there, from angular velocity and velocity (6,) [m/s]."""
+        return float(velocity[5] + self.reach * (velocity[0] * self.axis_y - velocity[1] * self.axis_x))
+
+    def goes_on_to(self, after: _Rim) -> bool:
+        """Return whether it stays on its side of upright."""
+        return self.axis_x * after.axis_x + self.axis_y * after.axis_y > 0.0
 
 
 @contextlib.contextmanager

@@ -13,19 +13,24 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.recording.energy_watch import DRIFT, EnergyWatch
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+# samples at the steps are the steps, but for the rounding of their times
+STEPS_AS_SAMPLES = 1e-6
 P = math.sqrt(12.0 * 9.81 / (6.0 * (15.0 + math.cos(PIER.alpha) ** 2)))  # [1/s], section of the equations
 
 
 @pytest.mark.parametrize("support", ["recess", "flat"])
 def test_a_small_motion_that_loses_its_energy_is_said(engine: str, support: str) -> None:
-    # it loses a sixth in MuJoCo and half in Bullet: far less than 1e-3 of the energy of its balance
+    # a sixth in MuJoCo, half in Bullet, 4 % in DART, 1.5 % in Drake: all far less than 1e-3 of the energy of
+    # its balance, and all far more than what is worth a remark
     start = InitialState(0.002 * PIER.alpha, rolling_rate=0.3 * P)
-    run = multibody.simulate(Case(PIER, initial=start, duration=1.0), engine=engine, support=support)
+    case = Case(PIER, initial=start, duration=1.0)
+    run = multibody.simulate(case, engine=engine, support=support, time_step=1e-4, sample_step=1e-4)
     lost = 1.0 - run.energy[-1] / run.energy[0]
-    assert lost > 0.02
+    assert lost > 10.0 * DRIFT
     (said,) = (fact for fact in run.facts if fact.code == "energy")
-    # the largest loss, at any step, where the samples may miss it
-    assert said.size == pytest.approx(run.energy_error.min() / run.energy.max(), rel=0.06)
+    # the largest at any step: a pass loses for some steps what it then gives back, and samples may miss it
+    largest = run.energy_error[np.abs(run.energy_error).argmax()] / run.energy.max()
+    assert said.size == pytest.approx(largest, rel=STEPS_AS_SAMPLES)
     late = run.time[np.argmax(-run.energy_error > DRIFT * run.energy.max())]
     assert said.time == pytest.approx(late, abs=0.02)
 
