@@ -31,11 +31,40 @@ Trajectory = Annotated[
     ),
 ]
 Support = Annotated[
-    str, typer.Option("--support", help="What it models: recess or flat.", rich_help_panel=_PANEL)
+    str | None,
+    typer.Option(
+        "--support", help="What it models: recess or flat. Default: recess.", rich_help_panel=_PANEL
+    ),
 ]
 Tolerance = Annotated[
-    float, typer.Option("--tolerance", help="How exact it claims to be.", rich_help_panel=_PANEL)
+    float | None,
+    typer.Option("--tolerance", help="How exact it claims to be. Default: 0.001.", rich_help_panel=_PANEL),
 ]
+
+
+def require_used(
+    model: str | None,
+    trajectory: Path | None,
+    suite: str | None,
+    support: str | None,
+    tolerance: float | None,
+    workers: int | None,
+) -> None:
+    """Refuse an option that the given ones leave without a meaning.
+
+    Raises
+    ------
+    ValueError
+        If there is one.
+    """
+    if model is None and trajectory is None:
+        for name, value in (("--support", support), ("--tolerance", tolerance)):
+            if value is not None:
+                raise ValueError(f"{name} belongs to --model or --trajectory, got it without either")
+    elif workers is not None:
+        raise ValueError("--workers belongs to the engines, which --model and --trajectory do not run")
+    elif model is not None and suite is not None:
+        raise ValueError("--suite does not go with --model: its checks have cases of their own")
 
 
 def outside_findings(
