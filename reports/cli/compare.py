@@ -125,7 +125,9 @@ def _runs(
 ) -> list[rw.Run]:
     from rockwobble.compare.runs.choice import all_runs
 
-    if engines == ["none"] and alone:
+    if engines == ["none"]:
+        if not alone:
+            raise ValueError("--engine none leaves nothing to compare, give a --trajectory as well")
         return []
     every = engines == [ALL]
     runs = (
