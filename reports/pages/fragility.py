@@ -57,10 +57,13 @@ def fragility_values(found: Fragility) -> dict[str, object]:
     answers = main_contrasts(found)
     fits = found.fits.to_dict("records")
     fallen = [row for row in fits if row["limit"] == OVERTURNED]
+    efficiency = [
+        {**row, "title": MEASURES[str(row["measure"])].title} for row in found.efficiency.to_dict("records")
+    ]
     return {
         "facts": found.about,
         "measure": measure,
-        "measures": [{"name": name, **_plain(each)} for name, each in MEASURES.items()],
+        "measures": list(MEASURES.values()),
         "cylinders": [{"name": name, **body} for name, body in cylinders.items()],
         "answers": {
             question: [row for row in rows if row["cylinder"] == whole] for question, rows in answers.items()
@@ -77,14 +80,10 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         + [[limit, limit.replace("_", " "), ".3g"] for limit in found.about["limits"]],
         "ring": any(each["support"] == "ring" for each in found.about["methods"].values()),
         "failed": [row for row in fallen if row["failed"]],
-        "efficiency": found.efficiency.to_dict("records"),
-        "best": [row for row in found.efficiency.to_dict("records") if row["best"]],
+        "efficiency": efficiency,
+        "best": [row for row in efficiency if row["best"]],
         "islands": found.islands.to_dict("records"),
     }
-
-
-def _plain(measure: Any) -> dict[str, str]:
-    return {"title": measure.title, "unit": measure.unit, "meaning": measure.meaning}
 
 
 def _by_cylinder(rows: list[dict[str, Any]], cylinders: list[str]) -> list[dict[str, Any]]:

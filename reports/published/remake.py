@@ -1,6 +1,6 @@
 """Make what is published here again, every study by its command, from one commit.
 
-    python reports/published/remake.py               # all of it, some two hours on two cores
+    python reports/published/remake.py               # all of it, some three hours on two cores
     python reports/published/remake.py tradeoff paper
 
 A study goes on where it was stopped. What a study says is judged by its tables alone, so
@@ -39,6 +39,10 @@ STUDIES = {
     "ensemble/synthetic-3": "ensemble --synthetic 3",
     "ensemble/copies": "ensemble --duration 20",
     "fragility/p695": f"fragility --p695 {_BODIES} --friction 3 --step-factor 8 {_ENGINES}",
+    # the control: engines whose numbers hold at half the step
+    "fragility/half-step": f"fragility --p695 {_BODIES} --friction 3 --step-factor 4 "
+    "--engine mujoco --support recess --support flat --support ring "
+    "--set ring_clearance=0.01 --set ring_inclination=0.5",
     "fragility/synthetic": f"fragility --synthetic 2000 --seed 16 {_BODIES}",
     "extremes": "extremes",
     "tradeoff": "tradeoff",

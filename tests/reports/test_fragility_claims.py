@@ -11,12 +11,27 @@ from rockwobble.compare.storage.manifest import read_results
 from rockwobble.compare.studies.fragility.result import KIND
 
 CHECKOUT = Path(__file__).parents[2]
+PUBLISHED = CHECKOUT / "reports" / "published" / "fragility"
 SECTION = r"## Is planar analysis safe\?.*?(?=\n## )"
-# the pairs of methods of each sentence, in the order of their numbers
+# study and pair of methods of each number, in their order
 PAIRS = {
-    "planar": [("planar x", "recess model"), ("planar y", "recess model"), ("worse plane", "recess model")],
-    "support": [("flat-ground model", "recess model"), ("mujoco flat", "mujoco recess")],
-    "engine": [("mujoco recess", "recess model"), ("mujoco flat", "flat-ground model")],
+    "planar": [
+        ("p695", "planar x", "recess model"),
+        ("p695", "planar y", "recess model"),
+        ("p695", "worse plane", "recess model"),
+        ("synthetic", "worse plane", "recess model"),
+    ],
+    "support": [
+        ("p695", "flat-ground model", "recess model"),
+        ("synthetic", "flat-ground model", "recess model"),
+        ("p695", "mujoco ring", "mujoco recess"),
+    ],
+    "engine": [
+        ("p695", "mujoco recess", "recess model"),
+        ("p695", "pybullet recess", "recess model"),
+        ("p695", "mujoco flat", "flat-ground model"),
+        ("p695", "pybullet flat", "flat-ground model"),
+    ],
 }
 
 
@@ -29,11 +44,12 @@ def numbers_said() -> list[tuple[str, str, str]]:
 
 @pytest.mark.parametrize("question", list(PAIRS))
 def test_each_ratio_with_its_interval_is_that_of_the_table(question: str) -> None:
-    table = read_results(CHECKOUT / "reports" / "published" / "fragility" / "p695", KIND).table("contrasts")
-    rows = table[(table["cylinder"] == "all") & (table["limit"] == "overturned")]
-    own = rows.set_index(["method", "against"])
-    order = [pair for pairs in PAIRS.values() for pair in pairs]
-    said = dict(zip(order, numbers_said(), strict=True))
-    for pair in PAIRS[question]:
-        found = own.loc[pair]
-        assert said[pair] == tuple(f"{found[name]:.2f}" for name in ("ratio", "ratio_low", "ratio_high"))
+    said = dict(zip([pair for pairs in PAIRS.values() for pair in pairs], numbers_said(), strict=True))
+    for study, method, against in PAIRS[question]:
+        table = read_results(CHECKOUT / "reports" / "published" / "fragility" / study, KIND).table(
+            "contrasts"
+        )
+        rows = table[(table["cylinder"] == "all") & (table["limit"] == "overturned")]
+        found = rows.set_index(["method", "against"]).loc[(method, against)]
+        numbers = tuple(f"{found[name]:.2f}" for name in ("ratio", "ratio_low", "ratio_high"))
+        assert said[study, method, against] == numbers
