@@ -14,6 +14,7 @@ from .measures import batch, external_trajectories, metrics, predicted_times, sw
 from .models import (
     after_record,
     conserved,
+    demands,
     equations,
     exact,
     invariance,
@@ -36,7 +37,7 @@ PARTS: dict[str, tuple[Check, ...]] = {
     "exact": (exact.check,),
     "rest": (rest.check, landing.check, after_record.check),
     "invariance": (invariance.check,),
-    "properties": (properties.check, turning_points.check),
+    "properties": (properties.check, turning_points.check, demands.check),
     "order": (order.check,),
     "residual": (residual.check,),
     "metrics": (metrics.check, predicted_times.check, external_trajectories.check),

@@ -42,6 +42,9 @@ def require_writable(folder: str | Path) -> Path:
 def replace_files(folder: str | Path, contents: Mapping[str, bytes]) -> None:
     """Write files into `folder`, all of them or, where one cannot be written, none.
 
+    A name that stands for a device or a pipe, such as /dev/stdout, is written to and stays what it is; behind
+    a link the file that it leads to is replaced.
+
     Parameters
     ----------
     folder : str or Path
@@ -54,12 +57,19 @@ def replace_files(folder: str | Path, contents: Mapping[str, bytes]) -> None:
     ValueError
         If the folder cannot be written.
     """
-    path = require_writable(folder)
+    path = Path(folder)
+    streams = {path / name: content for name, content in contents.items() if _is_stream(path / name)}
+    if len(streams) < len(contents):
+        require_writable(path)
     beside: dict[Path, Path] = {}
     try:
         path.mkdir(parents=True, exist_ok=True)
         for name, content in contents.items():
             target = path / name
+            if target in streams:
+                continue
+            if target.is_symlink():
+                target = target.resolve()
             if target.is_dir():
                 raise ValueError(f"the output file must not be a folder, got {target}")
             part = _beside(target)
@@ -68,7 +78,11 @@ def replace_files(folder: str | Path, contents: Mapping[str, bytes]) -> None:
             _force_to_disk(part)
         for part, target in beside.items():
             part.replace(target)
-        _force_to_disk(path)
+        for target, content in streams.items():
+            with target.open("wb") as stream:
+                stream.write(content)
+        if beside:
+            _force_to_disk(path)
     except OSError as error:
         raise ValueError(f"the output folder {path} cannot be written: {error.strerror or error}") from None
     finally:
@@ -115,6 +129,11 @@ def sole_writer(folder: Path) -> Iterator[None]:
         except OSError:
             raise ValueError(f"another process is writing to {path}, wait for its end") from None
         yield
+
+
+def _is_stream(target: Path) -> bool:
+    """Whether a name stands for a device or a pipe: renamed over, it would be one no more."""
+    return target.exists() and not (target.is_file() or target.is_dir())
 
 
 def _beside(target: Path) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -18,6 +19,7 @@ _DRIFT = 0.05
 # components may differ in length by this part, and by more where what is left out is below this part of
 # the peak
 _LEFT_OUT, _STILL = 0.01, 0.05
+_UTF16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)  # what spreadsheets call "Unicode text"
 
 
 def read_record(
@@ -89,11 +91,16 @@ def _read_all(path: Path) -> list[Component]:
 
 def _lines(path: Path) -> list[str]:
     try:
-        # utf-8-sig drops the byte-order mark that spreadsheets write
-        lines = path.read_text(encoding="utf-8-sig", errors="replace").splitlines()
+        content = path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a null byte in the name
         reason = getattr(error, "strerror", None) or error
         raise ValueError(f"cannot read the record {path}: {reason}") from None
+    if content.startswith(_UTF16):
+        raise ValueError(f"the record {path} is text in UTF-16: save it as UTF-8 or plain text")
+    if b"\0" in content:
+        raise ValueError(f"the record {path} is no text: it holds null bytes")
+    # utf-8-sig drops the byte-order mark that spreadsheets write
+    lines = content.decode("utf-8-sig", errors="replace").splitlines()
     if not any(line.strip() for line in lines):
         raise ValueError(f"the record {path} is empty")
     return lines

@@ -122,7 +122,9 @@ def _runs(
 ) -> list[rw.Run]:
     from rockwobble.compare.runs.choice import all_runs
 
-    if engines == ["none"] and alone:
+    if engines == ["none"]:
+        if not alone:
+            raise ValueError("--engine none leaves nothing to compare, give a --trajectory as well")
         return []
     every = engines == [ALL]
     runs = all_runs([case], supports or None) if every else rc.default_runs(engines or None, supports or None)

@@ -14,11 +14,11 @@ from rockwobble import reduced
 from rockwobble.compare.check import Bench
 from rockwobble.compare.check.finding import Finding
 from rockwobble.compare.check.measures import batch
-from rockwobble.compare.check.models import after_record, landing, properties, rest, turning_points
+from rockwobble.compare.check.models import after_record, demands, landing, properties, rest, turning_points
 from rockwobble.models import Case, GroundMotion, Trace, read_suite
 
 SUITE = read_suite("quick")
-PARTS = (rest, landing, after_record, properties, turning_points, batch)
+PARTS = (rest, landing, after_record, properties, turning_points, demands, batch)
 Options = dict[str, Any]
 Change = Callable[[GroundMotion | None, Options], GroundMotion | None]
 
@@ -144,3 +144,45 @@ def test_an_early_end_of_a_fall_that_is_not_certain_is_found() -> None:
 
     bench = Bench(reduced=SimpleNamespace(simulate=reduced.simulate, peak_tilts=hasty), suite=SUITE)
     assert [finding.part for finding in failed(after_record, bench) if "certain" in finding.part]
+
+
+def test_a_gravity_that_does_not_reach_a_grid_is_found() -> None:
+    def peak_tilts(*arguments: Any, gravity: float, **options: Any) -> Any:
+        return reduced.peak_tilts(*arguments, **options)
+
+    models = SimpleNamespace(simulate=reduced.simulate, peak_tilts=peak_tilts)
+    assert len(failed(batch, Bench(reduced=models, suite=SUITE))) == 6  # each model, each kind of scale
+
+
+@pytest.mark.parametrize(
+    ("place", "fault", "name"),
+    [
+        ("reduced.solution.friction_of", lambda force: np.hypot(*force[:, :2].T), "time and duration"),
+        ("models.traces.trace.friction_of", lambda force: np.hypot(*force[:, :2].T), "friction needed"),
+        (
+            "reduced.assumptions._lost",
+            lambda found: found.moving & (found.normal <= 0.003),
+            "time and duration",
+        ),
+        ("reduced.assumptions._pull", lambda found: found.normal, "extremes"),
+        ("reduced.assumptions._need", lambda found: found.friction * found.normal, "extremes"),
+    ],
+)
+def test_demands_that_are_wrong_are_found(
+    place: str, fault: Callable[[Any], Any], name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(f"rockwobble.{place}", fault)
+    assert any(finding.name.startswith(name) for finding in failed(demands, bench_with()))
+
+
+def test_a_duration_counted_twice_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    from rockwobble.reduced import assumptions
+
+    right = assumptions._breach
+
+    def doubled(*arguments: Any) -> Any:
+        fact = right(*arguments)
+        return dataclasses.replace(fact, duration=2.0 * fact.duration)
+
+    monkeypatch.setattr(assumptions, "_breach", doubled)
+    assert failed(demands, bench_with())

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import pytest
@@ -48,6 +49,26 @@ def test_a_failure_while_writing_leaves_the_old_files_whole(tmp_path, monkeypatc
         replace_files(tmp_path, {"a.csv": b"new", "b.csv": b"new"})
     assert names(tmp_path) == ["a.csv", "b.csv"]
     assert (tmp_path / "a.csv").read_bytes() == b"old"
+
+
+def test_a_pipe_is_written_to_and_stays_a_pipe(tmp_path):
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    reader = os.open(pipe, os.O_RDONLY | os.O_NONBLOCK)
+    replace_files(tmp_path, {"pipe": b"1", "a.csv": b"2"})
+    assert os.read(reader, 10) == b"1"
+    os.close(reader)
+    assert pipe.is_fifo()
+    assert names(tmp_path) == ["a.csv", "pipe"]
+
+
+def test_behind_a_link_the_file_is_replaced_and_the_link_stays(tmp_path):
+    (tmp_path / "real.csv").write_bytes(b"old")
+    (tmp_path / "link.csv").symlink_to(tmp_path / "real.csv")
+    replace_files(tmp_path, {"link.csv": b"new"})
+    assert (tmp_path / "link.csv").is_symlink()
+    assert (tmp_path / "real.csv").read_bytes() == b"new"
+    assert names(tmp_path) == ["link.csv", "real.csv"]
 
 
 def test_looking_whether_a_folder_can_be_written_leaves_no_trace(tmp_path):

@@ -91,6 +91,21 @@ def test_names_the_one_file_that_is_silent(write: Write) -> None:
         read_record(x, y)
 
 
+@pytest.mark.parametrize("encoding", ["utf-16-le", "utf-16-be"])
+def test_says_that_a_file_is_in_utf_16(tmp_path: Path, encoding: str) -> None:
+    path = tmp_path / "x"
+    path.write_bytes(("\ufeff" + columns(0.01, 4)).encode(encoding))
+    with pytest.raises(ValueError, match=r"^the record .*x is text in UTF-16: save it as UTF-8"):
+        read_record(path, path, units="g")
+
+
+def test_says_that_a_file_is_no_text(tmp_path: Path) -> None:
+    path = tmp_path / "x"
+    path.write_bytes(columns(0.01, 4).encode() + b"\0")
+    with pytest.raises(ValueError, match=r"^the record .*x is no text: it holds null bytes$"):
+        read_record(path, path, units="g")
+
+
 @pytest.mark.parametrize("empty", ["", "\n", "  \r\n\t\n", "\ufeff"])
 def test_refuses_an_empty_file(write: Write, empty: str) -> None:
     x, y = write(columns(0.01, 4), "x"), write(empty, "y")

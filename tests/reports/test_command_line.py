@@ -74,7 +74,7 @@ BAD = {
     "only z": (["--record-z", "good.csv"], "give --record-x and --record-y as well"),
     "no scale": (["--scale", "0"], "--scale must be positive and finite, got 0"),
     "rate without release": (["--rolling-rate", "1"], "--rolling-rate needs a release"),
-    "fallen release": (["--release-tilt-deg", "95"], "tilt must be at least 0 and below pi/2"),
+    "fallen release": (["--release-tilt-deg", "95"], "--release-tilt-deg must be at least 0 and below 90"),
     "negative duration": (["--duration", "-1"], "duration must be positive [s], got -1.0"),
     "negative time step": (
         ["--engine", "mujoco", "--time-step", "-1"],
@@ -119,6 +119,11 @@ def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch,
 def test_time_step_of_a_reduced_model_is_refused(folder, capsys):
     assert call("simulate", "--time-step", "1e-3") == 2
     assert "--time-step belongs to an engine" in capsys.readouterr().err
+
+
+def test_no_engine_and_no_trajectory_leave_nothing_to_compare(folder, capsys):
+    assert call("compare", "--engine", "none") == 2
+    assert "--engine none leaves nothing to compare, give a --trajectory as well" in capsys.readouterr().err
 
 
 def test_compare_prints_and_writes(folder, no_engines, capsys):

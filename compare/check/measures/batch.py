@@ -23,6 +23,7 @@ MODELS: dict[str, dict[str, object]] = {
     "flat": {"support": "flat"},
     "planar": {"plane": 0.4, "restitution": "momentum"},
 }
+WEAKER = 0.8 * GRAVITY  # [m/s^2] not the default, which would stand in for one that is lost on its way
 EXACT = Bound(0.0, "the same run, to the last bit", "alpha")
 # the record scaled first rounds otherwise: magnified by the two passes; 1e-13 was measured
 ROUNDING = Bound(1e-10, "rounding of the scaled record", "alpha")
@@ -41,8 +42,11 @@ def check(bench: Bench) -> Iterator[Finding]:
     cylinders = [Cylinder(semidiagonal=size, tan_alpha=TAN_ALPHA) for size in SIZES]
     for model, options in MODELS.items():
         given = {"rtol": 1e-9, "rest_tilt": 1e-4, **options}
-        grid = bench.reduced.peak_tilts(SIZES, TAN_ALPHA, MOTION, scales, **given)
-        cases = ([Case(cylinder, MOTION.scaled(scale)) for scale in scales] for cylinder in cylinders)
+        grid = bench.reduced.peak_tilts(SIZES, TAN_ALPHA, MOTION, scales, gravity=WEAKER, **given)
+        cases = (
+            [Case(cylinder, MOTION.scaled(scale), gravity=WEAKER) for scale in scales]
+            for cylinder in cylinders
+        )
         alone = np.array(
             [[bench.reduced.simulate(c, sample_step=1.0, **given).peak_tilt for c in row] for row in cases]
         )

@@ -16,15 +16,26 @@ from ...console.progress import shown_progress
 from ...console.terminal import FAILED, interruptible, user_input
 from ..inputs import options
 from ..inputs.suite_choice import chosen_runs, without_missing
-from .check_outside import Model, Support, Tolerance, Trajectory, outside_findings, print_outside
+from .check_outside import (
+    Model,
+    Support,
+    Tolerance,
+    Trajectory,
+    outside_findings,
+    print_outside,
+    require_used,
+)
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Bench, Finding
 
 _OUTPUT = "Output for programs"
 Suite = Annotated[
-    str,
-    typer.Option("--suite", help="Suite for the agreement with the engines: a TOML file, or one that ships."),
+    str | None,
+    typer.Option(
+        "--suite",
+        help="Suite for the agreement with the engines: a TOML file, or one that ships. Default: quick.",
+    ),
 ]
 Only = Annotated[
     list[str] | None,
@@ -58,7 +69,7 @@ Reason = Annotated[
 
 
 def check(
-    suite: Suite = "quick",
+    suite: Suite = None,
     only: Only = None,
     json: Json = None,
     junit: Junit = None,
@@ -68,8 +79,8 @@ def check(
     reason: Reason = None,
     model: Model = None,
     trajectory: Trajectory = None,
-    support: Support = "recess",
-    tolerance: Tolerance = 1e-3,
+    support: Support = None,
+    tolerance: Tolerance = None,
 ) -> None:
     """Check that the reduced model stays the same model, and stays in agreement with the engines.
 
@@ -100,18 +111,25 @@ def check(
             for path in (json, junit, markdown):
                 if path is not None and (path.is_dir() or not path.absolute().parent.is_dir()):
                     raise ValueError(f"a report must be a file in a folder that exists, got {path}")
+            require_used(model, trajectory, suite, support, tolerance, workers)
             begun, outside, bench = time.monotonic(), None, None
             if model is None and trajectory is None:
-                bench = _bench(suite, workers)
+                bench = _bench(suite or "quick", workers)
             elif only or update_baseline:
                 raise ValueError("--only and --update-baseline do not go with --model or --trajectory")
             else:
-                outside = outside_findings(model, trajectory, suite, support, tolerance)
+                outside = outside_findings(
+                    model,
+                    trajectory,
+                    suite or "quick",
+                    support or "recess",
+                    1e-3 if tolerance is None else tolerance,
+                )
         if bench is not None and update_baseline:
             from ...console.check_update import update
 
             with user_input():
-                if suite != "quick" or only:
+                if suite not in (None, "quick") or only:
                     raise ValueError(
                         "--update-baseline goes with neither --suite nor --only: it measures all of quick"
                     )

@@ -30,8 +30,37 @@ Trajectory = Annotated[
         "Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite.",
     ),
 ]
-Support = Annotated[str, options.of(_PANEL, "--support", "What it models: recess or flat.")]
-Tolerance = Annotated[float, options.of(_PANEL, "--tolerance", "How exact it claims to be.")]
+Support = Annotated[
+    str | None, options.of(_PANEL, "--support", "What it models: recess or flat. Default: recess.")
+]
+Tolerance = Annotated[
+    float | None, options.of(_PANEL, "--tolerance", "How exact it claims to be. Default: 0.001.")
+]
+
+
+def require_used(
+    model: str | None,
+    trajectory: Path | None,
+    suite: str | None,
+    support: str | None,
+    tolerance: float | None,
+    workers: int | None,
+) -> None:
+    """Refuse an option that the given ones leave without a meaning.
+
+    Raises
+    ------
+    ValueError
+        If there is one.
+    """
+    if model is None and trajectory is None:
+        for name, value in (("--support", support), ("--tolerance", tolerance)):
+            if value is not None:
+                raise ValueError(f"{name} belongs to --model or --trajectory, got it without either")
+    elif workers is not None:
+        raise ValueError("--workers belongs to the engines, which --model and --trajectory do not run")
+    elif model is not None and suite is not None:
+        raise ValueError("--suite does not go with --model: its checks have cases of their own")
 
 
 def outside_findings(

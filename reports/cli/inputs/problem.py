@@ -57,6 +57,10 @@ class Problem:
         cylinder, motion = self.cylinder(), self._motion(still=released)
         initial = None
         if self.release_tilt_deg is not None:
+            if not 0.0 <= self.release_tilt_deg < 90.0:
+                raise ValueError(
+                    f"--release-tilt-deg must be at least 0 and below 90 [deg], got {self.release_tilt_deg:g}"
+                )
             initial = rw.InitialState(
                 tilt=math.radians(self.release_tilt_deg), rolling_rate=self.rolling_rate
             )
