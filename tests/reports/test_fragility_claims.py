@@ -11,6 +11,7 @@ from rockwobble.compare.storage.manifest import read_results
 from rockwobble.compare.studies.fragility.result import KIND
 
 CHECKOUT = Path(__file__).parents[2]
+PUBLISHED = CHECKOUT / "reports" / "published" / "fragility"
 SECTION = r"## Is planar analysis safe\?.*?(?=\n## )"
 # study and pair of methods of each number, in their order
 PAIRS = {
