@@ -62,20 +62,29 @@ def review(
         # where contact is lost it is that which is said
         return found.moving & (found.normal > 0.0) & (found.friction > friction)
 
-    def largest(quantity: Callable[[Demands], Array]) -> float:
+    def largest(quantity: Callable[[Demands], Array]) -> tuple[float, float]:
         return _largest(quantity, demands_at, times, found)
 
+    (pull, pulled), (need, needed) = largest(_pull), largest(_need)
+    (normal, _), (moment, _) = (
+        largest(lambda found: found.normal),
+        largest(lambda found: np.abs(found.couple)),
+    )
+    if (pull >= 0.0 and not _lost(found).any()) or (need > friction and not slips(found).any()):
+        # a breach that is shorter than a part of a step
+        times = np.union1d(times, [pulled, needed])
+        found = demands_at(times)
     breaches = []
     if _lost(found).any():
-        breaches.append(_breach("tension", _lost, demands_at, times, found, -largest(_pull), 0.0))
+        breaches.append(_breach("tension", _lost, demands_at, times, found, -pull, 0.0))
     if slips(found).any():
-        breaches.append(_breach("friction_needed", slips, demands_at, times, found, largest(_need), friction))
+        breaches.append(_breach("friction_needed", slips, demands_at, times, found, need, friction))
     return Assumptions(
         breaches=tuple(breaches),
-        least_normal_force=-largest(_pull),
-        largest_normal_force=largest(lambda found: found.normal),
-        largest_friction_needed=largest(_need),
-        largest_restraining_moment=largest(lambda found: np.abs(found.couple)),
+        least_normal_force=-pull,
+        largest_normal_force=normal,
+        largest_friction_needed=need,
+        largest_restraining_moment=moment,
         friction=friction,
     )
 
@@ -121,19 +130,20 @@ def _largest(
     demands_at: Callable[[Array], Demands],
     times: Array,
     found: Demands,
-) -> float:
-    """Return the largest value in motion, looked for ever closer about the largest at `times`."""
-    best = -math.inf
+) -> tuple[float, float]:
+    """Return the largest value in motion and its time, looked for ever closer about the largest at `times`."""
+    best, when = -math.inf, math.nan
     for _ in range(_ROUNDS):
         values = np.where(found.moving, quantity(found), -math.inf)
         at = int(values.argmax())
-        best = max(best, float(values[at]))
+        if not values[at] <= best:
+            best, when = float(values[at]), float(times[at])
         if math.isinf(best):
             break
         about = times[max(at - 1, 0) : at + 2]
         times = np.unique(_divided(about, _PARTS))
         found = demands_at(times)
-    return best
+    return best, when
 
 
 def _divided(edges: Array, parts: int) -> Array:

@@ -46,3 +46,12 @@ def test_a_cylinder_that_stands_demands_nothing_of_the_model():
     still = reduced.simulate(Case(SQUAT, GroundMotion(np.zeros((10, 2)), 0.1)))
     assert still.assumptions.held
     assert still.assumptions.largest_friction_needed == 0.0
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10, 1e-12])
+def test_a_loss_of_contact_that_is_shorter_than_a_part_of_a_step_is_said(rtol):
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    initial = InitialState(1.5 * pier.alpha, rolling_angle=0.3, rolling_rate=0.1)
+    review = reduced.simulate(Case(pier, initial=initial, duration=5.0, friction=0.6), rtol=rtol).assumptions
+    assert review.least_normal_force < 0.0
+    assert [breach.code for breach in review.breaches] == ["tension", "friction_needed"]
