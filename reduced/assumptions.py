@@ -131,7 +131,7 @@ def _largest(
     times: Array,
     found: Demands,
 ) -> tuple[float, float]:
-    """Return the largest value in motion and its time, looked for ever closer about the largest at `times`."""
+    """Return the largest value in motion, looked for ever closer about that at `times`, and its time."""
     best, when = -math.inf, math.nan
     for _ in range(_ROUNDS):
         values = np.where(found.moving, quantity(found), -math.inf)
