@@ -9,7 +9,8 @@ import pytest
 from newton_euler import State, kinetic_energy, newton_euler, vector
 
 from rockwobble import reduced
-from rockwobble.compare.check.models import differences, lagrange, quadrature
+from rockwobble.compare.check import differences
+from rockwobble.compare.check.models import lagrange, quadrature
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.reduced.body import body_of
 

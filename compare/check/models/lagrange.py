@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder
 
-from . import differences
+from .. import differences
 
 Array = NDArray[Any]  # of float, or of complex within a complex step
 

@@ -15,9 +15,9 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
+from .. import differences
 from ..bench import Array, Bench, why
 from ..problems import GRAVITY
-from . import differences
 from .lagrange import Shape, shape_of
 
 # a slender pier, a drum as wide as high, and a squat body with mass and inertias of its own

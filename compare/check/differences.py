@@ -6,7 +6,7 @@ from math import factorial
 
 import numpy as np
 
-from ..bench import Array
+from .bench import Array
 
 REACH = 6  # samples on either side: order 12, so what is left out is (step/time scale)^12
 
