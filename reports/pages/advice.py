@@ -19,7 +19,7 @@ from .page import Page
 
 # the largest tilt in a ring over that of the recess model: least and largest median over 22 records, and what
 # one record of twenty exceeds; `records` of published/validity/limits.parquet
-RING = {"ring_least": 0.60, "ring_largest": 0.98, "ring_95": 1.72}
+RING = {"ring_least": 0.53, "ring_largest": 1.02, "ring_95": 1.72}
 # [weights] more than any soft ground would give: 99 % of the time in motion asks for less than two
 ARTEFACT = 10.0
 GRADE_WORDS = {"good": "sound", "care": "care", "bad": "fails"}
