@@ -53,3 +53,16 @@ def test_each_ratio_with_its_interval_is_that_of_the_table(question: str) -> Non
         found = rows.set_index(["method", "against"]).loc[(method, against)]
         numbers = tuple(f"{found[name]:.2f}" for name in ("ratio", "ratio_low", "ratio_high"))
         assert said[study, method, against] == numbers
+
+
+def ratios_of(study: str) -> dict[tuple[str, str], float]:
+    table = read_results(PUBLISHED / study, KIND).table("contrasts")
+    rows = table[(table["cylinder"] == "all") & (table["limit"] == "overturned")]
+    return dict(zip(zip(rows["method"], rows["against"], strict=True), rows["ratio"], strict=True))
+
+
+def test_at_half_the_step_of_an_engine_no_ratio_moves_by_more_than_the_guide_says() -> None:
+    coarse, fine = ratios_of("p695"), ratios_of("half-step")
+    engines = [pair for pair in fine if any(each.startswith("mujoco") for each in pair)]
+    assert len(engines) >= 18
+    assert max(abs(coarse[pair] - fine[pair]) for pair in engines) < 0.05
