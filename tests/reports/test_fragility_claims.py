@@ -58,7 +58,7 @@ def test_each_ratio_with_its_interval_is_that_of_the_table(question: str) -> Non
 def ratios_of(study: str) -> dict[tuple[str, str], float]:
     table = read_results(PUBLISHED / study, KIND).table("contrasts")
     rows = table[(table["cylinder"] == "all") & (table["limit"] == "overturned")]
-    return dict(zip(zip(rows["method"], rows["against"], strict=True), rows["ratio"], strict=True))
+    return {(row["method"], row["against"]): row["ratio"] for row in rows.to_dict("records")}
 
 
 def test_at_half_the_step_of_an_engine_no_ratio_moves_by_more_than_the_guide_says() -> None:
