@@ -53,11 +53,10 @@ def contrasts(study: str) -> dict[Any, dict[Any, Any]]:
 @pytest.mark.parametrize("question", list(PAIRS))
 def test_each_ratio_with_its_interval_is_that_of_the_table(question: str) -> None:
     said = dict(zip([pair for pairs in PAIRS.values() for pair in pairs], numbers_said(), strict=True))
-    for study, *pair in PAIRS[question]:
-        found = contrasts(study)[tuple(pair)]
-        assert said[study, *pair] == tuple(
-            f"{found[name]:.2f}" for name in ("ratio", "ratio_low", "ratio_high")
-        )
+    for study, method, against in PAIRS[question]:
+        found = contrasts(study)[method, against]
+        numbers = tuple(f"{found[name]:.2f}" for name in ("ratio", "ratio_low", "ratio_high"))
+        assert said[study, method, against] == numbers
 
 
 def test_at_half_the_step_of_an_engine_no_ratio_moves_by_more_than_the_guide_says() -> None:
