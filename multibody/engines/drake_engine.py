@@ -166,8 +166,11 @@ class _DrakeStepper:
         self._simulator.AdvanceTo(self._count * self._step)
         state = self._plant.GetPositionsAndVelocities(self._context)
         self._place, self._velocity = state[:7], state[7:]
+        length = math.hypot(*self._place[:4])
+        if not math.isfinite(length):
+            raise RuntimeError("the orientation is not finite")
         # Drake adds the rate times the step, which makes it longer each time
-        self._place[:4] /= np.linalg.norm(self._place[:4])
+        self._place[:4] /= length
 
     def _keep_points_away(self) -> None:
         """Turn the cylinder, where a rim that rolls would meet a point, so that it does not."""
