@@ -141,7 +141,8 @@ class _DrakeStepper:
         if self._stiffness:
             w, x, y, z = self._place[:4]
             # along the vertical plus the axis, proportional to the twist
-            pair = -4.0 * self._stiffness * (math.atan2(z, w) + 0.5 * self._spun)
+            twist = math.remainder(2.0 * math.atan2(z, w) + self._spun, 2.0 * math.pi)
+            pair = -2.0 * self._stiffness * twist
             force[:3] = pair * np.array([x * z + w * y, y * z - w * x, 1.0 - x * x - y * y])
         self._advance_once(force)
         rise = self._step * (self._heave + rim.upwards(self._velocity))
