@@ -7,8 +7,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from rockwobble.compare.storage.manifest import read_results
-
 if TYPE_CHECKING:
     from .page import Page
 
@@ -36,6 +34,8 @@ def redrawn(kind: str, folder: Path) -> dict[str, bytes]:
     ValueError
         If they cannot be read.
     """
+    from rockwobble.compare.storage.manifest import read_results  # it loads numpy, which no help needs
+
     drawer = importlib.import_module(f"rockwobble.reports.{KINDS[kind]}")
     pages: dict[str, bytes] | Page = drawer.stored_page(read_results(folder, kind))
     return pages if isinstance(pages, dict) else pages.files()

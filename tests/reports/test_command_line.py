@@ -308,7 +308,9 @@ def test_ctrl_c_stops_a_real_run_at_once_and_leaves_no_process(tmp_path):
         "--engine",
         "mujoco",
     ]
-    script = "from rockwobble.reports.cli.main import main; main()"
+    # who runs the tests in the background may have taught their children to ignore it
+    script = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    script += "from rockwobble.reports.cli.main import main; main()"
     process = subprocess.Popen(
         [sys.executable, "-c", script, "compare", *arguments],
         cwd=tmp_path,

@@ -83,7 +83,7 @@ BAD = {
         "table.csv does not say the unit of tilt",
     ),
     "an option of a trajectory alone": (["--trajectory-offset", "1"], "need a --trajectory"),
-    "no engine and no trajectory": (["--engine", "none"], "engine must be one of"),
+    "no engine and no trajectory": (["--engine", "none"], "give a --trajectory as well"),
 }
 
 
