@@ -9,6 +9,7 @@ A study goes on where it was stopped. What a study says is judged by its tables 
 
 from __future__ import annotations
 
+import shlex
 import shutil
 import subprocess
 import sys
@@ -26,6 +27,19 @@ _ENGINES = (
     "--engine mujoco --engine pybullet --support recess --support flat --support ring "
     "--set ring_clearance=0.01 --set ring_inclination=0.5"
 )
+# all there are; what loses its contact takes the forces of every run
+_LIMITS = " ".join(
+    f"--limit {each}"
+    for each in (
+        "uplift",
+        "'0.1 alpha'",
+        "'0.25 alpha'",
+        "'0.5 alpha'",
+        "'1 alpha'",
+        "overturned",
+        "contact_lost",
+    )
+)
 # folder: command
 STUDIES = {
     "compare": "compare",
@@ -38,7 +52,7 @@ STUDIES = {
     "ensemble/p695-3.5": "ensemble --p695 3.5 --engine mujoco",
     "ensemble/synthetic-3": "ensemble --synthetic 3",
     "ensemble/copies": "ensemble --duration 20",
-    "fragility/p695": f"fragility --p695 {_BODIES} --friction 3 --step-factor 8 {_ENGINES}",
+    "fragility/p695": f"fragility --p695 {_BODIES} --friction 3 --step-factor 8 {_ENGINES} {_LIMITS}",
     # the control: engines whose numbers hold at half the step
     "fragility/half-step": f"fragility --p695 {_BODIES} --friction 3 --step-factor 4 "
     "--engine mujoco --support recess --support flat --support ring "
@@ -73,7 +87,7 @@ def main() -> int:
             continue
         begin = time.monotonic()
         print(f"=== {folder}: rockwobble {command}", flush=True)
-        words = [*command.split(), "--out", folder]
+        words = [*shlex.split(command), "--out", folder]
         subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
         for pattern in NOT_KEPT:
             for path in [*(HERE / folder).glob(pattern), *HERE.glob(pattern)]:

@@ -1,6 +1,6 @@
-"""Fragility curves of random counts by statsmodels, which is no dependency: the table probit_fits.csv.
+"""Fragility curves of random counts by statsmodels, from a version that is kept: the table probit_fits.csv.
 
-``pip install statsmodels && python tests/reference/probit_fits.py > tests/reference/probit_fits.csv`` writes
+``python tests/reference/probit_fits.py > tests/reference/probit_fits.csv`` writes
 it anew; made with statsmodels 0.15.0.
 """
 

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...metrics.order_statistics import CONFIDENCE, Interval
-from .fit import Curves, fit_curves
+from .fit import Curves, fit_curve, fit_curves
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,9 @@ class Sample:
 
     def curves(self, weights: Array | None = None) -> Curves:
         """Return the curve of each set of weights (B, R); without weights that of the motions as they are."""
-        if weights is None or weights.shape[0] * self.y.size <= _MOST_NUMBERS:
+        if weights is None:
+            return fit_curve(*self.counts())
+        if weights.shape[0] * self.y.size <= _MOST_NUMBERS:
             return fit_curves(*self.counts(weights))
         size = max(1, _MOST_NUMBERS // self.y.size)
         parts = [fit_curves(*self.counts(weights[i : i + size])) for i in range(0, len(weights), size)]

@@ -16,7 +16,7 @@ from .islands import island_table
 from .limits import OVERTURNED
 from .resampling import resamples
 from .samples import blocks_of
-from .tables import contrast_table, count_table, curve_table, drawn_curves, fit_table
+from .tables import contrast_table, count_table, curve_table, curves_of, fit_table
 
 KIND = "fragility"
 
@@ -89,14 +89,15 @@ def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, about: Mapping[str, A
     measure = str(about["measure"])
     blocks = blocks_of(runs, points)
     weights = resamples(len(blocks.motions), int(about["resamples"]), int(about["seed"]))
-    drawn = drawn_curves(blocks, limits, measure, weights)
+    fitted = curves_of(blocks, limits, measure)
+    drawn = curves_of(blocks, limits, measure, weights)
     return Fragility(
         runs=runs,
         points=points,
         counts=count_table(blocks, limits, measure),
-        fits=fit_table(blocks, limits, measure, drawn),
-        curves=curve_table(blocks, limits, measure, drawn),
-        contrasts=contrast_table(blocks, limits, measure, drawn, weights, float(about["margin"])),
+        fits=fit_table(blocks, limits, measure, fitted, drawn),
+        curves=curve_table(blocks, limits, measure, fitted, drawn),
+        contrasts=contrast_table(blocks, limits, measure, fitted, drawn, weights, float(about["margin"])),
         efficiency=efficiency_table(blocks, blocks.methods[0], weights),
         islands=island_table(blocks, measure, weights),
         about=about,

@@ -46,7 +46,11 @@ def count_table(blocks: Blocks, limits: Sequence[str], measure: str) -> pd.DataF
 
 
 def fit_table(
-    blocks: Blocks, limits: Sequence[str], measure: str, drawn: Mapping[Key, Curves]
+    blocks: Blocks,
+    limits: Sequence[str],
+    measure: str,
+    fitted: Mapping[Key, Curves],
+    drawn: Mapping[Key, Curves],
 ) -> pd.DataFrame:
     """Return the curve of each cylinder, method and limit with its intervals and its goodness of fit."""
     rows = []
@@ -54,7 +58,7 @@ def fit_table(
     for key in _keys(blocks, limits):
         sample = blocks.sample(*key, measure)
         x, n, k = sample.counts()
-        found, many = sample.curves(), drawn[key]
+        found, many = fitted[key], drawn[key]
         centre, dispersion = float(found.centre[0]), float(found.dispersion[0])
         kind = KINDS[found.kinds[0]]
         median = interval(centre, many.centre, motions)
@@ -79,7 +83,11 @@ def fit_table(
 
 
 def curve_table(
-    blocks: Blocks, limits: Sequence[str], measure: str, drawn: Mapping[Key, Curves]
+    blocks: Blocks,
+    limits: Sequence[str],
+    measure: str,
+    fitted: Mapping[Key, Curves],
+    drawn: Mapping[Key, Curves],
 ) -> pd.DataFrame:
     """Return the curves point by point, each with its band."""
     tables = []
@@ -93,7 +101,7 @@ def curve_table(
                 {
                     **dict(zip(("cylinder", "method", "limit"), key, strict=True)),
                     "intensity": np.exp(x),
-                    "probability": sample.curves().at(x)[0],
+                    "probability": fitted[key].at(x)[0],
                     "low": low,
                     "high": high,
                 }
@@ -106,6 +114,7 @@ def contrast_table(
     blocks: Blocks,
     limits: Sequence[str],
     measure: str,
+    fitted: Mapping[Key, Curves],
     drawn: Mapping[Key, Curves],
     weights: Array,
     margin: float,
@@ -124,11 +133,11 @@ def contrast_table(
             unknown = np.isnan(pair[0].y) | np.isnan(pair[1].y)
             if unknown.all():
                 continue
-            many = [drawn[cylinder, name, limit] for name in (method, against)]
+            own, many = ([of[cylinder, name, limit] for name in (method, against)] for of in (fitted, drawn))
             if unknown.any():
                 pair = [Sample(x=each.x, y=np.where(unknown, np.nan, each.y)) for each in pair]
-                many = [each.curves(weights) for each in pair]
-            found.append((_differences([each.curves() for each in pair]), _differences(many)))
+                own, many = [each.curves() for each in pair], [each.curves(weights) for each in pair]
+            found.append((_differences(own), _differences(many)))
             row = contrast_row(*found[-1], len(blocks.motions), margin)
             rows.append({"cylinder": cylinder, **about, **row})
         if len(found) == len(blocks.cylinders) > 1:
@@ -193,6 +202,8 @@ def _keys(blocks: Blocks, limits: Sequence[str]) -> Iterator[Key]:
                 yield cylinder, method, limit
 
 
-def drawn_curves(blocks: Blocks, limits: Sequence[str], measure: str, weights: Array) -> dict[Key, Curves]:
-    """Return the curves of all resamples, by cylinder, method and limit."""
+def curves_of(
+    blocks: Blocks, limits: Sequence[str], measure: str, weights: Array | None = None
+) -> dict[Key, Curves]:
+    """Return by cylinder, method and limit the curve, or with weights (B, R) those of all resamples."""
     return {key: blocks.sample(*key, measure).curves(weights) for key in _keys(blocks, limits)}
