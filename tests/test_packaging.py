@@ -79,7 +79,7 @@ def test_the_records_are_data_of_the_package() -> None:
 
 def test_the_command_is_installed_and_knows_its_version() -> None:
     (command,) = entry_points(group="console_scripts", name="rockwobble")
-    assert command.value == "rockwobble.reports.cli.main:main"
+    assert command.value == "rockwobble.__main__:main"
     script = Path(sys.executable).with_name("rockwobble")
     assert run(str(script), "--version").strip() == f"rockwobble {version('rockwobble')}"
 

@@ -1,6 +1,17 @@
-"""`python -m rockwobble` is the command line."""
+"""The command `rockwobble`, and `python -m rockwobble`."""
 
-from rockwobble.reports.cli.main import main
+import sys
+
+
+def main() -> None:
+    """Run the command line; an interrupt while it is being imported ends as cleanly as any later one."""
+    try:
+        from rockwobble.reports.cli.main import main as command_line
+    except KeyboardInterrupt:
+        print("rockwobble: interrupted", file=sys.stderr)
+        sys.exit(130)
+    command_line()
+
 
 if __name__ == "__main__":
     main()

@@ -208,7 +208,7 @@ def read(path: Path) -> Certificate:
     try:
         found: Certificate = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        raise ValueError(f"{path} cannot be read: {error}") from None
+        raise ValueError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     if not isinstance(found, dict) or found.get("kind") != KIND:
         raise ValueError(f"{path} is no certificate: its kind must be {KIND!r}")
     return found

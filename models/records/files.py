@@ -34,7 +34,8 @@ def read_record(
 
     The file of a component may be PEER AT2 (in each form of its header line), text of two columns, time [s]
     and acceleration, or the same as CSV with or without a header line. One file for all is text or CSV of
-    time, x, y and, where there is one, z. 1 g is 9.81 m/s^2.
+    time, x, y and, where there is one, z. 1 g is 9.81 m/s^2. The first sample is at time 0 of a run, whatever
+    time its file gives it.
 
     Parameters
     ----------

@@ -55,8 +55,7 @@ def compare(
 
     Writes summary.csv, the samples as Parquet, report.html and figure.svg.
     """
-    kept = f"the finished runs are kept in {out}, the same command goes on"
-    with interruptible(kept if suite else "nothing was written"):
+    with interruptible(out if suite else None):
         with user_input():
             from rockwobble.compare.runs.choice import unable_engines
 

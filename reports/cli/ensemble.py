@@ -73,7 +73,7 @@ def ensemble(
     Writes ensemble.html, the same as ensemble.md with ensemble.svg, and members, methods and contrasts as
     Parquet and CSV.
     """
-    with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
+    with interruptible(out):
         with user_input():
             rc.require_writable(out)
             stated: rw.Case | rw.Suite | list[rw.Case]

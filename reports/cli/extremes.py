@@ -37,7 +37,7 @@ def extremes(
     extremes.parquet. `rockwobble report` draws the pages again. Exit code 1 if
     anything is wrong and nothing explains it.
     """
-    with interruptible("what was run so far is kept, and the next call goes on from there"):
+    with interruptible(out):
         with user_input():
             require_writable(out)
         from rockwobble.compare.studies.extremes.study import KIND, measure_extremes

@@ -169,7 +169,7 @@ def fragility(
     """
     from .inputs.method_values import restitution as restitution_of
 
-    with interruptible(f"the finished runs are kept in {out}, the same command goes on"):
+    with interruptible(out):
         with user_input():
             rc.require_writable(out)
             bodies = cylinders_of(cylinder, semidiagonal, tan_alpha)

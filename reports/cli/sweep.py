@@ -12,7 +12,7 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.terminal import FAILED, INTERRUPTED, command_line, complain, user_input
+from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
 from .inputs import options
 from .inputs.estimate import require_sweep
 from .inputs.grid import grid_of
@@ -135,7 +135,7 @@ def _run(
     chunk: int | None,
 ) -> None:
     try:
-        with user_input(), shown_progress("chunks") as tell:
+        with interruptible(out), user_input(), shown_progress("chunks") as tell:
             rw.sweep(
                 plan,
                 out=out,
@@ -148,9 +148,6 @@ def _run(
     except rc.SweepIncompleteError as error:
         complain(str(error))
         raise typer.Exit(FAILED) from None
-    except KeyboardInterrupt:
-        complain(f"interrupted; the finished chunks are kept in {out}, and the same command goes on")
-        raise typer.Exit(INTERRUPTED) from None
 
 
 def _suite(name: str, models: list[str] | None) -> rc.CaseSweep:

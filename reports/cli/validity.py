@@ -40,7 +40,7 @@ def validity(
     tables of all parts and every number of the report (limits). `rockwobble
     report` draws the pages again.
     """
-    with interruptible("what was measured so far is kept, and the next run goes on from there"):
+    with interruptible(out):
         with user_input():
             if workers is not None and workers < 1:
                 raise ValueError(f"--workers must be at least 1, got {workers}")

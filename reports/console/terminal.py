@@ -61,12 +61,15 @@ def user_input() -> Iterator[None]:
 
 
 @contextmanager
-def interruptible(left: str = "nothing was written") -> Iterator[None]:
-    """Turn Ctrl-C into one line, which says what is left behind, and exit code 130."""
+def interruptible(kept: Path | None = None) -> Iterator[None]:
+    """Turn Ctrl-C into one line and exit code 130; `kept` is the folder of runs that need no repetition."""
     try:
         yield
     except KeyboardInterrupt:
-        complain(f"interrupted, {left}")
+        if kept is not None and kept.is_dir():
+            complain(f"interrupted, the finished runs are kept in {kept}, and the same command goes on")
+        else:
+            complain("interrupted, nothing was written")
         raise typer.Exit(INTERRUPTED) from None
 
 

@@ -98,7 +98,7 @@ def test_interrupted(
 
     monkeypatch.setitem(layers.PARTS, "exact", (interrupted,))
     assert run("--only", "exact", "--json", str(tmp_path / "a.json")) == 130
-    assert capsys.readouterr().err.splitlines()[-1] == "rockwobble: interrupted, no file was written"
+    assert capsys.readouterr().err.splitlines()[-1] == "rockwobble: interrupted, nothing was written"
     assert list(tmp_path.iterdir()) == []
 
 

@@ -99,7 +99,7 @@ def check(
 
     Exit code 0 if all checks hold, 1 if one does not, 2 for bad input.
     """
-    with interruptible("no file was written"):
+    with interruptible():
         with user_input():
             from rockwobble.compare.check import LAYERS
 
@@ -108,6 +108,8 @@ def check(
             for layer in only or ():
                 if layer not in LAYERS:
                     raise ValueError(f"--only must be one of {', '.join(LAYERS)}, got {layer!r}")
+            if suite is not None and only and not {"agreement", "baseline"} & set(only):
+                raise ValueError(f"--suite is for the layer agreement, got --only {' '.join(only)}")
             for path in (json, junit, markdown):
                 if path is not None and (path.is_dir() or not path.absolute().parent.is_dir()):
                     raise ValueError(f"a report must be a file in a folder that exists, got {path}")
