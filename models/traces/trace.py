@@ -181,18 +181,14 @@ class Trace(Shown):
         """Return the samples as a table, one column for each component, SI units and radians."""
         import pandas as pd
 
-        contact, centre, force = self.contact_point, self.centre_of_mass, self.contact_force
+        vectors = trace_file.VECTORS
+        parts = {
+            name: part
+            for field, names in vectors.items()
+            for name, part in zip(names, getattr(self, field).T, strict=True)
+        }
         return pd.DataFrame(
-            {
-                **{name: getattr(self, name) for name in ("time", "tilt", "tilt_rate", "rolling_angle")},
-                **{name: getattr(self, name) for name in ("rolling_rate", "twist")},
-                **dict(zip(("contact_x", "contact_y"), contact.T, strict=True)),
-                **dict(zip(("centre_x", "centre_y", "centre_z"), centre.T, strict=True)),
-                **dict(zip(("force_x", "force_y", "force_z"), force.T, strict=True)),
-                **{name: getattr(self, name) for name in ("friction_needed", "restraining_moment", "energy")},
-                **{name: getattr(self, name) for name in ("energy_error", "slip")},
-                **{name: getattr(self, name) for name in ("wall_contact", "wall_impulse")},
-            }
+            {name: parts[name] if name in parts else getattr(self, name) for name in trace_file.COLUMNS}
         )
 
     def to_plain(self) -> dict[str, Any]:

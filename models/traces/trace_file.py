@@ -22,8 +22,38 @@ from .trace_source import Known
 if TYPE_CHECKING:
     import pandas as pd
 
+# name: (unit, meaning), of the samples as a table
+COLUMNS = {
+    "time": ("s", "from the start of the run"),
+    "tilt": ("rad", "of the axis from the vertical"),
+    "tilt_rate": ("rad/s", "its rate"),
+    "rolling_angle": ("rad", "azimuth of the lean, unwrapped; empty at rest"),
+    "rolling_rate": ("rad/s", "its rate"),
+    "twist": ("rad", "rolling angle plus spin about the axis"),
+    "contact_x": ("m", "contact point, relative to the original base centre, which moves with the ground"),
+    "contact_y": ("m", "likewise"),
+    "centre_x": ("m", "mass centre, relative to the same point"),
+    "centre_y": ("m", "likewise"),
+    "centre_z": ("m", "likewise, up"),
+    "force_x": ("weights", "contact force on the cylinder"),
+    "force_y": ("weights", "likewise"),
+    "force_z": ("weights", "likewise, up"),
+    "friction_needed": ("", "horizontal over normal force; infinite where the normal force is not positive"),
+    "restraining_moment": ("m", "moment of the recess about the vertical, over the weight"),
+    "energy": ("m2/s2", "relative to the ground, per unit mass, zero standing"),
+    "energy_error": ("m2/s2", "energy that neither the start nor the excitation supplied"),
+    "slip": ("m", "distance slipped so far"),
+    "wall_contact": ("s", "time at the walls of a ring so far"),
+    "wall_impulse": ("m/s", "impulse of those walls so far, per unit mass"),
+}
+PASS_COLUMNS = {
+    "time": ("s", "of the least tilt"),
+    "minimum_tilt": ("rad", "the least tilt"),
+    "angle_of_turn": ("rad", "of the azimuth, from maximum to maximum"),
+    "resolved": ("", "whether contact was stiff enough for it"),
+}
 METADATA = b"rockwobble"  # name of our part of the metadata of a file, beside that of pandas
-_VECTORS = {
+VECTORS = {
     "contact_point": ("contact_x", "contact_y"),
     "centre_of_mass": ("centre_x", "centre_y", "centre_z"),
     "contact_force": ("force_x", "force_y", "force_z"),
@@ -44,7 +74,7 @@ def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
     import pandas as pd
 
     def array(name: str) -> Any:
-        columns = _VECTORS.get(name)
+        columns = VECTORS.get(name)
         return samples[name].to_numpy() if columns is None else samples[list(columns)].to_numpy()
 
     held = facts["assumptions"]

@@ -47,7 +47,7 @@ def simulate(
     Without options: the recess model under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
     Writes the samples to run.csv, the passes to passes.csv, all to run.parquet, which Trace.load reads, and
-    manifest.json; SI units and radians.
+    manifest.json, which says units and meaning of each column; SI units and radians.
     """
     with interruptible():
         with user_input():
@@ -147,7 +147,7 @@ def _facts(trace: rw.Trace) -> dict[str, str]:
 def _save(out: Path, job: rc.Job, trace: rw.Trace) -> list[str]:
     from rockwobble.compare.runs.execution import job_fingerprint
     from rockwobble.compare.storage.manifest import made_now, write_results
-    from rockwobble.models.traces.trace_file import case_to_plain, packed
+    from rockwobble.models.traces.trace_file import COLUMNS, PASS_COLUMNS, case_to_plain, packed
 
     case, found = case_to_plain(job.case), trace.to_plain()
     motion = job.case.motion
@@ -157,6 +157,7 @@ def _save(out: Path, job: rc.Job, trace: rw.Trace) -> list[str]:
         "result": {
             name: value for name, value in found.items() if name not in ("rests", "extrema", "passes")
         },
+        "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},
     }
     headline: dict[str, float | int | str | None] = {
         "outcome": trace.outcome,
