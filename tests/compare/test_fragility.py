@@ -101,7 +101,7 @@ def test_what_a_run_exceeds():
         "0.5 alpha": [0, 0, 1, 1, 1, NAN],
         "1 alpha": [0, 0, 0, 1, 1, NAN],
         "overturned": [0, 0, 0, 0, 1, NAN],
-        "contact_lost": [0, 0, NAN, 1, 0, NAN],
+        "contact_lost": [0, 0, NAN, 1, 1, NAN],
     }
     for limit, values in expected.items():
         np.testing.assert_array_equal(exceeded(table, limit), np.array(values, dtype=float))

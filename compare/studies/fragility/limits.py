@@ -44,7 +44,8 @@ def exceeded(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
     """Return 1 where a run exceeds a limit, 0 where it does not, NaN where that is not known.
 
     Overturned is what the run itself says: the side reaches the ground, or no later ground motion can stop
-    it. Such a run exceeds every tilt. A cylinder at rest has not uplifted; any tilt above zero is uplift.
+    it. Such a run exceeds every limit: when in its fall it leaves the ground depends on where a method ends
+    the fall. A cylinder at rest has not uplifted; any tilt above zero is uplift.
 
     Parameters
     ----------
@@ -56,7 +57,8 @@ def exceeded(runs: pd.DataFrame, limit: str) -> NDArray[np.float64]:
     failed = (runs["outcome"] == "failed").to_numpy(bool)
     fell = (runs["outcome"] == "overturned").to_numpy(bool)
     if limit == CONTACT_LOST:
-        found = runs["contact_lost"].to_numpy(float)
+        lost = runs["contact_lost"].to_numpy(float)
+        found = np.where(fell & ~np.isnan(lost), 1.0, lost)
     elif limit == OVERTURNED:
         found = fell.astype(float)
     else:
