@@ -30,7 +30,7 @@ extensions = [
 ]
 exclude_patterns = ["_build", "_extensions", "figures", "scenes", "**.ipynb_checkpoints"]
 
-myst_enable_extensions = ["amsmath", "attrs_inline", "colon_fence", "deflist", "dollarmath"]
+myst_enable_extensions = ["amsmath", "attrs_block", "attrs_inline", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
@@ -55,11 +55,15 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_math_renderer = "mathml"
 html_show_sourcelink = False
+# no list of sections where there is none, and the whole width where a table or code needs it
+html_sidebars = {name: [] for name in ("start", "glossary", "references", "citing", "guide/limits")}
+toc_object_entries_show_parents = "hide"
 html_context = {"default_mode": "auto"}
 html_theme_options = {
     "logo": {"text": "rockwobble"},
     "navigation_depth": 2,
     "show_toc_level": 2,
+    "secondary_sidebar_items": {"**": ["page-toc"], "notebooks/*": [], "guide/limits": []},
     "footer_start": ["copyright"],
     "footer_end": [],
     "navbar_end": ["theme-switcher"],

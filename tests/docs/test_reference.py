@@ -107,6 +107,7 @@ def test_one_version_is_said_everywhere() -> None:
         "pyproject.toml": r'^version = "([^"]+)"',
         "CITATION.cff": r"^version: (\S+)",
         "CHANGELOG.md": r"^## \[(\d[^\]]*)\]",
+        "docs/citing.md": r"^  version = \{(\S+)\}",
     }
     found = {}
     for name, pattern in said.items():
