@@ -10,6 +10,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "_extensions"))
+NOTEBOOKS = [f"notebooks/{path.stem}" for path in (HERE / "notebooks").glob("*.ipynb")]
 _CITATION = (HERE.parent / "CITATION.cff").read_text(encoding="utf-8")
 
 project = "rockwobble"
@@ -34,7 +35,8 @@ myst_enable_extensions = ["amsmath", "attrs_block", "attrs_inline", "colon_fence
 myst_heading_anchors = 3
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 120  # [s] a notebook takes some seconds, the first one waits for the compiler
+# [s] a cell takes some seconds, the first of a model waits for the compiler, and a loaded machine is slower
+nb_execution_timeout = 300
 nb_merge_streams = True
 # a figure is drawn once: SVG where the notebook gives it, a picture where not
 nb_mime_priority_overrides = [("html", "image/svg+xml", 5)]
@@ -63,7 +65,7 @@ html_theme_options = {
     "logo": {"text": "rockwobble"},
     "navigation_depth": 2,
     "show_toc_level": 2,
-    "secondary_sidebar_items": {"**": ["page-toc"], "notebooks/*": [], "guide/limits": []},
+    "secondary_sidebar_items": {"**": ["page-toc"], **dict.fromkeys([*NOTEBOOKS, "guide/limits"], [])},
     "footer_start": ["copyright"],
     "footer_end": [],
     "navbar_end": ["theme-switcher"],
