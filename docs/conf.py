@@ -65,7 +65,7 @@ html_theme_options = {
     "logo": {"text": "rockwobble"},
     "navigation_depth": 2,
     "show_toc_level": 2,
-    "secondary_sidebar_items": {"**": ["page-toc"], **dict.fromkeys([*NOTEBOOKS, "guide/limits"], [])},
+    "secondary_sidebar_items": {"**": ["page-toc"], **{name: [] for name in (*NOTEBOOKS, "guide/limits")}},
     "footer_start": ["copyright"],
     "footer_end": [],
     "navbar_end": ["theme-switcher"],
