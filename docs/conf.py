@@ -10,6 +10,7 @@ from pathlib import Path
 
 HERE = Path(__file__).parent
 sys.path.insert(0, str(HERE / "_extensions"))
+NOTEBOOKS = [f"notebooks/{path.stem}" for path in (HERE / "notebooks").glob("*.ipynb")]
 _CITATION = (HERE.parent / "CITATION.cff").read_text(encoding="utf-8")
 
 project = "rockwobble"
@@ -30,11 +31,12 @@ extensions = [
 ]
 exclude_patterns = ["_build", "_extensions", "figures", "scenes", "**.ipynb_checkpoints"]
 
-myst_enable_extensions = ["amsmath", "attrs_inline", "colon_fence", "deflist", "dollarmath"]
+myst_enable_extensions = ["amsmath", "attrs_block", "attrs_inline", "colon_fence", "deflist", "dollarmath"]
 myst_heading_anchors = 3
 nb_execution_mode = "force"
 nb_execution_raise_on_error = True
-nb_execution_timeout = 120  # [s] a notebook takes some seconds, the first one waits for the compiler
+# [s] a cell takes some seconds, the first of a model waits for the compiler, and a loaded machine is slower
+nb_execution_timeout = 300
 nb_merge_streams = True
 # a figure is drawn once: SVG where the notebook gives it, a picture where not
 nb_mime_priority_overrides = [("html", "image/svg+xml", 5)]
@@ -55,11 +57,15 @@ html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_math_renderer = "mathml"
 html_show_sourcelink = False
+# no list of sections where there is none, and the whole width where a table or code needs it
+html_sidebars = {name: [] for name in ("start", "glossary", "references", "citing", "guide/limits")}
+toc_object_entries_show_parents = "hide"
 html_context = {"default_mode": "auto"}
 html_theme_options = {
     "logo": {"text": "rockwobble"},
     "navigation_depth": 2,
     "show_toc_level": 2,
+    "secondary_sidebar_items": {"**": ["page-toc"], **{name: [] for name in (*NOTEBOOKS, "guide/limits")}},
     "footer_start": ["copyright"],
     "footer_end": [],
     "navbar_end": ["theme-switcher"],

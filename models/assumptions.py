@@ -23,6 +23,14 @@ class Assumptions:
         Of the recess, over the weight [m].
     friction : float
         The coefficient it was held against.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> held = rw.simulate(rw.Case(pier, rw.el_centro_1940(), duration=15.0)).assumptions
+    >>> held.held, round(held.largest_friction_needed, 3), round(held.least_normal_force, 2)
+    (True, 0.221, 0.94)
     """
 
     breaches: tuple[Diagnostic, ...]

@@ -40,6 +40,14 @@ class Case:
     ------
     ValueError
         If a number is out of range, or neither motion nor duration is given.
+
+    Examples
+    --------
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = Case(pier, initial=release, duration=8.0, friction=0.6)
+    >>> case.name, case.length, case.gravity
+    ('free response', 8.0, 9.81)
     """
 
     cylinder: Cylinder
@@ -75,10 +83,26 @@ class Case:
 def run_duration(motion: GroundMotion | None, duration: float | None) -> float:
     """Return the length of a run [s]: `duration` where given, else that of the motion.
 
+    Parameters
+    ----------
+    motion : GroundMotion or None
+    duration : float or None
+        [s]
+
+    Returns
+    -------
+    float
+        [s]
+
     Raises
     ------
     ValueError
         If neither is given, or the duration is not positive and finite.
+
+    Examples
+    --------
+    >>> run_duration(None, 8)
+    8.0
     """
     if duration is not None:
         return require_positive("duration", duration, "s")
@@ -114,6 +138,13 @@ class Run:
     ------
     ValueError
         If the time step is neither positive nor one of those words.
+
+    Examples
+    --------
+    >>> Run("mujoco", "recess", 1e-4, iterations=50)
+    Run('mujoco', 'recess', time_step=0.0001, iterations=50)
+    >>> str(Run(None, "flat")), str(Run(None, "recess", plane=0.0))
+    ('flat-ground model', 'planar model')
     """
 
     engine: str | None
@@ -175,6 +206,15 @@ class Suite(Brief):
     ------
     ValueError
         If there is no case, or two cases share a name.
+
+    Examples
+    --------
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> low, high = InitialState(0.05), InitialState(0.1)
+    >>> cases = [Case(pier, initial=start, duration=8.0, name=str(start)) for start in (low, high)]
+    >>> suite = Suite(cases, [Run("mujoco", "recess"), Run("mujoco", "flat")])
+    >>> len(suite.cases) * len(suite.runs)
+    4
     """
 
     cases: tuple[Case, ...]

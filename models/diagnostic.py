@@ -64,6 +64,11 @@ class Diagnostic:
     ------
     ValueError
         If the code is unknown.
+
+    Examples
+    --------
+    >>> Diagnostic(code="slip", time=2.5, duration=0.1).meaning
+    'contact slipped'
     """
 
     code: str

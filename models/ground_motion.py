@@ -92,14 +92,34 @@ class GroundMotion:
         return int(self.acceleration.shape[1]) == 3
 
     def scaled(self, factor: float) -> GroundMotion:
-        """Return the motion with all components multiplied by `factor` [-]."""
+        """Return the motion with all components multiplied by `factor` [-].
+
+        Parameters
+        ----------
+        factor : float
+            Of all components [-].
+
+        Returns
+        -------
+        GroundMotion
+        """
         factor = require_finite("factor", factor, "")
         with np.errstate(over="ignore"):  # the constructor refuses what is not finite
             scaled = self.acceleration * factor
         return GroundMotion(scaled, self.time_step, self.name)
 
     def rotated(self, angle: float) -> GroundMotion:
-        """Return the motion turned by `angle` [rad] about the vertical, counter-clockwise from above."""
+        """Return the motion turned by `angle` [rad] about the vertical, counter-clockwise from above.
+
+        Parameters
+        ----------
+        angle : float
+            Counter-clockwise as seen from above [rad].
+
+        Returns
+        -------
+        GroundMotion
+        """
         angle = require_finite("angle", angle, "rad")
         turned = np.array(self.acceleration)
         x, y = self.acceleration[:, 0], self.acceleration[:, 1]

@@ -31,6 +31,11 @@ class InitialState(Brief):
     ValueError
         If a value is not finite, the tilt is out of range, or a rate is given at zero tilt (where
         the direction of a rate has no meaning).
+
+    Examples
+    --------
+    >>> InitialState(tilt=0.1, rolling_rate=0.5)
+    InitialState(tilt=0.1, tilt_rate=0, rolling_angle=0, rolling_rate=0.5)
     """
 
     tilt: float

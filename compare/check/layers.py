@@ -55,6 +55,16 @@ def run_checks(bench: Bench, layers: Sequence[str] = LAYERS) -> Iterator[Finding
 
     An exception in a check is a failure of that check: the checks after it still run.
 
+    Parameters
+    ----------
+    bench : Bench
+    layers : sequence of str, optional
+        Of `LAYERS`.
+
+    Returns
+    -------
+    iterator of Finding
+
     Raises
     ------
     ValueError
@@ -70,7 +80,18 @@ def run_checks(bench: Bench, layers: Sequence[str] = LAYERS) -> Iterator[Finding
 
 
 def first_failure(bench: Bench, layers: Sequence[str] = LAYERS) -> Finding | None:
-    """Return the first finding that failed, without running what comes after it."""
+    """Return the first finding that failed, without running what comes after it.
+
+    Parameters
+    ----------
+    bench : Bench
+    layers : sequence of str, optional
+        Of `LAYERS`.
+
+    Returns
+    -------
+    Finding or None
+    """
     return next((finding for finding in run_checks(bench, layers) if finding.failed), None)
 
 

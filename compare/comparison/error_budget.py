@@ -232,6 +232,15 @@ def findings(summary: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of a summary in which too much stays unexplained, the worst first.
 
     Rows whose whole difference is below 1e-4 alpha are not worth it.
+
+    Parameters
+    ----------
+    summary : DataFrame
+        Of a comparison with budgets.
+
+    Returns
+    -------
+    DataFrame
     """
     rows = summary[(summary["whole_rms"] > WORTH_EXPLAINING) & (summary["unexplained_share"] > LARGEST_SHARE)]
     return rows.sort_values("unexplained_share", ascending=False)

@@ -45,6 +45,18 @@ class Comparison(Shown):
         Error budget for each (case, label of the run, label of the reference), where it was asked for.
     command : str
         That asked for what was loaded.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> comparison = rw.compare(case, runs=[rw.Run(None, "flat")], workers=1)
+    >>> comparison.summary[["run", "reference", "diverged"]].to_dict("records")[0]
+    {'run': 'flat-ground model', 'reference': 'recess model', 'diverged': False}
+    >>> sorted(comparison.traces)
+    [('free response', 'flat-ground model'), ('free response', 'recess model')]
     """
 
     _figures: ClassVar[str] = "comparison.tilt"
@@ -90,7 +102,17 @@ class Comparison(Shown):
         write_results(folder, made, self._tables(), files=files, pages=pages)
 
     def manifest(self, command: str = "") -> Manifest:
-        """Return what made the comparison, and its main numbers."""
+        """Return what made the comparison, and its main numbers.
+
+        Parameters
+        ----------
+        command : str, optional
+            That asked for it.
+
+        Returns
+        -------
+        Manifest
+        """
         relative = self.summary["tilt_rms_relative"]
         return made_now(
             KIND,
@@ -111,6 +133,14 @@ class Comparison(Shown):
     @classmethod
     def load(cls, folder: str | Path) -> Comparison:
         """Return the comparison that was saved in `folder`, without running anything.
+
+        Parameters
+        ----------
+        folder : str or Path
+
+        Returns
+        -------
+        Comparison
 
         Raises
         ------
@@ -172,7 +202,27 @@ def _stacked(
 
 
 def describe_case(case: Case) -> dict[str, object]:
-    """Return the numbers that state a case, for a file or a page; SI units and radians."""
+    """Return the numbers that state a case, for a file or a page; SI units and radians.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    dict
+        Names and numbers.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> found = describe_case(case)
+    >>> found["friction"], found["gravity"]
+    (1.0, 9.81)
+    """
     cylinder, motion, initial = case.cylinder, case.motion, case.initial
     return {
         "semidiagonal": cylinder.semidiagonal,

@@ -50,6 +50,16 @@ def relative_rms(cylinder: Cylinder, reference: Trace, trial: Trace, *, until: f
     ------
     ValueError
         If the reference never tilts, or not before `until`.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> recess, flat = rw.simulate(case), rw.simulate(case, support="flat")
+    >>> relative_rms(pier, recess, recess), bool(relative_rms(pier, recess, flat) < 0.01)
+    (0.0, True)
     """
     pair = make_pair(cylinder, reference, trial, until=until)
     value = tilt_rms_relative(pair)

@@ -21,12 +21,27 @@ _OWN_MODELS = {"recess": "recess", "flat": "flat", "ring": "flat"}
 
 
 def installed_engines() -> tuple[str, ...]:
-    """Return the engines that are installed here, whatever they can do."""
+    """Return the engines that are installed here, whatever they can do.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> "mujoco" in installed_engines()
+    True
+    """
     return available_engines()
 
 
 def missing_engines() -> tuple[str, ...]:
-    """Return the engines that every installation is meant to have and this one has not."""
+    """Return the engines that every installation is meant to have and this one has not.
+
+    Returns
+    -------
+    tuple of str
+    """
     return tuple(name for name in standard_engines() if name not in installed_engines())
 
 
@@ -35,6 +50,11 @@ def reserved_engines() -> dict[str, str]:
 
     A default run takes the engines that serve any case: those with each support and with uplift. The
     others run where they are named, as do those of ours that are an extra.
+
+    Returns
+    -------
+    dict
+        Reason by name of the engine.
     """
     reasons = {name: _reservation(name) for name in installed_engines()}
     return {name: reason for name, reason in reasons.items() if reason}
@@ -55,6 +75,11 @@ def _reservation(name: str) -> str:
 
 def require_runnable(case: Case, run: Run) -> None:
     """Check engine, support, time step and settings of a run, so that no other run starts in vain.
+
+    Parameters
+    ----------
+    case : Case
+    run : Run
 
     Raises
     ------
@@ -80,10 +105,29 @@ def require_runnable(case: Case, run: Run) -> None:
 def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, object]) -> tuple[Run, ...]:
     """Return the runs with more settings, each where the run has one of that name.
 
+    Parameters
+    ----------
+    case : Case
+    runs : sequence of Run
+    settings : mapping
+
+    Returns
+    -------
+    tuple of Run
+
     Raises
     ------
     ValueError
         If no run has a setting of that name, with those that there are.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> with_settings(case, [Run("mujoco", "recess"), Run(None, "recess")], {"iterations": 50})
+    (Run('mujoco', 'recess', iterations=50), Run(None, 'recess'))
     """
     known = [_setting_names(case, run) for run in runs]
     for name in settings:
@@ -123,6 +167,21 @@ def default_runs(
 
     Engines that are named run whatever they can do: with the supports that they have where none is named.
     Where only supports are named, each gets the engines that have it, or all if none has, which will say so.
+
+    Parameters
+    ----------
+    engines : sequence of str, optional
+    supports : sequence of str, optional
+        "recess", "flat" and "ring".
+
+    Returns
+    -------
+    tuple of Run
+
+    Examples
+    --------
+    >>> default_runs(["mujoco"])
+    (Run('mujoco', 'recess'), Run('mujoco', 'flat'))
     """
     if engines is not None and supports is not None:
         return tuple(Run(engine, support) for support in supports for engine in engines)
@@ -187,7 +246,21 @@ def unsupported(supports: Sequence[str]) -> tuple[str, ...]:
 
 
 def own_model(run: Run) -> Run:
-    """Return the reduced model of a run's support: what an exact engine would follow, short of walls."""
+    """Return the reduced model of a run's support: what an exact engine would follow, short of walls.
+
+    Parameters
+    ----------
+    run : Run
+
+    Returns
+    -------
+    Run
+
+    Examples
+    --------
+    >>> own_model(Run("mujoco", "flat"))
+    Run(None, 'flat')
+    """
     return Run(None, _OWN_MODELS.get(run.support, "recess"))
 
 

@@ -42,6 +42,15 @@ class Job(Brief):
     run : Run
     label : str, optional
         For tables and figures, different for each job of a case. Default: engine and support.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> Job(case=case, run=rw.Run("mujoco", "recess")).label
+    'mujoco recess'
     """
 
     case: Case
@@ -161,6 +170,16 @@ def simulate_all(
     ------
     ValueError
         What a job raises for bad input; the other jobs are given up.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> jobs = [Job(case=case, run=rw.Run(None, "recess")), Job(case=case, run=rw.Run(None, "flat"))]
+    >>> [trace.outcome for trace in simulate_all(jobs, workers=1)]
+    ['completed', 'completed']
     """
     found = run_tasks(
         run_job, jobs, workers=workers, cost=_cost, label=lambda job: job.name, progress=progress, cache=cache

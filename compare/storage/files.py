@@ -22,6 +22,14 @@ def require_writable(folder: str | Path) -> Path:
 
     A folder that does not exist yet is one that can be made: its nearest ancestor decides.
 
+    Parameters
+    ----------
+    folder : str or Path
+
+    Returns
+    -------
+    Path
+
     Raises
     ------
     ValueError

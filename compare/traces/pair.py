@@ -70,10 +70,24 @@ def make_pair(cylinder: Cylinder, reference: Trace, trial: Trace, *, until: floa
     until : float, optional
         End of the window, in the time of the run [s]. Default: all that both have.
 
+    Returns
+    -------
+    Pair
+
     Raises
     ------
     ValueError
         If `until` leaves no sample, or a trace has none.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> pair = make_pair(pier, rw.simulate(case), rw.simulate(case, support="flat"))
+    >>> pair.time.shape == pair.tilt.shape == pair.reference_tilt.shape
+    True
     """
     end = min(_finite_end(reference), _finite_end(trial))
     if until is not None:

@@ -44,6 +44,11 @@ class External:
     ------
     ValueError
         If the offset is not finite or the noise is not positive.
+
+    Examples
+    --------
+    >>> External(path="can.csv", angle_unit="deg", time_offset=-0.04).label
+    'can'
     """
 
     path: Path
@@ -118,6 +123,15 @@ def external_motion(trace: Trace) -> Motion:
 
 def read_trajectory(external: External | str | Path, case: Case) -> Trace:
     """Read an external trajectory of the case that it answers.
+
+    Parameters
+    ----------
+    external : External, str or Path
+    case : Case
+
+    Returns
+    -------
+    Trace
 
     Raises
     ------

@@ -42,7 +42,11 @@ class CommandHelp(SphinxDirective):
                 groups.setdefault(group, []).append(parameter)
         for group, parameters in groups.items():
             rows = [_row(each) for each in parameters]
-            found += [nodes.rubric("", group), table(("option", "default", "meaning"), (30, 15, 55), rows)]
+            head, widths = ("option", "default", "meaning"), (30, 15, 55)
+            if not any(default.astext() for _, default, _ in rows):  # an empty column takes a phone's width
+                rows = [(option, meaning) for option, _, meaning in rows]
+                head, widths = ("option", "meaning"), (30, 70)
+            found += [nodes.rubric("", group), table(head, widths, rows)]
         return found
 
 

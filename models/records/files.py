@@ -30,7 +30,7 @@ def read_record(
     units: str | None = None,
     name: str | None = None,
 ) -> GroundMotion:
-    """Read a ground motion, one file for each component or one for all.
+    r"""Read a ground motion, one file for each component or one for all.
 
     The file of a component may be PEER AT2 (in each form of its header line), text of two columns, time [s]
     and acceleration, or the same as CSV with or without a header line. One file for all is text or CSV of
@@ -59,6 +59,16 @@ def read_record(
         If a file is missing, empty or not readable as numbers, its unit is unknown or contradicts
         `units`, its times are uneven, or the components have different time steps, starts or lengths. The
         message names the file, and the line where there is one.
+
+    Examples
+    --------
+    >>> from tempfile import mkdtemp
+    >>> from pathlib import Path
+    >>> path = Path(mkdtemp()) / "pulse.csv"
+    >>> _ = path.write_text("time,x,y\n0.00,0.0,0.0\n0.01,0.2,0.1\n0.02,0.0,0.0\n")
+    >>> motion = read_record(path, units="g")
+    >>> motion.name, motion.acceleration.shape, round(float(motion.acceleration[1, 0]), 3)
+    ('pulse', (3, 2), 1.962)
     """
     if units is not None and units not in UNITS:
         raise ValueError(f"units must be one of {', '.join(UNITS)}, got {units!r}")

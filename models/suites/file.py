@@ -65,6 +65,10 @@ ENDING = ".suite.toml"
 def shipped_suites() -> tuple[str, ...]:
     """Return the names of the suites that ship with the package.
 
+    Returns
+    -------
+    tuple of str
+
     Examples
     --------
     >>> shipped_suites()

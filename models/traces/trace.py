@@ -91,6 +91,16 @@ class Trace(Shown):
     error_estimate, settled_until : float
         Error of the tilt that the time step leaves [rad], and until when traces of successive steps agree
         [s]; NaN unless the step was sought.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> trace = rw.simulate(rw.Case(pier, rw.el_centro_1940(), duration=15.0))
+    >>> trace.outcome, round(trace.peak_tilt / pier.alpha, 4), len(trace.passes)
+    ('completed', 0.243, 18)
+    >>> trace.tilt.shape, trace.contact_point.shape
+    ((1501,), (1501, 2))
     """
 
     _figures: ClassVar[str] = "trace"
@@ -165,7 +175,17 @@ class Trace(Shown):
         return self.source.assumptions(math.inf)
 
     def assumptions_until(self, end: float) -> Assumptions | None:
-        """Return whether contact and friction held until the time `end` [s], such as that of a fall."""
+        """Return whether contact and friction held until the time `end` [s], such as that of a fall.
+
+        Parameters
+        ----------
+        end : float
+            In the time of the run [s].
+
+        Returns
+        -------
+        Assumptions or None
+        """
         return self.source.assumptions(end)
 
     @property
@@ -174,11 +194,41 @@ class Trace(Shown):
         return self.facts + (self.assumptions.breaches if self.assumptions else ())
 
     def first(self, *codes: str) -> float:
-        """Return the earliest time at which a diagnostic of these codes holds [s]; infinite if none does."""
+        """Return the earliest time at which a diagnostic of these codes holds [s]; infinite if none does.
+
+        Parameters
+        ----------
+        *codes : str
+            Of `rockwobble.models.diagnostic.CODES`.
+
+        Returns
+        -------
+        float
+            [s]
+
+        Examples
+        --------
+        >>> import rockwobble as rw
+        >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+        >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+        >>> case = rw.Case(pier, initial=release, duration=4.0)
+        >>> rw.simulate(case).first("slip", "friction_needed")
+        inf
+        """
         return min((fact.time for fact in self.diagnostics if fact.code in codes), default=math.inf)
 
     def to_frame(self) -> pd.DataFrame:
-        """Return the samples as a table, one column for each component, SI units and radians."""
+        """Return the samples as a table, one column for each component, SI units and radians.
+
+        Examples
+        --------
+        >>> import rockwobble as rw
+        >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+        >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+        >>> case = rw.Case(pier, initial=release, duration=4.0)
+        >>> list(rw.simulate(case).to_frame().columns[:5])
+        ['time', 'tilt', 'tilt_rate', 'rolling_angle', 'rolling_rate']
+        """
         import pandas as pd
 
         vectors = trace_file.VECTORS
@@ -207,16 +257,42 @@ class Trace(Shown):
 
     @classmethod
     def from_plain(cls, facts: Mapping[str, Any], samples: pd.DataFrame, case: Case) -> Trace:
-        """Return the trace of what `to_plain` and `to_frame` gave, and its case."""
+        """Return the trace of what `to_plain` and `to_frame` gave, and its case.
+
+        Parameters
+        ----------
+        facts : mapping
+            Of `to_plain`.
+        samples : DataFrame
+            Of `to_frame`.
+        case : Case
+
+        Returns
+        -------
+        Trace
+        """
         return cls(case=case, **trace_file.restored(facts, samples))
 
     def save(self, path: str | Path) -> None:
-        """Write the motion to a Parquet file, from which `load` returns it with the same bits."""
+        """Write the motion to a Parquet file, from which `load` returns it with the same bits.
+
+        Parameters
+        ----------
+        path : str or Path
+        """
         Path(path).write_bytes(trace_file.packed(self.to_frame(), self.to_plain(), self.case))
 
     @classmethod
     def load(cls, path: str | Path) -> Trace:
         """Return the motion that `save` wrote.
+
+        Parameters
+        ----------
+        path : str or Path
+
+        Returns
+        -------
+        Trace
 
         Raises
         ------

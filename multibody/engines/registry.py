@@ -67,7 +67,17 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
 
 
 def engine_names() -> tuple[str, ...]:
-    """Return the names of all known engines, installed or not: ours, then those of other packages."""
+    """Return the names of all known engines, installed or not: ours, then those of other packages.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> "mujoco" in engine_names()
+    True
+    """
     return (*_ENGINES, *_declared())
 
 
@@ -82,7 +92,17 @@ def own_engines() -> tuple[str, ...]:
 
 
 def available_engines() -> tuple[str, ...]:
-    """Return the names of all engines that are installed here: ours, then those of other packages."""
+    """Return the names of all engines that are installed here: ours, then those of other packages.
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> "mujoco" in available_engines()
+    True
+    """
     return (*own_engines(), *_declared())
 
 

@@ -44,6 +44,13 @@ class FreeResponse:
         e, relative to standing at rest, per unit mass [m^2/s^2].
     angular_momentum : float
         L = B phi', the conserved momentum of the rolling angle, per unit mass [m^2/s].
+
+    Examples
+    --------
+    >>> can = Cylinder(semidiagonal=5.0**0.5, tan_alpha=0.5)
+    >>> found = free_response(can, InitialState(0.5 * can.alpha, rolling_rate=0.1))
+    >>> round(found.period, 6), round(math.degrees(found.angle_of_turn), 4)
+    (1.455319, 204.0166)
     """
 
     minimum_tilt: float
@@ -162,6 +169,12 @@ def angle_of_turn(cylinder: Cylinder, initial: InitialState, *, gravity: float =
     ------
     ValueError
         If the release has no next tilt maximum, see `free_response`.
+
+    Examples
+    --------
+    >>> can = Cylinder(semidiagonal=5.0**0.5, tan_alpha=0.5)
+    >>> round(math.degrees(angle_of_turn(can, InitialState(0.5 * can.alpha, rolling_rate=0.1))), 4)
+    204.0166
     """
     return free_response(cylinder, initial, gravity=gravity).angle_of_turn
 

@@ -57,6 +57,12 @@ def planar_quarter_period(
     Notes
     -----
     Housner's acosh(1/(1 - tilt/alpha))/p is its limit for slender cylinders.
+
+    Examples
+    --------
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> planar_quarter_period(pier, [0.2 * pier.alpha, 0.8 * pier.alpha]).round(6)
+    array([0.626609, 2.068604])
     """
     body = body_under(cylinder, gravity)
     theta = require_tilts(tilt, body.alpha)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib
+import inspect
 import json
 import re
 from pathlib import Path
@@ -11,7 +12,7 @@ import pytest
 import typer
 
 import rockwobble
-from rockwobble import compare
+from rockwobble import compare, reduced
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.models.suites.tables import TABLES
 from rockwobble.models.traces.trace_file import COLUMNS, PASS_COLUMNS
@@ -20,6 +21,7 @@ from rockwobble.reports.cli.main import app
 DOCS = Path(__file__).parents[2] / "docs"
 API = DOCS / "reference" / "api"
 PACKAGES = ["models", "reduced", "multibody", "compare", "compare.check"]
+PARTS = {"models", "reduced", "multibody", "compare", "reports"}
 NOTEBOOKS = sorted((DOCS / "notebooks").glob("*.ipynb"))
 
 
@@ -43,6 +45,54 @@ def test_every_public_name_is_documented(package: str) -> None:
     }
     assert public
     assert public - documented() == set()
+
+
+def public(package: str) -> dict[str, object]:
+    """What a package says is public, by its full name."""
+    module = importlib.import_module(f"rockwobble.{package}")
+    return {f"{package}.{name}": inspect.unwrap(getattr(module, name)) for name in module.__all__}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_public_function_says_what_goes_in_and_what_comes_out(package: str) -> None:
+    silent = []
+    for name, function in public(package).items():
+        if inspect.isfunction(function):
+            said, returned = inspect.getdoc(function) or "", inspect.signature(function).return_annotation
+            silent += [name] * bool(inspect.signature(function).parameters and "Parameters\n" not in said)
+            silent += [name] * bool(returned not in ("None", None) and "Returns\n" not in said)
+    assert silent == []
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_public_member_of_a_class_has_words(package: str) -> None:
+    silent = []
+    for name, kind in public(package).items():
+        for member, value in vars(kind).items() if inspect.isclass(kind) else ():
+            asked = isinstance(value, property | classmethod | staticmethod) or inspect.isfunction(value)
+            if asked and not member.startswith("_") and not (inspect.getdoc(getattr(kind, member)) or ""):
+                silent.append(f"{name}.{member}")
+    assert silent == []
+
+
+def test_what_a_user_calls_has_an_example() -> None:
+    # tests/test_doctests.py runs them
+    names = [(rockwobble, name) for name in rockwobble.__all__ if name not in PARTS]
+    names += [(reduced, name) for name in reduced.__all__]
+    called = {name: inspect.unwrap(getattr(place, name)) for place, name in names}
+    silent = [name for name, each in called.items() if callable(each) and ">>>" not in (each.__doc__ or "")]
+    # its records are in an extra, without which the examples have to run
+    assert silent == ["p695_far_field"]
+
+
+def test_identifiers_of_the_references_are_well_formed_and_what_is_cited_is_there() -> None:
+    page = (DOCS / "references.md").read_text(encoding="utf-8")
+    links = re.findall(r"\[doi:(\S+?)\]\((\S+?)\)", page)
+    assert len(links) >= 10
+    assert [doi for doi, link in links if not re.fullmatch(r"10\.\d{4,5}/\S+", doi)] == []
+    assert [doi for doi, link in links if link != f"https://doi.org/{doi}"] == []
+    for cited in ("V17", "VB17", "H63", "SR08", "YCP80", "B18", "DATA"):
+        assert f"\n[{cited}]\n" in page, cited
 
 
 def test_nothing_is_documented_that_is_not_there() -> None:
@@ -110,6 +160,7 @@ def test_one_version_is_said_everywhere() -> None:
         "pyproject.toml": r'^version = "([^"]+)"',
         "CITATION.cff": r"^version: (\S+)",
         "CHANGELOG.md": r"^## \[(\d[^\]]*)\]",
+        "docs/citing.md": r"^  version = \{(\S+)\}",
     }
     found = {}
     for name, pattern in said.items():

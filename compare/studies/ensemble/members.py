@@ -37,10 +37,24 @@ def perturbed_starts(case: Case, count: int, *, perturbation: float, seed: int) 
         Relative standard deviation.
     seed : int
 
+    Returns
+    -------
+    list of Case
+
     Raises
     ------
     ValueError
         If a number is out of range, or nothing moves the cylinder.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> copies = perturbed_starts(case, 3, perturbation=1e-3, seed=1)
+    >>> [round(copy.initial.tilt / release.tilt, 5) for copy in copies]
+    [1.00035, 1.00033, 1.00091]
     """
     _require_count(count)
     if not 0.0 < perturbation <= 0.1:
@@ -83,10 +97,20 @@ def synthetic_motions(count: int, *, peak: float, seed: int, duration: float = 2
     duration : float, optional
         [s]
 
+    Returns
+    -------
+    list of GroundMotion
+
     Raises
     ------
     ValueError
         If a number is out of range.
+
+    Examples
+    --------
+    >>> motions = synthetic_motions(3, peak=4.0, seed=1)
+    >>> [round(motion.peak, 6) for motion in motions]
+    [4.0, 4.0, 4.0]
     """
     _require_count(count)
     _require_positive(peak=peak, duration=duration)
@@ -115,6 +139,10 @@ def far_field_motions(*, peak: float) -> list[GroundMotion]:
     peak : float
         Largest horizontal resultant [m/s^2].
 
+    Returns
+    -------
+    list of GroundMotion
+
     Raises
     ------
     ValueError
@@ -136,7 +164,26 @@ def _transfer(frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
 
 
 def with_motions(case: Case, motions: list[GroundMotion]) -> list[Case]:
-    """Return one problem under each of several ground motions, as long as each of them."""
+    """Return one problem under each of several ground motions, as long as each of them.
+
+    Parameters
+    ----------
+    case : Case
+    motions : list of GroundMotion
+
+    Returns
+    -------
+    list of Case
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> shaking = synthetic_motions(2, peak=4.0, seed=1, duration=10.0)
+    >>> cases = with_motions(rw.Case(pier, duration=1.0), shaking)
+    >>> [each.length for each in cases]
+    [10.0, 10.0]
+    """
     return [
         dataclasses.replace(case, name=f"{case.name}: {motion.name}", motion=motion, duration=None)
         for motion in motions

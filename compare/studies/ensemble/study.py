@@ -46,6 +46,16 @@ class Ensemble(Shown):
     about : mapping
         What the tables do not hold: what the members are, the range of their sizes and slendernesses, the
         model of the support of each method, the seed, and the hash of all inputs.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> case = rw.Case(pier, rw.el_centro_1940(), duration=15.0)
+    >>> both = [rw.Run(None, "recess"), rw.Run(None, "flat")]
+    >>> found = rw.ensemble(case, runs=[], models=both, size=5, workers=1)
+    >>> list(found.methods["runs"]), found.members.shape
+    ([5, 5], (10, 6))
     """
 
     _figures: ClassVar[str] = "ensemble"

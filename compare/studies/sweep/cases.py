@@ -74,6 +74,16 @@ class CaseSweep(Brief):
     ------
     ValueError
         If there is no case or no method, two are alike, or an engine cannot run a case.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> found = rw.sweep(CaseSweep([case], [rw.Run(None, "recess"), rw.Run(None, "flat")]), workers=1)
+    >>> list(found["outcome"])
+    ['completed', 'completed']
     """
 
     cases: tuple[Case, ...]

@@ -108,6 +108,14 @@ class Grid(Brief):
     ------
     ValueError
         If an axis is empty, repeats a value or holds one that is out of range.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> grid = Grid(semidiagonals=[3, 6], tan_alphas=[0.1, 0.2], scales=[1, 2], motions=[rw.el_centro_1940()])
+    >>> found = rw.sweep(grid, workers=1)
+    >>> len(found)
+    8
     """
 
     semidiagonals: tuple[float, ...]

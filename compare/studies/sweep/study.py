@@ -143,10 +143,30 @@ def sweep(
 def read_sweep(folder: str | Path) -> pd.DataFrame:
     """Return the table of the sweep in a folder.
 
+    Parameters
+    ----------
+    folder : str or Path
+
+    Returns
+    -------
+    DataFrame
+        One row for each run.
+
     Raises
     ------
     ValueError
         If there is none, or a file is damaged.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> from tempfile import mkdtemp
+    >>> from rockwobble.compare import Grid
+    >>> folder = mkdtemp()
+    >>> grid = Grid(semidiagonals=[6], tan_alphas=[0.2], scales=[1, 2], motions=[rw.el_centro_1940()])
+    >>> _ = rw.sweep(grid, out=folder, workers=1)
+    >>> len(read_sweep(folder))
+    2
     """
     return read_results(folder, KIND).table(KIND)
 
