@@ -51,22 +51,24 @@ _SEQUENTIAL, _DIVERGING, _NOTHING = "Blues", "RdBu_r", "#d9d9d9"
 _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
 
 
-def svg(picture: Picture) -> bytes:
-    """Return a picture as SVG."""
+def svg(picture: Picture, *, titled: bool = False) -> bytes:
+    """Return a picture as SVG, perhaps with its title, where no document says it."""
     buffer = io.BytesIO()
     with mpl.rc_context(_STYLE):
-        figure(picture).savefig(
+        figure(picture, titled=titled).savefig(
             buffer, format="svg", dpi=_RASTER_DPI, metadata={"Date": None, "Creator": "rockwobble"}
         )
     return buffer.getvalue()
 
 
-def figure(picture: Picture) -> Figure:
+def figure(picture: Picture, *, titled: bool = False) -> Figure:
     """Return a picture as a matplotlib figure."""
     heights = [max(panel.height for panel in row) for row in picture.rows]
     many = len(picture.panels) > 1
     with mpl.rc_context(_STYLE):
         drawn = Figure(figsize=(WIDTH, sum(heights) + 0.7), layout="constrained")
+        if titled:
+            drawn.suptitle(picture.title, x=0.01, horizontalalignment="left", fontsize=12)
         places = drawn.subplots(
             len(heights),
             picture.columns,

@@ -21,6 +21,7 @@ SMALLEST = 1e-7
 WINDOW = 1.0
 _FALLS = 1.5  # [alpha] where tilts are cut if one goes farther
 _HEIGHT = 2.3  # [inch]
+_WHERE = {"recess": "in an ideal recess", "flat": "on flat ground", "ring": "in a ring of walls"}
 
 
 def pictures(comparison: Comparison) -> Pictures:
@@ -67,7 +68,7 @@ def _tilts(view: CaseView, runs: Sequence[str], support: str) -> Panel:
     # a fall would leave nothing to be seen of the rest
     falls = any(float(np.nanmax(line.y, initial=0.0)) > _FALLS for line in layers)
     y = replace(TILT, high=_FALLS if falls else None)
-    return Panel(x=TIME, y=y, layers=layers, title=f"support {support}", height=_HEIGHT)
+    return Panel(x=TIME, y=y, layers=layers, title=_WHERE[support], height=_HEIGHT)
 
 
 def _differences(view: CaseView, reference: str) -> Panel:

@@ -43,7 +43,11 @@ def comparison_files(comparison: Comparison, command: str = "") -> dict[str, byt
     return {
         "report.html": page.html().encode(),
         "report.md": page.markdown().encode(),
-        **{f"{picture.name}.svg": svg(picture) for picture in page.pictures if picture.name in _BESIDE},
+        **{
+            f"{picture.name}.svg": svg(picture, titled=True)
+            for picture in page.pictures
+            if picture.name in _BESIDE
+        },
     }
 
 
