@@ -1,6 +1,7 @@
 """Results of the engines: each case that an engine can do, judged by check.py like anybody's.
 
-`results/NAME` holds one file a case and about.json: code, version, settings, computing time of a step.
+`results/NAME` holds one file a case and about.json: code, version, settings, time step, processor time of a
+step, what it cannot do and why, and the commit that ran it.
 """
 
 from __future__ import annotations
@@ -11,12 +12,14 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Collection
 from pathlib import Path
 
 from rockwobble import multibody, reduced
+from rockwobble.compare.storage.provenance import commit
 from rockwobble.models import Case, Trace
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.scene.froude import REFERENCE_SEMIDIAGONAL, REFERENCE_TIME_STEP, froude_scale
 
 from .submission import cases_of, spacing, submit, tilt_and_azimuth
 
@@ -31,6 +34,10 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
     target = folder / "results" / f"{engine}-{variant}"
     target.mkdir(parents=True, exist_ok=True)
     costs: list[float] = []
+    known = target / "about.json"
+    cannot: dict[str, str] = (
+        json.loads(known.read_text()).get("cannot", {}) if only and known.exists() else {}
+    )
     problems = {path: cases_of(path) for path in (folder / "cases").iterdir()}
     lengths = {path: sum(case.length for case, _ in cases.values()) for path, cases in problems.items()}
     for path in sorted(problems, key=lambda path: lengths[path]):
@@ -38,15 +45,18 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
             continue
         traces: dict[str, Trace] = {}
         for name, (case, support) in problems[path].items():
+            start = time.process_time()  # not the wall: other work on the machine is none of an engine's
             try:
-                traces[name] = _simulate(engine, case, support, **VARIANTS[variant])
+                trace = traces[name] = _simulate(engine, case, support, **VARIANTS[variant])
             except ValueError as error:  # what an engine cannot do
-                print(f"{engine}, {path.name}, {name}: {error}")
+                cannot[path.name] = str(error)
+                continue
+            if engine != REDUCED:
+                costs.append((time.process_time() - start) * trace.time_step / trace.time[-1])
         if not traces:
             continue
         version = next(iter(traces.values())).version
         words = variant.replace("-", " ")
-        costs += [t.wall_time * t.time_step / t.time[-1] for t in traces.values() if engine != REDUCED]
         with tempfile.TemporaryDirectory() as scratch:
             tables = {name: tilt_and_azimuth(trace) for name, trace in traces.items()}
             file = submit(tables, Path(scratch) / "trajectory.csv")
@@ -57,10 +67,18 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
             "code": engine,
             "version": version,
             "settings": words,
+            "time_step": _step_in_words(variant) if costs else "of its tolerance, 1e-8 relative",
             "seconds_a_step": statistics.median(costs) if costs else None,
+            "cannot": cannot,
             "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
+            "commit": commit(),
         }
-        (target / "about.json").write_text(json.dumps(about, indent=1) + "\n")
+        known.write_text(json.dumps(about, indent=1) + "\n")
+
+
+def _step_in_words(variant: str) -> str:
+    step = VARIANTS[variant].get("step", 1.0) * REFERENCE_TIME_STEP
+    return f"{step:g} s at R = {REFERENCE_SEMIDIAGONAL:g} m, as sqrt(R)"
 
 
 def _simulate(engine: str, case: Case, support: str, step: float = 1.0) -> Trace:
