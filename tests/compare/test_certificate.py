@@ -87,9 +87,9 @@ def test_a_fault_in_the_models_is_a_change_with_its_claim_and_term(
 
 def test_only_the_last_case_is_chaotic_and_keeps_the_peaks_of_copies(certificate: dict[str, Any]) -> None:
     *others, last = certificate["fingerprint"]
-    assert all(one["agreement_time"] is None and "peaks" not in one for one in others)
+    assert all(one["agreement_time"] is None and "copies" not in one for one in others)
     assert last["agreement_time"] < 9.0
-    assert len(last["peaks"]) == 16
+    assert len(last["copies"]) == 16
 
 
 def test_a_difference_after_the_agreement_time_is_chaotic_if_the_peaks_are_alike(
@@ -115,11 +115,11 @@ def test_other_peaks_after_the_agreement_time_are_a_change(certificate: dict[str
         name: [value + 10.0 * far for value, far in zip(values, late.tolist(), strict=True)]
         for name, values in last["signals"].items()
     }
-    alike, other = last | {"signals": signals}, [3.0 * peak for peak in last["peaks"]]
+    alike, other = last | {"signals": signals}, [[3.0 * tilt for tilt in copy] for copy in last["copies"]]
     assert compare_entries(last, alike).word == CHAOTIC
-    answer = compare_entries(last, alike | {"peaks": other})
+    answer = compare_entries(last, alike | {"copies": other})
     assert answer.word == CHANGED
-    assert answer.quantity == "distribution of the peaks"
+    assert answer.quantity == "distribution of the late peaks"
 
 
 def test_the_first_change_is_named_and_nothing_after_it_runs(certificate: dict[str, Any]) -> None:
