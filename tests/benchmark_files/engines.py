@@ -1,7 +1,7 @@
 """Results of the engines: each case that an engine can do, judged by check.py like anybody's.
 
 `results/NAME` holds one file a case and about.json: code, version, settings, time step, processor time of a
-step, what it cannot do and why, and the commit that ran it.
+step, what it cannot do and why, and the commit that ran each case.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
     target.mkdir(parents=True, exist_ok=True)
     costs: list[float] = []
     known = target / "about.json"
-    cannot: dict[str, str] = (
-        json.loads(known.read_text()).get("cannot", {}) if only and known.exists() else {}
-    )
+    old = json.loads(known.read_text()) if only and known.exists() else {}
+    cannot: dict[str, str] = old.get("cannot", {})
+    commits: dict[str, str] = old.get("commits", {})
     problems = {path: cases_of(path) for path in (folder / "cases").iterdir()}
     lengths = {path: sum(case.length for case, _ in cases.values()) for path, cases in problems.items()}
     for path in sorted(problems, key=lambda path: lengths[path]):
@@ -55,6 +55,7 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
                 costs.append((time.process_time() - start) * trace.time_step / trace.time[-1])
         if not traces:
             continue
+        commits[path.name] = commit()
         version = next(iter(traces.values())).version
         words = variant.replace("-", " ")
         with tempfile.TemporaryDirectory() as scratch:
@@ -71,7 +72,7 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
             "seconds_a_step": statistics.median(costs) if costs else None,
             "cannot": cannot,
             "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
-            "commit": commit(),
+            "commits": commits,
         }
         known.write_text(json.dumps(about, indent=1) + "\n")
 
