@@ -127,10 +127,12 @@ def main() -> None:
     (HERE / "scoreboard.md").write_text("\n\n".join(text) + "\n", "utf-8")
     style = (
         "body{font:15px/1.45 sans-serif;margin:1.5em;color:#222;background:#fff}p{max-width:45em}"
-        "div{overflow-x:auto}table{border-collapse:separate;border-spacing:0}td,th{border:solid #bbb;border-width:0 1px 1px 0;padding:.4em .6em;"
-        "text-align:left;vertical-align:top}td{min-width:6.5em}small{color:#444;white-space:nowrap}"
-        "tr:first-child>*{border-top-width:1px}tr>:first-child{border-left-width:1px;position:sticky;left:0;background:#f3f3f3;min-width:8em}"
-        ".exact,.good{background:#e2f2e4}.pass{background:#f4f7dc}.fail,.rejected{background:#f9e0dc}"
+        "div{overflow-x:auto}table{border-collapse:separate;border-spacing:0}"
+        "td,th{border:solid #bbb;border-width:0 1px 1px 0;padding:.4em .6em;text-align:left;"
+        "vertical-align:top}td{min-width:6.5em}small{color:#444;white-space:nowrap}"
+        "tr:first-child>*{border-top-width:1px}tr>:first-child{border-left-width:1px;position:sticky;left:0;"
+        "background:#f3f3f3;min-width:8em}.exact,.good{background:#e2f2e4}.pass{background:#f4f7dc}"
+        ".fail,.rejected{background:#f9e0dc}"
         "@media(max-width:600px){body{margin:.8em;font-size:14px}tr>:first-child{max-width:8em}}"
     )
     start = (
