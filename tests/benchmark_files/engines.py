@@ -38,6 +38,7 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
     old = json.loads(known.read_text()) if only and known.exists() else {}
     cannot: dict[str, str] = old.get("cannot", {})
     commits: dict[str, str] = old.get("commits", {})
+    version, words = old.get("version", ""), variant.replace("-", " ")
     problems = {path: cases_of(path) for path in (folder / "cases").iterdir()}
     lengths = {path: sum(case.length for case, _ in cases.values()) for path, cases in problems.items()}
     for path in sorted(problems, key=lambda path: lengths[path]):
@@ -53,28 +54,27 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
                 continue
             if engine != REDUCED:
                 costs.append((time.process_time() - start) * trace.time_step / trace.time[-1])
-        if not traces:
-            continue
-        commits[path.name] = commit()
-        version = next(iter(traces.values())).version
-        words = variant.replace("-", " ")
-        with tempfile.TemporaryDirectory() as scratch:
-            tables = {name: tilt_and_azimuth(trace) for name, trace in traces.items()}
-            file = submit(tables, Path(scratch) / "trajectory.csv")
-            command = [sys.executable, str(folder / "check.py"), path.name, str(file)]
-            command += ["--label", f"{engine} {version}, {words}", "--out", str(target / f"{path.name}.json")]
-            subprocess.run(command, check=False)
+        if traces:
+            commits[path.name] = commit()
+            version = next(iter(traces.values())).version
+            label = f"{engine} {version}, {words}"
+            with tempfile.TemporaryDirectory() as scratch:
+                tables = {name: tilt_and_azimuth(trace) for name, trace in traces.items()}
+                file = submit(tables, Path(scratch) / "trajectory.csv")
+                command = [sys.executable, str(folder / "check.py"), path.name, str(file)]
+                command += ["--label", label, "--out", str(target / f"{path.name}.json")]
+                subprocess.run(command, check=False)
         about = {
             "code": engine,
             "version": version,
             "settings": words,
-            "time_step": _step_in_words(variant) if costs else "of its tolerance, 1e-8 relative",
-            "seconds_a_step": statistics.median(costs) if costs else None,
+            "time_step": _step_in_words(variant) if engine != REDUCED else "of its tolerance, 1e-8 relative",
+            "seconds_a_step": statistics.median(costs) if costs else old.get("seconds_a_step"),
             "cannot": cannot,
             "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
             "commits": commits,
         }
-        known.write_text(json.dumps(about, indent=1) + "\n")
+        known.write_text(json.dumps(about, indent=1) + "\n")  # also where the next case is interrupted
 
 
 def _step_in_words(variant: str) -> str:

@@ -9,6 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import jsonschema
 import numpy as np
 import pytest
 from mutation.listed import mutations
@@ -65,6 +66,18 @@ def test_it_is_the_same_here_and_in_a_file(certificate: dict[str, Any], tmp_path
     answer = verify(read_certificate(tmp_path / "certificate.json"))
     assert answer.word == SAME
     assert answer.exit_code == 0
+
+
+def test_a_certificate_follows_its_schema(certificate: dict[str, Any]) -> None:
+    path = ROOT / "reports" / "published" / "benchmark" / "schemas" / "certificate.schema.json"
+    schema = json.loads(path.read_text())
+    jsonschema.validate(certificate, schema, cls=jsonschema.Draft202012Validator)
+    for name in ("reduced", "mujoco"):
+        published = json.loads((ROOT / "reports" / "published" / "certificates" / f"{name}.json").read_text())
+        jsonschema.validate(published, schema, cls=jsonschema.Draft202012Validator)
+    claims = [{**certificate["claims"][0], "status": "validated"}]
+    with pytest.raises(jsonschema.ValidationError):
+        jsonschema.validate({**certificate, "claims": claims}, schema, cls=jsonschema.Draft202012Validator)
 
 
 def test_the_interpreter_without_a_compiler_gives_the_same(certificate: dict[str, Any]) -> None:
@@ -204,6 +217,11 @@ def test_the_copy_in_the_published_folder_reads_certificates_with_numpy_alone(
         command = [sys.executable, "-I", str(published), *paths]
         return subprocess.run(command, capture_output=True, text=True, check=False)
 
+    older = {**certificate, "format": certificate["format"] - 1}
+    (tmp_path / "older.json").write_text(json.dumps(older))
+    refused = run("older.json", "one.json")
+    assert refused.returncode == 2
+    assert "make both anew" in refused.stderr
     same, changed, bad = run("one.json", "one.json"), run("one.json", "other.json"), run("one.json", "none")
     assert (same.returncode, same.stdout.strip()) == (0, "same")
     assert changed.returncode == 1
