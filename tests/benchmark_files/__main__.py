@@ -2,6 +2,7 @@
 
 python tests/benchmark_files cases [CASE ...]       the references, and how well each is known
 python tests/benchmark_files results [ENGINE ...]   what check.py says of our models and engines, scoreboard
+                                     [--only CASE]  these cases alone; the results of the others stay
 """
 
 from __future__ import annotations
@@ -12,17 +13,17 @@ import sys
 from pathlib import Path
 
 TESTS = Path(__file__).resolve().parents[1]
-ENGINES = ("rockwobble", "mujoco", "pybullet", "exudyn")
+ENGINES = ("rockwobble", "mujoco", "pybullet", "dart", "drake", "exudyn")
 
 
-def cases(names: list[str]) -> None:
+def cases(names: list[str], only: list[str]) -> None:
     """Write the cases, and print the largest bounds."""
     from benchmark_files.definitions import definitions
     from benchmark_files.references import reference
     from benchmark_files.write import PUBLISHED, write
 
     for definition in definitions():
-        if names and definition.name not in names:
+        if (names or only) and definition.name not in names + only:
             continue
         found = reference(definition)
         write(definition, found, PUBLISHED / "cases" / definition.name)
@@ -31,14 +32,14 @@ def cases(names: list[str]) -> None:
         print(f"{definition.name}: {number} quantities, largest bound {worst:.0e}; traces {found.bounds}")
 
 
-def results(names: list[str]) -> None:
+def results(names: list[str], only: list[str]) -> None:
     """Write the results, and the scoreboard."""
     from benchmark_files.engines import REDUCED, VARIANTS, results_of
     from benchmark_files.write import PUBLISHED
 
     for engine in names or ENGINES:
         for variant in ("default",) if engine == REDUCED else VARIANTS:
-            results_of(engine, variant, PUBLISHED)
+            results_of(engine, variant, PUBLISHED, only)
     subprocess.run([sys.executable, str(PUBLISHED / "scoreboard.py")], check=True)
 
 
@@ -47,8 +48,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(prog="python tests/benchmark_files", description=__doc__)
     parser.add_argument("part", choices=("cases", "results"))
     parser.add_argument("names", nargs="*", help="default: all")
+    parser.add_argument("--only", action="append", default=[], metavar="CASE")
     given = parser.parse_args()
-    {"cases": cases, "results": results}[given.part](given.names)
+    {"cases": cases, "results": results}[given.part](given.names, given.only)
 
 
 if __name__ == "__main__":

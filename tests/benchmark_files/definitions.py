@@ -258,7 +258,6 @@ def scales() -> Definition:
         step=0.005,
         criteria=(quantity("period_1", "relative", 0.002, 1e-6), *lean_and_tilt(11.0, 1e-5)),
         needed=("tilt",),
-        needs="any",
     )
 
 

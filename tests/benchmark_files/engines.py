@@ -1,6 +1,7 @@
 """Results of the engines: each case that an engine can do, judged by check.py like anybody's.
 
-`results/NAME` holds one file a case and about.json: code, version, settings, computing time of a step.
+`results/NAME` holds one file a case and about.json: code, version, settings, time step, processor time of a
+step, what it cannot do and why, and the commit that ran each case.
 """
 
 from __future__ import annotations
@@ -11,12 +12,14 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from collections.abc import Collection
 from pathlib import Path
 
 from rockwobble import multibody, reduced
+from rockwobble.compare.storage.provenance import commit
 from rockwobble.models import Case, Trace
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.scene.froude import REFERENCE_SEMIDIAGONAL, REFERENCE_TIME_STEP, froude_scale
 
 from .submission import cases_of, spacing, submit, tilt_and_azimuth
 
@@ -31,6 +34,11 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
     target = folder / "results" / f"{engine}-{variant}"
     target.mkdir(parents=True, exist_ok=True)
     costs: list[float] = []
+    known = target / "about.json"
+    old = json.loads(known.read_text()) if only and known.exists() else {}
+    cannot: dict[str, str] = old.get("cannot", {})
+    commits: dict[str, str] = old.get("commits", {})
+    version, words = old.get("version", ""), variant.replace("-", " ")
     problems = {path: cases_of(path) for path in (folder / "cases").iterdir()}
     lengths = {path: sum(case.length for case, _ in cases.values()) for path, cases in problems.items()}
     for path in sorted(problems, key=lambda path: lengths[path]):
@@ -38,29 +46,40 @@ def results_of(engine: str, variant: str, folder: Path, only: Collection[str] = 
             continue
         traces: dict[str, Trace] = {}
         for name, (case, support) in problems[path].items():
+            start = time.process_time()  # not the wall: other work on the machine is none of an engine's
             try:
-                traces[name] = _simulate(engine, case, support, **VARIANTS[variant])
+                trace = traces[name] = _simulate(engine, case, support, **VARIANTS[variant])
             except ValueError as error:  # what an engine cannot do
-                print(f"{engine}, {path.name}, {name}: {error}")
-        if not traces:
-            continue
-        version = next(iter(traces.values())).version
-        words = variant.replace("-", " ")
-        costs += [t.wall_time * t.time_step / t.time[-1] for t in traces.values() if engine != REDUCED]
-        with tempfile.TemporaryDirectory() as scratch:
-            tables = {name: tilt_and_azimuth(trace) for name, trace in traces.items()}
-            file = submit(tables, Path(scratch) / "trajectory.csv")
-            command = [sys.executable, str(folder / "check.py"), path.name, str(file)]
-            command += ["--label", f"{engine} {version}, {words}", "--out", str(target / f"{path.name}.json")]
-            subprocess.run(command, check=False)
+                cannot[path.name] = str(error)
+                continue
+            if engine != REDUCED:
+                costs.append((time.process_time() - start) * trace.time_step / trace.time[-1])
+        if traces:
+            commits[path.name] = commit()
+            version = next(iter(traces.values())).version
+            label = f"{engine} {version}, {words}"
+            with tempfile.TemporaryDirectory() as scratch:
+                tables = {name: tilt_and_azimuth(trace) for name, trace in traces.items()}
+                file = submit(tables, Path(scratch) / "trajectory.csv")
+                command = [sys.executable, str(folder / "check.py"), path.name, str(file)]
+                command += ["--label", label, "--out", str(target / f"{path.name}.json")]
+                subprocess.run(command, check=False)
         about = {
             "code": engine,
             "version": version,
             "settings": words,
-            "seconds_a_step": statistics.median(costs) if costs else None,
+            "time_step": _step_in_words(variant) if engine != REDUCED else "of its tolerance, 1e-8 relative",
+            "seconds_a_step": statistics.median(costs) if costs else old.get("seconds_a_step"),
+            "cannot": cannot,
             "machine": f"{platform.machine()}, {platform.system()}, Python {platform.python_version()}",
+            "commits": commits,
         }
-        (target / "about.json").write_text(json.dumps(about, indent=1) + "\n")
+        known.write_text(json.dumps(about, indent=1) + "\n")  # also where the next case is interrupted
+
+
+def _step_in_words(variant: str) -> str:
+    step = VARIANTS[variant].get("step", 1.0) * REFERENCE_TIME_STEP
+    return f"{step:g} s at R = {REFERENCE_SEMIDIAGONAL:g} m, as sqrt(R)"
 
 
 def _simulate(engine: str, case: Case, support: str, step: float = 1.0) -> Trace:

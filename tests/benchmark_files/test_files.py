@@ -14,7 +14,7 @@ import jsonschema
 import numpy as np
 import pytest
 
-from benchmark_files.conftest import EXIT
+from benchmark_files.conftest import EXIT, Judge
 from benchmark_files.definitions import definitions
 from benchmark_files.references import reference
 from benchmark_files.submission import cases_of
@@ -220,6 +220,21 @@ def test_examples_of_every_format_are_exact(path: Path, copied: Path, tmp_path: 
     assert result["verdict"] == "exact", done.stdout
     schema = json.loads((copied / "schemas" / "result.schema.json").read_text())
     jsonschema.validate(result, schema, cls=jsonschema.Draft202012Validator)
+
+
+def test_the_scoreboard_tells_what_cannot_be_run_from_what_was_not() -> None:
+    lines = (PUBLISHED / "scoreboard.md").read_text().splitlines()
+    table = [line.strip("| ").split(" | ") for line in lines if line.startswith("| ")]
+    column = next(i for i, title in enumerate(table[0]) if title.startswith("exudyn"))
+    cells = {row[0]: row[column] for row in table[1:11]}
+    assert cells["Angle of turn and period in a recess"] == "cannot"  # it has flat ground alone
+    assert cells["Energy over 100 passes"] == "not run"
+
+
+def test_one_size_of_five_does_not_make_scale_invariance(judge: Judge) -> None:
+    columns = table("scale-invariance")
+    given = {"r-1": {name: columns[name] for name in ("time", "tilt", "azimuth")}}
+    assert judge("scale-invariance", given).verdict == "rejected"
 
 
 def test_the_scoreboard_is_made_of_the_results(copied: Path) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from rockwobble.compare.check import LAYERS
 from rockwobble.reports.cli.main import main
 
 pytest_plugins = ["pytester"]
@@ -105,6 +106,9 @@ def test_a_model_of_somebody_else_is_checked(
     assert "FAILED" in capsys.readouterr().out
     found = json.loads((tmp_path / "good.json").read_text())
     assert "period of a release" in json.dumps(found)
+    told = {finding["layer"] for finding in found["findings"]}
+    about_files_and_engines = {"records", "metrics", "studies", "traces"}
+    assert told == set(LAYERS) - about_files_and_engines
 
 
 def test_a_trajectory_of_somebody_else_is_checked(

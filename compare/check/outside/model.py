@@ -62,6 +62,15 @@ def left_out(layer: str, name: str, part: str, note: str) -> Finding:
 
 Check = Callable[[Outside], Iterator[Finding]]
 
+# layers of `rockwobble check` that ask for more than time, tilt, azimuth and energy
+NEVER = {
+    "equations": "differences of positions give accelerations only where samples are exact to rounding",
+    "properties": "neither contact forces nor turning points are returned",
+    "order": "its steps and tolerances are its own",
+    "residual": "neither its place nor its twist is returned",
+    "baseline": "no earlier numbers of it are stored",
+}
+
 
 def check_model(model: Model, *, support: str = "recess", tolerance: float = TOLERANCE) -> Iterator[Finding]:
     """Yield what the checks find; one that cannot run says why.
@@ -91,6 +100,8 @@ def check_model(model: Model, *, support: str = "recess", tolerance: float = TOL
         except Exception as error:  # whatever code of somebody else raises is told, and the next check runs
             note = f"{type(error).__name__}: {' '.join(str(error).split())}"
             yield left_out(layer, name, "the model", note)
+    for layer, note in NEVER.items():
+        yield left_out(layer, f"checks of the layer {layer}", "the model", note)
 
 
 def _release(spin: float = _SPIN, azimuth: float = 0.3, body: Cylinder = _PIER) -> Case:

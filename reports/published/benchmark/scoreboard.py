@@ -2,9 +2,8 @@
 
     python scoreboard.py
 
-A folder results/NAME has about.json (code, version, settings, seconds_a_step) and for each case that was run
-the result.json of check.py, as CASE.json. A result that belongs to other references than those here is
-refused.
+A folder results/NAME has about.json (README.md says what it holds) and for each case that was run the
+result.json of check.py, as CASE.json. A result that belongs to other references than those here is refused.
 """
 
 from __future__ import annotations
@@ -45,9 +44,11 @@ def entries() -> list[dict[str, Any]]:
                 "likely_mistakes": result["likely_mistakes"],
             }
         found.append({**json.loads(about.read_text("utf-8")), "cases": cases})
-    return sorted(
-        found, key=lambda entry: -sum(one["verdict"] in ORDER[:3] for one in entry["cases"].values())
-    )
+    most: dict[str, int] = {}
+    for entry in found:
+        passed = sum(one["verdict"] in ORDER[:3] for one in entry["cases"].values())
+        most[entry["code"]] = max(passed, most.get(entry["code"], 0))
+    return sorted(found, key=lambda entry: (-most[entry["code"]], entry["code"], entry["settings"]))
 
 
 def _share(one: dict[str, Any]) -> float:
@@ -56,10 +57,10 @@ def _share(one: dict[str, Any]) -> float:
 
 
 def cell(entry: dict[str, Any], case: str) -> str:
-    """Return the verdict and the worst error."""
+    """Return the verdict and the worst error, or why there is none."""
     one = entry["cases"].get(case)
     if one is None:
-        return "not run"
+        return "cannot" if case in entry.get("cannot", {}) else "not run"
     worst = one["worst"]
     if worst is None or worst["error"] is None:
         return str(one["verdict"])
@@ -73,44 +74,77 @@ def rows(found: list[dict[str, Any]]) -> list[list[str]]:
         for path in HERE.glob("cases/*/case.json")
     }
     head = ["case", *(f"{entry['code']} {entry['version']}, {entry['settings']}" for entry in found)]
-    costs = [entry["seconds_a_step"] for entry in found]
     body = [[titles[case], *(cell(entry, case) for entry in found)] for case in sorted(titles)]
-    return [
-        head,
-        *body,
-        ["time of a step", *("" if cost is None else f"{1e6 * cost:.1f} us" for cost in costs)],
-    ]
+    return [head, *body]
+
+
+def makers(found: list[dict[str, Any]]) -> list[list[str]]:
+    """Return the table of what was run: a line for each entry."""
+    lines = [["code", "version", "settings", "time step", "processor time of a step", "machine", "commits"]]
+    for entry in found:
+        cost = entry["seconds_a_step"]
+        told = [str(entry.get(key, "")) for key in ("code", "version", "settings", "time_step")]
+        spent = "" if cost is None else f"{1e6 * cost:.1f} µs"
+        commits = ", ".join(sorted({one[:8] for one in entry.get("commits", {}).values()}))
+        lines.append([*told, spent, str(entry.get("machine", "")), commits])
+    return lines
+
+
+def markdown(table: list[list[str]]) -> str:
+    """Return a table in Markdown."""
+    head, *body = (f"| {' | '.join(row)} |" for row in table)
+    return "\n".join([head, "|" + "---|" * len(table[0]), *body])
+
+
+def page(table: list[list[str]]) -> str:
+    """Return a table in HTML, which scrolls by itself where a screen is narrow."""
+    head, *body = table
+    text = ["<tr>", *(f"<th>{html.escape(one)}</th>" for one in head), "</tr>"]
+    for first, *row in body:
+        text.append(f"<tr><th>{html.escape(first)}</th>")
+        for one in row:
+            word, *more = html.escape(one).split(" (", 1)
+            kind = word if word in ORDER else "none"
+            below = (
+                f"{word}<br><small>{more[0].removesuffix(')')}</small>" if kind != "none" and more else one
+            )
+            text.append(f'<td class="{kind}">{below}</td>')
+        text.append("</tr>")
+    return f"<div><table>{''.join(text)}</table></div>"
 
 
 def main() -> None:
     """Write the three files."""
     found = entries()
-    table = rows(found)
+    table, made = rows(found), makers(found)
     (HERE / "scoreboard.json").write_text(json.dumps(found, indent=1) + "\n", "utf-8")
     words = (
         "Each cell has the verdict of check.py and, of all criteria of the case, the error that is largest "
-        "against its bound. Single peaks and times mean what README.md says."
+        'against its bound. "cannot": the code says that it has no such support or start; "not run": '
+        "nobody has. Single peaks and times mean what README.md says."
     )
-    lines = ["# Scoreboard", "", words, "", *(f"| {' | '.join(row)} |" for row in table)]
-    lines.insert(5, "|" + "---|" * len(table[0]))
-    (HERE / "scoreboard.md").write_text("\n".join(lines) + "\n", "utf-8")
-    head, *body = table
-    cells = "".join(f"<th>{html.escape(text)}</th>" for text in head)
-    page = [f"<tr>{cells}</tr>"]
-    for row in body:
-        kinds = [next((kind for kind in ORDER if text.startswith(kind)), "none") for text in row]
-        pairs = zip(row, kinds, strict=True)
-        page.append(
-            "<tr>" + "".join(f'<td class="{kind}">{html.escape(text)}</td>' for text, kind in pairs) + "</tr>"
-        )
+    text = ["# Scoreboard", words, markdown(table), "## What was run", markdown(made)]
+    (HERE / "scoreboard.md").write_text("\n\n".join(text) + "\n", "utf-8")
     style = (
-        "body{font:15px/1.5 sans-serif;margin:2em}table{border-collapse:collapse}td,th{border:1px solid #bbb;"
-        "padding:.4em .6em;text-align:left;vertical-align:top}.exact,.good{background:#e2f2e4}"
-        ".pass{background:#f4f7dc}.fail,.rejected{background:#f9e0dc}"
+        "body{font:15px/1.45 sans-serif;margin:1.5em;color:#222;background:#fff}p{max-width:45em}"
+        "div{overflow-x:auto}table{border-collapse:separate;border-spacing:0}"
+        "td,th{border:solid #bbb;border-width:0 1px 1px 0;padding:.4em .6em;text-align:left;"
+        "vertical-align:top}td{min-width:6.5em}small{color:#444;white-space:nowrap}"
+        "tr:first-child>*{border-top-width:1px}tr>:first-child{border-left-width:1px;position:sticky;left:0;"
+        "background:#f3f3f3;min-width:8em}.exact,.good{background:#e2f2e4}.pass{background:#f4f7dc}"
+        ".fail,.rejected{background:#f9e0dc}"
+        "@media(max-width:600px){body{margin:.8em;font-size:14px}tr>:first-child{max-width:8em}}"
     )
-    start = f'<!doctype html><html lang="en"><meta charset="utf-8"><title>Scoreboard</title><style>{style}'
-    text = f"</style><h1>Scoreboard</h1><p>{html.escape(words)}</p><table>{''.join(page)}</table></html>\n"
-    (HERE / "scoreboard.html").write_text(start + text, "utf-8")
+    start = (
+        '<!doctype html><html lang="en"><meta charset="utf-8">'
+        '<meta name="viewport" content="width=device-width,initial-scale=1">'
+        f"<title>Scoreboard</title><style>{style}</style>"
+    )
+    whole = (
+        f"{start}<h1>Scoreboard</h1><p>{html.escape(words)}</p>{page(table)}"
+        f"<h2>What was run</h2>{page(made)}</html>\n"
+    )
+    (HERE / "scoreboard.html").write_text(whole, "utf-8")
 
 
 if __name__ == "__main__":
