@@ -6,7 +6,7 @@ Contact has no stiffness to choose: after a step the rim's lowest point rests or
   ground takes it back by a velocity of its own, so that the rim stays as deep as it was: without it the rim
   would hop through a gap for a fifth of the steps. Where a base lands, the other side of its rim is in the
   ground by what a step has moved it. Taken back in one step that would throw the cylinder as high as it fell
-  from, so it is taken back slowly.
+  from; so the ground takes it back at a speed that falls by a tenth of gravity, which leaves it its load.
 * Where the centre of the base is below the ground, ODE's detector finds four corners along the axes of the
   scene; where it is above, the lowest point, whose radius is off by 1e-16/lean^2. So the rim is kept at a
   depth of 1e-6 m, and where there are corners the scene is turned about the vertical until one of them is
@@ -41,6 +41,7 @@ _OPEN = 1e-8  # [rad] lean at which the base is open; standing it stays below 5e
 # of b, the base may open
 _LOADED, _OPENING = 0.5, 0.999
 _REDUCTION, _FASTEST_REDUCTION = 0.01, 1e-3  # [-], [m/s] by which DART itself reduces a depth
+_SLOWING = 0.1  # of gravity, by which the ground slows down that takes a landed base back
 _LANDED = 2.0  # depths of the rim by which a closed base is deeper than it was kept where it has landed
 _FAR = 1e3  # of the height: ODE ends the process where something is too far away
 _SPIN = 1.0  # [rad] about the axis of the cylinder
@@ -126,7 +127,7 @@ class _DartStepper:
         spin_x, spin_y = cosine(0.5 * _SPIN), sine(0.5 * _SPIN)
         target, gain = self._settings.depth, self._settings.depth_gain / self._step
         reduction, fastest = _REDUCTION / self._step, _FASTEST_REDUCTION
-        kept, landed, back = self._kept, _LANDED * target, fastest * self._step
+        kept, landed, time_step, slowing = self._kept, _LANDED * target, self._step, 2.0 * _SLOWING * gravity
         far = _FAR * body.height
         rows: list[list[float]] = []
         row = get().tolist()
@@ -147,8 +148,9 @@ class _DartStepper:
             closed, lies = b * lean < depth, kept > landed
             if closed and depth > kept + landed:
                 kept = depth
-            rise(2, gain * (depth - kept) - min(reduction * max(depth, 0.0), fastest))
-            kept = max(kept - back, target)
+            back = min(root(slowing * (kept - target)), (kept - target) / time_step)
+            rise(2, gain * (depth - kept) + back - min(reduction * max(depth, 0.0), fastest))
+            kept = max(kept - back * time_step, target)
             if closed:
                 # of a base that slides, friction is all the load
                 load = min(math.hypot(ax, ay) / (gravity + az), friction) * arm
