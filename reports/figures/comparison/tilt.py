@@ -21,7 +21,12 @@ SMALLEST = 1e-7
 WINDOW = 1.0
 _FALLS = 1.5  # [alpha] where tilts are cut if one goes farther
 _HEIGHT = 2.3  # [inch]
-_WHERE = {"recess": "in an ideal recess", "flat": "on flat ground", "ring": "in a ring of walls"}
+_WHERE = {
+    "recess": "in an ideal recess",
+    "flat": "on flat ground",
+    "ring": "in a ring of walls",
+    "external": "external trajectory",
+}
 
 
 def pictures(comparison: Comparison) -> Pictures:
