@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import dataclasses
 import json
 import subprocess
@@ -227,6 +228,19 @@ def test_the_copy_in_the_published_folder_reads_certificates_with_numpy_alone(
     assert changed.returncode == 1
     assert changed.stdout.startswith("changed: tilt of near-pass")
     assert bad.returncode == 2
+
+
+def test_what_is_said_of_releases_is_in_their_table() -> None:
+    """docs/reference/commands/checks.md: all the same, and by how much they differ."""
+    path = ROOT / "reports" / "published" / "certificates" / "releases.csv"
+    rows = list(csv.DictReader(path.read_text().splitlines()))
+    assert {row["word"] for row in rows} == {SAME}
+    assert all(float(row["of_allowed"]) < 1.0 for row in rows)
+    landing = {"resting", "close-passes"}
+    smooth = [float(row["largest_difference"]) for row in rows if row["case"] not in landing]
+    assert 1e-7 < max(smooth) < 2e-7
+    assert 0.2 < max(float(row["largest_difference"]) for row in rows) < 0.3
+    assert not any(float(row["largest_difference"]) for row in rows if row["engine"] == "dart")
 
 
 def test_what_is_not_validated_cannot_be_called_so() -> None:
