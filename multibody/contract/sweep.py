@@ -29,7 +29,7 @@ def uplifts_in_every_direction(engine: str, support: str) -> None:
                 push = (
                     share * REFERENCE_GRAVITY * tan_alpha * np.array([math.cos(azimuth), math.sin(azimuth)])
                 )
-                motion = GroundMotion([0.0 * push, push, push], 0.1)
+                motion = GroundMotion([0.0 * push, *[push] * 6], 0.02)
                 given = {"cylinder": cylinder, "motion": motion, "initial": None, "friction": 2.0}
                 found = run(engine, support, duration=None, **given)
                 if share < 1.0:

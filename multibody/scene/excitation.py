@@ -41,7 +41,9 @@ class StepMeans:
             self._spacing = motion.time_step / scale.time
         areas = 0.5 * self._spacing * (self._samples[1:] + self._samples[:-1])
         self._velocity: Array = np.vstack([np.zeros(3), np.cumsum(areas, axis=0)])
-        self._slopes: Array = np.diff(self._samples, axis=0) / self._spacing
+        self._slopes: Array = np.diff(self._samples, axis=0, append=self._samples[-1:]) / self._spacing
+        # from the last sample on the ground keeps still, as if zeros followed
+        self._samples[-1] = 0.0
         self._still = motion is None
 
     def __call__(self, first: int, count: int, centre: float = 0.0) -> Array:
@@ -66,8 +68,9 @@ class StepMeans:
 
     def ground_velocity(self, time: Array) -> Array:
         """Return the integral of the acceleration up to `time` (n,), shape (n, 3) [m/s]."""
-        inside = np.clip(time, 0.0, self._spacing * (len(self._samples) - 1))
-        index = np.minimum((inside / self._spacing).astype(np.intp), len(self._samples) - 2)
+        inside = np.maximum(time, 0.0)
+        # a time that rounding puts before its sample belongs to it
+        index = np.minimum((inside / self._spacing + 1e-9).astype(np.intp), len(self._samples) - 1)
         past = inside - index * self._spacing
         # component by component, which is how the steps take it
         velocity = np.empty((3, len(time)))
