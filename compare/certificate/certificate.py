@@ -17,7 +17,7 @@ from .fingerprint import Method, engine_method, fingerprint, reduced_method, rep
 from .short_cases import short_cases
 from .verdict import KIND, Answer, Certificate, Described, compare, read
 
-FORMAT = 2
+FORMAT = 3
 
 
 def certify(method: Method, findings: Iterable[Finding]) -> Certificate:

@@ -20,12 +20,14 @@ def cases(names: list[str], only: list[str]) -> None:
     """Write the cases, and print the largest bounds."""
     from benchmark_files.definitions import definitions
     from benchmark_files.references import reference
+    from benchmark_files.witnesses import with_witnesses
     from benchmark_files.write import PUBLISHED, write
 
     for definition in definitions():
         if (names or only) and definition.name not in names + only:
             continue
         found = reference(definition)
+        found = found._replace(quantities=with_witnesses(definition, found.quantities))
         write(definition, found, PUBLISHED / "cases" / definition.name)
         worst = max((one["bound"] for one in found.quantities), default=0.0)
         number = len(found.quantities)

@@ -107,6 +107,18 @@ def test_each_number_is_certified_by_formulations_that_agree(case: str) -> None:
     assert np.abs(shares[0] - shares[1]).max() < 1.5 / 22.0
 
 
+@pytest.mark.parametrize(("case", "number"), [("turn-flat", 10), ("turn-recess", 4)])
+def test_engines_of_hard_contact_tend_to_the_same_numbers(case: str, number: int) -> None:
+    near = {"exudyn": 1e-10, "dart": 5e-7}  # README.md of the folder says so
+    said = [
+        (by.partition(" ")[0], value / one["value"] - 1.0)
+        for one in read(case, "reference")["quantities"]
+        for by, value in one.get("engines", {}).items()
+    ]
+    assert len(said) == number
+    assert all(abs(off) < near[engine] for engine, off in said)
+
+
 @pytest.mark.parametrize("case", SHORT)
 def test_the_files_are_what_is_computed_here(case: str) -> None:
     definition = next(one for one in definitions() if one.name == case)
