@@ -36,11 +36,11 @@ def cases(names: list[str], only: list[str]) -> None:
 
 def results(names: list[str], only: list[str]) -> None:
     """Write the results, and the scoreboard."""
-    from benchmark_files.engines import REDUCED, VARIANTS, results_of
+    from benchmark_files.engines import DEFAULT, REDUCED, VARIANTS, results_of
     from benchmark_files.write import PUBLISHED
 
     for engine in names or ENGINES:
-        for variant in ("default",) if engine == REDUCED else VARIANTS:
+        for variant in (DEFAULT,) if engine == REDUCED else VARIANTS:
             results_of(engine, variant, PUBLISHED, only)
     subprocess.run([sys.executable, str(PUBLISHED / "scoreboard.py")], check=True)
 
