@@ -15,6 +15,7 @@ import tempfile
 import time
 from collections.abc import Collection
 from pathlib import Path
+from typing import Any
 
 from rockwobble import multibody, reduced
 from rockwobble.compare.storage.provenance import commit
