@@ -40,6 +40,7 @@ COLUMNS = {
     "agreement_time": ".3g",
     "before": ".1e",
     "of_allowed": ".1e",
+    "after": ".1e",
     "tilt_after": ".1e",
 }
 
@@ -61,7 +62,8 @@ def rows(path: Path) -> pd.DataFrame:
     """Return one row for each case: its word, and the largest differences of its samples.
 
     `before` is the largest of all signals (over alpha, g R, weights) before the agreement time, `of_allowed`
-    the largest share of what is allowed there, `tilt_after` the largest of the tilt from then on.
+    the largest share of what is allowed there; `after` and `tilt_after` are those of all and of the tilt from
+    then on.
     """
     import pandas as pd
 
@@ -84,17 +86,18 @@ def rows(path: Path) -> pd.DataFrame:
 
 def _differences(one: Entry, other: Sample) -> dict[str, float]:
     end = math.inf if one["agreement_time"] is None else one["agreement_time"]
-    before = of_allowed = after = 0.0
-    for name, values in one["signals"].items():
+    before = of_allowed = after = tilt_after = 0.0
+    for name, values in one["signals"].items():  # the tilt first
         count = min(len(values), len(other["signals"][name]))
         wanted, got = (np.array(v[:count], dtype=float) for v in (values, other["signals"][name]))
         apart, early = np.abs(wanted - got), np.array(one["time"][:count]) < end
         share = apart / np.array(one["allowed"][name][:count])
         before = max(before, np.nanmax(apart[early], initial=0.0))
         of_allowed = max(of_allowed, np.nanmax(share[early], initial=0.0))
+        after = max(after, np.nanmax(apart[~early], initial=0.0))
         if name == "tilt":
-            after = float(np.nanmax(apart[~early], initial=0.0))
-    rounded = {"before": before, "of_allowed": of_allowed, "tilt_after": after}
+            tilt_after = after
+    rounded = {"before": before, "of_allowed": of_allowed, "after": after, "tilt_after": tilt_after}
     return {"agreement_time": end} | {name: float(f"{value:.2g}") for name, value in rounded.items()}
 
 
