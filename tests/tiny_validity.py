@@ -1,9 +1,10 @@
-"""The limits measured on a tiny grid, once for all tests that ask for it."""
+"""The limits measured on a tiny grid, once for all tests that ask for it, in whatever process they run."""
 
 from __future__ import annotations
 
 import dataclasses
-import tempfile
+import os
+import time
 from functools import cache
 from typing import TYPE_CHECKING
 
@@ -11,7 +12,11 @@ from rockwobble.compare.studies.validity.extent import QUICK, Ring
 from rockwobble.compare.studies.validity.study import Validity, measure_all, validity_of
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import pandas as pd
+
+_PATIENCE = 300.0  # for the process that measures [s]
 
 TINY = dataclasses.replace(
     QUICK,
@@ -37,12 +42,27 @@ TINY = dataclasses.replace(
 
 
 @cache
-def tiny_tables() -> dict[str, pd.DataFrame]:
-    """Return the tables of all parts."""
-    return measure_all(TINY, tempfile.mkdtemp(), workers=1)
+def tiny_tables(base: Path) -> dict[str, pd.DataFrame]:
+    """Return the tables of all parts; of several processes of a session the first to ask measures for all.
+
+    `base` is pytest's temporary folder of this process, beside those of the others.
+    """
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "tiny-validity"
+    ended = folder / "ended"
+    try:
+        folder.mkdir()
+    except FileExistsError:
+        deadline = time.monotonic() + _PATIENCE
+        while not ended.exists():
+            assert time.monotonic() < deadline, f"whoever measures in {folder} does not come to an end"
+            time.sleep(0.2)
+    try:
+        return measure_all(TINY, folder, workers=1)  # and nothing of what is kept there
+    finally:
+        ended.touch()
 
 
 @cache
-def tiny_validity() -> Validity:
+def tiny_validity(base: Path) -> Validity:
     """Return the study."""
-    return validity_of(tiny_tables(), TINY, "rockwobble validity")
+    return validity_of(tiny_tables(base), TINY, "rockwobble validity")

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from ..assumptions import Assumptions
 from ..case import Case, Run
 from ..diagnostic import Diagnostic
 from ..shown import Shown
 from . import trace_file
+from .limited import Limited
 from .trace_source import Array, Late, Source, friction_of, no_passes
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Trace(Shown):
+class Trace(Limited, Shown):
     """Motion of one cylinder at n samples; positions are relative to O, which moves with the ground.
 
     What a source does not know is NaN.
@@ -168,54 +168,6 @@ class Trace(Shown):
         reference = self.uplift_direction if plane is None else plane
         away = np.cos(np.nan_to_num(self.rolling_angle) - np.nan_to_num(reference)) < 0.0
         return np.where(away, -self.tilt, self.tilt)
-
-    @cached_property
-    def assumptions(self) -> Assumptions | None:
-        """Whether contact and friction held, from extrema of the continuous motion; None if not known."""
-        return self.source.assumptions(math.inf)
-
-    def assumptions_until(self, end: float) -> Assumptions | None:
-        """Return whether contact and friction held until the time `end` [s], such as that of a fall.
-
-        Parameters
-        ----------
-        end : float
-            In the time of the run [s].
-
-        Returns
-        -------
-        Assumptions or None
-        """
-        return self.source.assumptions(end)
-
-    @property
-    def diagnostics(self) -> tuple[Diagnostic, ...]:
-        """What ended or limits the motion, breaches of the model's assumptions included."""
-        return self.facts + (self.assumptions.breaches if self.assumptions else ())
-
-    def first(self, *codes: str) -> float:
-        """Return the earliest time at which a diagnostic of these codes holds [s]; infinite if none does.
-
-        Parameters
-        ----------
-        *codes : str
-            Of `rockwobble.models.diagnostic.CODES`.
-
-        Returns
-        -------
-        float
-            [s]
-
-        Examples
-        --------
-        >>> import rockwobble as rw
-        >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-        >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
-        >>> case = rw.Case(pier, initial=release, duration=4.0)
-        >>> rw.simulate(case).first("slip", "friction_needed")
-        inf
-        """
-        return min((fact.time for fact in self.diagnostics if fact.code in codes), default=math.inf)
 
     def to_frame(self) -> pd.DataFrame:
         """Return the samples as a table, one column for each component, SI units and radians.

@@ -1,13 +1,20 @@
-"""The published folder, copied away from the project, and its check run as anybody would."""
+"""The published folder, copied away from the project, and its check asked there.
+
+`test_files` starts the programs as anybody would; the many judgements are made by the same `main` in this
+process, since most of the time of a start goes into loading numpy.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import importlib.util
+import io
 import json
 import shutil
-import subprocess
 import sys
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import pytest
@@ -16,6 +23,8 @@ from benchmark_files.submission import Table, submit
 from benchmark_files.write import PUBLISHED
 
 EXIT = {"exact": 0, "good": 0, "pass": 0, "fail": 1, "rejected": 2}
+# a case of one run out of three: a search for mistakes goes through each some thousand times
+SINGLE, SPIN = "turn-once", "spin-0.1"
 
 
 class Judged(NamedTuple):
@@ -37,8 +46,26 @@ def copied(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(scope="session")
+def check(copied: Path, tmp_path_factory: pytest.TempPathFactory) -> ModuleType:
+    """check.py of that folder, among its cases and one of a single run."""
+    folder = tmp_path_factory.mktemp("judging")
+    shutil.copy(copied / "check.py", folder)
+    shutil.copytree(copied / "cases", folder / "cases")
+    single = shutil.copytree(folder / "cases" / "turn-recess", folder / "cases" / SINGLE) / "case.json"
+    given = json.loads(single.read_text())
+    single.write_text(json.dumps(given | {"runs": [run for run in given["runs"] if run["name"] == SPIN]}))
+    spec = importlib.util.spec_from_file_location("copied_check", folder / "check.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[spec.name] = module  # its dataclasses look there
+    spec.loader.exec_module(module)
+    return module
+
+
 @pytest.fixture
-def judge(copied: Path, tmp_path: Path) -> Judge:
+def judge(check: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Judge:
     """Return what check.py says of a trajectory, given as tables or as the text of a file."""
 
     def run(case: str, given: Mapping[str, Table] | str, titles: Mapping[str, str] | None = None) -> Judged:
@@ -47,12 +74,14 @@ def judge(copied: Path, tmp_path: Path) -> Judge:
             path.write_text(given)
         else:
             submit(given, path, titles=titles)
-        command = [sys.executable, "-I", str(copied / "check.py"), case, str(path), "--out", str(out)]
-        done = subprocess.run(command, capture_output=True, text=True, check=False)
-        assert not done.stderr, done.stderr
+        monkeypatch.setattr(sys, "argv", ["check.py", case, str(path), "--out", str(out)])
+        said, complaints = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(said), contextlib.redirect_stderr(complaints):
+            ended = check.main()
+        assert not complaints.getvalue()
         result = json.loads(out.read_text())
-        assert done.returncode == EXIT[result["verdict"]]
+        assert ended == EXIT[result["verdict"]]
         errors = {one["name"]: one["error"] for one in result["criteria"]}
-        return Judged(result["verdict"], errors, result["likely_mistakes"], result, done.stdout)
+        return Judged(result["verdict"], errors, result["likely_mistakes"], result, said.getvalue())
 
     return run

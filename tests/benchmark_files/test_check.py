@@ -10,7 +10,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from benchmark_files.conftest import Judge
+from benchmark_files.conftest import SINGLE, SPIN, Judge
 from benchmark_files.submission import (
     Table,
     cases_of,
@@ -128,7 +128,7 @@ def explicit_euler(name: str, step: float) -> dict[str, Table]:
 
 
 def test_a_coarse_step_fails_and_no_mistake_is_invented(judge: Judge) -> None:
-    judged = judge("turn-recess", explicit_euler("turn-recess", 0.005))
+    judged = judge(SINGLE, {SPIN: explicit_euler("turn-recess", 0.005)[SPIN]})
     assert judged.verdict == "fail"
     assert not judged.mistakes
 
@@ -172,8 +172,7 @@ MISTAKES: dict[str, tuple[Form, Callable[[Table], Table], str]] = {
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_mistake_in_units_axes_or_clock_is_named(judge: Judge, mistake: str) -> None:
     form, change, words = MISTAKES[mistake]
-    name = "turn-recess"
-    judged = judge(name, {run: change(form(trace)) for run, trace in traces(name).items()})
+    judged = judge(SINGLE, {SPIN: change(tables("turn-recess", form)[SPIN])})
     assert judged.verdict == "fail", judged.text
     for part, said in zip(words.split("; "), judged.mistakes, strict=True):
         assert part in said

@@ -33,8 +33,8 @@ FAST = [part_named(name) for name in ("free_response", "peaks")]
 
 
 @pytest.fixture(scope="module")
-def tables() -> Tables:
-    return tiny_tables()
+def tables(tmp_path_factory: pytest.TempPathFactory) -> Tables:
+    return tiny_tables(tmp_path_factory.getbasetemp())
 
 
 @pytest.fixture(scope="module")
@@ -196,7 +196,7 @@ def test_measures_of_limits() -> None:
     assert reached(np.array([1.0, 2.0, math.inf]), 0.9) == math.inf
 
 
-def test_a_report_shows_itself_by_figure() -> None:
-    found = tiny_validity()
+def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactory) -> None:
+    found = tiny_validity(tmp_path_factory.getbasetemp())
     shows_itself(found, "motions ", "records 14 rows")
     assert found.plot("slip").axes

@@ -23,8 +23,8 @@ LARGEST = 8_000_000  # bytes of a page
 
 
 @pytest.fixture(scope="module")
-def found() -> Validity:
-    return tiny_validity()
+def found(tmp_path_factory: pytest.TempPathFactory) -> Validity:
+    return tiny_validity(tmp_path_factory.getbasetemp())
 
 
 def changed(found: Validity, name: str, table: pd.DataFrame) -> str:
