@@ -10,10 +10,9 @@ import itertools
 import math
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
-from rigid_body import crossing, energy, excess, lifted, step, tilt_of
+from rigid_body import crossing, energy, excess, jit, lifted, step, tilt_of
 
 from rockwobble.reduced.body import body_of
 
@@ -34,7 +33,7 @@ class Sampled(NamedTuple):
     azimuth: Array
 
 
-@numba.njit  # not kept: what is kept does not notice that the functions of another file change
+@jit
 def advance(
     P: Array, p: float, y: Array, length: float, a: Array, slope: Array, rtol: float, first: float
 ) -> tuple[Array, float]:
