@@ -26,10 +26,10 @@ if TYPE_CHECKING:
         own_model,
         require_runnable,
         reserved_engines,
-        with_settings,
     )
     from .runs.execution import Job, simulate, simulate_all
     from .runs.progress import Progress
+    from .runs.run_settings import with_settings
     from .runs.scheduler import run_tasks
     from .storage.files import replace_files, require_writable
     from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
@@ -59,10 +59,10 @@ _MODULES = {
         "own_model",
         "require_runnable",
         "reserved_engines",
-        "with_settings",
     ),
     "runs.execution": ("Job", "simulate", "simulate_all"),
     "runs.progress": ("Progress",),
+    "runs.run_settings": ("with_settings",),
     "runs.scheduler": ("run_tasks",),
     "storage.files": ("replace_files", "require_writable"),
     "studies.ensemble.members": (

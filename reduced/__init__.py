@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from .batch import peak_tilts
+from .body import restitution_from_momentum
 from .exact import (
     FreeResponse,
     angle_of_turn,
@@ -14,7 +15,7 @@ from .exact import (
     steady_wobble_rate,
     wobbling_period,
 )
-from .problem import REST_TILT, SUPPORTS, restitution_from_momentum
+from .problem import REST_TILT, SUPPORTS
 from .simulation import simulate
 
 # name of each reduced model: the options of `simulate` and `peak_tilts`

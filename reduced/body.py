@@ -72,3 +72,27 @@ def body_of(cylinder: Cylinder, gravity: float) -> Body:
         alpha=math.atan(cylinder.tan_alpha),
         p=p2**0.5,
     )
+
+
+def restitution_from_momentum(cylinder: Cylinder) -> float:
+    """Return the ratio of tilt rates at an impact that conserves the moment of momentum.
+
+    About the new pivot, r = (J - b^2)/A; (16 - 25 sin^2 alpha)/(16 - sin^2 alpha) for the
+    homogeneous cylinder. Bodies too squat to rock (tan alpha > 4/3) get 0: they stop.
+
+    Parameters
+    ----------
+    cylinder : Cylinder
+
+    Returns
+    -------
+    float
+        r, rate after over rate before [-].
+
+    Examples
+    --------
+    >>> round(restitution_from_momentum(Cylinder(semidiagonal=6.0, tan_alpha=0.2)), 5)
+    0.94217
+    """
+    body = body_of(cylinder, 1.0)
+    return max(0.0, (body.J - body.b * body.b) / body.A)

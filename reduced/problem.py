@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from . import kernels
-from .body import Body, body_of
+from .body import Body, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .integration.driver import spin_momentum
 from .integration.march import March, Options
@@ -215,30 +215,6 @@ class Problem:
 
 def _restored(given: dict[str, Any]) -> Problem:
     return Problem(**given)
-
-
-def restitution_from_momentum(cylinder: Cylinder) -> float:
-    """Return the ratio of tilt rates at an impact that conserves the moment of momentum.
-
-    About the new pivot, r = (J - b^2)/A; (16 - 25 sin^2 alpha)/(16 - sin^2 alpha) for the
-    homogeneous cylinder. Bodies too squat to rock (tan alpha > 4/3) get 0: they stop.
-
-    Parameters
-    ----------
-    cylinder : Cylinder
-
-    Returns
-    -------
-    float
-        r, rate after over rate before [-].
-
-    Examples
-    --------
-    >>> round(restitution_from_momentum(Cylinder(semidiagonal=6.0, tan_alpha=0.2)), 5)
-    0.94217
-    """
-    body = body_of(cylinder, 1.0)
-    return max(0.0, (body.J - body.b * body.b) / body.A)
 
 
 def make_problem(

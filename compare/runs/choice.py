@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
-from rockwobble.models import Case, InitialState, Run
+from rockwobble.models import Case, Run
 from rockwobble.multibody import BrokenEngineError, available_engines
 from rockwobble.multibody.engines.registry import engine_packages, find_engine, standard_engines
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
@@ -12,8 +12,9 @@ from rockwobble.multibody.scene.guard import check_time_step
 from rockwobble.multibody.scene_of_case import resolved_settings
 from rockwobble.multibody.simulation import STEP_SETTINGS
 
+from .run_settings import step_settings
+
 SUPPORTS = ("recess", "flat")
-_LEAN = 1e-3  # of alpha: a tilt that fits into any ring
 
 # What an exact engine would follow. A ring holds only what has rolled out as far as its clearance: until the
 # first touch of a wall the cylinder rolls as on open ground, and after it no reduced model knows the walls.
@@ -97,67 +98,9 @@ def require_runnable(case: Case, run: Run) -> None:
     if step is not None:
         check_time_step(step, froude_scale(case.cylinder.semidiagonal, case.gravity).time)
     settings = dict(run.settings)
-    for name in _step_settings(run):
+    for name in step_settings(run):
         settings.pop(name, None)
     resolved_settings(case, run.engine, run.support, settings, step)
-
-
-def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, object]) -> tuple[Run, ...]:
-    """Return the runs with more settings, each where the run has one of that name.
-
-    Parameters
-    ----------
-    case : Case
-    runs : sequence of Run
-    settings : mapping
-
-    Returns
-    -------
-    tuple of Run
-
-    Raises
-    ------
-    ValueError
-        If no run has a setting of that name, with those that there are.
-
-    Examples
-    --------
-    >>> import rockwobble as rw
-    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
-    >>> case = rw.Case(pier, initial=release, duration=4.0)
-    >>> with_settings(case, [Run("mujoco", "recess"), Run(None, "recess")], {"iterations": 50})
-    (Run('mujoco', 'recess', iterations=50), Run(None, 'recess'))
-    """
-    known = [_setting_names(case, run) for run in runs]
-    for name in settings:
-        if not any(name in names for names in known):
-            allowed = dict.fromkeys(each for names in known for each in names)
-            raise ValueError(f"no run has a setting {name!r}; there are {', '.join(allowed)}")
-    return tuple(
-        Run(
-            run.engine,
-            run.support,
-            run.time_step,
-            **{**run.settings, **{name: value for name, value in settings.items() if name in names}},
-        )
-        for run, names in zip(runs, known, strict=True)
-    )
-
-
-def _setting_names(case: Case, run: Run) -> tuple[str, ...]:
-    # from a release that every engine and every ring can start: what is to be set may be what the case needs
-    start = Case(
-        case.cylinder, initial=InitialState(_LEAN * case.cylinder.alpha), duration=1.0, name=case.name
-    )
-    if run.engine is None:
-        return ("plane", "restitution", "rtol", "rest_tilt")
-    return (*resolved_settings(start, run.engine, run.support, {}), *_step_settings(run))
-
-
-def _step_settings(run: Run) -> tuple[str, ...]:
-    """Settings of the way to a time step that the run takes."""
-    return tuple(name for name, way in STEP_SETTINGS.items() if way == run.time_step)
 
 
 def default_runs(
