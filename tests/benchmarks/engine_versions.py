@@ -123,8 +123,8 @@ def _row(engine: str, version: str, folder: Path, *, sweep: bool) -> dict[str, A
     except subprocess.TimeoutExpired:
         return row | {"remark": f"not done within {_LONGEST:.0f} s"}
     if done.returncode:
-        last = (done.stderr.strip().splitlines() or [f"ended with {done.returncode}"])[-1]
-        return row | {"remark": last}
+        said = done.stderr.strip().splitlines() or ["crashes without a word"]
+        return row | {"remark": said[-1]}
     found = json.loads(done.stdout.splitlines()[-1])
     if found.pop("version") != version:
         return row | {"remark": "another version was found in its place"}
