@@ -237,10 +237,13 @@ def test_examples_of_every_format_are_exact(path: Path, copied: Path, tmp_path: 
 def test_the_scoreboard_tells_what_cannot_be_run_from_what_was_not() -> None:
     lines = (PUBLISHED / "scoreboard.md").read_text().splitlines()
     table = [line.strip("| ").split(" | ") for line in lines if line.startswith("| ")]
-    column = next(i for i, title in enumerate(table[0]) if title.startswith("exudyn"))
-    cells = {row[0]: row[column] for row in table[1:11]}
-    assert cells["Angle of turn and period in a recess"] == "cannot"  # it has flat ground alone
-    assert cells["Energy over 100 passes"] == "not run"
+
+    def cells(code: str) -> dict[str, str]:
+        column = next(i for i, title in enumerate(table[0]) if title.startswith(code))
+        return {row[0]: row[column] for row in table[1:11]}
+
+    assert cells("exudyn")["Angle of turn and period in a recess"] == "cannot"  # it has flat ground alone
+    assert cells("drake")["Energy over 100 passes"] == "not run"  # a step takes twenty times as long
 
 
 def test_one_size_of_five_does_not_make_scale_invariance(judge: Judge) -> None:

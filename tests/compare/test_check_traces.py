@@ -17,6 +17,7 @@ from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.models import Case, GroundMotion, Run, Trace, read_suite
 from rockwobble.models.traces.trace_source import Known
+from rockwobble.multibody.engines.registry import standard_engines
 
 KEPT: dict[str, Trace] = {}
 TRACES: dict[str, Trace] = {}  # made once, and given to every test with another fault in them
@@ -52,7 +53,7 @@ def test_traces_of_an_engine_hold(monkeypatch: pytest.MonkeyPatch, engine: str) 
 def test_an_engine_that_is_not_installed_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bench, "installed_engines", lambda: ())
     found = list(run_checks(made(), ["traces"]))
-    assert [(f.outcome, f.part) for f in found] == [(NOT_RUN, "mujoco"), (NOT_RUN, "pybullet")]
+    assert [(f.outcome, f.part) for f in found] == [(NOT_RUN, name) for name in standard_engines()]
     assert found[1].note == "pybullet is not installed here"
 
 
