@@ -20,6 +20,7 @@ import numpy as np
 
 import rockwobble.reduced
 from rockwobble.compare.check import LAYERS, Bench, Finding, run_checks
+from rockwobble.compare.check.bench import ENGINES
 from rockwobble.models import Run, read_suite
 
 from .mutant import Fault, mutated
@@ -52,7 +53,7 @@ class Mutation:
 
 
 def mutations() -> tuple[Mutation, ...]:
-    """Return all faults."""
+    """Return all faults; those of engines are faults of the standard engines."""
     return (
         *_terms(1.01, "1 % off"),
         *_terms(-1.0, "sign"),
@@ -151,31 +152,28 @@ def _engines() -> list[Mutation]:
     def coarse(engine: str) -> Callable[[Run], Run]:
         return lambda run: Run(engine, run.support, 1e-3, **run.settings) if run.engine == engine else run
 
-    return [
-        Mutation(
-            name="default contact margin, pybullet",
-            adjust=setting("pybullet", collision_margin=0.04),
-            layer="agreement",
-            named=("contact of pybullet",),
-        ),
+    found = [
         Mutation(
             name="elastic contact, mujoco",
             adjust=setting("mujoco", contact_damping_ratio=0.01),
             layer="agreement",
             named=("contact of mujoco",),
-        ),
+        )
+    ]
+    if "pybullet" in ENGINES:
+        margin = setting("pybullet", collision_margin=0.04)
+        named = ("contact of pybullet",)
+        found.append(
+            Mutation(name="default contact margin, pybullet", adjust=margin, layer="agreement", named=named)
+        )
+    return found + [
         Mutation(
-            name="step ten times too large, mujoco",
-            adjust=coarse("mujoco"),
+            name=f"step ten times too large, {engine}",
+            adjust=coarse(engine),
             layer="agreement",
-            named=("time step of mujoco",),
-        ),
-        Mutation(
-            name="step ten times too large, pybullet",
-            adjust=coarse("pybullet"),
-            layer="agreement",
-            named=("time step of pybullet",),
-        ),
+            named=(f"time step of {engine}",),
+        )
+        for engine in ENGINES
     ]
 
 
