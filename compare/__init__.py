@@ -26,6 +26,7 @@ if TYPE_CHECKING:
         own_model,
         require_runnable,
         reserved_engines,
+        runs_here,
     )
     from .runs.execution import Job, simulate, simulate_all
     from .runs.progress import Progress
@@ -59,6 +60,7 @@ _MODULES = {
         "own_model",
         "require_runnable",
         "reserved_engines",
+        "runs_here",
     ),
     "runs.execution": ("Job", "simulate", "simulate_all"),
     "runs.progress": ("Progress",),
@@ -121,6 +123,7 @@ __all__ = [
     "require_writable",
     "reserved_engines",
     "run_tasks",
+    "runs_here",
     "simulate",
     "simulate_all",
     "sweep",

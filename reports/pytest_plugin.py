@@ -130,13 +130,13 @@ class SuiteFile(pytest.File):
         except ValueError as error:
             raise self.CollectError(str(error)) from None
         runs = suite.runs or rc.default_runs()
-        absent = rc.missing_engines()
+        here, _ = rc.runs_here(runs)
         for case in suite.cases:
             for run, label in zip(runs, run_labels(runs), strict=True):
                 item: SuiteItem = SuiteItem.from_parent(
                     self, name=f"{case.name}, {label}", suite=suite, case=case, run=run, label=label
                 )
-                if run.engine in absent:
+                if run not in here:
                     item.add_marker(pytest.mark.skip(reason=f"{run.engine} is not installed here"))
                 yield item
 

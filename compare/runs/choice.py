@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rockwobble.models import Case, Run
 from rockwobble.multibody import BrokenEngineError, available_engines
-from rockwobble.multibody.engines.registry import engine_packages, find_engine, standard_engines
+from rockwobble.multibody.engines.registry import engine_packages, find_engine, stand_in, standard_engines
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 from rockwobble.multibody.scene.guard import check_time_step
 from rockwobble.multibody.scene_of_case import resolved_settings
@@ -44,6 +44,34 @@ def missing_engines() -> tuple[str, ...]:
     tuple of str
     """
     return tuple(name for name in standard_engines() if name not in installed_engines())
+
+
+def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run], list[str]]:
+    """Return the runs of a suite that this installation can make, and a line on each engine it lacks.
+
+    Where an engine has no wheel, another takes its place as in a default run. One that every installation is
+    meant to have is left out where it is missing; others, and those that are named, stay, and are refused.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+    named : sequence of str
+        Engines that the user asked for by name.
+    """
+    here, found, said = installed_engines(), list[Run](), dict[str, str]()
+    for run in runs:
+        name, other = run.engine, None
+        if name is not None and name not in (*here, *named):
+            other = stand_in(name)
+            if other in here and run.support in find_engine(other).supports:
+                run = Run(other, run.support, run.time_step)
+                said.setdefault(name, f"{name} has no wheel here, {other} takes its place")
+            elif other is not None or name in missing_engines():
+                said.setdefault(name, f"{name} is not installed here and is left out")
+                continue
+        if run not in found:
+            found.append(run)
+    return found, list(said.values())
 
 
 def reserved_engines() -> dict[str, str]:

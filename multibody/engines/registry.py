@@ -86,6 +86,11 @@ def standard_engines() -> tuple[str, ...]:
     return tuple(name for name, entry in _ENGINES.items() if entry.standard)
 
 
+def stand_in(name: str) -> str | None:
+    """Return the engine that takes the place of one that has no wheel here, in a default run or a suite."""
+    return "dart" if name == "pybullet" and not _WHEEL else None
+
+
 def own_engines() -> tuple[str, ...]:
     """Return the names of our engines whose packages are installed here, without importing them."""
     return tuple(name for name, entry in _ENGINES.items() if _is_here(entry))

@@ -11,6 +11,7 @@ from rockwobble.compare import (
     missing_engines,
     own_model,
     reserved_engines,
+    runs_here,
 )
 from rockwobble.compare.runs.choice import references_of, require_runnable, run_labels, unsupported
 from rockwobble.models import Case, Cylinder, InitialState, Run
@@ -45,6 +46,30 @@ def test_an_engine_without_a_wheel_is_left_out_and_refused_by_name(monkeypatch, 
     assert name not in {run.engine for run in default_runs()}
     with pytest.raises(ValueError, match=f"'{name}' is not installed here: pip install '?{package}"):
         require_runnable(case, Run(name, "recess"))
+
+
+def test_a_suite_runs_with_what_takes_the_place_of_an_engine_without_a_wheel(monkeypatch):
+    pytest.importorskip("dartpy", reason="dart is not installed")
+    place = {"pybullet": "dart"}.get
+    monkeypatch.setattr("rockwobble.compare.runs.choice.stand_in", place)
+    monkeypatch.setattr("rockwobble.compare.runs.choice.installed_engines", lambda: ("mujoco", "dart"))
+    runs = [Run(name, place) for name in ("mujoco", "pybullet", "dart") for place in ("recess", "ring")]
+    found, said = runs_here(runs)
+    assert found == [
+        Run("mujoco", "recess"),
+        Run("mujoco", "ring"),
+        Run("dart", "recess"),  # in the place of PyBullet, and once
+        Run("dart", "ring"),  # as it was asked for, and will be refused
+    ]
+    assert said == ["pybullet has no wheel here, dart takes its place"]
+    assert Run("pybullet", "recess") in runs_here(runs, ["pybullet"])[0]  # to be refused by name
+
+
+def test_a_suite_leaves_out_an_engine_that_is_missing_and_keeps_an_extra(monkeypatch):
+    monkeypatch.setattr("rockwobble.compare.runs.choice.installed_engines", lambda: ())
+    name = standard_engines()[0]
+    runs = [Run(name, "recess"), Run(None, "recess"), Run("drake", "recess")]
+    assert runs_here(runs) == (runs[1:], [f"{name} is not installed here and is left out"])
 
 
 def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeypatch, case):

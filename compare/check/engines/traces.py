@@ -13,13 +13,10 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace
-from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 
-from ...comparison.prediction import time_scale
 from ...runs.choice import own_model
 from ...runs.execution import Job, simulate_run
-from ..bench import Array, Bench, engines_here, largest, not_here, why
+from ..bench import Array, Bench, engines_here, fitting_step, largest, not_here, why
 from ..finding import Bound, Finding, at_most
 from ..problems import GRAVITY, PIER, THRESHOLD, released, steady
 
@@ -39,7 +36,6 @@ SHAKEN = Case(
     name="even acceleration in three components",
 )
 SAMPLE = 0.00437  # [s] no multiple of a step
-_RELEASE_ERROR = 2.5e-6  # of an engine, see `EngineFacts`, at the step that the bounds below are for
 # a sample off by half a step, of 3.5e-5 s in MuJoCo, would be off by 2e-5 rad
 FIELDS: Mapping[str, Bound] = {
     "tilt": _contact(5e-6, "rad"),
@@ -50,8 +46,8 @@ FIELDS: Mapping[str, Bound] = {
     "centre_of_mass": _contact(1e-5, "m"),
     "energy": _contact(7e-5, "m^2/s^2"),
 }
-# rate, and force as a mean over 125 steps or more, without the half window at either end; in the recess the guide,
-# which starts without twist, lets both swing about their mean
+# rate, and force as a mean over 125 steps or more, without the half window at either end; in the recess the
+# guide, which starts without twist, lets both swing about their mean
 SWINGS: Mapping[str, tuple[Bound, Bound]] = {
     "recess": (_contact(1.5e-3, "rad/s"), _contact(0.03, "weights")),
     "flat": (_contact(2e-5, "rad/s"), _contact(2e-5, "weights")),
@@ -87,9 +83,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 
 def _run(engine: str, support: str, case: Case) -> Run:
-    """Return a run at half the default step, or as much finer as the engine is less accurate."""
-    finer = max(2, math.ceil(engine_facts(engine).release_error / _RELEASE_ERROR))
-    return Run(engine, support, REFERENCE_TIME_STEP * time_scale(case) / finer)
+    return Run(engine, support, 0.5 * fitting_step(engine, case))
 
 
 def _shaken(bench: Bench, run: Run) -> Iterator[Finding]:

@@ -108,15 +108,20 @@ def check(
             for layer in only or ():
                 if layer not in LAYERS:
                     raise ValueError(f"--only must be one of {', '.join(LAYERS)}, got {layer!r}")
-            if suite is not None and only and not {"agreement", "baseline"} & set(only):
-                raise ValueError(f"--suite is for the layer agreement, got --only {' '.join(only)}")
+            of_suite = not only or not {"agreement", "baseline"}.isdisjoint(only)
+            if suite is not None and not of_suite:
+                raise ValueError(f"--suite is for the layer agreement, got --only {' '.join(only or ())}")
             for path in (json, junit, markdown):
                 if path is not None and (path.is_dir() or not path.absolute().parent.is_dir()):
                     raise ValueError(f"a report must be a file in a folder that exists, got {path}")
             require_used(model, trajectory, suite, support, tolerance, workers)
             begun, outside, bench = time.monotonic(), None, None
             if model is None and trajectory is None:
-                bench = _bench(suite or "quick", workers)
+                if update_baseline and (suite not in (None, "quick") or only):
+                    raise ValueError(
+                        "--update-baseline goes with neither --suite nor --only: it measures all of quick"
+                    )
+                bench = _bench(suite or "quick", workers, runs=of_suite)
             elif only or update_baseline:
                 raise ValueError("--only and --update-baseline do not go with --model or --trajectory")
             else:
@@ -131,10 +136,6 @@ def check(
             from ...console.check_update import update
 
             with user_input():
-                if suite not in (None, "quick") or only:
-                    raise ValueError(
-                        "--update-baseline goes with neither --suite nor --only: it measures all of quick"
-                    )
                 update(bench, reason)
             return
         if bench is not None:
@@ -147,15 +148,16 @@ def check(
         raise typer.Exit(FAILED)
 
 
-def _bench(suite: str, workers: int | None) -> Bench:
+def _bench(suite: str, workers: int | None, *, runs: bool) -> Bench:
+    """Return the bench of a suite, with its engine runs or without."""
     from rockwobble.compare.check import Bench
 
     read = rw.read_suite(suite)
-    runs = without_missing(chosen_runs(read, None, None, None), None)
+    chosen = without_missing(chosen_runs(read, None, None, None), None) if runs else []
     for case in read.cases:
-        for run in runs:
+        for run in chosen:
             rc.require_runnable(case, run)
-    cases = rw.Suite(read.cases, runs, read.bounds)
+    cases = rw.Suite(read.cases, chosen, read.bounds)
     return Bench(reduced=rw.reduced, suite=cases, shipped=suite == "quick", workers=workers)
 
 

@@ -56,20 +56,18 @@ def chosen_runs(
 
 
 def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list[rw.Run]:
-    """Return the runs whose engines are installed or named by the user, and say which are left out.
+    """Return the runs that can be made here, and say which engines are replaced or left out.
 
     Raises
     ------
     ValueError
         If none is left.
     """
-    missing = [name for name in rc.missing_engines() if name not in (named or ())]
-    kept = [run for run in runs if run.engine not in missing]
-    left_out = [name for name in missing if any(run.engine == name for run in runs)]
+    kept, said = rc.runs_here(runs, named or ())
     if not kept:
-        raise ValueError(f"no engine of this suite is installed here: {', '.join(left_out)}")
-    for engine in left_out:
-        complain(f"{engine} is not installed here and is left out")
+        raise ValueError(f"no engine of this suite is installed here: {'; '.join(said)}")
+    for line in said:
+        complain(line)
     return kept
 
 
