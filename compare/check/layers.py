@@ -10,7 +10,7 @@ from .bench import Bench
 from .engines import agreement, engine_baseline, engine_equations, engine_settings, traces
 from .finding import Bound, Finding, at_most
 from .inputs import ground_motions, record_files, suites
-from .measures import batch, external_trajectories, metrics, predicted_times, sweeps
+from .measures import batch, external_trajectories, metrics, predicted_times, spectra, sweeps
 from .models import (
     after_record,
     conserved,
@@ -41,7 +41,7 @@ PARTS: dict[str, tuple[Check, ...]] = {
     "order": (order.check,),
     "residual": (residual.check,),
     "metrics": (metrics.check, predicted_times.check, external_trajectories.check),
-    "studies": (batch.check, suites.check, sweeps.check),
+    "studies": (batch.check, suites.check, sweeps.check, spectra.check),
     "traces": (traces.check,),
     "agreement": (engine_settings.check, agreement.check),
     "baseline": (reduced_baseline.check, engine_baseline.check),
