@@ -24,7 +24,7 @@ LAYER_WORDS = {
     "order": "Order: error against tolerance and time step",
     "residual": "Residual: no displacement and no twist is left",
     "metrics": "Metrics: differences, agreement times and external trajectories on made-up traces",
-    "studies": "Studies: peak_tilts, suites and sweeps against single runs",
+    "studies": "Studies: peak_tilts, suites, sweeps and spectra against single runs",
     "traces": "Traces: every field of an engine's trace",
     "agreement": "Agreement: engines against the reduced models",
     "baseline": "Baseline: the numbers that were kept",
