@@ -9,6 +9,8 @@ What it needs:
   weight by 1e-9 m; by as much the lowest point sinks or rises in a step along the curvature of its path,
   which no velocity shows. A rim that rises would have no friction, and hop. So each step is taken in a frame
   that moves up by what the last two steps sank, and the rim starts it as deep as its load presses it.
+* Friction stops the point of the rim that a step starts on, and a rim that rolls on creeps. So the frame
+  moves along the ground as well, against the slip that the last step left at the rim of this pose.
 * A quaternion that is stepped by its rate grows, and with it the lean that it tells: it is brought back.
 * Its solver stops when what it leaves over of a step is 1e-6 of all momentum, and has no other tolerance to
   choose. That is a force, and the larger the smaller the step: the next step is given it.
@@ -62,6 +64,7 @@ class _DrakeStepper:
         self._stiffness = stiffness if scene.support == "recess" else 0.0
         self._standing, self._rolling = build(scene, settings, POINTS), build(scene, settings, 0)
         self._last = self._standing  # what took the last step
+        self._overshoot = settings.friction_damping - 1.0
         self._left = np.zeros(6)  # what the solver left of the last step, torque and force
         self._warning = ""
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
@@ -75,7 +78,7 @@ class _DrakeStepper:
         self._place, self._velocity = place, velocity
         self._rim = _Rim.of(place, scene.body)
         self._sinks = math.nan
-        self._heave = 0.0  # speed of the frame, upwards, in which the ground keeps still in a step [m/s]
+        self._frame = np.zeros(3)  # velocity of the frame in which the ground keeps still in a step [m/s]
         if not start.standing:
             # leapfrog starts half a step back: a trial step shows the acceleration
             self._advance_once(np.zeros(6))
@@ -121,19 +124,28 @@ class _DrakeStepper:
         """Take one step; return quaternion, position, heading of the scene, and what it has spun."""
         if self._rim.lean < _FLAT:
             self._turn_point_below(ax, ay, az)
-        rim = self._rim
+        before, step = self._rim, self._step
         self._advance_once(self._force(ax, ay, az))
-        rise = self._step * (self._heave + rim.upwards(self._velocity.tolist()))
-        self._place[6] += self._step * self._heave
-        after = self._rim = _Rim.of(self._place, self._scene.body)
-        rolls = rim.lean > _LEANS and rim.depth > 0.0 and rim.goes_on_to(after)
-        sinks = (after.depth - rim.depth + rise) / self._step if rolls else math.nan
-        # where it sinks by next, from the last two steps
-        ahead = 2.0 * sinks - self._sinks
-        heave = ahead if math.isfinite(ahead) else 0.0
-        self._velocity[5] += self._heave - heave
-        self._heave, self._sinks = heave, sinks
+        rise = before.upwards(self._velocity.tolist()) + float(self._frame[2])
+        self._velocity[3:] += self._frame
+        moved = zip(self._place[4:], self._frame.tolist(), strict=True)
+        self._place[4:] = [at + step * speed for at, speed in moved]
+        self._rim = _Rim.of(self._place, self._scene.body)
+        self._frame = self._next_frame(before, self._rim, rise)
+        self._velocity[3:] -= self._frame
         return [*self._place, self._heading, self._spun]
+
+    def _next_frame(self, before: _Rim, after: _Rim, rise: float) -> Array:
+        """Return the velocity of the frame of the next step: up as the rim sinks, and against its slip."""
+        rolls = before.lean > _LEANS and before.depth > 0.0 and before.goes_on_to(after)
+        sinks = (after.depth - before.depth) / self._step + rise if rolls else math.nan
+        # where it sinks by next, from the last two steps
+        ahead, self._sinks = 2.0 * sinks - self._sinks, sinks
+        heave = ahead if math.isfinite(ahead) else 0.0
+        if after.lean < _LEANS:
+            return np.array([0.0, 0.0, heave])
+        slip_x, slip_y = after.slip(self._velocity.tolist())
+        return np.array([-self._overshoot * slip_x, -self._overshoot * slip_y, heave])
 
     def _force(self, ax: float, ay: float, az: float) -> Array:
         """Return torque and force of a step: of the guide, and of an acceleration of the ground."""
@@ -189,10 +201,11 @@ class _DrakeStepper:
         spun = 2.0 * math.atan2(place[3], place[0])
         place[:4] = _spin(place[None, :4], np.array([-spun]))[0]
         self._spun += spun
-        vectors = np.stack([place[1:4], place[4:], *self._velocity.reshape(2, 3), *self._left.reshape(2, 3)])
+        pairs = (self._velocity, self._left)
+        vectors = np.stack([place[1:4], place[4:], *np.reshape(pairs, (4, 3)), self._frame])
         turned = about_vertical(vectors, angle)
         self._place = [float(place[0]), *turned[:2].ravel().tolist()]
-        self._velocity, self._left = turned[2:4].ravel(), turned[4:].ravel()
+        self._velocity, self._left, self._frame = turned[2:4].ravel(), turned[4:6].ravel(), turned[6]
         self._rim = _Rim.of(self._place, self._scene.body)
 
 
@@ -214,6 +227,8 @@ class _Rim(NamedTuple):
         Below the ground [m].
     reach : float
         Horizontally from the mass centre along the lean, over the lean [m].
+    down : float
+        Below the mass centre [m].
     """
 
     axis_x: float
@@ -221,18 +236,25 @@ class _Rim(NamedTuple):
     lean: float
     depth: float
     reach: float
+    down: float
 
     @classmethod
     def of(cls, place: Sequence[float], body: Body) -> _Rim:
         w, x, y, z, _, _, height = place
         axis_x, axis_y, axis_z = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
         lean, b, h = math.hypot(axis_x, axis_y), body.base_radius, body.mass_centre_height
-        reach = b * axis_z / lean - h if lean else 0.0
-        return cls(axis_x, axis_y, lean, b * lean + h * axis_z - height, reach)
+        reach, down = b * axis_z / lean - h if lean else 0.0, b * lean + h * axis_z
+        return cls(axis_x, axis_y, lean, down - height, reach, down)
 
     def upwards(self, velocity: Sequence[float]) -> float:
         """Return the speed of the material point there, from angular velocity and velocity (6,) [m/s]."""
         return velocity[5] + self.reach * (velocity[0] * self.axis_y - velocity[1] * self.axis_x)
+
+    def slip(self, velocity: Sequence[float]) -> tuple[float, float]:
+        """Return its velocity along the ground, from the same [m/s]."""
+        spin_x, spin_y, spin_z, x, y, _ = velocity
+        along_x, along_y = self.reach * self.axis_x, self.reach * self.axis_y
+        return x - spin_y * self.down - spin_z * along_y, y + spin_x * self.down + spin_z * along_x
 
     def goes_on_to(self, after: _Rim) -> bool:
         """Return whether it stays on its side of upright."""
