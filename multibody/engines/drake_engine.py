@@ -41,7 +41,7 @@ _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 
 _FACTS = EngineFacts(
-    title="Drake", step_time=1.1e-4, release_error=8e-6, uplift_error=5e-5, smooth_uplift=True
+    title="Drake", step_time=8e-5, release_error=8e-6, uplift_error=5e-5, smooth_uplift=True
 )
 
 
