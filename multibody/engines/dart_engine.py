@@ -15,6 +15,8 @@ Contact has no stiffness to choose: after a step the rim's lowest point rests or
   nonsmooth Gauss-Seidel method does not, and is exact for one contact. With four it takes hundreds of sweeps,
   so it has the rim, and Dantzig's method what stands. There its friction is a box, which is turned into the
   load: a base that slides across its load feels up to 41 % more.
+* Friction stops the point of the rim that a step starts on, and a rim that rolls on creeps. So the ground
+  moves along itself, against the slip that the last step left at the rim of this pose.
 * Rotation vectors below 1e-3 rad lose a sixth of their cube in each step. So the cylinder, which is round, is
   turned about its axis by one radian.
 """
@@ -47,7 +49,7 @@ _FAR = 1e3  # of the height: ODE ends the process where something is too far awa
 _SPIN = 1.0  # [rad] about the axis of the cylinder
 
 _FACTS = EngineFacts(
-    title="DART", step_time=1.6e-5, release_error=2e-5, uplift_error=5e-6, smooth_uplift=True
+    title="DART", step_time=1.9e-5, release_error=2e-6, uplift_error=5e-6, smooth_uplift=True
 )
 
 
@@ -117,7 +119,9 @@ class _DartStepper:
         # local names, because this is a loop over steps in Python
         dart, body = self._dart, self._scene.body
         step, get, pull = dart.world.step, dart.joint.getPositions, dart.world.setGravity
-        torque, rise, stiffness = dart.cylinder.addExtTorque, dart.ground.setVelocity, -4.0 * self._stiffness
+        torque, move_ground = dart.cylinder.addExtTorque, dart.ground.setVelocities
+        stiffness = -4.0 * self._stiffness
+        rates, overshoot = dart.joint.getVelocities, self._settings.friction_damping - 1.0
         cosine, sine, root = math.cos, math.sin, math.sqrt
         b, h, arm = body.base_radius, body.mass_centre_height, body.mass_centre_height / body.base_radius
         excited, gravity, heading = bool(self._scene.components), self._scene.gravity, self._heading
@@ -149,8 +153,9 @@ class _DartStepper:
             if closed and depth > kept + landed:
                 kept = depth
             back = min(root(slowing * (kept - target)), (kept - target) / time_step)
-            rise(2, gain * (depth - kept) + back - min(reduction * max(depth, 0.0), fastest))
+            rise = gain * (depth - kept) + back - min(reduction * max(depth, 0.0), fastest)
             kept = max(kept - back * time_step, target)
+            slip_x = slip_y = 0.0
             if closed:
                 # of a base that slides, friction is all the load
                 load = min(math.hypot(ax, ay) / (gravity + az), friction) * arm
@@ -164,8 +169,16 @@ class _DartStepper:
                     x, y, z, _, _, height = get().tolist()
                     i, j = part * (x * spin_x - y * spin_y), part * (y * spin_x + x * spin_y)
                     axis_x, axis_y = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i)
-            elif not self._open:
-                self._use_for(opening=True)
+            else:
+                if not self._open:
+                    self._use_for(opening=True)
+                # friction takes the rim to the velocity of the ground, here beyond zero by the overshoot
+                rate_x, rate_y, rate_z, slip_x, slip_y, _ = rates().tolist()
+                axis_z = 1.0 - 2.0 * (i * i + j * j)
+                out, down = b * axis_z / lean - h, h * axis_z + b * lean
+                slip_x -= rate_y * down + rate_z * out * axis_y
+                slip_y += rate_x * down + rate_z * out * axis_x
+            move_ground([-overshoot * slip_x, -overshoot * slip_y, rise])
             if excited:
                 pull([-ax * turn_x - ay * turn_y, ax * turn_y - ay * turn_x, -az - gravity])
             if stiffness and k:

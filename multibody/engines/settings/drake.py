@@ -30,6 +30,10 @@ class DrakeSettings:
         Speed at which what sticks creeps at the limit of friction, at the reference size [m/s]. At Drake's
         1e-4 a base under 0.8 of that creeps by 1.5e-4 m in a second. SAP's own limit, a thousandth of what a
         free body would gain in a step, is about as small.
+    friction_damping : float
+        As for MuJoCo: share of the slip velocity that one step removes. Drake knows no other than 1, which is
+        made up for by a velocity of the frame. At 1.8 the error under twice El Centro on flat ground
+        (6 m, 0.2) is 8.0e-5 alpha after 4 s of motion, at 1 it is 6.7e-4.
     """
 
     guide_stiffness: float
@@ -37,6 +41,7 @@ class DrakeSettings:
     contact_stiffness: float = 1e10
     dissipation: float = 100.0
     stiction_tolerance: float = 1e-6
+    friction_damping: float = 1.8
 
     @classmethod
     def resolve(cls, given: Mapping[str, Any], time_step: float) -> DrakeSettings:
@@ -53,4 +58,5 @@ class DrakeSettings:
         in_range(settings, "contact_stiffness", 0.0)
         in_range(settings, "dissipation", 0.0, inclusive=True)
         in_range(settings, "stiction_tolerance", 0.0)
+        in_range(settings, "friction_damping", 0.0, 2.0)
         return settings
