@@ -35,6 +35,9 @@ _OPTIONS = (
     # a scene in three dimensions is drawn without a graphics card
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
+    # the rest of a page is painted without one either: a made-up card takes half of all its time to be looked at
+    "--disable-gpu-compositing",
+    "--disable-gpu-rasterization",
     "--no-first-run",
     "--disable-background-networking",
     "--disable-component-update",
