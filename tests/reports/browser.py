@@ -35,7 +35,7 @@ _OPTIONS = (
     # a scene in three dimensions is drawn without a graphics card
     "--use-angle=swiftshader",
     "--enable-unsafe-swiftshader",
-    # the rest of a page is painted without one either: a made-up card takes half of all its time to be looked at
+    # and so is the rest of a page: a made-up card took up to half of the time of a look
     "--disable-gpu-compositing",
     "--disable-gpu-rasterization",
     "--no-first-run",
