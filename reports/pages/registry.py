@@ -34,8 +34,20 @@ def redrawn(kind: str, folder: Path) -> dict[str, bytes]:
     ValueError
         If they cannot be read.
     """
+    pages = stored_pages(kind, folder)
+    return pages if isinstance(pages, dict) else pages.files()
+
+
+def stored_pages(kind: str, folder: Path) -> dict[str, bytes] | Page:
+    """Return the page of the results of a kind in `folder`, not drawn yet, or name and content of several.
+
+    Raises
+    ------
+    ValueError
+        If they cannot be read.
+    """
     from rockwobble.compare.storage.manifest import read_results  # it loads numpy, which no help needs
 
     drawer = importlib.import_module(f"rockwobble.reports.{KINDS[kind]}")
     pages: dict[str, bytes] | Page = drawer.stored_page(read_results(folder, kind))
-    return pages if isinstance(pages, dict) else pages.files()
+    return pages

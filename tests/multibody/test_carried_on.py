@@ -28,9 +28,11 @@ def one_sine(times_uplift: float, still: float = 0.0) -> GroundMotion:
     return GroundMotion(np.column_stack([push, 0.0 * push]), 0.01)
 
 
-def test_a_fall_that_the_record_cuts_off_overturns(engine: str) -> None:
-    short = multibody.simulate(Case(PIER, one_sine(4.0)), engine=engine)
-    whole = multibody.simulate(Case(PIER, one_sine(4.0, still=6.0)), engine=engine)
+def test_a_fall_that_the_record_cuts_off_overturns(engine: str, time_step: float | None) -> None:
+    short, whole = (
+        multibody.simulate(Case(PIER, one_sine(4.0, still)), engine=engine, time_step=time_step)
+        for still in (0.0, 6.0)
+    )
     for run in (short, whole):
         assert run.outcome == "overturned"
         assert run.peak_tilt == run.tilt[-1] == 0.5 * np.pi
@@ -55,23 +57,29 @@ def test_wherever_still_ground_is_cut_the_fall_ends_alike(duration: float) -> No
     assert (cut.outcome, cut.time[-1]) == ("overturned", pytest.approx(whole.time[-1], abs=1e-9))
 
 
-def test_a_run_that_stands_ends_at_its_duration_and_keeps_its_peak(engine: str) -> None:
+def test_a_run_that_stands_ends_at_its_duration_and_keeps_its_peak(
+    engine: str, time_step: float | None
+) -> None:
     # at its end the tilt rises, but without the energy to pass the balance
-    run = multibody.simulate(Case(PIER, one_sine(2.0)), engine=engine)
-    later = multibody.simulate(Case(PIER, one_sine(2.0, still=2.0)), engine=engine)
+    run, later = (
+        multibody.simulate(Case(PIER, one_sine(2.0, still)), engine=engine, time_step=time_step)
+        for still in (0.0, 2.0)
+    )
     assert (run.outcome, run.time[-1]) == ("completed", PERIOD)
     assert run.tilt_rate[-1] > 0.0
     assert run.peak_tilt == run.tilt[-1] < 0.5 * later.peak_tilt
 
 
-def test_a_look_ahead_leaves_no_trace(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_look_ahead_leaves_no_trace(
+    engine: str, time_step: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
     # it wobbles with more energy than that of its balance, and turns back after the end
     start = InitialState(0.55 * PIER.alpha, tilt_rate=0.02, rolling_rate=0.95)
     case = Case(PIER, initial=start, duration=0.51303)
-    looked = multibody.simulate(case, engine=engine)
-    later = multibody.simulate(dataclasses.replace(case, duration=3.0), engine=engine)
+    looked = multibody.simulate(case, engine=engine, time_step=time_step)
+    later = multibody.simulate(dataclasses.replace(case, duration=3.0), engine=engine, time_step=time_step)
     monkeypatch.setattr(stepping, "may_overturn", lambda *_: False)
-    alone = multibody.simulate(case, engine=engine)
+    alone = multibody.simulate(case, engine=engine, time_step=time_step)
     assert looked.energy[-1] > 9.81 * (PIER.semidiagonal - PIER.mass_centre_height)
     for field in dataclasses.fields(looked):
         one, other = getattr(looked, field.name), getattr(alone, field.name)
@@ -87,13 +95,18 @@ def test_a_look_ahead_leaves_no_trace(engine: str, monkeypatch: pytest.MonkeyPat
     assert looked.peak_tilt < later.peak_tilt
 
 
-def test_ground_that_is_cut_off_keeps_still(engine: str) -> None:
+def test_ground_that_is_cut_off_keeps_still(engine: str, time_step: float | None) -> None:
     # the push would turn round after the cut, which is at a sample
     push = np.zeros((400, 3))
     push[:60, 0], push[60:, 0], push[60:, 2] = 3.0 * UPLIFT, -6.0 * UPLIFT, 3.0
-    cut = multibody.simulate(Case(PIER, GroundMotion(push, 0.01), duration=0.59), engine=engine)
-    push[60:] = 0.0
-    ended = multibody.simulate(Case(PIER, GroundMotion(push, 0.01), duration=0.59), engine=engine)
+    still = push.copy()
+    still[60:] = 0.0
+    cut, ended = (
+        multibody.simulate(
+            Case(PIER, GroundMotion(each, 0.01), duration=0.59), engine=engine, time_step=time_step
+        )
+        for each in (push, still)
+    )
     assert cut.outcome == ended.outcome == "overturned"
     np.testing.assert_array_equal(cut.time[:-1], ended.time[:-1])
     # until the rim leaves the ground and comes back, which multiplies rounding
@@ -130,15 +143,19 @@ def test_what_is_not_decided_in_time_is_said(monkeypatch: pytest.MonkeyPatch) ->
     assert "undecided" not in {fact.code for fact in multibody.simulate(Case(PIER, one_sine(2.0))).facts}
 
 
-def test_a_cylinder_beyond_its_balance_falls_without_energy_to_spare(engine: str) -> None:
+def test_a_cylinder_beyond_its_balance_falls_without_energy_to_spare(
+    engine: str, time_step: float | None
+) -> None:
     # less energy than that of the balance, on its far side
-    run = multibody.simulate(
-        Case(PIER, initial=InitialState(1.05 * PIER.alpha), duration=0.05), engine=engine
+    run, short = (
+        multibody.simulate(
+            Case(PIER, initial=InitialState(share * PIER.alpha), duration=0.05),
+            engine=engine,
+            time_step=time_step,
+        )
+        for share in (1.05, 0.95)
     )
     assert run.outcome == "overturned"
-    short = multibody.simulate(
-        Case(PIER, initial=InitialState(0.95 * PIER.alpha), duration=0.05), engine=engine
-    )
     assert (short.outcome, short.time[-1]) == ("completed", 0.05)
 
 
@@ -166,8 +183,9 @@ def test_progress_stays_at_one_while_it_is_carried_on() -> None:
     assert seen.count(1.0) > 2
 
 
-def test_a_fall_after_the_end_is_sampled_as_the_rest(engine: str) -> None:
-    run = multibody.simulate(Case(PIER, one_sine(4.0), duration=1.2034), sample_step=0.02, engine=engine)
+def test_a_fall_after_the_end_is_sampled_as_the_rest(engine: str, time_step: float | None) -> None:
+    case = Case(PIER, one_sine(4.0), duration=1.2034)
+    run = multibody.simulate(case, sample_step=0.02, engine=engine, time_step=time_step)
     grid = 0.02 * np.arange(61)
     np.testing.assert_allclose(run.time[:61], grid, rtol=1e-12)
     assert run.time[61] == 1.2034

@@ -67,24 +67,27 @@ def test_starts_in_the_stated_state(engine: str) -> None:
     assert run.tilt[1] == pytest.approx(expected, abs=1e-4)
 
 
-def test_a_run_repeats_bit_for_bit(engine: str) -> None:
-    motion = el_centro_1940().scaled(2.0)
-    first, second = (multibody.simulate(Case(PIER, motion, duration=2.0), engine=engine) for _ in range(2))
+def test_a_run_repeats_bit_for_bit(engine: str, time_step: float | None) -> None:
+    case = Case(PIER, el_centro_1940().scaled(2.0), duration=2.0)
+    first, second = (multibody.simulate(case, engine=engine, time_step=time_step) for _ in range(2))
     np.testing.assert_array_equal(first.tilt, second.tilt)
 
 
-def test_rotated_problem_has_a_rotated_answer(engine: str) -> None:
+def test_rotated_problem_has_a_rotated_answer(engine: str, time_step: float | None) -> None:
     # a release does not know the axes of the scene
     turned = InitialState(RELEASE.tilt, rolling_angle=1.234, rolling_rate=RELEASE.rolling_rate)
-    first = multibody.simulate(Case(PIER, initial=RELEASE, duration=1.0), engine=engine)
-    second = multibody.simulate(Case(PIER, initial=turned, duration=1.0), engine=engine)
+    first, second = (
+        multibody.simulate(Case(PIER, initial=each, duration=1.0), engine=engine, time_step=time_step)
+        for each in (RELEASE, turned)
+    )
     # solvers stop at a tolerance: friction rows are not isotropic below it
     np.testing.assert_allclose(second.tilt, first.tilt, atol=1e-8)
     np.testing.assert_allclose(second.rolling_angle - 1.234, first.rolling_angle, atol=1e-6)
 
 
-def test_overturning_ends_with_the_side_on_the_ground(engine: str) -> None:
-    run = multibody.simulate(Case(PIER, initial=InitialState(1.3 * PIER.alpha), duration=10.0), engine=engine)
+def test_overturning_ends_with_the_side_on_the_ground(engine: str, time_step: float | None) -> None:
+    case = Case(PIER, initial=InitialState(1.3 * PIER.alpha), duration=10.0)
+    run = multibody.simulate(case, engine=engine, time_step=time_step)
     assert run.outcome == "overturned"
     assert run.tilt[-1] == run.peak_tilt == 0.5 * np.pi
     assert run.time[-1] < 10.0
@@ -94,7 +97,9 @@ def test_overturning_ends_with_the_side_on_the_ground(engine: str) -> None:
 
 def test_progress_rises_to_one_and_interrupts(engine: str) -> None:
     seen: list[float] = []
-    multibody.simulate(Case(PIER, initial=RELEASE, duration=3.0), engine=engine, progress=seen.append)
+    # told after each second of the run
+    case = Case(PIER, initial=RELEASE, duration=2.1)
+    multibody.simulate(case, engine=engine, progress=seen.append)
     assert seen == sorted(seen)
     assert seen[-1] == 1.0
     assert len(seen) > 2
@@ -103,7 +108,7 @@ def test_progress_rises_to_one_and_interrupts(engine: str) -> None:
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        multibody.simulate(Case(PIER, initial=RELEASE, duration=3.0), engine=engine, progress=interrupt)
+        multibody.simulate(case, engine=engine, progress=interrupt)
 
 
 def test_clients_are_closed_and_nothing_is_printed(
@@ -209,21 +214,20 @@ def test_without_a_motion_but_standing_it_stands(engine: str) -> None:
     assert run.energy == pytest.approx(np.zeros(len(run.time)), abs=1e-8)
 
 
-def test_motion_ends_and_the_run_goes_on(engine: str) -> None:
+def test_motion_ends_and_the_run_goes_on(engine: str, time_step: float | None) -> None:
     pulse = GroundMotion([[0.0, 0.0], [4.0, 1.0], [-1.0, 2.0], [0.0, 0.0]], 0.2)
-    run = multibody.simulate(Case(PIER, pulse, duration=1.5), engine=engine)
+    run = multibody.simulate(Case(PIER, pulse, duration=1.5), engine=engine, time_step=time_step)
     assert run.time[-1] == 1.5
     after = run.time > 0.6
     # no excitation, no work: contact takes 1e-6 of the energy scale, 1.1 m^2/s^2
     assert np.ptp(run.energy[after]) < 5e-6
 
 
-def test_a_squat_cylinder_falls_flat_and_rests(engine: str) -> None:
+def test_a_squat_cylinder_falls_flat_and_rests(engine: str, time_step: float | None) -> None:
     # planar rocking loses almost everything in each impact at tan alpha 1.2
     squat = Cylinder(semidiagonal=6.0, tan_alpha=1.2)
-    run = multibody.simulate(
-        Case(squat, initial=InitialState(0.2 * squat.alpha), duration=4.0), engine=engine
-    )
+    case = Case(squat, initial=InitialState(0.2 * squat.alpha), duration=4.0)
+    run = multibody.simulate(case, engine=engine, time_step=time_step)
     assert run.outcome == "rest"
     # it stands: MuJoCo does not see a lean below 1e-8 rad
     assert run.tilt[-1] < 1e-7

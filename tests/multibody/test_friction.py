@@ -22,11 +22,12 @@ def test_conventions(pair: float) -> None:
 
 @pytest.mark.parametrize("direction", [0.0, 0.7])
 @pytest.mark.parametrize("friction", [0.2, 0.4])
-def test_sliding_distance(engine: str, friction: float, direction: float) -> None:
+def test_sliding_distance(engine: str, friction: float, direction: float, time_step: float | None) -> None:
     a = 0.5 * 9.81
     push = a * np.array([np.cos(direction), np.sin(direction)])
     motion = GroundMotion([push, push], 1.0)
-    run = multibody.simulate(Case(SQUAT, motion, friction=friction), engine=engine, support="flat")
+    case = Case(SQUAT, motion, friction=friction)
+    run = multibody.simulate(case, engine=engine, support="flat", time_step=time_step)
     # relative to the ground it is left behind with a - mu g
     distance = 0.5 * (a - friction * 9.81)
     # MuJoCo's convex friction lifts what slides: it hops by centimetres and loses a percent of the way.
@@ -39,19 +40,24 @@ def test_sliding_distance(engine: str, friction: float, direction: float) -> Non
     assert run.first("slip") < 1.0
 
 
-def test_enough_friction_holds(engine: str) -> None:
+def test_enough_friction_holds(engine: str, time_step: float | None) -> None:
     motion = GroundMotion([[0.5 * 9.81, 0.0], [0.5 * 9.81, 0.0]], 1.0)
-    run = multibody.simulate(Case(SQUAT, motion, friction=0.6), engine=engine, support="flat")
+    case = Case(SQUAT, motion, friction=0.6)
+    run = multibody.simulate(case, engine=engine, support="flat", time_step=time_step)
     # friction has no memory: it creeps by 1e-4 of the load in the time constant of contact
     assert run.slip[-1] < 1e-4
     assert run.facts == ()
 
 
-def test_too_little_friction_in_a_release_is_said(engine: str) -> None:
+def test_too_little_friction_in_a_release_is_said(engine: str, time_step: float | None) -> None:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     initial = InitialState(pier.alpha / 2, rolling_rate=0.5)
-    enough = multibody.simulate(Case(pier, initial=initial, duration=2.0, friction=0.3), engine=engine)
-    little = multibody.simulate(Case(pier, initial=initial, duration=2.0, friction=0.1), engine=engine)
+    enough, little = (
+        multibody.simulate(
+            Case(pier, initial=initial, duration=2.0, friction=friction), engine=engine, time_step=time_step
+        )
+        for friction in (0.3, 0.1)
+    )
     assert enough.facts == ()
     # rolling creeps by 1e-5 b
     assert enough.slip[-1] < 1e-4 * pier.base_radius

@@ -11,7 +11,8 @@ from rockwobble.compare.certificate.verdict import CHANGED
 from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests, read_results
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.advice import RING
-from rockwobble.reports.pages.registry import KINDS, redrawn
+from rockwobble.reports.pages.page import Page
+from rockwobble.reports.pages.registry import KINDS, stored_pages
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 FOLDERS = sorted(path.parent for path in PUBLISHED.rglob(MANIFEST))
@@ -25,6 +26,13 @@ WHOLE = [
 
 def name_of(value: object) -> str:
     return value.relative_to(PUBLISHED).as_posix() if isinstance(value, Path) else str(value)
+
+
+def whole_page(kind: str, folder: Path) -> Page:
+    """Return a page of which each test draws what it looks at."""
+    page = stored_pages(kind, folder)
+    assert isinstance(page, Page)
+    return page
 
 
 def test_every_study_is_published_and_most_of_them_whole() -> None:
@@ -43,11 +51,10 @@ def test_it_was_made_by_committed_code_and_nothing_is_damaged(folder: Path) -> N
 
 @pytest.mark.parametrize(("folder", "kind"), WHOLE, ids=name_of)
 def test_its_words_are_what_its_tables_say_today(folder: Path, kind: str) -> None:
-    pages = {name: page for name, page in redrawn(kind, folder).items() if name.endswith(".md")}
-    assert pages
-    for name, page in pages.items():
-        assert rb"\*" not in page  # emphasis that would be read as asterisks
-        assert (folder / name).read_text(encoding="utf-8") == page.decode()
+    page = whole_page(kind, folder)
+    words = page.markdown()
+    assert r"\*" not in words  # emphasis that would be read as asterisks
+    assert (folder / f"{page.name}.md").read_text(encoding="utf-8") == words
 
 
 def test_what_an_advice_says_of_a_ring_is_in_the_published_limits() -> None:
