@@ -13,7 +13,7 @@ from rockwobble.compare.metrics.distributions import MARGIN
 from rockwobble.compare.studies.ensemble.tables import pairs
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
-from .picture import Array, Axis, Line, Panel, Picture, Pictures, Rule, Text, at_hand, ecdf
+from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf
 
 # beyond the largest ratio, and at least beyond the margin
 _ROOM = 1.25
@@ -25,11 +25,6 @@ _MEDIAN = Style(colour=DARK, dash="none", symbol="diamond")
 _LINE = 0.5  # inch for a pair of methods
 
 
-def pictures(found: Ensemble) -> Pictures:
-    """Return what makes the picture of an ensemble, by name."""
-    return at_hand(ensemble_picture(found))
-
-
 def main_pairs(found: Ensemble) -> list[dict[str, Any]]:
     """Return the rows of the contrasts that are asked for first: engines by their own model, then models."""
     rows = found.contrasts.to_dict("records")
@@ -39,11 +34,11 @@ def main_pairs(found: Ensemble) -> list[dict[str, Any]]:
     return [{str(name): value for name, value in row.items()} for row in engines + models or rows]
 
 
-def ensemble_picture(found: Ensemble) -> Picture:
+def pictures(found: Ensemble) -> list[Picture]:
     """Return the distribution of each method, and the ratios of the members of the main pairs."""
     rows = [row for row in main_pairs(found) if row["compared"]]
     panels = [_distributions(found), *([_ratios(found, rows)] if rows else [])]
-    return Picture(
+    picture = Picture(
         name="ensemble",
         title="Distributions of peak tilt by method, and ratios of the peaks of each member",
         caption="Above: share of the members whose peak tilt is at most that of the axis; what a curve lacks "
@@ -54,6 +49,7 @@ def ensemble_picture(found: Ensemble) -> Picture:
         panels=panels,
         legend="panels",
     )
+    return [picture]
 
 
 def _distributions(found: Ensemble) -> Panel:

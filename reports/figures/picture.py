@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -228,18 +227,6 @@ class Picture:
     def entries(self) -> list[str]:
         """Return the names in the legend of all panels, each once."""
         return list(dict.fromkeys(name for panel in self.panels for name in panel.entries()))
-
-
-Pictures = dict[str, Callable[[], Picture]]  # by name, made when they are wanted
-
-
-def at_hand(*pictures: Picture) -> Pictures:
-    """Return pictures that are made already, by name."""
-    return {picture.name: partial(_given, picture) for picture in pictures}
-
-
-def _given(picture: Picture) -> Picture:
-    return picture
 
 
 def ecdf(values: Array, *, total: int | None = None, end: float | None = None) -> tuple[Array, Array]:

@@ -9,7 +9,7 @@ from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIE
 
 from .heat import Gap, Heat, Shades
 from .palette import Style, model_style, run_styles
-from .picture import Axis, Line, Panel, Picture, Pictures, at_hand
+from .picture import Axis, Line, Panel, Picture
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-south"}
 _OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
@@ -17,12 +17,7 @@ _HEIGHT = 3.4
 _ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: islands side by side
 
 
-def pictures(spectrum: OverturningSpectrum) -> Pictures:
-    """Return what makes the picture of a spectrum, by name."""
-    return at_hand(spectrum_picture(spectrum))
-
-
-def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
+def pictures(spectrum: OverturningSpectrum) -> list[Picture]:
     """Return a map of each series, and the lowest intensities with the safe islands above them."""
     size = Axis(label="R", unit="m")
     low, high = (float(spectrum.intensities[end]) for end in (0, -1))
@@ -53,7 +48,7 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
         layers=_curves(spectrum),
         height=_HEIGHT,
     )
-    return Picture(
+    picture = Picture(
         name="spectrum",
         title=f"Peak tilt of sizes under intensities, {spectrum.motion.name or 'record'}, "
         f"tan α = {spectrum.tan_alpha:g}",
@@ -63,6 +58,7 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
         columns=2,
         shades=Shades(label="peak tilt / α", unit="-", low=0.0, high=1.0, steps=10),
     )
+    return [picture]
 
 
 def _map(spectrum: OverturningSpectrum, series: str) -> Heat:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 import pandas as pd
 
 from rockwobble.compare.studies.tradeoff.study import Tradeoff
 
 from .palette import DARK, GREY, ORDER, SYMBOLS, Style
-from .picture import Axis, Line, Panel, Picture, Pictures, Rule
+from .picture import Axis, Line, Panel, Picture, Rule
 
 TITLES = {
     "turn": "Angle of turn in free response",
@@ -36,16 +34,9 @@ _BASE = "recess model"
 _OF_MODEL, _OF_ENGINES = ("scipy", "rest threshold"), ("integrator", "contact")  # panels of variants
 
 
-def pictures(found: Tradeoff) -> Pictures:
-    """Return what makes the picture of each problem, by its name."""
-    return {
-        name: partial(_picture, found, name) for name in TITLES if (found.points["problem"] == name).any()
-    }
-
-
-def tradeoff_pictures(found: Tradeoff) -> list[Picture]:
+def pictures(found: Tradeoff) -> list[Picture]:
     """Return a picture for each problem; its panels share their axes, and no line has a family of its own."""
-    return [make() for make in pictures(found).values()]
+    return [_picture(found, name) for name in TITLES if (found.points["problem"] == name).any()]
 
 
 def _picture(found: Tradeoff, problem: str) -> Picture:

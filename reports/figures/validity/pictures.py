@@ -8,13 +8,13 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.studies.validity.limits.distributions import CONTRASTS, POINT, ratios
-from rockwobble.compare.studies.validity.limits.numbers import Array, Tables, column
+from rockwobble.compare.studies.validity.limits.numbers import Array, column
 from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
 from rockwobble.compare.studies.validity.rings import FREE
 from rockwobble.compare.studies.validity.study import Validity
 
 from ..palette import DARK, GREY, ORDER, Style, mark_styles
-from ..picture import Axis, Line, Panel, Picture, Pictures, Rule, at_hand, ecdf
+from ..picture import Axis, Line, Panel, Picture, Rule, ecdf
 from .maps import map_pictures
 
 # of a method, in words
@@ -38,13 +38,9 @@ _LEAST = 1e-9  # what a logarithmic axis shows of nothing
 _ONE = Rule(at=1.0, axis="y", colour=GREY, dash="solid")
 
 
-def pictures(found: Validity) -> Pictures:
-    """Return what makes each figure of the report, by its name."""
-    return at_hand(*validity_pictures(found.tables))
-
-
-def validity_pictures(tables: Tables) -> list[Picture]:
+def pictures(found: Validity) -> list[Picture]:
     """Return all figures of the report, in its order."""
+    tables = found.tables
     return [
         _records(tables["records"]),
         *map_pictures(tables),
