@@ -13,8 +13,9 @@ from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
 
+from .ensemble import peak_shares
 from .palette import GREY, Style, model_style, run_styles
-from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Rule, ecdf
+from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Rule
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar, x alone", PLANAR_Y: "planar, y alone"}
 GROUPS = {
@@ -58,16 +59,9 @@ def _peaks(facts: Mapping[str, Any], members: pd.DataFrame) -> Panel:
     styles = run_styles(groups)
     standing = members[members["outcome"].isin(["rest", "completed"])]
     end = 1.05 * max(float(standing["peak_tilt"].max()), 0.1) if len(standing) else 1.0
-    layers = []
+    layers: list[Line] = []
     for name in groups:
-        runs = members[(members["group"] == name) & (members["outcome"] != "failed")]
-        fell = runs["outcome"] == "overturned"
-        x, y = ecdf(runs.loc[~fell, "peak_tilt"].to_numpy(float), total=len(runs), end=end)
-        label = f"{SHORT[name]} ({fell.sum()} of {len(runs)} overturn)"
-        layers.append(Line(x=x, y=y, name=label, style=styles[name], steps=True))
-        if fell.any():
-            mark = Style(colour=styles[name].colour, dash="none", symbol="triangle-right")
-            layers.append(Line(x=x[-1:], y=y[-1:], style=mark, size=7.0, clip=False))
+        layers += peak_shares(members[members["group"] == name], SHORT[name], styles[name], end)
     if not facts["overturned"]:
         here = Style(colour=model_style(facts["model"]).colour, dash="none", symbol="diamond")
         rank = np.array([facts["peak_rank"]])

@@ -246,6 +246,11 @@ def ecdf(values: Array, *, total: int | None = None, end: float | None = None) -
     return x, counts / max(len(values) if total is None else total, 1)
 
 
+def parted(first: Array, second: Array) -> Array:
+    """Return the ends of bars one after the other, parted by NaN."""
+    return np.column_stack([first, second, np.full(len(first), np.nan)]).ravel()
+
+
 def _names(layer: Layer) -> Iterator[str]:
     if isinstance(layer, Heat):
         yield from (gap.name for gap in layer.gaps if gap.cells.any())

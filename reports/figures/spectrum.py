@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.studies.spectrum.result import Array, OverturningSpectrum, safe_islands
+from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, safe_islands
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
 
 from .heat import Gap, Heat, Shades
 from .palette import Style, model_style, run_styles
-from .picture import Axis, Line, Panel, Picture
+from .picture import Axis, Line, Panel, Picture, parted
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-south"}
 _OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
@@ -93,7 +93,7 @@ def _curves(spectrum: OverturningSpectrum) -> list[Line]:
         ends = closed["lower"].to_numpy(float) - half, closed["upper"].to_numpy(float) + half
         thin = Style(colour=styles[series].colour)
         found += [
-            Line(x=_parted(place, place), y=_parted(*ends), style=thin, width=0.7, opacity=0.45),
+            Line(x=parted(place, place), y=parted(*ends), style=thin, width=0.7, opacity=0.45),
             Line(
                 x=spectrum.semidiagonals,
                 y=spectrum.lowest[series],
@@ -103,8 +103,3 @@ def _curves(spectrum: OverturningSpectrum) -> list[Line]:
             ),
         ]
     return found
-
-
-def _parted(first: Array, second: Array) -> Array:
-    """Return the ends of bars one after the other, parted by NaN."""
-    return np.column_stack([first, second, np.full(len(first), np.nan)]).ravel()

@@ -8,7 +8,7 @@ import pandas as pd
 from rockwobble.compare.studies.tradeoff.study import Tradeoff
 
 from .palette import DARK, GREY, ORDER, SYMBOLS, Style
-from .picture import Axis, Line, Panel, Picture, Rule
+from .picture import Axis, Line, Panel, Picture, Rule, parted
 
 TITLES = {
     "turn": "Angle of turn in free response",
@@ -90,16 +90,8 @@ def _lines(points: pd.DataFrame) -> list[Line]:
         layers.append(
             Line(x=x, y=y, name=str(name), style=Style(colour=colour, symbol=symbols[index]), notes=notes)
         )
-        ends = ordered[["ratio_low", "ratio_high"]].to_numpy(float)
-        gap = np.full((len(y), 1), np.nan)  # parts the bars
-        layers.append(
-            Line(
-                x=np.hstack([ends, gap]).ravel(),
-                y=np.repeat(y, 3),
-                style=Style(colour=colour),
-                width=0.8,
-            )
-        )
+        bars = parted(*(ordered[f"ratio_{end}"].to_numpy(float) for end in ("low", "high")))
+        layers.append(Line(x=bars, y=np.repeat(y, 3), style=Style(colour=colour), width=0.8))
     return layers
 
 

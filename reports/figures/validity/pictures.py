@@ -14,7 +14,7 @@ from rockwobble.compare.studies.validity.rings import FREE
 from rockwobble.compare.studies.validity.study import Validity
 
 from ..palette import DARK, GREY, ORDER, Style, mark_styles
-from ..picture import Axis, Line, Panel, Picture, Rule, ecdf
+from ..picture import Axis, Line, Panel, Picture, Rule, ecdf, parted
 from .maps import map_pictures
 
 # of a method, in words
@@ -196,15 +196,10 @@ def _rings(table: pd.DataFrame) -> Picture:
         for tan_alpha, rows in chosen.groupby("tan_alpha"):
             name = f"tan α = {tan_alpha:g}"
             over = rows.groupby("clearance")[column_name]
-            x, low, high = (
-                over.min().index.to_numpy(float),
-                over.min().to_numpy(float),
-                over.max().to_numpy(float),
-            )
-            y = np.sqrt(np.maximum(low, least) * np.maximum(high, least))
-            yield Line(x=x, y=y, name=name, style=styles[name])
-            bars = np.column_stack([np.maximum(low, least), np.maximum(high, least), np.full(len(x), np.nan)])
-            yield Line(x=np.repeat(x, 3), y=bars.ravel(), style=Style(colour=styles[name].colour), width=0.8)
+            low, high = (np.maximum(end.to_numpy(float), least) for end in (over.min(), over.max()))
+            x, bars = over.min().index.to_numpy(float), Style(colour=styles[name].colour)
+            yield Line(x=x, y=np.sqrt(low * high), name=name, style=styles[name])
+            yield Line(x=np.repeat(x, 3), y=parted(low, high), style=bars, width=0.8)
 
     clearance = Axis(label="clearance / b", unit="-", log=True)
     shaken, touched = plain[plain["motion"] != FREE], plain[plain["contact_time"] > 0.0]
