@@ -24,7 +24,6 @@ Engine = Annotated[
     str | None,
     options.of(
         "Method",
-        "--engine",
         "mujoco, pybullet or exudyn, whose one run verifies the prediction; none leaves it out. "
         "Default: mujoco.",
     ),
@@ -33,12 +32,11 @@ Support = Annotated[
     str,
     options.of(
         "Method",
-        "--support",
         "What holds the cylinder: recess (ideal), flat (flat ground) or ring (walls with clearance).",
     ),
 ]
-Copies = Annotated[int, options.of("Method", "--copies", "Number of perturbed copies.")]
-Seed = Annotated[int, options.of("Method", "--seed", "Of the perturbed copies.")]
+Copies = Annotated[int, options.of("Method", "Number of perturbed copies.")]
+Seed = Annotated[int, options.of("Method", "Of the perturbed copies.")]
 
 
 @states_problem

@@ -20,20 +20,18 @@ from .inputs.estimate import require_feasible
 from .inputs.problem import Problem, states_problem
 from .inputs.suite_choice import refuse_problem_options
 
-Members = Annotated[int, typer.Option("--members", help="Number of members, where no suite gives them.")]
+Members = Annotated[int, typer.Option(help="Number of members, where no suite gives them.")]
 Perturbation = Annotated[
     float,
     typer.Option(
-        "--perturbation",
         help="Relative standard deviation of tilt and rolling rate at release, or of the two components "
-        "of the ground motion.",
+        "of the ground motion."
     ),
 ]
 Synthetic = Annotated[
     float | None,
     typer.Option(
-        "--synthetic",
-        help="Made-up ground motions instead of perturbed starts, with a peak of so many times g tan alpha.",
+        help="Made-up ground motions instead of perturbed starts, with a peak of so many times g tan alpha."
     ),
 ]
 FarField = Annotated[
@@ -44,7 +42,7 @@ FarField = Annotated[
         "to a peak of so many times g tan alpha.",
     ),
 ]
-Seed = Annotated[int, typer.Option("--seed", help="Of everything random.")]
+Seed = Annotated[int, typer.Option(help="Of everything random.")]
 
 
 @states_problem

@@ -24,7 +24,6 @@ RestTilt = Annotated[
     float | None,
     options.of(
         options.REDUCED,
-        "--rest-tilt",
         "Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out.",
     ),
 ]

@@ -24,27 +24,19 @@ _MOST_POINTS = 2000
 # a search in smaller steps would take a day
 _FINEST = 1e-5
 
-Smallest = Annotated[float, options.of(_GRID, "--smallest", "Smallest semidiagonal R, in m.")]
-Largest = Annotated[float, options.of(_GRID, "--largest", "Largest semidiagonal R, in m.")]
-Sizes = Annotated[int, options.of(_GRID, "--sizes", "Number of sizes.")]
-Weakest = Annotated[
-    float, options.of(_GRID, "--weakest", "Lowest peak of the horizontal resultant, in g tan alpha.")
-]
-Strongest = Annotated[
-    float, options.of(_GRID, "--strongest", "Highest peak of the resultant, in g tan alpha.")
-]
-Intensities = Annotated[int, options.of(_GRID, "--intensities", "Number of intensities.")]
+Smallest = Annotated[float, options.of(_GRID, "Smallest semidiagonal R, in m.")]
+Largest = Annotated[float, options.of(_GRID, "Largest semidiagonal R, in m.")]
+Sizes = Annotated[int, options.of(_GRID, "Number of sizes.")]
+Weakest = Annotated[float, options.of(_GRID, "Lowest peak of the horizontal resultant, in g tan alpha.")]
+Strongest = Annotated[float, options.of(_GRID, "Highest peak of the resultant, in g tan alpha.")]
+Intensities = Annotated[int, options.of(_GRID, "Number of intensities.")]
 SearchStep = Annotated[
     float,
     options.of(
-        "Method",
-        "--search-step",
-        "Finest step of the search for the lowest intensity that overturns, in g tan alpha.",
+        "Method", "Finest step of the search for the lowest intensity that overturns, in g tan alpha."
     ),
 ]
-Support = Annotated[
-    str, options.of("Method", "--support", "Of the model in three dimensions: recess or flat.")
-]
+Support = Annotated[str, options.of("Method", "Of the model in three dimensions: recess or flat.")]
 
 
 def spectrum(

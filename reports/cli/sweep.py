@@ -34,43 +34,32 @@ SuiteFile = Annotated[
         show_default=False,
     ),
 ]
-Sizes = Annotated[str, options.of(_GRID, "--semidiagonal", "R, in m.")]
-Slendernesses = Annotated[str, options.of(_GRID, "--tan-alpha", "Slenderness b/h.")]
-Scales = Annotated[str, options.of(_GRID, "--scale", "Factors on the records.")]
+Sizes = Annotated[str, options.of(_GRID, "R, in m.")]
+Slendernesses = Annotated[str, options.of(_GRID, "Slenderness b/h.")]
+Scales = Annotated[str, options.of(_GRID, "Factors on the records.")]
 Models = Annotated[
     list[str] | None,
     options.of(
-        _GRID,
-        "--model",
-        "recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs.",
+        _GRID, "recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs."
     ),
 ]
 RecordsX = Annotated[
     list[Path] | None,
-    options.of(
-        _GRID,
-        "--record-x",
-        "East-west component; may be repeated for several records. Default: El Centro 1940.",
-    ),
+    options.of(_GRID, "East-west component; may be repeated for several records. Default: El Centro 1940."),
 ]
-RecordsY = Annotated[list[Path] | None, options.of(_GRID, "--record-y", "North-south component of each.")]
-RecordsZ = Annotated[
-    list[Path] | None, options.of(_GRID, "--record-z", "Vertical component of each, or of none.")
-]
-Workers = Annotated[
-    int | None, options.of(_WORK, "--workers", "Processes on this machine. Default: one a core.", min=1)
-]
+RecordsY = Annotated[list[Path] | None, options.of(_GRID, "North-south component of each.")]
+RecordsZ = Annotated[list[Path] | None, options.of(_GRID, "Vertical component of each, or of none.")]
+Workers = Annotated[int | None, options.of(_WORK, "Processes on this machine. Default: one a core.", min=1)]
 Scheduler = Annotated[
     str | None,
     options.of(
         _WORK,
-        "--scheduler",
         "Dask scheduler that has the work done, such as tcp://10.0.0.1:8786: started by dask scheduler, "
         "and on each machine dask worker tcp://10.0.0.1:8786. Needs pip install 'dask[distributed]'.",
     ),
 ]
 ChunkSize = Annotated[
-    int | None, options.of(_WORK, "--chunk", "Runs in a chunk. Default: about a second of work.", min=1)
+    int | None, options.of(_WORK, "Runs in a chunk. Default: about a second of work.", min=1)
 ]
 
 

@@ -75,7 +75,7 @@ def _distributions(found: Ensemble) -> Panel:
 def peak_shares(
     runs: pd.DataFrame, name: str, style: Style, end: float, *, width: float = 1.4, notes: bool = False
 ) -> Iterator[Line]:
-    """Yield the share of runs whose peak tilt is at most x, and a triangle for what it lacks to 1: they overturn.
+    """Yield the share of runs whose peak tilt is at most x, and a triangle for those that overturn.
 
     Runs that failed have no part in it; `notes` name the member of each step.
     """

@@ -17,25 +17,16 @@ Model = Annotated[
     str | None,
     options.of(
         _PANEL,
-        "--model",
         "Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
         metavar="MODULE:FUNCTION",
     ),
 ]
 Trajectory = Annotated[
     Path | None,
-    options.of(
-        _PANEL,
-        "--trajectory",
-        "Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite.",
-    ),
+    options.of(_PANEL, "Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."),
 ]
-Support = Annotated[
-    str | None, options.of(_PANEL, "--support", "What it models: recess or flat. Default: recess.")
-]
-Tolerance = Annotated[
-    float | None, options.of(_PANEL, "--tolerance", "How exact it claims to be. Default: 0.001.")
-]
+Support = Annotated[str | None, options.of(_PANEL, "What it models: recess or flat. Default: recess.")]
+Tolerance = Annotated[float | None, options.of(_PANEL, "How exact it claims to be. Default: 0.001.")]
 
 
 def require_used(

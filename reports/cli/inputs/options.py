@@ -13,102 +13,78 @@ import typer
 from .method_values import restitution, time_step
 
 
-def of(panel: str, name: str, help_text: str, **more: Any) -> Any:
-    """Return an option in a panel of the help text; `more` is for `typer.Option`."""
-    return typer.Option(name, help=help_text, rich_help_panel=panel, **more)
+def of(panel: str, help_text: str, *names: str, **more: Any) -> Any:
+    """Return an option in a panel of the help text; without names it has that of its parameter.
+
+    `more` is for `typer.Option`.
+    """
+    return typer.Option(*names, help=help_text, rich_help_panel=panel, **more)
 
 
 _BODY, _GROUND, _RELEASE, _METHOD = "Cylinder", "Ground motion", "Release", "Method"
 REDUCED = "Reduced model"
 _EXTERNAL = "Trajectory of a shake table or another code"
 
-Semidiagonal = Annotated[float | None, of(_BODY, "--semidiagonal", "R = sqrt(b^2 + h^2), in m. Default: 6.")]
-TAN_ALPHA = of(_BODY, "--tan-alpha", "Slenderness b/h, radius over half the height.")
+Semidiagonal = Annotated[float | None, of(_BODY, "R = sqrt(b^2 + h^2), in m. Default: 6.")]
+TAN_ALPHA = of(_BODY, "Slenderness b/h, radius over half the height.")
 TanAlpha = Annotated[float, TAN_ALPHA]
-Diameter = Annotated[
-    float | None, of(_BODY, "--diameter", "2b, in m; with --height in place of the two above.")
-]
-Height = Annotated[float | None, of(_BODY, "--height", "2h, in m.")]
+Diameter = Annotated[float | None, of(_BODY, "2b, in m; with --height in place of the two above.")]
+Height = Annotated[float | None, of(_BODY, "2h, in m.")]
 MassCentreHeight = Annotated[
     float | None,
     of(
-        _BODY,
-        "--mass-centre-height",
-        "Of the mass centre above the base, in m; with --diameter and --height. Default: half of that.",
+        _BODY, "Of the mass centre above the base, in m; with --diameter and --height. Default: half of that."
     ),
 ]
 TransverseInertia = Annotated[
-    float | None,
-    of(
-        _BODY,
-        "--transverse-inertia",
-        "I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.",
-    ),
+    float | None, of(_BODY, "I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.")
 ]
-AxialInertia = Annotated[float | None, of(_BODY, "--axial-inertia", "I2/m about the axis, in m2.")]
+AxialInertia = Annotated[float | None, of(_BODY, "I2/m about the axis, in m2.")]
 Record = Annotated[
-    Path | None,
-    of(_GROUND, "--record", "Text or CSV of time, x, y and perhaps z, in place of the files below."),
+    Path | None, of(_GROUND, "Text or CSV of time, x, y and perhaps z, in place of the files below.")
 ]
 RecordX = Annotated[
     Path | None,
-    of(
-        _GROUND,
-        "--record-x",
-        "East-west component: PEER AT2, two-column text or CSV. Default: El Centro 1940.",
-    ),
+    of(_GROUND, "East-west component: PEER AT2, two-column text or CSV. Default: El Centro 1940."),
 ]
-RecordY = Annotated[Path | None, of(_GROUND, "--record-y", "North-south component.")]
-RecordZ = Annotated[Path | None, of(_GROUND, "--record-z", "Vertical component, may be left out.")]
-Units = Annotated[
-    str | None, of(_GROUND, "--units", "g, m/s2 or cm/s2; required where the files do not say.")
-]
-Scale = Annotated[float, of(_GROUND, "--scale", "Factor on all components.")]
-Gravity = Annotated[float, of(_GROUND, "--gravity", "g, in m/s2.")]
+RecordY = Annotated[Path | None, of(_GROUND, "North-south component.")]
+RecordZ = Annotated[Path | None, of(_GROUND, "Vertical component, may be left out.")]
+Units = Annotated[str | None, of(_GROUND, "g, m/s2 or cm/s2; required where the files do not say.")]
+Scale = Annotated[float, of(_GROUND, "Factor on all components.")]
+Gravity = Annotated[float, of(_GROUND, "g, in m/s2.")]
 Friction = Annotated[
     float,
     of(
         _GROUND,
-        "--friction",
         "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
         "would not.",
     ),
 ]
 ReleaseTilt = Annotated[
-    float | None,
-    of(
-        _RELEASE,
-        "--release-tilt-deg",
-        "Release at this tilt, in deg; without a record the ground is then still.",
-    ),
+    float | None, of(_RELEASE, "Release at this tilt, in deg; without a record the ground is then still.")
 ]
-RollingRate = Annotated[float, of(_RELEASE, "--rolling-rate", "Rolling rate at release, in rad/s.")]
+RollingRate = Annotated[float, of(_RELEASE, "Rolling rate at release, in rad/s.")]
 Duration = Annotated[
     float | None,
-    of(
-        _RELEASE,
-        "--duration",
-        "Length of the run, in s. Default: that of the ground motion, 10 s without one.",
-    ),
+    of(_RELEASE, "Length of the run, in s. Default: that of the ground motion, 10 s without one."),
 ]
 _ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only)"
-Engine = Annotated[str | None, of(_METHOD, "--engine", f"{_ENGINES}. Default: the reduced model.")]
+Engine = Annotated[str | None, of(_METHOD, f"{_ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"
-Engines = Annotated[list[str] | None, of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}.")]
+Engines = Annotated[list[str] | None, of(_METHOD, f"{_ENGINES}; may be repeated. {_DEFAULT}.")]
 EnginesOrAll = Annotated[
     list[str] | None,
-    of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed."),
+    of(_METHOD, f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed."),
 ]
-Support = Annotated[str, of(_METHOD, "--support", f"{_SUPPORTS}.")]
+Support = Annotated[str, of(_METHOD, f"{_SUPPORTS}.")]
 Supports = Annotated[
-    list[str] | None, of(_METHOD, "--support", f"{_SUPPORTS}; may be repeated. Default: recess and flat.")
+    list[str] | None, of(_METHOD, f"{_SUPPORTS}; may be repeated. Default: recess and flat.")
 ]
 TimeStep = Annotated[
     Any,  # a number, a word or None: typer knows no type for that, `time_step` makes it
     of(
         _METHOD,
-        "--time-step",
         "Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size. auto "
         "halves it until the tilt has settled, extrapolated gives what three steps tend to; both say what "
         "error is left.",
@@ -120,21 +96,19 @@ Settings = Annotated[
     list[str] | None,
     of(
         _METHOD,
-        "--set",
         "Setting of the method, such as ring_clearance=0.01, integrator=discrete or rtol=1e-10, for each run "
         "that has one of that name; may be repeated.",
+        "--set",
         metavar="NAME=VALUE",
     ),
 ]
 Plane = Annotated[
-    float | None,
-    of(REDUCED, "--plane", "Planar motion: azimuth of the vertical plane that holds it, in rad."),
+    float | None, of(REDUCED, "Planar motion: azimuth of the vertical plane that holds it, in rad.")
 ]
 Restitution = Annotated[
     Any,  # a number, "momentum" or None: typer knows no type for that
     of(
         REDUCED,
-        "--restitution",
         "Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from "
         "the moment of momentum about the new pivot.",
         parser=restitution,
@@ -153,23 +127,18 @@ Trajectories = Annotated[
     list[Path] | None,
     of(
         _EXTERNAL,
-        "--trajectory",
         "CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a shake "
         "table or another code. What it does not hold is not compared; may be repeated.",
     ),
 ]
-TrajectoryAngles = Annotated[
-    str | None, of(_EXTERNAL, "--trajectory-angles", "deg or rad, where its header does not say.")
-]
+TrajectoryAngles = Annotated[str | None, of(_EXTERNAL, "deg or rad, where its header does not say.")]
 TrajectoryOffset = Annotated[
-    float,
-    of(_EXTERNAL, "--trajectory-offset", "Added to its times, in s, so that 0 is the start of the run."),
+    float, of(_EXTERNAL, "Added to its times, in s, so that 0 is the start of the run.")
 ]
 TrajectoryNoise = Annotated[
     float | None,
     of(
         _EXTERNAL,
-        "--trajectory-noise-deg",
         "Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least 1e-4 "
         "alpha.",
     ),
@@ -178,9 +147,9 @@ Budget = Annotated[
     bool,
     of(
         _METHOD,
-        "--budget",
         "Split each difference into model form, numerics and what stays unexplained, by runs at finer "
         "steps: takes some seven times as long.",
+        "--budget",
     ),
 ]
-Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
+Out = Annotated[Path, typer.Option(help="Folder for the results.")]
