@@ -15,8 +15,7 @@ from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 from .inputs.grid import values_of
 from .inputs.method_values import settings
-from .inputs.motion_set import DEFAULT_COUNT, motions_of
-from .inputs.several import cylinders_of, methods_of
+from .inputs.several import DEFAULT_COUNT, cylinders_of, methods_of, motions_of
 from .sweep import Scheduler, Workers
 
 _MOTIONS, _LEVELS, _STATISTICS = "Ground motions", "Intensity", "Statistics"

@@ -111,18 +111,6 @@ def sweep(
         rc.require_writable(out)
     for line in (*_echo(plan), how_long):
         print(line)
-    _run(plan, out, scheduler, workers, chunk)
-    print()
-    show(out)
-
-
-def _run(
-    plan: rc.Grid | rc.CaseSweep,
-    out: Path,
-    scheduler: str | None,
-    workers: int | None,
-    chunk: int | None,
-) -> None:
     try:
         with interruptible(out), user_input(), shown_progress("chunks") as tell:
             rw.sweep(
@@ -137,6 +125,8 @@ def _run(
     except rc.SweepIncompleteError as error:
         complain(str(error))
         raise typer.Exit(FAILED) from None
+    print()
+    show(out)
 
 
 def _suite(name: str, models: list[str] | None) -> rc.CaseSweep:
