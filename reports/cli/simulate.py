@@ -22,10 +22,7 @@ from .inputs.problem import Problem, states_problem
 
 RestTilt = Annotated[
     float | None,
-    options.of(
-        options.REDUCED,
-        "Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out.",
-    ),
+    options.reduced("Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out."),
 ]
 
 

@@ -29,7 +29,7 @@ from .check_outside import (
 if TYPE_CHECKING:
     from rockwobble.compare.check import Bench, Finding
 
-_OUTPUT = "Output for programs"
+_output = options.panel("Output for programs")
 Suite = Annotated[
     str | None,
     typer.Option(
@@ -44,11 +44,9 @@ Only = Annotated[
         "properties, order, residual, metrics, studies, traces, agreement, baseline. Default: all.",
     ),
 ]
-Json = Annotated[Path | None, options.of(_OUTPUT, "Write all findings as JSON.")]
-Junit = Annotated[Path | None, options.of(_OUTPUT, "Write a JUnit report (XML).")]
-Markdown = Annotated[
-    Path | None, options.of(_OUTPUT, "Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")
-]
+Json = Annotated[Path | None, _output("Write all findings as JSON.")]
+Junit = Annotated[Path | None, _output("Write a JUnit report (XML).")]
+Markdown = Annotated[Path | None, _output("Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")]
 Workers = Annotated[
     int | None, typer.Option(min=1, help="Processes for the engines. Default: one for each core.")
 ]
