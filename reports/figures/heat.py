@@ -110,6 +110,8 @@ def contour(x: Array, y: Array, values: Array, level: float) -> tuple[Array, Arr
     """Return the line (n,), (n,) where values (len(y), len(x)) are `level`; NaN parts its pieces."""
     from contourpy import contour_generator
 
+    if min(values.shape) < 2:  # through a single row of cells there is none
+        return np.empty(0), np.empty(0)
     pieces = contour_generator(x, y, np.ma.masked_invalid(values)).lines(level)
     parted = [part for piece in pieces for part in (np.asarray(piece), np.full((1, 2), np.nan))]
     whole = np.concatenate(parted[:-1]) if parted else np.empty((0, 2))

@@ -22,6 +22,8 @@ def pictures(spectrum: OverturningSpectrum) -> list[Picture]:
     size = Axis(label="R", unit="m")
     low, high = (float(spectrum.intensities[end]) for end in (0, -1))
     intensity = Axis(label="peak resultant / (g tan α)", unit="-", low=low, high=high)
+    own_peak = Axis(label="peak of the component / (g tan α)", unit="-")
+    shares = {series: spectrum.component_share(series) for series in SERIES}
     maps = [
         Panel(
             x=size,
@@ -37,9 +39,9 @@ def pictures(spectrum: OverturningSpectrum) -> list[Picture]:
                 ),
             ],
             height=_HEIGHT,
-            second=_own_peak(spectrum.component_share(series)),
+            second=None if share in (0.0, 1.0) else (own_peak, share),
         )
-        for series in SERIES
+        for series, share in shares.items()
     ]
     curves = Panel(
         x=size,
@@ -73,11 +75,6 @@ def _map(spectrum: OverturningSpectrum, series: str) -> Heat:
             Gap(name="not solved", colour=_FAILED, cells=np.isnan(tilt)),
         ],
     )
-
-
-def _own_peak(share: float) -> tuple[Axis, float] | None:
-    own = Axis(label="peak of the component / (g tan α)", unit="-")
-    return None if share in (0.0, 1.0) else (own, share)
 
 
 def _curves(spectrum: OverturningSpectrum) -> list[Line]:

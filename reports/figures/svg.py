@@ -17,7 +17,7 @@ from matplotlib.lines import Line2D
 
 from .heat import Heat, Shades
 from .palette import DARK, DASHES, SYMBOLS
-from .picture import MOST_ENTRIES, Axis, Band, Bars, Line, Panel, Picture, Rule, Text
+from .picture import MOST_ENTRIES, Band, Bars, Line, Panel, Picture, Rule, Text
 from .thinning import kept_points
 
 # a column of text on a screen is some 830 pixels wide, 96 to the inch [inch]
@@ -149,13 +149,9 @@ def _scale(axes: Axes, panel: Panel) -> None:
     axes.set_yscale("log" if panel.y.log else "linear")
     for axis, set_ticks in ((panel.x, axes.set_xticks), (panel.y, axes.set_yticks)):
         if axis.ticks:
-            set_ticks(*_ticks(axis))
+            places, words = zip(*axis.ticks, strict=True)
+            set_ticks(places, words)
             set_ticks([], minor=True)
-
-
-def _ticks(axis: Axis) -> tuple[list[float], list[str]]:
-    places, words = zip(*axis.ticks, strict=True)
-    return list(places), list(words)
 
 
 def _line(axes: Axes, line: Line) -> None:
