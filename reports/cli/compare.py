@@ -75,11 +75,10 @@ def compare(
             external = _external(
                 trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
             )
-        if suite is not None:
-            said = describe_suite(suite, cases, runs)
+        if suite is None:
+            print(*describe(cases[0]), *time_needed(cases, runs), sep="\n")
         else:
-            said = iter((*describe(cases[0]), *time_needed(cases, runs)))
-        print(*said, sep="\n")
+            print(*describe_suite(suite, cases, runs), sep="\n")
         if engine == [ALL]:
             for reason in unable_engines(cases):
                 complain(reason)

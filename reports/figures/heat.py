@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+NOTHING = "#d9d9d9"  # behind cells without a value
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -75,6 +76,11 @@ class Shades:
     def title(self) -> str:
         """Label and unit."""
         return f"{self.label} [{self.unit}]"
+
+    @property
+    def colours(self) -> str:
+        """Name of the colours, the same to both renderers."""
+        return "Blues" if self.centre is None else "RdBu_r"
 
     def place(self, values: Array) -> Array:
         """Return where values are on the scale, from 0 to 1; NaN stays."""

@@ -15,7 +15,7 @@ from matplotlib.colors import Colormap, ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .heat import Heat, Shades
+from .heat import NOTHING, Heat, Shades
 from .palette import DARK, DASHES, SYMBOLS
 from .picture import MOST_ENTRIES, Band, Bars, Line, Panel, Picture, Rule, Text
 from .thinning import kept_points
@@ -47,7 +47,6 @@ _VECTOR_CELLS = 2500
 _MOST_WRITTEN = 64
 # of the scale of colours: there white letters are read better
 _DARK = 0.6
-_SEQUENTIAL, _DIVERGING, _NOTHING = "Blues", "RdBu_r", "#d9d9d9"
 _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
 
 
@@ -225,7 +224,7 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
     few = heat.values.size <= _VECTOR_CELLS
     drawn: dict[str, Any] = {"rasterized": not few, "edgecolors": "white" if few else "none"}
     axes.grid(visible=False)
-    axes.set_facecolor(_NOTHING)
+    axes.set_facecolor(NOTHING)
     axes.pcolormesh(*edges, np.ma.masked_invalid(place), cmap=_colours(shades), vmin=0.0, vmax=1.0,
                     linewidth=0.5 if few else 0.0, **drawn)  # fmt: skip
     for gap in heat.gaps:
@@ -245,8 +244,7 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
 
 
 def _colours(shades: Shades) -> Colormap:
-    name = _SEQUENTIAL if shades.centre is None else _DIVERGING
-    found: Colormap = mpl.colormaps[name]
+    found: Colormap = mpl.colormaps[shades.colours]
     return found.resampled(shades.steps) if shades.steps else found
 
 
