@@ -77,11 +77,13 @@ class Shown:
             If there is no such part, or nothing to draw.
         """
         # by name: a result does not depend on who draws it
-        pictures = importlib.import_module(f"rockwobble.reports.figures.{self._figures}").pictures(self)
-        if not pictures:
+        figures = importlib.import_module(f"rockwobble.reports.figures.{self._figures}")
+        names = []
+        for picture in figures.pictures(self):
+            if part in (None, picture.name):
+                drawn: Figure = importlib.import_module("rockwobble.reports.figures.svg").figure(picture)
+                return drawn
+            names.append(picture.name)
+        if not names:
             raise ValueError(f"there is nothing to draw of {self!r}")
-        if part is not None and part not in pictures:
-            raise ValueError(f"the figures are {', '.join(pictures)}, got {part!r}")
-        renderer = importlib.import_module("rockwobble.reports.figures.svg")
-        drawn: Figure = renderer.figure(pictures[next(iter(pictures)) if part is None else part]())
-        return drawn
+        raise ValueError(f"the figures are {', '.join(names)}, got {part!r}")

@@ -120,8 +120,9 @@ def compare(
         external_row(cases[0], found[name, str(held_against)], label, trajectory, until=until)
         for (name, label), trajectory in brought.items()
     ]
+    table = pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))
     comparison = Comparison(
-        summary=_table(rows),
+        summary=table.astype({"diverged": bool, "agreed_passes": int}),
         cases={case.name: case for case in cases},
         traces=found | brought,
         versions=package_versions(),
@@ -195,7 +196,3 @@ def _row(
         budget=budget,
         until=until,
     )
-
-
-def _table(rows: list[Row]) -> pd.DataFrame:
-    return pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS)).astype({"diverged": bool, "agreed_passes": int})

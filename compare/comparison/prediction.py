@@ -24,6 +24,7 @@ import numpy as np
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 
 from ..metrics.agreement import agreement_time
 from ..traces.pair import FloatArray, is_release, make_pair, start_of
@@ -33,7 +34,6 @@ from .error_budget import ErrorBudget
 IN_TIME = 2.0
 # [s] at a semidiagonal of 6 m and 9.81 m/s^2, and in proportion to the time scale of the cylinder
 FIRST_STRETCH = 1.0
-_REFERENCE_SIZE, _REFERENCE_GRAVITY, _REFERENCE_STEP = 6.0, 9.81, 1e-4
 # relative change of gravity of the copy whose distance sets the scale; far above rounding, far below 1
 _TRIAL = 1e-6
 # and the largest that still is a copy
@@ -76,7 +76,7 @@ def estimated_error(case: Case, engine: str | None, time_step: float) -> float:
     if engine is None:
         return _SMALLEST_ERROR
     facts = engine_facts(engine)
-    step = time_step / time_scale(case) / _REFERENCE_STEP
+    step = time_step / time_scale(case) / REFERENCE_TIME_STEP
     error = facts.release_error * case.cylinder.tan_alpha**2 if is_release(case) else facts.uplift_error
     return max(error * math.pow(step, facts.order), _SMALLEST_ERROR)
 
@@ -168,7 +168,7 @@ def early_rms(case: Case, time: FloatArray, difference: FloatArray, start: float
 
 def time_scale(case: Case) -> float:
     """Return the time of a cylinder over that of one of 6 m at 9.81 m/s^2."""
-    return math.sqrt(case.cylinder.semidiagonal / _REFERENCE_SIZE * _REFERENCE_GRAVITY / case.gravity)
+    return froude_scale(case.cylinder.semidiagonal, case.gravity).time
 
 
 def _diverges(case: Case, reference: Trace, other: Trace) -> float:

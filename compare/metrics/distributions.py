@@ -107,7 +107,9 @@ def contrast(peaks: Array, against: Array, overturned: Flags, against_overturned
     logarithms = log_ratios(peaks, against, overturned, against_overturned)
     logarithms = logarithms[~np.isnan(logarithms)]
     only, only_there = (int((a & ~b).sum()) for a, b in ((fell, fell_there), (fell_there, fell)))
-    ratio, ratio_05, ratio_95 = (_ratio(logarithms, share) for share in (0.5, 0.05, 0.95))
+    ratio, ratio_05, ratio_95 = (
+        quantile_interval(logarithms, share).exponential() for share in (0.5, 0.05, 0.95)
+    )
     return Contrast(
         count=len(fell),
         compared=len(logarithms),
@@ -173,7 +175,8 @@ def paired_difference(only: int, only_there: int, count: int) -> Interval:
     """
     first, second = (only + 1.0) / (count + 2.0), (only_there + 1.0) / (count + 2.0)
     middle = first - second
-    width = _normal(0.5 * (1.0 + CONFIDENCE)) * math.sqrt((first + second - middle**2) / (count + 2.0))
+    normal = float(ndtri(0.5 * (1.0 + CONFIDENCE)))
+    width = normal * math.sqrt((first + second - middle**2) / (count + 2.0))
     return Interval(
         value=(only - only_there) / count, low=max(middle - width, -1.0), high=min(middle + width, 1.0)
     )
@@ -223,12 +226,3 @@ def adjusted(probabilities: Array) -> Array:
     found = np.empty(len(order))
     found[order] = np.minimum(steps, 1.0)
     return found
-
-
-def _ratio(logarithms: Array, share: float) -> Interval:
-    found = quantile_interval(logarithms, share)
-    return Interval(value=math.exp(found.value), low=math.exp(found.low), high=math.exp(found.high))
-
-
-def _normal(share: float) -> float:
-    return float(ndtri(share))

@@ -42,6 +42,14 @@ class Interval:
             return "within"
         return "beyond" if self.high < low or self.low > high else "undecided"
 
+    def exponential(self) -> Interval:
+        """Return the interval of a number from this one of its logarithm."""
+        return Interval(value=math.exp(self.value), low=math.exp(self.low), high=math.exp(self.high))
+
+    def columns(self, name: str) -> dict[str, float]:
+        """Return the numbers as columns NAME, NAME_low and NAME_high."""
+        return {name: self.value, f"{name}_low": self.low, f"{name}_high": self.high}
+
 
 def quantile_interval(values: Array, share: float) -> Interval:
     """Return a quantile of what the values are drawn from, and its interval.

@@ -182,7 +182,14 @@ def simulate_all(
     ['completed', 'completed']
     """
     found = run_tasks(
-        run_job, jobs, workers=workers, cost=_cost, label=lambda job: job.name, progress=progress, cache=cache
+        run_job,
+        jobs,
+        workers=workers,
+        # a reduced model may have to be compiled
+        cost=lambda job: math.inf if job.run.engine is None else engine_time(job.case, job.run),
+        label=lambda job: job.name,
+        progress=progress,
+        cache=cache,
     )
     return [
         lost_trace(job.case, job.run, result.why) if isinstance(result, Lost) else result
@@ -254,10 +261,3 @@ def case_inputs(case: Case) -> dict[str, object]:
         "gravity": case.gravity,
         "friction": case.friction,
     }
-
-
-def _cost(job: Job) -> float:
-    """Rough computing time of a job [s]."""
-    if job.run.engine is None:
-        return math.inf  # may compile
-    return engine_time(job.case, job.run)

@@ -22,23 +22,19 @@ _NO_ENGINE = "none"
 
 Engine = Annotated[
     str | None,
-    options.of(
-        "Method",
-        "--engine",
+    options.method(
         "mujoco, pybullet or exudyn, whose one run verifies the prediction; none leaves it out. "
-        "Default: mujoco.",
+        "Default: mujoco."
     ),
 ]
 Support = Annotated[
     str,
-    options.of(
-        "Method",
-        "--support",
-        "What holds the cylinder: recess (ideal), flat (flat ground) or ring (walls with clearance).",
+    options.method(
+        "What holds the cylinder: recess (ideal), flat (flat ground) or ring (walls with clearance)."
     ),
 ]
-Copies = Annotated[int, options.of("Method", "--copies", "Number of perturbed copies.")]
-Seed = Annotated[int, options.of("Method", "--seed", "Of the perturbed copies.")]
+Copies = Annotated[int, options.method("Number of perturbed copies.")]
+Seed = Annotated[int, options.method("Of the perturbed copies.")]
 
 
 @states_problem

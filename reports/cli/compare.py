@@ -75,8 +75,10 @@ def compare(
             external = _external(
                 trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
             )
-        for line in _echo(suite, cases, runs):
-            print(line)
+        if suite is None:
+            print(*describe(cases[0]), *time_needed(cases, runs), sep="\n")
+        else:
+            print(*describe_suite(suite, cases, runs), sep="\n")
         if engine == [ALL]:
             for reason in unable_engines(cases):
                 complain(reason)
@@ -128,12 +130,6 @@ def _runs(
     every = engines == [ALL]
     runs = all_runs([case], supports or None) if every else rc.default_runs(engines or None, supports or None)
     return [rw.Run(run.engine, run.support, time_step) for run in runs]
-
-
-def _echo(suite: str | None, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> list[str]:
-    if suite is not None:
-        return list(describe_suite(suite, cases, runs))
-    return [*describe(cases[0]), *time_needed(cases, runs)]
 
 
 def _external(

@@ -17,34 +17,33 @@ from ..console.terminal import command_line, interruptible, user_input
 from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible
-from .inputs.problem import Problem, states_problem
+from .inputs.problem import Problem, refuse, states_problem
 from .inputs.suite_choice import refuse_problem_options
 
-Members = Annotated[int, typer.Option("--members", help="Number of members, where no suite gives them.")]
+_MEMBERS = {"members", "perturbation", "synthetic", "p695"}  # options that state them
+
+Members = Annotated[int, typer.Option(help="Number of members, where no suite gives them.")]
 Perturbation = Annotated[
     float,
     typer.Option(
-        "--perturbation",
         help="Relative standard deviation of tilt and rolling rate at release, or of the two components "
-        "of the ground motion.",
+        "of the ground motion."
     ),
 ]
 Synthetic = Annotated[
     float | None,
     typer.Option(
-        "--synthetic",
-        help="Made-up ground motions instead of perturbed starts, with a peak of so many times g tan alpha.",
+        help="Made-up ground motions instead of perturbed starts, with a peak of so many times g tan alpha."
     ),
 ]
 FarField = Annotated[
     float | None,
     typer.Option(
-        "--p695",
         help="The 22 far-field pairs of FEMA P-695 (extra records) instead of perturbed starts, each scaled "
         "to a peak of so many times g tan alpha.",
     ),
 ]
-Seed = Annotated[int, typer.Option("--seed", help="Of everything random.")]
+Seed = Annotated[int, typer.Option(help="Of everything random.")]
 
 
 @states_problem
@@ -55,7 +54,7 @@ def ensemble(
     members: Members = 20,
     perturbation: Perturbation = 0.01,
     synthetic: Synthetic = None,
-    far_field: FarField = None,
+    p695: FarField = None,
     seed: Seed = 0,
     engine: options.Engines = None,
     support: options.Supports = None,
@@ -78,18 +77,22 @@ def ensemble(
             rc.require_writable(out)
             stated: rw.Case | rw.Suite | list[rw.Case]
             if suite is not None:
-                stated = _suite(context, suite)
+                refuse(context, _MEMBERS, f"does not go with a suite, got {suite}: its cases are the members")
+                refuse_problem_options(context, suite)
+                stated = rw.read_suite(suite)
                 print(f"Suite {suite}: {len(stated.cases)} members")
             else:
                 case = problem.case()
                 # each engine and its own model, and a perturbed copy of that
                 methods = [rw.Run(None, "recess"), *(_runs(engine, support, time_step, stated=False) or ())]
                 require_feasible([case], methods, members=members, samples=False)
-                motions = _motions(case, members, synthetic, far_field, seed)
-                stated = _under(case, motions) if motions else case
+                motions = _motions(case, members, synthetic, p695, seed)
+                # named by the motion alone: the others are all the same
+                each = [dataclasses.replace(case, name=motion.name, motion=motion) for motion in motions]
+                stated = each or case
                 for line in describe(case)[:1] if motions else describe(case):
                     print(line)
-                print(f"Members: {len(motions) or members}, {_source(synthetic, far_field, perturbation)}")
+                print(f"Members: {len(motions) or members}, {_source(synthetic, p695, perturbation)}")
             runs = _runs(engine, support, time_step, stated=suite is not None)
         from rockwobble.compare.storage.manifest import made_now
         from rockwobble.compare.studies.ensemble.study import KIND
@@ -105,7 +108,7 @@ def ensemble(
                 seed=seed,
                 progress=tell,
                 resume=out,
-                source=_source(synthetic, far_field, perturbation) if suite is None else f"cases of {suite}",
+                source=_source(synthetic, p695, perturbation) if suite is None else f"cases of {suite}",
             )
         manifest = made_now(
             KIND,
@@ -123,16 +126,6 @@ def ensemble(
         show_and_write(out, ensemble_page(found, manifest), manifest, tables, sheets)
 
 
-def _suite(context: typer.Context, name: str) -> rw.Suite:
-    for option in ("members", "perturbation", "synthetic", "far_field"):
-        source = context.get_parameter_source(option)
-        if source is not None and source.name == "COMMANDLINE":
-            given = {"far_field": "p695"}.get(option, option)
-            raise ValueError(f"--{given} does not go with a suite, got {name}: its cases are the members")
-    refuse_problem_options(context, name)
-    return rw.read_suite(name)
-
-
 def _motions(
     case: rw.Case, members: int, synthetic: float | None, far_field: float | None, seed: int
 ) -> list[rw.GroundMotion]:
@@ -145,11 +138,6 @@ def _motions(
     if synthetic is not None:
         return rc.synthetic_motions(members, peak=synthetic * uplift, seed=seed)
     return []
-
-
-def _under(case: rw.Case, motions: list[rw.GroundMotion]) -> list[rw.Case]:
-    """Return the case under each motion, named by that alone: the others are all the same."""
-    return [dataclasses.replace(case, name=motion.name, motion=motion) for motion in motions]
 
 
 def _runs(

@@ -18,9 +18,7 @@ Quick = Annotated[
     bool,
     typer.Option("--quick", help="Only the two ends of each extreme: some two minutes on two idle cores."),
 ]
-Workers = Annotated[
-    int | None, typer.Option("--workers", min=1, help="Processes. Default: one for each processor.")
-]
+Workers = Annotated[int | None, typer.Option(min=1, help="Processes. Default: one for each processor.")]
 
 
 def extremes(

@@ -17,7 +17,7 @@ from .inputs import options
 # three sizes make bands to compare, and a map
 _LEAST_GRID, _MOST_GRID = 3, 1000
 
-Grid = Annotated[int, typer.Option("--grid", help="Sizes, and intensities, of the maps of figure 6.")]
+Grid = Annotated[int, typer.Option(help="Sizes, and intensities, of the maps of figure 6.")]
 
 
 def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-figures")) -> None:

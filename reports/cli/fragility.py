@@ -15,118 +15,86 @@ from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 from .inputs.grid import values_of
 from .inputs.method_values import settings
-from .inputs.motion_set import DEFAULT_COUNT, motions_of
-from .inputs.several import cylinders_of, methods_of
+from .inputs.several import DEFAULT_COUNT, cylinders_of, methods_of, motions_of
 from .sweep import Scheduler, Workers
 
-_MOTIONS, _LEVELS, _STATISTICS = "Ground motions", "Intensity", "Statistics"
+_motions, _intensity, _statistics = map(options.panel, ("Ground motions", "Intensity", "Statistics"))
 
 Cylinders = Annotated[
     list[str] | None,
-    options.of(
-        "Cylinder",
-        "--cylinder",
+    options.body(
         "A cylinder by name, as NAME=R,TAN_ALPHA such as pier=6,0.2; may be repeated.",
         metavar="NAME=R,TAN_ALPHA",
     ),
 ]
-FarField = Annotated[
-    bool, options.of(_MOTIONS, "--p695", "The 22 far-field pairs of FEMA P-695 (extra records).")
-]
+FarField = Annotated[bool, _motions("The 22 far-field pairs of FEMA P-695 (extra records).", "--p695")]
 Records = Annotated[
     Path | None,
-    options.of(
-        _MOTIONS,
-        "--records",
+    _motions(
         "A folder of records with a table records.csv: columns x and y (files), maybe z, name, units "
-        "and scale.",
+        "and scale."
     ),
 ]
 Synthetic = Annotated[
-    int | None,
-    options.of(
-        _MOTIONS, "--synthetic", f"So many made-up motions. Default, without records: {DEFAULT_COUNT}."
-    ),
+    int | None, _motions(f"So many made-up motions. Default, without records: {DEFAULT_COUNT}.")
 ]
 MeasureName = Annotated[
     str,
-    options.of(
-        _LEVELS,
-        "--measure",
+    _intensity(
         "Intensity: peak_acceleration (over g tan alpha), peak_velocity (times p over g tan alpha), "
-        "pga, pgv, sa or sa_mean.",
+        "pga, pgv, sa or sa_mean."
     ),
 ]
 Levels = Annotated[
     str | None,
-    options.of(
-        _LEVELS,
-        "--levels",
+    _intensity(
         "Intensities to which every motion is scaled: a list 1.5,2,3 or FROM:TO:COUNT, evenly in the "
-        "logarithm. Default: 20, from a little above uplift to where most overturn.",
+        "logarithm. Default: 20, from a little above uplift to where most overturn."
     ),
 ]
 Cloud = Annotated[
     str | None,
-    options.of(
-        _LEVELS,
-        "--cloud",
-        "Motions as they are in the place of levels, times each of these factors: 1, or 0.5,1,2.",
-    ),
+    _intensity("Motions as they are in the place of levels, times each of these factors: 1, or 0.5,1,2."),
 ]
-Period = Annotated[float, options.of(_LEVELS, "--period", "Of sa and sa_mean, in s.")]
+Period = Annotated[float, _intensity("Of sa and sa_mean, in s.")]
 Models = Annotated[
     list[str] | None,
-    options.of(
-        "Method",
-        "--model",
+    options.method(
         "Reduced model: recess, flat, planar-x, planar-y, worse-plane (of the two), or none; may be "
-        "repeated. Default: all.",
+        "repeated. Default: all."
     ),
 ]
 Engines = Annotated[
     list[str] | None,
-    options.of(
-        "Method",
-        "--engine",
-        "mujoco, pybullet, dart, drake or another that is installed; may be repeated. Default: none.",
+    options.method(
+        "mujoco, pybullet, dart, drake or another that is installed; may be repeated. Default: none."
     ),
 ]
 Restitution = Annotated[
     str,
-    options.of(
-        "Method",
-        "--restitution",
+    options.method(
         "Of the planar models: a number, or momentum for Housner's. Default: 1, as the models in three "
-        "dimensions.",
+        "dimensions."
     ),
 ]
 StepFactor = Annotated[
     float,
-    options.of(
-        "Method",
-        "--step-factor",
-        "On the default time step of the engines: a share of many runs needs less than a trace.",
-    ),
+    options.method("On the default time step of the engines: a share of many runs needs less than a trace."),
 ]
 Limits = Annotated[
     list[str] | None,
-    options.of(
-        _STATISTICS,
-        "--limit",
+    _statistics(
         'uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned or contact_lost; may be '
-        "repeated. Default: all but the last, which takes the forces of every run.",
+        "repeated. Default: all but the last, which takes the forces of every run."
     ),
 ]
-Margin = Annotated[
-    float, options.of(_STATISTICS, "--margin", "Within which two medians count as equivalent.")
-]
-Resamples = Annotated[int, options.of(_STATISTICS, "--resamples", "Of the motions, for intervals.", min=2)]
-Seed = Annotated[int, options.of(_STATISTICS, "--seed", "Of everything random.")]
+Margin = Annotated[float, _statistics("Within which two medians count as equivalent.")]
+Resamples = Annotated[int, _statistics("Of the motions, for intervals.", min=2)]
+Seed = Annotated[int, _statistics("Of everything random.")]
 
 
 def fragility(
-    semidiagonal: Annotated[float, options.of("Cylinder", "--semidiagonal", "R, in m.")] = 6.0,
+    semidiagonal: Annotated[float, options.body("R, in m.")] = 6.0,
     tan_alpha: Annotated[float, options.TAN_ALPHA] = 0.2,
     cylinder: Cylinders = None,
     p695: FarField = False,

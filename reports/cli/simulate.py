@@ -13,6 +13,7 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
+from ..console.results import print_facts
 from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
 from ..pages.words.cases import describe
 from .inputs import options
@@ -22,11 +23,7 @@ from .inputs.problem import Problem, states_problem
 
 RestTilt = Annotated[
     float | None,
-    options.of(
-        options.REDUCED,
-        "--rest-tilt",
-        "Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out.",
-    ),
+    options.reduced("Rest threshold: tilt over alpha below which the base is closed; 0 leaves the rule out."),
 ]
 
 
@@ -98,20 +95,13 @@ def _run(job: rc.Job) -> rw.Trace:
 
 
 def _print_result(trace: rw.Trace, label: str) -> None:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
     from rich.text import Text
 
     from ..pages.words.diagnostics import sentences
 
-    table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
-    for name, value in _facts(trace).items():
-        table.add_row(name, value)
-    console = Console()
     said = sentences(trace.diagnostics)
-    console.print(f"\n[bold]{label}[/]: {trace.outcome}.", Text(f"{said}." if said else ""), highlight=False)
-    console.print(table)
+    heading = f"\n[bold]{label}[/]: {trace.outcome}.", Text(f"{said}." if said else "")
+    print_facts(heading, _facts(trace))
 
 
 def _facts(trace: rw.Trace) -> dict[str, str]:

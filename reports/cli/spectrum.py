@@ -18,33 +18,23 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
-_GRID = "Grid"
+_grid = options.panel("Grid")
 # a map of more cells than a screen has pixels is a slip of the hand
 _MOST_POINTS = 2000
 # a search in smaller steps would take a day
 _FINEST = 1e-5
 
-Smallest = Annotated[float, options.of(_GRID, "--smallest", "Smallest semidiagonal R, in m.")]
-Largest = Annotated[float, options.of(_GRID, "--largest", "Largest semidiagonal R, in m.")]
-Sizes = Annotated[int, options.of(_GRID, "--sizes", "Number of sizes.")]
-Weakest = Annotated[
-    float, options.of(_GRID, "--weakest", "Lowest peak of the horizontal resultant, in g tan alpha.")
-]
-Strongest = Annotated[
-    float, options.of(_GRID, "--strongest", "Highest peak of the resultant, in g tan alpha.")
-]
-Intensities = Annotated[int, options.of(_GRID, "--intensities", "Number of intensities.")]
+Smallest = Annotated[float, _grid("Smallest semidiagonal R, in m.")]
+Largest = Annotated[float, _grid("Largest semidiagonal R, in m.")]
+Sizes = Annotated[int, _grid("Number of sizes.")]
+Weakest = Annotated[float, _grid("Lowest peak of the horizontal resultant, in g tan alpha.")]
+Strongest = Annotated[float, _grid("Highest peak of the resultant, in g tan alpha.")]
+Intensities = Annotated[int, _grid("Number of intensities.")]
 SearchStep = Annotated[
     float,
-    options.of(
-        "Method",
-        "--search-step",
-        "Finest step of the search for the lowest intensity that overturns, in g tan alpha.",
-    ),
+    options.method("Finest step of the search for the lowest intensity that overturns, in g tan alpha."),
 ]
-Support = Annotated[
-    str, options.of("Method", "--support", "Of the model in three dimensions: recess or flat.")
-]
+Support = Annotated[str, options.method("Of the model in three dimensions: recess or flat.")]
 
 
 def spectrum(

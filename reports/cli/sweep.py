@@ -19,7 +19,8 @@ from .inputs.grid import grid_of
 from .inputs.problem import refuse
 from .results.show import show
 
-_GRID, _WORK = "Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT", "Work"
+_grid = options.panel("Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT")
+_work = options.panel("Work")
 # what states a grid: the file of a suite states its own
 _STATED = {
     *("semidiagonal", "tan_alpha", "scale", "record_x", "record_y", "record_z", "units", "gravity"),
@@ -34,44 +35,28 @@ SuiteFile = Annotated[
         show_default=False,
     ),
 ]
-Sizes = Annotated[str, options.of(_GRID, "--semidiagonal", "R, in m.")]
-Slendernesses = Annotated[str, options.of(_GRID, "--tan-alpha", "Slenderness b/h.")]
-Scales = Annotated[str, options.of(_GRID, "--scale", "Factors on the records.")]
+Sizes = Annotated[str, _grid("R, in m.")]
+Slendernesses = Annotated[str, _grid("Slenderness b/h.")]
+Scales = Annotated[str, _grid("Factors on the records.")]
 Models = Annotated[
     list[str] | None,
-    options.of(
-        _GRID,
-        "--model",
-        "recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs.",
-    ),
+    _grid("recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs."),
 ]
 RecordsX = Annotated[
     list[Path] | None,
-    options.of(
-        _GRID,
-        "--record-x",
-        "East-west component; may be repeated for several records. Default: El Centro 1940.",
-    ),
+    _grid("East-west component; may be repeated for several records. Default: El Centro 1940."),
 ]
-RecordsY = Annotated[list[Path] | None, options.of(_GRID, "--record-y", "North-south component of each.")]
-RecordsZ = Annotated[
-    list[Path] | None, options.of(_GRID, "--record-z", "Vertical component of each, or of none.")
-]
-Workers = Annotated[
-    int | None, options.of(_WORK, "--workers", "Processes on this machine. Default: one a core.", min=1)
-]
+RecordsY = Annotated[list[Path] | None, _grid("North-south component of each.")]
+RecordsZ = Annotated[list[Path] | None, _grid("Vertical component of each, or of none.")]
+Workers = Annotated[int | None, _work("Processes on this machine. Default: one a core.", min=1)]
 Scheduler = Annotated[
     str | None,
-    options.of(
-        _WORK,
-        "--scheduler",
+    _work(
         "Dask scheduler that has the work done, such as tcp://10.0.0.1:8786: started by dask scheduler, "
-        "and on each machine dask worker tcp://10.0.0.1:8786. Needs pip install 'dask[distributed]'.",
+        "and on each machine dask worker tcp://10.0.0.1:8786. Needs pip install 'dask[distributed]'."
     ),
 ]
-ChunkSize = Annotated[
-    int | None, options.of(_WORK, "--chunk", "Runs in a chunk. Default: about a second of work.", min=1)
-]
+ChunkSize = Annotated[int | None, _work("Runs in a chunk. Default: about a second of work.", min=1)]
 
 
 def sweep(
@@ -122,18 +107,6 @@ def sweep(
         rc.require_writable(out)
     for line in (*_echo(plan), how_long):
         print(line)
-    _run(plan, out, scheduler, workers, chunk)
-    print()
-    show(out)
-
-
-def _run(
-    plan: rc.Grid | rc.CaseSweep,
-    out: Path,
-    scheduler: str | None,
-    workers: int | None,
-    chunk: int | None,
-) -> None:
     try:
         with interruptible(out), user_input(), shown_progress("chunks") as tell:
             rw.sweep(
@@ -148,6 +121,8 @@ def _run(
     except rc.SweepIncompleteError as error:
         complain(str(error))
         raise typer.Exit(FAILED) from None
+    print()
+    show(out)
 
 
 def _suite(name: str, models: list[str] | None) -> rc.CaseSweep:

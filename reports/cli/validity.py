@@ -18,8 +18,7 @@ Quick = Annotated[
     bool, typer.Option("--quick", help="Coarse maps and few runs: some two minutes on two cores.")
 ]
 Workers = Annotated[
-    int | None,
-    typer.Option("--workers", help="Processes that measure side by side. Default: one for each processor."),
+    int | None, typer.Option(help="Processes that measure side by side. Default: one for each processor.")
 ]
 
 

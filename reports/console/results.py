@@ -1,8 +1,8 @@
-"""The end of a command that makes results: its files are written, and its report is printed."""
+"""The end of a command: its files are written, and its report or the facts of a result are printed."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -10,10 +10,28 @@ from .terminal import user_input
 
 if TYPE_CHECKING:
     import pandas as pd
+    from rich.text import Text
 
     from rockwobble.compare.storage.manifest import Manifest
 
     from ..pages.page import Page
+
+
+def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None:
+    """Print a heading and facts by their names, as text, in which brackets are no markup."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
+    table.add_column(no_wrap=True)
+    table.add_column(overflow="fold")
+    for name, fact in facts.items():
+        table.add_row(Text(name), Text(fact))
+    console = Console()
+    console.print(*heading, highlight=False)
+    console.print(table)
 
 
 def show_and_write(

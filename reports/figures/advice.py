@@ -13,8 +13,9 @@ from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
 
+from .ensemble import peak_shares
 from .palette import GREY, Style, model_style, run_styles
-from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Pictures, Rule, at_hand, ecdf
+from .picture import TIME, Array, Axis, Band, Line, Panel, Picture, Rule
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar, x alone", PLANAR_Y: "planar, y alone"}
 GROUPS = {
@@ -27,14 +28,13 @@ _STANDS, _FALLS = 1.2, 1.3  # [alpha] where tilts are cut, and where overturned 
 _SCALES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 
 
-def pictures(found: Advice) -> Pictures:
-    """Return what makes the picture of an advice, by name; nothing where there is nothing to draw."""
-    picture = advice_picture(found.facts(), found.tables())
-    return {} if picture is None else at_hand(picture)
+def pictures(found: Advice) -> list[Picture]:
+    """Return the picture of an advice; none where there is nothing to draw."""
+    return advice_pictures(found.facts(), found.tables())
 
 
-def advice_picture(facts: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> Picture | None:
-    """Return the picture, from what an advice stores; None where nothing was run that could be drawn."""
+def advice_pictures(facts: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]) -> list[Picture]:
+    """Return the picture, from what an advice stores; none where nothing was run that could be drawn."""
     panels = []
     if facts["moves"]:
         panels += [_peaks(facts, tables["members"]), _tilt(facts, tables)]
@@ -42,9 +42,7 @@ def advice_picture(facts: Mapping[str, Any], tables: Mapping[str, pd.DataFrame])
         panels.append(_scales(facts, tables["scales"]))
     if facts["moves"]:
         panels.append(_friction(facts, tables["trace"]))
-    if not panels:
-        return None
-    return Picture(
+    picture = Picture(
         name="advice",
         title=f"{facts['name']}: largest tilts, the trace, other scales and friction",
         caption="Largest tilts: share of the runs that tilt no more; what a curve lacks to 1 overturns "
@@ -53,6 +51,7 @@ def advice_picture(facts: Mapping[str, Any], tables: Mapping[str, pd.DataFrame])
         columns=2,
         legend="panels",
     )
+    return [picture] if panels else []
 
 
 def _peaks(facts: Mapping[str, Any], members: pd.DataFrame) -> Panel:
@@ -60,16 +59,9 @@ def _peaks(facts: Mapping[str, Any], members: pd.DataFrame) -> Panel:
     styles = run_styles(groups)
     standing = members[members["outcome"].isin(["rest", "completed"])]
     end = 1.05 * max(float(standing["peak_tilt"].max()), 0.1) if len(standing) else 1.0
-    layers = []
+    layers: list[Line] = []
     for name in groups:
-        runs = members[(members["group"] == name) & (members["outcome"] != "failed")]
-        fell = runs["outcome"] == "overturned"
-        x, y = ecdf(runs.loc[~fell, "peak_tilt"].to_numpy(float), total=len(runs), end=end)
-        label = f"{SHORT[name]} ({fell.sum()} of {len(runs)} overturn)"
-        layers.append(Line(x=x, y=y, name=label, style=styles[name], steps=True))
-        if fell.any():
-            mark = Style(colour=styles[name].colour, dash="none", symbol="triangle-right")
-            layers.append(Line(x=x[-1:], y=y[-1:], style=mark, size=7.0, clip=False))
+        layers += peak_shares(members[members["group"] == name], SHORT[name], styles[name], end)
     if not facts["overturned"]:
         here = Style(colour=model_style(facts["model"]).colour, dash="none", symbol="diamond")
         rank = np.array([facts["peak_rank"]])

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any, Literal
 
 import numpy as np
+import pandas as pd
 
 from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.distributions import MARGIN
 from rockwobble.compare.studies.ensemble.tables import pairs
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
-from .picture import Array, Axis, Line, Panel, Picture, Pictures, Rule, Text, at_hand, ecdf
+from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf
 
 # beyond the largest ratio, and at least beyond the margin
 _ROOM = 1.25
@@ -25,11 +26,6 @@ _MEDIAN = Style(colour=DARK, dash="none", symbol="diamond")
 _LINE = 0.5  # inch for a pair of methods
 
 
-def pictures(found: Ensemble) -> Pictures:
-    """Return what makes the picture of an ensemble, by name."""
-    return at_hand(ensemble_picture(found))
-
-
 def main_pairs(found: Ensemble) -> list[dict[str, Any]]:
     """Return the rows of the contrasts that are asked for first: engines by their own model, then models."""
     rows = found.contrasts.to_dict("records")
@@ -39,11 +35,11 @@ def main_pairs(found: Ensemble) -> list[dict[str, Any]]:
     return [{str(name): value for name, value in row.items()} for row in engines + models or rows]
 
 
-def ensemble_picture(found: Ensemble) -> Picture:
+def pictures(found: Ensemble) -> list[Picture]:
     """Return the distribution of each method, and the ratios of the members of the main pairs."""
     rows = [row for row in main_pairs(found) if row["compared"]]
     panels = [_distributions(found), *([_ratios(found, rows)] if rows else [])]
-    return Picture(
+    picture = Picture(
         name="ensemble",
         title="Distributions of peak tilt by method, and ratios of the peaks of each member",
         caption="Above: share of the members whose peak tilt is at most that of the axis; what a curve lacks "
@@ -54,6 +50,7 @@ def ensemble_picture(found: Ensemble) -> Picture:
         panels=panels,
         legend="panels",
     )
+    return [picture]
 
 
 def _distributions(found: Ensemble) -> Panel:
@@ -61,20 +58,11 @@ def _distributions(found: Ensemble) -> Panel:
     largest = float(standing.max(skipna=True)) if standing.notna().any() else 0.0
     end = 1.05 * largest or 1.0
     styles = label_styles(list(found.methods["method"]))
-    layers = []
+    layers: list[Line] = []
     for method, style in styles.items():
-        runs = found.members[(found.members["method"] == method) & (found.members["outcome"] != "failed")]
-        stands = runs[runs["outcome"] != "overturned"].sort_values("peak_tilt")
-        fallen = len(runs) - len(stands)
-        if not len(runs):
-            continue
-        x, y = ecdf(stands["peak_tilt"].to_numpy(float), total=len(runs), end=end)
-        label = f"{method} ({fallen} of {len(runs)} overturn)"
-        names = ["", *map(str, stands["member"]), ""]
-        layers.append(Line(x=x, y=y, name=label, style=style, width=1.6, steps=True, notes=names))
-        if fallen:
-            mark = Style(colour=style.colour, dash="none", symbol="triangle-right")
-            layers.append(Line(x=x[-1:], y=y[-1:], style=mark, size=7.0, clip=False))
+        runs = found.members[found.members["method"] == method]
+        if (runs["outcome"] != "failed").any():
+            layers += peak_shares(runs, method, style, end, width=1.6, notes=True)
     return Panel(
         x=Axis(label="peak tilt / α", unit="-", low=0.0, high=end),
         y=Axis(label="share of the members", unit="-", low=0.0, high=1.03),
@@ -82,6 +70,25 @@ def _distributions(found: Ensemble) -> Panel:
         title="Peak tilt",
         height=3.4,
     )
+
+
+def peak_shares(
+    runs: pd.DataFrame, name: str, style: Style, end: float, *, width: float = 1.4, notes: bool = False
+) -> Iterator[Line]:
+    """Yield the share of runs whose peak tilt is at most x, and a triangle for those that overturn.
+
+    Runs that failed have no part in it; `notes` name the member of each step.
+    """
+    known = runs[runs["outcome"] != "failed"]
+    stands = known[known["outcome"] != "overturned"].sort_values("peak_tilt")
+    fallen = len(known) - len(stands)
+    x, y = ecdf(stands["peak_tilt"].to_numpy(float), total=len(known), end=end)
+    label = f"{name} ({fallen} of {len(known)} overturn)"
+    names = ["", *map(str, stands["member"]), ""] if notes else ()
+    yield Line(x=x, y=y, name=label, style=style, width=width, steps=True, notes=names)
+    if fallen:
+        mark = Style(colour=style.colour, dash="none", symbol="triangle-right")
+        yield Line(x=x[-1:], y=y[-1:], style=mark, size=7.0, clip=False)
 
 
 def _ratios(found: Ensemble, rows: list[dict[str, Any]]) -> Panel:

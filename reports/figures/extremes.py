@@ -7,7 +7,7 @@ import numpy as np
 from rockwobble.compare.studies.extremes.study import Extremes
 
 from .palette import GREY, ORDER, PALE
-from .picture import Axis, Bars, Panel, Picture, Pictures, at_hand
+from .picture import Axis, Bars, Panel, Picture
 
 # verdict: colour and hatch; what nothing explains stands out
 _SHADES = {
@@ -20,12 +20,7 @@ _SHADES = {
 }
 
 
-def pictures(found: Extremes) -> Pictures:
-    """Return what makes the picture of a scan, by name."""
-    return at_hand(extremes_picture(found))
-
-
-def extremes_picture(found: Extremes) -> Picture:
+def pictures(found: Extremes) -> list[Picture]:
     """Return the counts of the verdicts, a bar for each method."""
     runs = found.table[found.table["verdict"] != "n/a"]
     methods = list(dict.fromkeys(runs["method"]))
@@ -45,9 +40,6 @@ def extremes_picture(found: Extremes) -> Picture:
         layers=layers,
         height=0.4 * len(methods) + 1.0,
     )
-    return Picture(
-        name="extremes",
-        title="Verdicts on the extremes, by method",
-        caption="Runs of each method by verdict; a silent one is wrong and no diagnostic explains it.",
-        panels=[panel],
-    )
+    title = "Verdicts on the extremes, by method"
+    caption = "Runs of each method by verdict; a silent one is wrong and no diagnostic explains it."
+    return [Picture(name="extremes", title=title, caption=caption, panels=[panel])]

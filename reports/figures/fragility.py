@@ -16,7 +16,7 @@ from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL
 
 from .palette import DARK, GREY, ORDER, SHADED, Style, pale
-from .picture import Axis, Band, Line, Panel, Picture, Pictures, Rule, at_hand
+from .picture import Axis, Band, Line, Panel, Picture, Rule
 
 # of a panel: the support, and what it is called
 _SUPPORTS: Mapping[str, str] = {
@@ -34,12 +34,7 @@ _LINE = 0.42  # inch for a pair of methods
 _MEDIAN = Style(colour=ORDER[0], dash="none", symbol="diamond")
 
 
-def pictures(found: Fragility) -> Pictures:
-    """Return the pictures by name."""
-    return at_hand(*fragility_pictures(found))
-
-
-def fragility_pictures(found: Fragility) -> list[Picture]:
+def pictures(found: Fragility) -> list[Picture]:
     """Return the ratios of the medians, and the curves of each cylinder."""
     ratios = _ratios(found)
     curves = [

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+NOTHING = "#d9d9d9"  # behind cells without a value
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -76,6 +77,11 @@ class Shades:
         """Label and unit."""
         return f"{self.label} [{self.unit}]"
 
+    @property
+    def colours(self) -> str:
+        """Name of the colours, the same to both renderers."""
+        return "Blues" if self.centre is None else "RdBu_r"
+
     def place(self, values: Array) -> Array:
         """Return where values are on the scale, from 0 to 1; NaN stays."""
         low, high = self.low, self.high
@@ -110,6 +116,8 @@ def contour(x: Array, y: Array, values: Array, level: float) -> tuple[Array, Arr
     """Return the line (n,), (n,) where values (len(y), len(x)) are `level`; NaN parts its pieces."""
     from contourpy import contour_generator
 
+    if min(values.shape) < 2:  # through a single row of cells there is none
+        return np.empty(0), np.empty(0)
     pieces = contour_generator(x, y, np.ma.masked_invalid(values)).lines(level)
     parted = [part for piece in pieces for part in (np.asarray(piece), np.full((1, 2), np.nan))]
     whole = np.concatenate(parted[:-1]) if parted else np.empty((0, 2))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .heat import Array, Heat, Shades
+from .heat import NOTHING, Array, Heat, Shades
 from .picture import Panel
 
 if TYPE_CHECKING:
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
 
 # numbers in cells as long as a phone has room for them
 _MOST_WRITTEN = 42
-_SEQUENTIAL, _DIVERGING, _NOTHING = "Blues", "RdBu_r", "#d9d9d9"
 
 
 def small(values: Array) -> NDArray[np.float32]:
@@ -52,7 +51,7 @@ def add_heat(drawn: go.Figure, heat: Heat, panel: Panel, shades: Shades) -> None
             layer = np.where(gap.cells, 0.0, np.nan)
             flat = {"colorscale": [[0.0, gap.colour], [1.0, gap.colour]], "showscale": False}
             drawn.add_heatmap(x=edges[0], y=edges[1], z=small(layer), **flat, hoverinfo="skip")
-    drawn.update_layout(plot_bgcolor=_NOTHING)
+    drawn.update_layout(plot_bgcolor=NOTHING)
     drawn.update_xaxes(showgrid=False, tickangle=0)
     drawn.update_yaxes(showgrid=False)
 
@@ -75,8 +74,8 @@ def _said(heat: Heat, panel: Panel) -> list[list[list[str]]]:
 def _colours(shades: Shades) -> str | list[list[Any]]:
     from plotly.colors import sample_colorscale
 
-    name, steps = _SEQUENTIAL if shades.centre is None else _DIVERGING, shades.steps
+    steps = shades.steps
     if not steps:
-        return name
-    colours = sample_colorscale(name, np.linspace(0.0, 1.0, steps))
+        return shades.colours
+    colours = sample_colorscale(shades.colours, np.linspace(0.0, 1.0, steps))
     return [[end / steps, colours[i]] for i in range(steps) for end in (i, i + 1)]

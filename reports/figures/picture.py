@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
-from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -230,18 +229,6 @@ class Picture:
         return list(dict.fromkeys(name for panel in self.panels for name in panel.entries()))
 
 
-Pictures = dict[str, Callable[[], Picture]]  # by name, made when they are wanted
-
-
-def at_hand(*pictures: Picture) -> Pictures:
-    """Return pictures that are made already, by name."""
-    return {picture.name: partial(_given, picture) for picture in pictures}
-
-
-def _given(picture: Picture) -> Picture:
-    return picture
-
-
 def ecdf(values: Array, *, total: int | None = None, end: float | None = None) -> tuple[Array, Array]:
     """Return steps (k,), (k,) of the share of `total` values that are at most x.
 
@@ -257,6 +244,11 @@ def ecdf(values: Array, *, total: int | None = None, end: float | None = None) -
     counts = np.arange(len(values) + 1, dtype=np.float64)
     counts = counts if end is None else np.append(counts, counts[-1])
     return x, counts / max(len(values) if total is None else total, 1)
+
+
+def parted(first: Array, second: Array) -> Array:
+    """Return the ends of bars one after the other, parted by NaN."""
+    return np.column_stack([first, second, np.full(len(first), np.nan)]).ravel()
 
 
 def _names(layer: Layer) -> Iterator[str]:

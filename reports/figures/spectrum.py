@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.studies.spectrum.result import Array, OverturningSpectrum, safe_islands
+from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, safe_islands
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
 
 from .heat import Gap, Heat, Shades
 from .palette import Style, model_style, run_styles
-from .picture import Axis, Line, Panel, Picture, Pictures, at_hand
+from .picture import Axis, Line, Panel, Picture, parted
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-south"}
 _OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
@@ -17,16 +17,13 @@ _HEIGHT = 3.4
 _ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: islands side by side
 
 
-def pictures(spectrum: OverturningSpectrum) -> Pictures:
-    """Return what makes the picture of a spectrum, by name."""
-    return at_hand(spectrum_picture(spectrum))
-
-
-def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
+def pictures(spectrum: OverturningSpectrum) -> list[Picture]:
     """Return a map of each series, and the lowest intensities with the safe islands above them."""
     size = Axis(label="R", unit="m")
     low, high = (float(spectrum.intensities[end]) for end in (0, -1))
     intensity = Axis(label="peak resultant / (g tan α)", unit="-", low=low, high=high)
+    own_peak = Axis(label="peak of the component / (g tan α)", unit="-")
+    shares = {series: spectrum.component_share(series) for series in SERIES}
     maps = [
         Panel(
             x=size,
@@ -42,9 +39,9 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
                 ),
             ],
             height=_HEIGHT,
-            second=_own_peak(spectrum.component_share(series)),
+            second=None if share in (0.0, 1.0) else (own_peak, share),
         )
-        for series in SERIES
+        for series, share in shares.items()
     ]
     curves = Panel(
         x=size,
@@ -53,7 +50,7 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
         layers=_curves(spectrum),
         height=_HEIGHT,
     )
-    return Picture(
+    picture = Picture(
         name="spectrum",
         title=f"Peak tilt of sizes under intensities, {spectrum.motion.name or 'record'}, "
         f"tan α = {spectrum.tan_alpha:g}",
@@ -63,6 +60,7 @@ def spectrum_picture(spectrum: OverturningSpectrum) -> Picture:
         columns=2,
         shades=Shades(label="peak tilt / α", unit="-", low=0.0, high=1.0, steps=10),
     )
+    return [picture]
 
 
 def _map(spectrum: OverturningSpectrum, series: str) -> Heat:
@@ -79,11 +77,6 @@ def _map(spectrum: OverturningSpectrum, series: str) -> Heat:
     )
 
 
-def _own_peak(share: float) -> tuple[Axis, float] | None:
-    own = Axis(label="peak of the component / (g tan α)", unit="-")
-    return None if share in (0.0, 1.0) else (own, share)
-
-
 def _curves(spectrum: OverturningSpectrum) -> list[Line]:
     planes = run_styles([PLANAR_X, PLANAR_Y])
     styles = {SPATIAL: model_style(spectrum.support), **planes}
@@ -97,7 +90,7 @@ def _curves(spectrum: OverturningSpectrum) -> list[Line]:
         ends = closed["lower"].to_numpy(float) - half, closed["upper"].to_numpy(float) + half
         thin = Style(colour=styles[series].colour)
         found += [
-            Line(x=_parted(place, place), y=_parted(*ends), style=thin, width=0.7, opacity=0.45),
+            Line(x=parted(place, place), y=parted(*ends), style=thin, width=0.7, opacity=0.45),
             Line(
                 x=spectrum.semidiagonals,
                 y=spectrum.lowest[series],
@@ -107,8 +100,3 @@ def _curves(spectrum: OverturningSpectrum) -> list[Line]:
             ),
         ]
     return found
-
-
-def _parted(first: Array, second: Array) -> Array:
-    """Return the ends of bars one after the other, parted by NaN."""
-    return np.column_stack([first, second, np.full(len(first), np.nan)]).ravel()

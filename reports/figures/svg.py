@@ -15,9 +15,9 @@ from matplotlib.colors import Colormap, ListedColormap, Normalize
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from .heat import Heat, Shades
+from .heat import NOTHING, Heat, Shades
 from .palette import DARK, DASHES, SYMBOLS
-from .picture import MOST_ENTRIES, Axis, Band, Bars, Line, Panel, Picture, Rule, Text
+from .picture import MOST_ENTRIES, Band, Bars, Line, Panel, Picture, Rule, Text
 from .thinning import kept_points
 
 # a column of text on a screen is some 830 pixels wide, 96 to the inch [inch]
@@ -47,7 +47,6 @@ _VECTOR_CELLS = 2500
 _MOST_WRITTEN = 64
 # of the scale of colours: there white letters are read better
 _DARK = 0.6
-_SEQUENTIAL, _DIVERGING, _NOTHING = "Blues", "RdBu_r", "#d9d9d9"
 _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
 
 
@@ -149,13 +148,9 @@ def _scale(axes: Axes, panel: Panel) -> None:
     axes.set_yscale("log" if panel.y.log else "linear")
     for axis, set_ticks in ((panel.x, axes.set_xticks), (panel.y, axes.set_yticks)):
         if axis.ticks:
-            set_ticks(*_ticks(axis))
+            places, words = zip(*axis.ticks, strict=True)
+            set_ticks(places, words)
             set_ticks([], minor=True)
-
-
-def _ticks(axis: Axis) -> tuple[list[float], list[str]]:
-    places, words = zip(*axis.ticks, strict=True)
-    return list(places), list(words)
 
 
 def _line(axes: Axes, line: Line) -> None:
@@ -229,7 +224,7 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
     few = heat.values.size <= _VECTOR_CELLS
     drawn: dict[str, Any] = {"rasterized": not few, "edgecolors": "white" if few else "none"}
     axes.grid(visible=False)
-    axes.set_facecolor(_NOTHING)
+    axes.set_facecolor(NOTHING)
     axes.pcolormesh(*edges, np.ma.masked_invalid(place), cmap=_colours(shades), vmin=0.0, vmax=1.0,
                     linewidth=0.5 if few else 0.0, **drawn)  # fmt: skip
     for gap in heat.gaps:
@@ -249,8 +244,7 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
 
 
 def _colours(shades: Shades) -> Colormap:
-    name = _SEQUENTIAL if shades.centre is None else _DIVERGING
-    found: Colormap = mpl.colormaps[name]
+    found: Colormap = mpl.colormaps[shades.colours]
     return found.resampled(shades.steps) if shades.steps else found
 
 

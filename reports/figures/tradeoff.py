@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from functools import partial
-
 import numpy as np
 import pandas as pd
 
 from rockwobble.compare.studies.tradeoff.study import Tradeoff
 
 from .palette import DARK, GREY, ORDER, SYMBOLS, Style
-from .picture import Axis, Line, Panel, Picture, Pictures, Rule
+from .picture import Axis, Line, Panel, Picture, Rule, parted
 
 TITLES = {
     "turn": "Angle of turn in free response",
@@ -36,16 +34,9 @@ _BASE = "recess model"
 _OF_MODEL, _OF_ENGINES = ("scipy", "rest threshold"), ("integrator", "contact")  # panels of variants
 
 
-def pictures(found: Tradeoff) -> Pictures:
-    """Return what makes the picture of each problem, by its name."""
-    return {
-        name: partial(_picture, found, name) for name in TITLES if (found.points["problem"] == name).any()
-    }
-
-
-def tradeoff_pictures(found: Tradeoff) -> list[Picture]:
+def pictures(found: Tradeoff) -> list[Picture]:
     """Return a picture for each problem; its panels share their axes, and no line has a family of its own."""
-    return [make() for make in pictures(found).values()]
+    return [_picture(found, name) for name in TITLES if (found.points["problem"] == name).any()]
 
 
 def _picture(found: Tradeoff, problem: str) -> Picture:
@@ -99,16 +90,8 @@ def _lines(points: pd.DataFrame) -> list[Line]:
         layers.append(
             Line(x=x, y=y, name=str(name), style=Style(colour=colour, symbol=symbols[index]), notes=notes)
         )
-        ends = ordered[["ratio_low", "ratio_high"]].to_numpy(float)
-        gap = np.full((len(y), 1), np.nan)  # parts the bars
-        layers.append(
-            Line(
-                x=np.hstack([ends, gap]).ravel(),
-                y=np.repeat(y, 3),
-                style=Style(colour=colour),
-                width=0.8,
-            )
-        )
+        bars = parted(*(ordered[f"ratio_{end}"].to_numpy(float) for end in ("low", "high")))
+        layers.append(Line(x=bars, y=np.repeat(y, 3), style=Style(colour=colour), width=0.8))
     return layers
 
 

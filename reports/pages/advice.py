@@ -14,7 +14,7 @@ from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y
 from rockwobble.compare.studies.spectrum.verification import CHECK_RTOL, NUDGE
 from rockwobble.models.diagnostic import CODES
 
-from ..figures.advice import GROUPS, SHORT, advice_picture
+from ..figures.advice import GROUPS, SHORT, advice_pictures
 from .page import Page
 
 # the largest tilt in a ring over that of the recess model: least and largest median over 22 records, and what
@@ -28,13 +28,9 @@ GRADE_WORDS = {"good": "sound", "care": "care", "bad": "fails"}
 def advice_page(tables: Mapping[str, pd.DataFrame], manifest: Manifest) -> Page:
     """Return the page of an advice, from its tables and its manifest alone."""
     facts = manifest.about["advice"]
-    picture = advice_picture(facts, tables)
-    return Page(
-        name="advice",
-        template="advice",
-        values={**advice_values(facts), "about": manifest, "drawn": picture is not None},
-        pictures=[] if picture is None else [picture],
-    )
+    pictures = advice_pictures(facts, tables)
+    values = {**advice_values(facts), "about": manifest, "drawn": bool(pictures)}
+    return Page(name="advice", template="advice", values=values, pictures=pictures)
 
 
 def stored_page(results: Results) -> Page:

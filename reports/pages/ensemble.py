@@ -13,18 +13,14 @@ from rockwobble.compare.metrics.distributions import (
 from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.ensemble.study import stored_ensemble
 
-from ..figures.ensemble import ensemble_picture, main_pairs
+from ..figures.ensemble import main_pairs, pictures
 from .page import Page
 
 
 def ensemble_page(found: Ensemble, manifest: Manifest) -> Page:
     """Return the page of an ensemble."""
-    return Page(
-        name="ensemble",
-        template="ensemble",
-        values={**ensemble_values(found), "about": manifest},
-        pictures=[ensemble_picture(found)],
-    )
+    values = {**ensemble_values(found), "about": manifest}
+    return Page(name="ensemble", template="ensemble", values=values, pictures=pictures(found))
 
 
 def stored_page(results: Results) -> Page:

@@ -86,13 +86,9 @@ def _not_fine(runs: pd.DataFrame) -> list[dict[str, object]]:
                 "methods": ", ".join(alike["method"]),
                 "verdict": WORDS[str(verdict)],
                 "error": alike["error"].max(),
-                **{name: _finite(alike[name].min()) for name in ("begins", "until")},
+                # never is a dash
+                **{name: alike[name].replace(math.inf, math.nan).min() for name in ("begins", "until")},
                 "limit": refusal or "; ".join(CODES[code][1] for code in str(limit).split(", ") if code),
             }
         )
     return rows
-
-
-def _finite(time: float) -> float:
-    """A time, NaN where it never comes."""
-    return time if math.isfinite(time) else math.nan

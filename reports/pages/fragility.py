@@ -14,7 +14,7 @@ from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.result import stored_fragility
 from rockwobble.compare.studies.fragility.tables import ALL
 
-from ..figures.fragility import fragility_pictures
+from ..figures.fragility import pictures
 from .page import Page
 
 # below this probability the counts do not follow a lognormal curve
@@ -23,14 +23,10 @@ _POOR = 0.05
 
 def fragility_page(found: Fragility, manifest: Manifest) -> Page:
     """Return the page of a fragility."""
-    pictures = fragility_pictures(found)
-    names = [picture.name for picture in pictures]
-    return Page(
-        name="fragility",
-        template="fragility",
-        values={**fragility_values(found), "about": manifest, "pictures": names},
-        pictures=pictures,
-    )
+    drawn = pictures(found)
+    names = [picture.name for picture in drawn]
+    values = {**fragility_values(found), "about": manifest, "pictures": names}
+    return Page(name="fragility", template="fragility", values=values, pictures=drawn)
 
 
 def stored_page(results: Results) -> Page:

@@ -20,7 +20,7 @@ from rockwobble.compare.studies.spectrum.result import (
 from rockwobble.compare.studies.spectrum.series import SPATIAL
 from rockwobble.compare.studies.spectrum.verification import AGREEMENT, CHECK_RTOL, NUDGE
 
-from ..figures.spectrum import spectrum_picture
+from ..figures.spectrum import pictures
 from .page import Page
 
 
@@ -28,12 +28,8 @@ def spectrum_page(
     spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame], manifest: Manifest
 ) -> Page:
     """Return the page of a spectrum and its tables, of `spectrum_tables`."""
-    return Page(
-        name="spectrum",
-        template="spectrum",
-        values={**spectrum_values(spectrum, tables), "about": manifest},
-        pictures=[spectrum_picture(spectrum)],
-    )
+    values = {**spectrum_values(spectrum, tables), "about": manifest}
+    return Page(name="spectrum", template="spectrum", values=values, pictures=pictures(spectrum))
 
 
 def stored_page(results: Results) -> Page:

@@ -8,7 +8,7 @@ from rockwobble.compare.storage.manifest import Results
 from rockwobble.compare.studies.tradeoff.conclusions import costs, engine_factors, plateaus, rest_tilt_price
 from rockwobble.compare.studies.tradeoff.study import ROUNDS, Tradeoff, stored_tradeoff
 
-from ..figures.tradeoff import ERRORS, TITLES, tradeoff_pictures
+from ..figures.tradeoff import ERRORS, TITLES, pictures
 from .page import Page
 from .table import NONE, number
 
@@ -36,9 +36,9 @@ def tradeoff_page(found: Tradeoff) -> Page:
         "load": found.load,
         "about": found.made,
     }
-    pictures = tradeoff_pictures(found)
-    values["drawn"] = [picture.name for picture in pictures]
-    return Page(name="tradeoff", template="tradeoff", values=values, pictures=pictures)
+    drawn = pictures(found)
+    values["drawn"] = [picture.name for picture in drawn]
+    return Page(name="tradeoff", template="tradeoff", values=values, pictures=drawn)
 
 
 def stored_page(results: Results) -> Page:

@@ -16,7 +16,7 @@ from rockwobble.compare.studies.validity.limits.engine import damping
 from rockwobble.compare.studies.validity.rings import FREE
 from rockwobble.compare.studies.validity.study import Validity, stored_validity
 
-from ..figures.validity.pictures import METHODS, validity_pictures
+from ..figures.validity.pictures import METHODS, pictures
 from .page import Page
 
 
@@ -44,7 +44,7 @@ def validity_page(found: Validity) -> Page:
         "records": found.records,
         "about": found.made,
     }
-    return Page(name="validity", template="validity", values=values, pictures=validity_pictures(tables))
+    return Page(name="validity", template="validity", values=values, pictures=pictures(found))
 
 
 def stored_page(results: Results) -> Page:

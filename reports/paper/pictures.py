@@ -15,7 +15,8 @@ from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIE
 
 from ..figures.palette import DARK, ORDER, SHADED, Style, model_style, run_styles
 from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
-from ..figures.spectrum import NAMES, spectrum_picture
+from ..figures.spectrum import NAMES
+from ..figures.spectrum import pictures as spectrum_pictures
 from . import earthquake, free, period
 from .overturning import lowest_on_axes
 
@@ -154,7 +155,7 @@ def _signed_log(values: Array) -> Array:
 
 def overturning_picture(spectrum: OverturningSpectrum) -> Picture:
     """Return figure 6: the maps, and the lowest intensities on the axes of the paper and on equal shaking."""
-    whole = spectrum_picture(spectrum)
+    (whole,) = spectrum_pictures(spectrum)
     styles = {SPATIAL: model_style(spectrum.support), **run_styles([PLANAR_X, PLANAR_Y])}
     curves = []
     for own, label in ((True, "own peak / (g tan α)"), (False, "peak resultant / (g tan α)")):

@@ -15,7 +15,7 @@ from rockwobble.compare.storage.manifest import Manifest, read_manifests
 from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.figures.ensemble import ensemble_picture, ratio_span, ratio_ticks
+from rockwobble.reports.figures.ensemble import pictures, ratio_span, ratio_ticks
 from rockwobble.reports.figures.picture import Line, Text
 from rockwobble.reports.figures.svg import svg
 from rockwobble.reports.pages.ensemble import ensemble_page
@@ -101,7 +101,7 @@ def test_what_is_told_apart_may_be_equivalent_and_what_is_not_need_not():
 
 
 def test_the_picture_marks_who_overturns_by_one_method_alone():
-    picture = ensemble_picture(made_up(1.2))
+    (picture,) = pictures(made_up(1.2))
     peaks, ratios = picture.panels
     curves = [layer for layer in peaks.layers if isinstance(layer, Line) and layer.steps]
     assert [line.name for line in curves][1] == "mujoco recess (2 of 10 overturn)"

@@ -8,8 +8,14 @@ import pytest
 
 from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import CODES
-from rockwobble.reports.pages.comparison.budgets import divergence_sentences
-from rockwobble.reports.pages.comparison.findings import Finding, counted_remarks, finding, headline, reason
+from rockwobble.reports.pages.comparison.findings import (
+    Finding,
+    counted_remarks,
+    divergence_sentences,
+    finding,
+    headline,
+    reason,
+)
 from rockwobble.reports.pages.words.diagnostics import counted, failure, sentence, sentences
 from rockwobble.reports.pages.words.sentences import small
 

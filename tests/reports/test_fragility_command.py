@@ -17,7 +17,7 @@ from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.result import KIND, fragility_of, stored_fragility
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.figures.fragility import fragility_pictures
+from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.figures.picture import Band, Line
 from rockwobble.reports.figures.svg import svg
 from rockwobble.reports.pages.fragility import fragility_page
@@ -150,7 +150,7 @@ def test_the_words_are_those_of_the_tables(found):
 
 
 def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
-    ratios, pier, tower = fragility_pictures(found)
+    ratios, pier, tower = pictures(found)
     assert [panel.title for panel in ratios.panels] == ["pier", "tower", "Mean of all cylinders"]
     assert [panel.title for panel in pier.panels] == [
         "Planar analysis",

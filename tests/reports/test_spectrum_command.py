@@ -20,7 +20,7 @@ from rockwobble.compare.studies.spectrum.study import overturning_spectrum
 from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat
-from rockwobble.reports.figures.spectrum import spectrum_picture
+from rockwobble.reports.figures.spectrum import pictures
 from rockwobble.reports.figures.svg import svg
 from rockwobble.reports.pages.registry import redrawn
 from rockwobble.reports.pages.spectrum import spectrum_page
@@ -188,7 +188,7 @@ def test_the_check_tells_chance_from_error(spectrum):
 
 
 def test_the_picture_is_small_and_says_why_a_cell_has_no_tilt(spectrum):
-    picture = spectrum_picture(spectrum)
+    (picture,) = pictures(spectrum)
     drawn = svg(picture)
     assert len(drawn) < SVG_LIMIT
     assert drawn == svg(picture)
@@ -207,6 +207,6 @@ def test_a_record_of_one_component_has_a_picture_and_a_page(still):
         0.1, motion, semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0
     )
     assert not found.peak_tilt[SERIES[1 + still]].any()
-    assert svg(spectrum_picture(found))
+    assert svg(*pictures(found))
     # the planar run is the 3D run
     assert "unconservative in 0 % of the cells" in said(found)

@@ -127,9 +127,7 @@ def answers(members: pd.DataFrame) -> pd.DataFrame:
                 "runs": len(runs),
                 "failed": len(runs) - len(known),
                 "overturned": int(fell.sum()),
-                "chance": chance.value,
-                "chance_low": chance.low,
-                "chance_high": chance.high,
+                **chance.columns("chance"),
                 **{
                     f"{name}_{label}": quantile_interval(values, share).value
                     for name, values in numbers.items()

@@ -138,7 +138,8 @@ def ensemble(
         about |= {"members": source}
     if len(members) < 2 or len({case.name for case in members}) < len(members):
         raise ValueError(f"an ensemble has at least 2 members of different names, got {len(members)}")
-    chosen = _runs(case_or_members, runs)
+    stated = case_or_members.runs if isinstance(case_or_members, Suite) else ()
+    chosen = (stated or default_runs()) if runs is None else tuple(runs)
     for case in members:
         for run in chosen:
             require_runnable(case, run)
@@ -175,25 +176,15 @@ def _range(members: Sequence[Case], name: str) -> dict[str, float]:
     return {"from": min(values), "to": max(values), "count": len(values)}
 
 
-def _runs(case_or_members: Case | Suite | Sequence[Case], runs: Iterable[Run] | None) -> tuple[Run, ...]:
-    if runs is not None:
-        return tuple(runs)
-    if isinstance(case_or_members, Suite) and case_or_members.runs:
-        return case_or_members.runs
-    return default_runs()
-
-
 def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
-    rows = []
-    for job, result in zip(jobs, results, strict=True):
-        rows.append(
-            {
-                "member": job.case.name,
-                "method": job.label,
-                "peak_tilt": result.peak_tilt / job.case.cylinder.alpha,
-                "outcome": result.outcome,
-                "diagnostics": " ".join(fact.code for fact in result.facts),
-                "wall_time": result.wall_time,
-            }
-        )
-    return pd.DataFrame(rows)
+    return pd.DataFrame(
+        {
+            "member": job.case.name,
+            "method": job.label,
+            "peak_tilt": result.peak_tilt / job.case.cylinder.alpha,
+            "outcome": result.outcome,
+            "diagnostics": " ".join(fact.code for fact in result.facts),
+            "wall_time": result.wall_time,
+        }
+        for job, result in zip(jobs, results, strict=True)
+    )

@@ -132,9 +132,5 @@ def contrast_row(found: Contrast) -> dict[str, float | int | str]:
     row: dict[str, float | int | str] = {}
     for field in dataclasses.fields(found):
         value = getattr(found, field.name)
-        if isinstance(value, Interval):
-            ends = {f"{field.name}_{end}": getattr(value, end) for end in ("low", "high")}
-            row |= {field.name: value.value, **ends}
-        else:
-            row[field.name] = value
+        row |= value.columns(field.name) if isinstance(value, Interval) else {field.name: value}
     return row | {"verdict": found.verdict}

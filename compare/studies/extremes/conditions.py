@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.multibody.scene.froude import froude_scale
 
 EXTREMES = (
     "spin",
@@ -114,7 +115,7 @@ def _release(
     friction: float = 5.0,
 ) -> Case:
     """A release at alpha/2; rate and length scale with size and gravity in Froude's sense."""
-    unit = math.sqrt(size / _SIZE * _GRAVITY / gravity)
+    unit = froude_scale(size, gravity).time
     cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
     release = InitialState(0.5 * cylinder.alpha, rolling_rate=rate / unit)
     return Case(
@@ -137,8 +138,3 @@ def without_spin(case: Case) -> Case:
     if case.initial is None:
         return case
     return dataclasses.replace(case, initial=dataclasses.replace(case.initial, rolling_rate=0.0))
-
-
-def unit_time(case: Case) -> float:
-    """Return the time scale of a case over that of 6 m on Earth."""
-    return math.sqrt(case.cylinder.semidiagonal / _SIZE * _GRAVITY / case.gravity)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 from collections import Counter
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import ClassVar
 
@@ -22,7 +21,7 @@ from ...runs.task import Lost
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Manifest, Results, made_now
 from ...storage.provenance import code_digests, package_versions
-from .conditions import Condition, conditions
+from .conditions import conditions
 from .verdict import Verdict, judge
 
 KIND = "extremes"
@@ -86,8 +85,12 @@ def measure_extremes(
         for place in range(len(tried))
     ]
     # an engine may read whatever of the package, and what is looked at takes minutes: any change repeats all
-    inputs = {"code": code_digests(), "versions": package_versions()}
-    with open_table_cache(folder, KIND, partial(_name, fingerprint(inputs))) as cache:
+    made_with = fingerprint({"code": code_digests(), "versions": package_versions()})
+
+    def name(task: Task) -> str:
+        return fingerprint({"task": list(task), "made with": made_with})
+
+    with open_table_cache(folder, KIND, name) as cache:
         found = run_tasks(
             measure_task,
             tasks,
@@ -114,7 +117,8 @@ def stored_extremes(results: Results) -> Extremes:
 
 def measure_task(task: Task) -> pd.DataFrame:
     """Return the row of one condition and method."""
-    return row(task, judge(_condition(task), methods()[task[2]]))
+    condition = next(each for each in conditions() if (each.extreme, each.value) == task[:2])
+    return row(task, judge(condition, methods()[task[2]]))
 
 
 def row(task: Task, found: Verdict) -> pd.DataFrame:
@@ -122,11 +126,3 @@ def row(task: Task, found: Verdict) -> pd.DataFrame:
     extreme, value, place = task
     named = {"extreme": extreme, "value": value, "method": str(methods()[place])}
     return pd.DataFrame([named | dataclasses.asdict(found)])
-
-
-def _condition(task: Task) -> Condition:
-    return next(each for each in conditions() if (each.extreme, each.value) == task[:2])
-
-
-def _name(made_with: str, task: Task) -> str:
-    return fingerprint({"task": list(task), "made with": made_with})

@@ -33,10 +33,11 @@ from rockwobble.models import Diagnostic, Run, Trace
 from rockwobble.models.diagnostic import FAILURES
 from rockwobble.multibody.engines.registry import engine_facts
 
+from ...comparison.prediction import time_scale
 from ...runs.choice import own_model
 from ...runs.execution import simulate_run
 from ...traces.pair import make_pair
-from .conditions import Condition, unit_time, without_spin
+from .conditions import Condition, without_spin
 
 FINE = 0.01  # of alpha, or of the angle of turn: what ends an agreement everywhere else
 # relative to the energy that balances the cylinder on its rim
@@ -135,7 +136,7 @@ def _reduced(condition: Condition, run: Run) -> Verdict:
 
 def _engine(condition: Condition, run: Run) -> Verdict:
     case = condition.case
-    step = _STEP * condition.time_step * unit_time(case)
+    step = _STEP * condition.time_step * time_scale(case)
     settings = {} if math.isnan(condition.contact) else {_contact_time(run): condition.contact * step}
     plain = condition.time_step == 1.0 and not settings
     run = Run(run.engine, run.support, None if plain else step, **settings)

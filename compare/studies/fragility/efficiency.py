@@ -12,7 +12,6 @@ from .intensity import MEASURES
 from .limits import OVERTURNED
 from .resampling import Array, interval, spread_interval
 from .samples import Blocks
-from .tables import exponential, interval_columns
 
 # Every run has an intensity of its own in each measure but that of the levels, and so many numbers in each
 # resample: as many resamples as keep this many numbers, and no fewer than give an end of an interval.
@@ -51,8 +50,8 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
                     "method": method,
                     "measure": measure,
                     "median": float(np.exp(found[measure].centre[0])),
-                    **interval_columns("dispersion", spread_interval(spread, drawn[measure], motions)),
-                    **interval_columns("over_best", exponential(interval(value, ratios, motions))),
+                    **spread_interval(spread, drawn[measure], motions).columns("dispersion"),
+                    **interval(value, ratios, motions).exponential().columns("over_best"),
                     "best": measure == best,
                 }
             )

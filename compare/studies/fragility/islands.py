@@ -15,10 +15,9 @@ from numpy.typing import NDArray
 from .limits import OVERTURNED
 from .resampling import Array, Sample, interval
 from .samples import Blocks
-from .tables import exponential, interval_columns
 
 
-def island_table(blocks: Blocks, measure: str, weights: Array) -> pd.DataFrame:
+def island_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
     """Return, for each cylinder and method, how many motions have islands and what stopping early does.
 
     The columns: motions, with_islands (of these), runs, islands (runs that overturn while a stronger one
@@ -28,7 +27,7 @@ def island_table(blocks: Blocks, measure: str, weights: Array) -> pd.DataFrame:
     rows = []
     motions = len(blocks.motions)
     for cylinder, method in itertools.product(blocks.cylinders, blocks.methods):
-        sample = blocks.sample(cylinder, method, OVERTURNED, measure)
+        sample = blocks.sample(cylinder, method, OVERTURNED)
         if np.isnan(sample.y).all():
             continue
         stopped = Sample(x=sample.x, y=incremental(sample.y))
@@ -47,7 +46,7 @@ def island_table(blocks: Blocks, measure: str, weights: Array) -> pd.DataFrame:
                 "islands": int(found.sum()),
                 "median": float(np.exp(whole.centre[0])),
                 "median_incremental": float(np.exp(early.centre[0])),
-                **interval_columns("bias", exponential(interval(value, drawn, motions))),
+                **interval(value, drawn, motions).exponential().columns("bias"),
             }
         )
     return pd.DataFrame(rows)

@@ -117,6 +117,7 @@ class Plan:
         """Yield the runs: engines singly, reduced models some motions together."""
         for name, cylinder in self.cylinders.items():
             shakings = [Shaking(motion=m, scales=self.factors(cylinder, m)) for m in self.motions]
+            single = [Shaking(motion=s.motion, scales=(scale,)) for s in shakings for scale in s.scales]
             for method in self.methods:
                 if method.run is None:
                     continue
@@ -132,7 +133,7 @@ class Plan:
                         friction=self.friction,
                         contact=self.contact,
                     )
-                    for shaking in (shakings if run.engine is None else _one_by_one(shakings))
+                    for shaking in (shakings if run.engine is None else single)
                 ]
                 yield from singles if run.engine else _together(singles)
 
@@ -164,10 +165,6 @@ def default_levels(
     ]
     middle = float(np.median(over))
     return tuple(float(f"{middle * level:.3g}") for level in np.geomspace(_LOWEST, _HIGHEST, LEVELS))
-
-
-def _one_by_one(shakings: Sequence[Shaking]) -> list[Shaking]:
-    return [Shaking(motion=each.motion, scales=(scale,)) for each in shakings for scale in each.scales]
 
 
 def _together(singles: Sequence[Task]) -> Iterator[Task]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Any, ClassVar
 
@@ -96,21 +96,18 @@ class Fragility(Shown):
 
 def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, about: Mapping[str, Any]) -> Fragility:
     """Return what runs say, of the plan that `about` states."""
-    limits: Sequence[str] = about["limits"]
-    measure = str(about["measure"])
-    blocks = blocks_of(runs, points)
+    blocks = blocks_of(runs, points, about["limits"], str(about["measure"]))
     weights = resamples(len(blocks.motions), int(about["resamples"]), int(about["seed"]))
-    fitted = curves_of(blocks, limits, measure)
-    drawn = curves_of(blocks, limits, measure, weights)
+    fitted, drawn = curves_of(blocks), curves_of(blocks, weights)
     return Fragility(
         runs=runs,
         points=points,
-        counts=count_table(blocks, limits, measure),
-        fits=fit_table(blocks, limits, measure, fitted, drawn),
-        curves=curve_table(blocks, limits, measure, fitted, drawn),
-        contrasts=contrast_table(blocks, limits, measure, fitted, drawn, weights, float(about["margin"])),
+        counts=count_table(blocks),
+        fits=fit_table(blocks, fitted, drawn),
+        curves=curve_table(blocks, fitted, drawn),
+        contrasts=contrast_table(blocks, fitted, drawn, weights, float(about["margin"])),
         efficiency=efficiency_table(blocks, blocks.methods[0], weights),
-        islands=island_table(blocks, measure, weights),
+        islands=island_table(blocks, weights),
         about=about,
     )
 
@@ -124,14 +121,12 @@ def stored_fragility(results: Results) -> Fragility:
 def manifest_of(found: Fragility, command: str = "") -> Manifest:
     """Return what made a fragility, with its medians and the contrasts of overturning as headline."""
     fits = found.fits[found.fits["limit"] == OVERTURNED]
-    pairs = (
-        found.contrasts[found.contrasts["limit"] == OVERTURNED] if len(found.contrasts) else found.contrasts
-    )
     headline = {
         f"{row['cylinder']}, {row['method']}, median": row["median"] for row in fits.to_dict("records")
     } | {
         f"{row['cylinder']}, {row['method']} / {row['against']}": row["ratio"]
-        for row in pairs.to_dict("records")
+        for row in found.contrasts.to_dict("records")
+        if row["limit"] == OVERTURNED
     }
     return made_now(
         KIND,

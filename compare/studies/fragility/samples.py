@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +15,7 @@ from .limits import exceeded
 from .resampling import Sample
 
 Array = NDArray[np.float64]
+Key = tuple[str, str, str]  # cylinder, method, limit
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -28,6 +30,10 @@ class Blocks:
         Logarithms by cylinder and measure; of a stripe the same for all motions.
     runs : mapping of (str, str) to DataFrame
         By cylinder and method, the S levels of each of R motions one after the other.
+    limits : sequence of str
+        That are asked about.
+    measure : str
+        Intensity of the levels.
     """
 
     cylinders: list[str]
@@ -35,10 +41,19 @@ class Blocks:
     motions: list[str]
     intensities: Mapping[tuple[str, str], Array]
     runs: Mapping[tuple[str, str], pd.DataFrame]
+    limits: Sequence[str]
+    measure: str
 
-    def sample(self, cylinder: str, method: str, limit: str, measure: str) -> Sample:
-        """Return the sample of a method and a limit, by one intensity."""
-        return Sample(x=self.intensities[cylinder, measure], y=self.exceeded(cylinder, method, limit))
+    def known_keys(self) -> Iterator[Key]:
+        """Yield cylinder, method and limit where anything is known."""
+        for key in itertools.product(self.cylinders, self.methods, self.limits):
+            if not np.isnan(self.exceeded(*key)).all():
+                yield key
+
+    def sample(self, cylinder: str, method: str, limit: str, measure: str | None = None) -> Sample:
+        """Return the sample of a method and a limit, by one intensity; default: that of the levels."""
+        x = self.intensities[cylinder, measure or self.measure]
+        return Sample(x=x, y=self.exceeded(cylinder, method, limit))
 
     def exceeded(self, cylinder: str, method: str, limit: str) -> Array:
         """Return 1, 0 or NaN for each motion and level (R, S)."""
@@ -49,7 +64,7 @@ class Blocks:
         return bool(np.isfinite(self.intensities[cylinder, measure]).all())
 
 
-def blocks_of(runs: pd.DataFrame, points: pd.DataFrame) -> Blocks:
+def blocks_of(runs: pd.DataFrame, points: pd.DataFrame, limits: Sequence[str], measure: str) -> Blocks:
     """Return the blocks of a table of runs and of the table of the points at which they were made."""
     cylinders, methods, motions = (
         list(dict.fromkeys(table[name]))
@@ -75,4 +90,6 @@ def blocks_of(runs: pd.DataFrame, points: pd.DataFrame) -> Blocks:
         motions=motions,
         intensities=intensities,
         runs={(str(key[0]), str(key[1])): ordered(part) for key, part in grouped},
+        limits=limits,
+        measure=measure,
     )

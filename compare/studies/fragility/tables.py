@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -13,30 +13,28 @@ import pandas as pd
 from ...metrics.order_statistics import Interval
 from .fit import FITTED, KINDS, Curves, goodness
 from .resampling import Array, Sample, bands, interval, spread_interval
-from .samples import Blocks
+from .samples import Blocks, Key
 
 # of a curve: from half of the lowest intensity to twice the highest
 _POINTS, _BEYOND = 60, 2.0
-Key = tuple[str, str, str]  # cylinder, method, limit
 ALL = "all"  # cylinders
+_KEY = ("cylinder", "method", "limit")
 _NO_FIT = {"deviance": math.nan, "degrees": 0, "p": math.nan, "largest": math.nan}
 
 
-def count_table(blocks: Blocks, limits: Sequence[str], measure: str) -> pd.DataFrame:
+def count_table(blocks: Blocks) -> pd.DataFrame:
     """Return n runs and k exceedances at each intensity, from which other tools can fit curves of their own.
 
     Of a cloud each run is a row with n = 1.
     """
     rows = []
-    for cylinder, method, limit in _keys(blocks, limits):
-        x, n, k = blocks.sample(cylinder, method, limit, measure).counts()
+    for key in blocks.known_keys():
+        x, n, k = blocks.sample(*key).counts()
         for place, (runs, over) in enumerate(zip(n[0], k[0], strict=True)):
             rows.append(
                 {
-                    "cylinder": cylinder,
-                    "method": method,
-                    "limit": limit,
-                    "measure": measure,
+                    **dict(zip(_KEY, key, strict=True)),
+                    "measure": blocks.measure,
                     "intensity": float(f"{math.exp(x[place]):.12g}"),
                     "n": int(runs),
                     "k": int(over),
@@ -45,20 +43,13 @@ def count_table(blocks: Blocks, limits: Sequence[str], measure: str) -> pd.DataF
     return pd.DataFrame(rows)
 
 
-def fit_table(
-    blocks: Blocks,
-    limits: Sequence[str],
-    measure: str,
-    fitted: Mapping[Key, Curves],
-    drawn: Mapping[Key, Curves],
-) -> pd.DataFrame:
+def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
     """Return the curve of each cylinder, method and limit with its intervals and its goodness of fit."""
     rows = []
     motions = len(blocks.motions)
-    for key in _keys(blocks, limits):
-        sample = blocks.sample(*key, measure)
+    for key, found in fitted.items():
+        sample, many = blocks.sample(*key), drawn[key]
         x, n, k = sample.counts()
-        found, many = fitted[key], drawn[key]
         centre, dispersion = float(found.centre[0]), float(found.dispersion[0])
         kind = KINDS[found.kinds[0]]
         median = interval(centre, many.centre, motions)
@@ -66,13 +57,13 @@ def fit_table(
         held = goodness(x, n[0], k[0], centre, dispersion) if kind == FITTED else _NO_FIT
         rows.append(
             {
-                **dict(zip(("cylinder", "method", "limit"), key, strict=True)),
+                **dict(zip(_KEY, key, strict=True)),
                 "kind": kind,
                 "runs": int(n.sum()),
                 "exceeded": int(k.sum()),
                 "failed": int(np.isnan(sample.y).sum()),
-                **interval_columns("median", exponential(median)),
-                **interval_columns("dispersion", spread),
+                **median.exponential().columns("median"),
+                **spread.columns("dispersion"),
                 # beyond the intensities that were run the curve is a guess
                 "extrapolated": not x.min() <= centre <= x.max(),
                 "without_curve": float((many.kinds != KINDS.index(FITTED)).mean()),
@@ -82,26 +73,20 @@ def fit_table(
     return pd.DataFrame(rows)
 
 
-def curve_table(
-    blocks: Blocks,
-    limits: Sequence[str],
-    measure: str,
-    fitted: Mapping[Key, Curves],
-    drawn: Mapping[Key, Curves],
-) -> pd.DataFrame:
+def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
     """Return the curves point by point, each with its band."""
     tables = []
-    for key in _keys(blocks, limits):
-        sample = blocks.sample(*key, measure)
+    for key, found in fitted.items():
+        sample = blocks.sample(*key)
         ends = sample.x.min() - math.log(_BEYOND), sample.x.max() + math.log(_BEYOND)
         x = np.linspace(*ends, _POINTS)
         low, high = bands(drawn[key], x, len(blocks.motions))
         tables.append(
             pd.DataFrame(
                 {
-                    **dict(zip(("cylinder", "method", "limit"), key, strict=True)),
+                    **dict(zip(_KEY, key, strict=True)),
                     "intensity": np.exp(x),
-                    "probability": fitted[key].at(x)[0],
+                    "probability": found.at(x)[0],
                     "low": low,
                     "high": high,
                 }
@@ -112,8 +97,6 @@ def curve_table(
 
 def contrast_table(
     blocks: Blocks,
-    limits: Sequence[str],
-    measure: str,
     fitted: Mapping[Key, Curves],
     drawn: Mapping[Key, Curves],
     weights: Array,
@@ -125,11 +108,12 @@ def contrast_table(
     the same resamples. Rows of the cylinder "all" are geometric means of the ratios over the cylinders.
     """
     rows: list[dict[str, Any]] = []
-    for limit, (against, method) in itertools.product(limits, itertools.combinations(blocks.methods, 2)):
+    pairs = itertools.combinations(blocks.methods, 2)
+    for limit, (against, method) in itertools.product(blocks.limits, pairs):
         about = {"limit": limit, "method": method, "against": against}
         found: list[tuple[Array, Array]] = []
         for cylinder in blocks.cylinders:
-            pair = [blocks.sample(cylinder, name, limit, measure) for name in (method, against)]
+            pair = [blocks.sample(cylinder, name, limit) for name in (method, against)]
             unknown = np.isnan(pair[0].y) | np.isnan(pair[1].y)
             if unknown.all():
                 continue
@@ -164,10 +148,10 @@ def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dic
     margin : float
     """
     (centre, spread), (many, spreads) = found[:, 0], drawn
-    ratio = exponential(interval(float(centre), many, motions))
+    ratio = interval(float(centre), many, motions).exponential()
     return {
-        **interval_columns("ratio", ratio),
-        **interval_columns("dispersion_difference", interval(float(spread), spreads, motions)),
+        **ratio.columns("ratio"),
+        **interval(float(spread), spreads, motions).columns("dispersion_difference"),
         "within": margin_of(ratio),
         "verdict": ratio.about_one(margin),
     }
@@ -180,30 +164,6 @@ def margin_of(ratio: Interval) -> float:
     return max(ratio.high, 1.0 / ratio.low, 1.0) - 1.0
 
 
-def exponential(found: Interval) -> Interval:
-    """Return the interval of a number from that of its logarithm."""
-
-    def power(value: float) -> float:
-        return math.inf if value == math.inf else math.exp(value)
-
-    return Interval(value=power(found.value), low=power(found.low), high=power(found.high))
-
-
-def interval_columns(name: str, found: Interval) -> dict[str, float]:
-    """Return an interval as columns NAME, NAME_low and NAME_high."""
-    return {name: found.value, f"{name}_low": found.low, f"{name}_high": found.high}
-
-
-def _keys(blocks: Blocks, limits: Sequence[str]) -> Iterator[Key]:
-    """Yield cylinder, method and limit where anything is known."""
-    for cylinder, method in itertools.product(blocks.cylinders, blocks.methods):
-        for limit in limits:
-            if not np.isnan(blocks.exceeded(cylinder, method, limit)).all():
-                yield cylinder, method, limit
-
-
-def curves_of(
-    blocks: Blocks, limits: Sequence[str], measure: str, weights: Array | None = None
-) -> dict[Key, Curves]:
+def curves_of(blocks: Blocks, weights: Array | None = None) -> dict[Key, Curves]:
     """Return by cylinder, method and limit the curve, or with weights (B, R) those of all resamples."""
-    return {key: blocks.sample(*key, measure).curves(weights) for key in _keys(blocks, limits)}
+    return {key: blocks.sample(*key).curves(weights) for key in blocks.known_keys()}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -89,19 +90,16 @@ def _reduced(problem: Problem, quick: bool) -> Iterator[Method]:
                 panel=panel,
                 knob="tolerance",
                 value=rtol,
-                solve=_by_model(problem, run.support, rtol, rest_tilt),
+                solve=partial(_by_model, problem, run.support, rtol, rest_tilt),
             )
 
 
-def _by_model(problem: Problem, support: str, rtol: float, rest_tilt: float) -> Callable[[Case], Answer]:
-    def answer(case: Case) -> Answer:
-        # not by a `Run`, which has forces computed that nobody asks for here
-        trace = reduced.simulate(
-            case, support=support, rtol=rtol, rest_tilt=rest_tilt, sample_step=problem.sample_step
-        )
-        return _answer(problem, trace)
-
-    return answer
+def _by_model(problem: Problem, support: str, rtol: float, rest_tilt: float, case: Case) -> Answer:
+    # not by a `Run`, which has forces computed that nobody asks for here
+    trace = reduced.simulate(
+        case, support=support, rtol=rtol, rest_tilt=rest_tilt, sample_step=problem.sample_step
+    )
+    return _answer(problem, trace)
 
 
 def _scipy(problem: Problem, quick: bool) -> Iterator[Method]:
@@ -122,18 +120,15 @@ def _scipy(problem: Problem, quick: bool) -> Iterator[Method]:
                     panel="scipy",
                     knob="tolerance",
                     value=rtol,
-                    solve=_by_scipy(problem, name, rates, rtol),
+                    solve=partial(_by_scipy, problem, name, rates, rtol),
                 )
 
 
 def _by_scipy(
-    problem: Problem, name: SolverName, rates: Mapping[str, Rates], rtol: float
-) -> Callable[[Case], Answer]:
-    def answer(case: Case) -> Answer:
-        quantity = solve(problem, case, name, rates[case.name], rtol)
-        return Answer(quantity=quantity, said="" if quantity.size else "gave up, or jumped over upright")
-
-    return answer
+    problem: Problem, name: SolverName, rates: Mapping[str, Rates], rtol: float, case: Case
+) -> Answer:
+    quantity = solve(problem, case, name, rates[case.name], rtol)
+    return Answer(quantity=quantity, said="" if quantity.size else "gave up, or jumped over upright")
 
 
 def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
@@ -184,18 +179,15 @@ def _line(
             panel=panel,
             knob="time step",
             value=step,
-            solve=_by_engine(problem, Run(engine, support, step, **settings, **contact)),
+            solve=partial(_by_engine, problem, Run(engine, support, step, **settings, **contact)),
         )
 
 
-def _by_engine(problem: Problem, run: Run) -> Callable[[Case], Answer]:
-    def answer(case: Case) -> Answer:
-        try:
-            return _answer(problem, simulate_run(case, run, sample_step=problem.sample_step))
-        except ValueError as refusal:
-            return Answer(quantity=np.empty(0), said=str(refusal))
-
-    return answer
+def _by_engine(problem: Problem, run: Run, case: Case) -> Answer:
+    try:
+        return _answer(problem, simulate_run(case, run, sample_step=problem.sample_step))
+    except ValueError as refusal:
+        return Answer(quantity=np.empty(0), said=str(refusal))
 
 
 def _answer(problem: Problem, trace: Trace) -> Answer:

@@ -38,9 +38,6 @@ def measure(tan_alpha: float, time_constant: float, damping: float) -> list[Row]
     lost = -float(free.energy_error[-1]) / float(free.energy[0])
     return [
         {
-            "tan_alpha": tan_alpha,
-            "time_constant": time_constant,
-            "damping": damping,
             "softness": time_constant * body_of(case.cylinder, case.gravity).p,
             "loss": lost / max(len(free.passes), 1),
             "passes": len(free.passes),
@@ -57,6 +54,7 @@ PART = Part(
     title="contact that gives, in the engine",
     tasks=_tasks,
     measure=measure,
+    keys=("tan_alpha", "time_constant", "damping"),
     cost=lambda **_: 1.0,
     engine=ENGINE,
 )

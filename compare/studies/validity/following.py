@@ -39,17 +39,8 @@ def measure(
     The columns are tan_alpha, semidiagonal, intensity, duration and those of `SUMMARY_COLUMNS`.
     """
     case = shaken_case(EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration)
-    summary = compare(case, runs=[Run(ENGINE, support)], workers=1).summary
-    point = {
-        "tan_alpha": tan_alpha,
-        "semidiagonal": semidiagonal,
-        "intensity": intensity,
-        "duration": duration,
-    }
-    return [
-        point | {str(name): value for name, value in row.items()}
-        for row in summary[list(_COLUMNS)].to_dict("records")
-    ]
+    summary = compare(case, runs=[Run(ENGINE, support)], workers=1).summary[list(_COLUMNS)]
+    return [{str(name): value for name, value in row.items()} for row in summary.to_dict("records")]
 
 
 PART = Part(
@@ -57,6 +48,7 @@ PART = Part(
     title="traces under El Centro in the engine",
     tasks=_tasks,
     measure=measure,
+    keys=("tan_alpha", "semidiagonal", "intensity", "duration"),
     cost=lambda duration, **_: 0.04 * duration,
     engine=ENGINE,
 )

@@ -42,7 +42,6 @@ def _row(tan_alpha: float, release: float, spin: float) -> Row:
     period, turn = next_maximum(flat)
     needs = needs_of(case)
     return {
-        "tan_alpha": tan_alpha,
         "release": release,
         "spin": spin,
         "period": exact.period,
@@ -76,5 +75,6 @@ PART = Part(
     title="free response, recess against flat ground",
     tasks=_tasks,
     measure=measure,
+    keys=("tan_alpha",),
     cost=lambda releases, spins, **_: 0.02 * len(releases) * len(spins),
 )

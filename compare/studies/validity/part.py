@@ -26,6 +26,8 @@ class Part:
         Returns the inputs of each task of an extent.
     measure : callable
         Returns the rows of one task; depends on nothing but its inputs.
+    keys : tuple of str
+        Inputs that are the first columns of every row.
     cost : callable
         Rough computing time of a task [s], of the same inputs.
     engine : str
@@ -36,5 +38,6 @@ class Part:
     title: str
     tasks: Callable[[Extent], Iterable[Inputs]]
     measure: Callable[..., list[Row]]
+    keys: tuple[str, ...]
     cost: Callable[..., float]
     engine: str = ""

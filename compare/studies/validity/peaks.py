@@ -51,9 +51,6 @@ def _row(motion: str, tan_alpha: float, size: float, intensity: float) -> Row:
     if motion_named(motion).acceleration.shape[1] == 3:
         found["vertical"] = _run(shaken_case(motion, tan_alpha, size, intensity, vertical=True))
     row: Row = {
-        "motion": motion,
-        "tan_alpha": tan_alpha,
-        "semidiagonal": size,
         "intensity": intensity,
         "vertical": math.nan,
         **{name: trace.peak_tilt / case.cylinder.alpha for name, trace in found.items()},
@@ -79,5 +76,6 @@ PART = Part(
     title="peak tilt over records",
     tasks=_tasks,
     measure=measure,
+    keys=("motion", "tan_alpha", "semidiagonal"),
     cost=lambda intensities, **_: 0.03 * len(intensities),
 )

@@ -53,10 +53,6 @@ def measure(
         largest = float(trace.energy.max())
         rows.append(
             {
-                "motion": motion,
-                "tan_alpha": tan_alpha,
-                "semidiagonal": semidiagonal,
-                "intensity": intensity,
                 "method": method,
                 "peak": trace.peak_tilt / case.cylinder.alpha,
                 "outcome": trace.outcome,
@@ -72,6 +68,7 @@ PART = Part(
     title="peak tilt over records in the engine",
     tasks=_tasks,
     measure=measure,
+    keys=("motion", "tan_alpha", "semidiagonal", "intensity"),
     cost=lambda time_step, **_: 16.0 * 2e-4 / time_step,
     engine=ENGINE,
 )

@@ -141,6 +141,7 @@ PART = Part(
     title="a ring of walls in the engine",
     tasks=_tasks,
     measure=measure,
+    keys=(),
     cost=lambda support, length, **_: (0.8 if support == "ring" else 0.25) * length,
     engine=ENGINE,
 )

@@ -40,9 +40,6 @@ def measure(tan_alpha: float, release: float, spin: float, shares: Sequence[floa
         run = multibody.simulate(replace(case, friction=share * needed), engine=ENGINE)
         rows.append(
             {
-                "tan_alpha": tan_alpha,
-                "release": release,
-                "spin": spin,
                 "needed": needed,
                 "share": share,
                 "friction": share * needed,
@@ -59,6 +56,7 @@ PART = Part(
     title="the friction at which the engine slips",
     tasks=_tasks,
     measure=measure,
+    keys=("tan_alpha", "release", "spin"),
     cost=lambda shares, **_: 0.5 * len(shares),
     engine=ENGINE,
 )

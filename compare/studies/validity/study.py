@@ -112,7 +112,9 @@ def measure_all(
 def measure_task(task: Task) -> pd.DataFrame:
     """Return the rows of one task."""
     name, inputs = task
-    return pd.DataFrame(part_named(name).measure(**inputs))
+    part = part_named(name)
+    point = {key: inputs[key] for key in part.keys}
+    return pd.DataFrame([point | row for row in part.measure(**inputs)])
 
 
 def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent, command: str = "") -> Validity:

@@ -42,9 +42,6 @@ def measure(tan_alpha: float, release: float, spin: float) -> list[Row]:
         passes, own_passes = run.passes, own.passes
         rows.append(
             {
-                "tan_alpha": tan_alpha,
-                "release": release,
-                "spin": spin,
                 "support": support,
                 "turn": next_maximum(own)[1],
                 "engine_turn": float(passes["angle_of_turn"].iloc[0]) if len(passes) else math.nan,
@@ -63,6 +60,7 @@ PART = Part(
     title="free response in the engine",
     tasks=_tasks,
     measure=measure,
+    keys=("tan_alpha", "release", "spin"),
     cost=lambda **_: 1.5,
     engine=ENGINE,
 )

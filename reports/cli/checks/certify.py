@@ -16,17 +16,12 @@ from ...console.terminal import interruptible, user_input
 # of the checks, those that make claims; with an engine, also those that need its runs
 _LAYERS = ("equations", "conserved", "exact", "rest", "invariance", "order", "residual")
 _ENGINE_LAYERS = ("traces", "agreement")
-Out = Annotated[Path, typer.Option("--out", help="File to write.")]
-Engine = Annotated[
-    str | None, typer.Option("--engine", help="Certify an engine. Default: the reduced models.")
-]
-TimeStep = Annotated[
-    float | None, typer.Option("--time-step", help="Of the engine, in s. Default: its own choice.")
-]
+Out = Annotated[Path, typer.Option(help="File to write.")]
+Engine = Annotated[str | None, typer.Option(help="Certify an engine. Default: the reduced models.")]
+TimeStep = Annotated[float | None, typer.Option(help="Of the engine, in s. Default: its own choice.")]
 Only = Annotated[
     list[str] | None,
     typer.Option(
-        "--only",
         metavar="LAYER",
         help="Make claims of one layer of `rockwobble check`; may be repeated. Default: equations, "
         "conserved, exact, rest, invariance, order, residual, and with --engine traces and agreement.",

@@ -29,32 +29,26 @@ from .check_outside import (
 if TYPE_CHECKING:
     from rockwobble.compare.check import Bench, Finding
 
-_OUTPUT = "Output for programs"
+_output = options.panel("Output for programs")
 Suite = Annotated[
     str | None,
     typer.Option(
-        "--suite",
-        help="Suite for the agreement with the engines: a TOML file, or one that ships. Default: quick.",
+        help="Suite for the agreement with the engines: a TOML file, or one that ships. Default: quick."
     ),
 ]
 Only = Annotated[
     list[str] | None,
     typer.Option(
-        "--only",
         metavar="LAYER",
         help="Run one layer; may be repeated: records, equations, conserved, exact, rest, invariance, "
         "properties, order, residual, metrics, studies, traces, agreement, baseline. Default: all.",
     ),
 ]
-Json = Annotated[Path | None, options.of(_OUTPUT, "--json", "Write all findings as JSON.")]
-Junit = Annotated[Path | None, options.of(_OUTPUT, "--junit", "Write a JUnit report (XML).")]
-Markdown = Annotated[
-    Path | None,
-    options.of(_OUTPUT, "--markdown", "Append a page for a CI job, such as $GITHUB_STEP_SUMMARY."),
-]
+Json = Annotated[Path | None, _output("Write all findings as JSON.")]
+Junit = Annotated[Path | None, _output("Write a JUnit report (XML).")]
+Markdown = Annotated[Path | None, _output("Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")]
 Workers = Annotated[
-    int | None,
-    typer.Option("--workers", min=1, help="Processes for the engines. Default: one for each core."),
+    int | None, typer.Option(min=1, help="Processes for the engines. Default: one for each core.")
 ]
 Update = Annotated[
     bool,
@@ -63,8 +57,7 @@ Update = Annotated[
     ),
 ]
 Reason = Annotated[
-    str | None,
-    typer.Option("--reason", help="Why the baselines change; kept in their file. Without it you are asked."),
+    str | None, typer.Option(help="Why the baselines change; kept in their file. Without it you are asked.")
 ]
 
 

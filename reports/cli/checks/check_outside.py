@@ -12,30 +12,19 @@ from ..inputs import options
 if TYPE_CHECKING:
     from rockwobble.compare.check import Finding
 
-_PANEL = "A model or a trajectory of somebody else"
+_outside = options.panel("A model or a trajectory of somebody else")
 Model = Annotated[
     str | None,
-    options.of(
-        _PANEL,
-        "--model",
+    _outside(
         "Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
         metavar="MODULE:FUNCTION",
     ),
 ]
 Trajectory = Annotated[
-    Path | None,
-    options.of(
-        _PANEL,
-        "--trajectory",
-        "Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite.",
-    ),
+    Path | None, _outside("Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite.")
 ]
-Support = Annotated[
-    str | None, options.of(_PANEL, "--support", "What it models: recess or flat. Default: recess.")
-]
-Tolerance = Annotated[
-    float | None, options.of(_PANEL, "--tolerance", "How exact it claims to be. Default: 0.001.")
-]
+Support = Annotated[str | None, _outside("What it models: recess or flat. Default: recess.")]
+Tolerance = Annotated[float | None, _outside("How exact it claims to be. Default: 0.001.")]
 
 
 def require_used(

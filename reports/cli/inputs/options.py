@@ -5,6 +5,7 @@ Units stand in words: square brackets are markup in a help text.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -13,102 +14,69 @@ import typer
 from .method_values import restitution, time_step
 
 
-def of(panel: str, name: str, help_text: str, **more: Any) -> Any:
-    """Return an option in a panel of the help text; `more` is for `typer.Option`."""
-    return typer.Option(name, help=help_text, rich_help_panel=panel, **more)
+def panel(title: str) -> Callable[..., Any]:
+    """Return what makes an option in a panel of the help text; without names it has that of its parameter."""
+
+    def option(help_text: str, *names: str, **more: Any) -> Any:
+        return typer.Option(*names, help=help_text, rich_help_panel=title, **more)
+
+    return option
 
 
-_BODY, _GROUND, _RELEASE, _METHOD = "Cylinder", "Ground motion", "Release", "Method"
-REDUCED = "Reduced model"
-_EXTERNAL = "Trajectory of a shake table or another code"
+body, _ground, _release, method = map(panel, ("Cylinder", "Ground motion", "Release", "Method"))
+reduced, _external = map(panel, ("Reduced model", "Trajectory of a shake table or another code"))
 
-Semidiagonal = Annotated[float | None, of(_BODY, "--semidiagonal", "R = sqrt(b^2 + h^2), in m. Default: 6.")]
-TAN_ALPHA = of(_BODY, "--tan-alpha", "Slenderness b/h, radius over half the height.")
+Semidiagonal = Annotated[float | None, body("R = sqrt(b^2 + h^2), in m. Default: 6.")]
+TAN_ALPHA = body("Slenderness b/h, radius over half the height.")
 TanAlpha = Annotated[float, TAN_ALPHA]
-Diameter = Annotated[
-    float | None, of(_BODY, "--diameter", "2b, in m; with --height in place of the two above.")
-]
-Height = Annotated[float | None, of(_BODY, "--height", "2h, in m.")]
+Diameter = Annotated[float | None, body("2b, in m; with --height in place of the two above.")]
+Height = Annotated[float | None, body("2h, in m.")]
 MassCentreHeight = Annotated[
     float | None,
-    of(
-        _BODY,
-        "--mass-centre-height",
-        "Of the mass centre above the base, in m; with --diameter and --height. Default: half of that.",
-    ),
+    body("Of the mass centre above the base, in m; with --diameter and --height. Default: half of that."),
 ]
 TransverseInertia = Annotated[
-    float | None,
-    of(
-        _BODY,
-        "--transverse-inertia",
-        "I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.",
-    ),
+    float | None, body("I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.")
 ]
-AxialInertia = Annotated[float | None, of(_BODY, "--axial-inertia", "I2/m about the axis, in m2.")]
+AxialInertia = Annotated[float | None, body("I2/m about the axis, in m2.")]
 Record = Annotated[
-    Path | None,
-    of(_GROUND, "--record", "Text or CSV of time, x, y and perhaps z, in place of the files below."),
+    Path | None, _ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
 ]
 RecordX = Annotated[
-    Path | None,
-    of(
-        _GROUND,
-        "--record-x",
-        "East-west component: PEER AT2, two-column text or CSV. Default: El Centro 1940.",
-    ),
+    Path | None, _ground("East-west component: PEER AT2, two-column text or CSV. Default: El Centro 1940.")
 ]
-RecordY = Annotated[Path | None, of(_GROUND, "--record-y", "North-south component.")]
-RecordZ = Annotated[Path | None, of(_GROUND, "--record-z", "Vertical component, may be left out.")]
-Units = Annotated[
-    str | None, of(_GROUND, "--units", "g, m/s2 or cm/s2; required where the files do not say.")
-]
-Scale = Annotated[float, of(_GROUND, "--scale", "Factor on all components.")]
-Gravity = Annotated[float, of(_GROUND, "--gravity", "g, in m/s2.")]
+RecordY = Annotated[Path | None, _ground("North-south component.")]
+RecordZ = Annotated[Path | None, _ground("Vertical component, may be left out.")]
+Units = Annotated[str | None, _ground("g, m/s2 or cm/s2; required where the files do not say.")]
+Scale = Annotated[float, _ground("Factor on all components.")]
+Gravity = Annotated[float, _ground("g, in m/s2.")]
 Friction = Annotated[
     float,
-    of(
-        _GROUND,
-        "--friction",
+    _ground(
         "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
-        "would not.",
+        "would not."
     ),
 ]
 ReleaseTilt = Annotated[
-    float | None,
-    of(
-        _RELEASE,
-        "--release-tilt-deg",
-        "Release at this tilt, in deg; without a record the ground is then still.",
-    ),
+    float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
 ]
-RollingRate = Annotated[float, of(_RELEASE, "--rolling-rate", "Rolling rate at release, in rad/s.")]
+RollingRate = Annotated[float, _release("Rolling rate at release, in rad/s.")]
 Duration = Annotated[
-    float | None,
-    of(
-        _RELEASE,
-        "--duration",
-        "Length of the run, in s. Default: that of the ground motion, 10 s without one.",
-    ),
+    float | None, _release("Length of the run, in s. Default: that of the ground motion, 10 s without one.")
 ]
 _ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only)"
-Engine = Annotated[str | None, of(_METHOD, "--engine", f"{_ENGINES}. Default: the reduced model.")]
+Engine = Annotated[str | None, method(f"{_ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"
-Engines = Annotated[list[str] | None, of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}.")]
+Engines = Annotated[list[str] | None, method(f"{_ENGINES}; may be repeated. {_DEFAULT}.")]
 EnginesOrAll = Annotated[
-    list[str] | None,
-    of(_METHOD, "--engine", f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed."),
+    list[str] | None, method(f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed.")
 ]
-Support = Annotated[str, of(_METHOD, "--support", f"{_SUPPORTS}.")]
-Supports = Annotated[
-    list[str] | None, of(_METHOD, "--support", f"{_SUPPORTS}; may be repeated. Default: recess and flat.")
-]
+Support = Annotated[str, method(f"{_SUPPORTS}.")]
+Supports = Annotated[list[str] | None, method(f"{_SUPPORTS}; may be repeated. Default: recess and flat.")]
 TimeStep = Annotated[
     Any,  # a number, a word or None: typer knows no type for that, `time_step` makes it
-    of(
-        _METHOD,
-        "--time-step",
+    method(
         "Time step of the engines, in s. Default: 1e-4 s at R = 6 m, with the root of the size. auto "
         "halves it until the tilt has settled, extrapolated gives what three steps tend to; both say what "
         "error is left.",
@@ -118,23 +86,19 @@ TimeStep = Annotated[
 ]
 Settings = Annotated[
     list[str] | None,
-    of(
-        _METHOD,
-        "--set",
+    method(
         "Setting of the method, such as ring_clearance=0.01, integrator=discrete or rtol=1e-10, for each run "
         "that has one of that name; may be repeated.",
+        "--set",
         metavar="NAME=VALUE",
     ),
 ]
 Plane = Annotated[
-    float | None,
-    of(REDUCED, "--plane", "Planar motion: azimuth of the vertical plane that holds it, in rad."),
+    float | None, reduced("Planar motion: azimuth of the vertical plane that holds it, in rad.")
 ]
 Restitution = Annotated[
     Any,  # a number, "momentum" or None: typer knows no type for that
-    of(
-        REDUCED,
-        "--restitution",
+    reduced(
         "Ratio of tilt rates at an impact of planar motion. Default: 1, as in the paper; momentum: from "
         "the moment of momentum about the new pivot.",
         parser=restitution,
@@ -151,36 +115,26 @@ SuiteName = Annotated[
 ]
 Trajectories = Annotated[
     list[Path] | None,
-    of(
-        _EXTERNAL,
-        "--trajectory",
+    _external(
         "CSV of time and: tilt and azimuth, or qw, qx, qy, qz, or x, y, z of the mass centre; from a shake "
-        "table or another code. What it does not hold is not compared; may be repeated.",
+        "table or another code. What it does not hold is not compared; may be repeated."
     ),
 ]
-TrajectoryAngles = Annotated[
-    str | None, of(_EXTERNAL, "--trajectory-angles", "deg or rad, where its header does not say.")
-]
-TrajectoryOffset = Annotated[
-    float,
-    of(_EXTERNAL, "--trajectory-offset", "Added to its times, in s, so that 0 is the start of the run."),
-]
+TrajectoryAngles = Annotated[str | None, _external("deg or rad, where its header does not say.")]
+TrajectoryOffset = Annotated[float, _external("Added to its times, in s, so that 0 is the start of the run.")]
 TrajectoryNoise = Annotated[
     float | None,
-    of(
-        _EXTERNAL,
-        "--trajectory-noise-deg",
+    _external(
         "Tilt below which it counts as standing, in deg. Default: as its scatter asks for, at least 1e-4 "
-        "alpha.",
+        "alpha."
     ),
 ]
 Budget = Annotated[
     bool,
-    of(
-        _METHOD,
-        "--budget",
+    method(
         "Split each difference into model form, numerics and what stays unexplained, by runs at finer "
         "steps: takes some seven times as long.",
+        "--budget",
     ),
 ]
-Out = Annotated[Path, typer.Option("--out", help="Folder for the results.")]
+Out = Annotated[Path, typer.Option(help="Folder for the results.")]

@@ -15,9 +15,7 @@ from ...pages.registry import KINDS, redrawn
 Folder = Annotated[Path, typer.Argument(help="Folder that a command has written.", show_default=False)]
 Out = Annotated[
     Path | None,
-    typer.Option(
-        "--out", help="Where the pages go. Default: into the folder of the results.", show_default=False
-    ),
+    typer.Option(help="Where the pages go. Default: into the folder of the results.", show_default=False),
 ]
 
 

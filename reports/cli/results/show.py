@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from ...console.results import print_facts
 from ...console.terminal import user_input
 from ...pages.table import number
 
@@ -55,14 +56,6 @@ def show(store: Store, as_json: Json = False) -> None:
 
 
 def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
-    from rich import box
-    from rich.console import Console
-    from rich.table import Table
-    from rich.text import Text
-
-    table = Table(box=box.SIMPLE_HEAD, show_header=False, padding=(0, 2, 0, 0), pad_edge=False)
-    table.add_column(no_wrap=True)
-    table.add_column(overflow="fold")
     lines = {name: number(value) for name, value in made.headline.items()}
     lines |= {name: _text(value) for name, value in made.about.items() if not isinstance(value, Mapping)}
     lines |= {
@@ -77,12 +70,7 @@ def _print(store: Path, made: Manifest, files: Mapping[str, str]) -> None:
         ),
         "pages": ", ".join(made.pages),
     }
-    for name, text in lines.items():
-        if text:
-            table.add_row(Text(name), Text(text))
-    console = Console()
-    console.print(f"[bold]{store}[/]: {made.kind}", highlight=False)
-    console.print(table)
+    print_facts((f"[bold]{store}[/]: {made.kind}",), {name: text for name, text in lines.items() if text})
 
 
 def _text(value: object) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -34,13 +33,7 @@ _CAPTION = (
 )
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Bar:
-    """One difference: its name, its budget, and whether it is worth explaining."""
-
-    name: str
-    budget: ErrorBudget
-    worth: bool = True
+Bar = tuple[str, ErrorBudget, bool]  # a difference: its name, its budget, and whether it is worth explaining
 
 
 def part_shares(budget: ErrorBudget) -> dict[str, float]:
@@ -52,8 +45,7 @@ def part_shares(budget: ErrorBudget) -> dict[str, float]:
 
 def budget_picture(view: CaseView, name: str) -> Picture:
     """Return the stacked parts of each run and reference of a case."""
-    bars = [Bar(name=f"{run} − {model}", budget=budget) for (run, model), budget in view.budgets.items()]
-    return _stacked(bars, name)
+    return _stacked([(f"{run} − {model}", each, True) for (run, model), each in view.budgets.items()], name)
 
 
 def all_budgets_picture(comparison: Comparison) -> Picture:
@@ -69,10 +61,10 @@ def all_budgets_picture(comparison: Comparison) -> Picture:
         ["finding", "worth", "unexplained_share"], ascending=False
     )
     bars = [
-        Bar(
-            name=f"{'▲ ' if row.finding else ''}{row.case}, {row.run} − {row.reference}",
-            budget=comparison.budgets[row.case, row.run, row.reference],
-            worth=row.worth,
+        (
+            f"{'▲ ' if row.finding else ''}{row.case}, {row.run} − {row.reference}",
+            comparison.budgets[row.case, row.run, row.reference],
+            row.worth,
         )
         for row in rows_of(ordered.head(_MOST))
     ]
@@ -80,14 +72,14 @@ def all_budgets_picture(comparison: Comparison) -> Picture:
 
 
 def _stacked(bars: Sequence[Bar], name: str) -> Picture:
-    places, ticks = names([bar.name for bar in bars])
+    places, ticks = names([label for label, _, _ in bars])
     ends = np.zeros(len(bars))
     layers: list[Bars | Text] = []
     for part, (words, style, hatch) in PARTS.items():
-        starts, ends = ends, ends + np.array([part_shares(bar.budget)[part] for bar in bars])
-        colours = [style.colour if bar.worth else pale(style.colour) for bar in bars]
+        starts, ends = ends, ends + np.array([part_shares(budget)[part] for _, budget, _ in bars])
+        colours = [style.colour if worth else pale(style.colour) for _, _, worth in bars]
         layers.append(Bars(places=places, start=starts, end=ends, colours=colours, name=words, hatch=hatch))
-    whole = [f"{bar.budget.rms('whole'):.1e} α" for bar in bars]
+    whole = [f"{budget.rms('whole'):.1e} α" for _, budget, _ in bars]
     layers += [Text(x=1.02, y=place + 0.3, text=text) for place, text in zip(places, whole, strict=True)]
     shares = [(share, f"{share:g}") for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
     panel = Panel(

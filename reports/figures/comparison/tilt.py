@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from functools import partial
 
 import numpy as np
 
 from rockwobble.compare import AGREEMENT, Comparison, make_pair
 
 from ..palette import Style
-from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Pictures, Rule
+from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
 from ..thinning import envelope
 from .view import CaseView, case_views
 
@@ -29,9 +28,9 @@ _WHERE = {
 }
 
 
-def pictures(comparison: Comparison) -> Pictures:
-    """Return what makes the picture of each case, by its name."""
-    return {view.case.name: partial(tilt_picture, view) for view in case_views(comparison)}
+def pictures(comparison: Comparison) -> Iterator[Picture]:
+    """Yield the picture of each case, by its name."""
+    return (tilt_picture(view, view.case.name) for view in case_views(comparison))
 
 
 def tilt_picture(view: CaseView, name: str = "figure") -> Picture:

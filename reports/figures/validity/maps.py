@@ -105,7 +105,7 @@ def _shaken(table: pd.DataFrame, name: str, title: str, caption: str, column: st
         ]
         layers: list[Heat | Line] = [Heat(x=x, y=y, values=values, gaps=gaps)]
         for other, level, words, style in _LINES:
-            line = _contour(x, y, _grid(own, other), level)
+            line = contour(x, y, _grid(own, other), level)
             if len(line[0]):
                 layers.append(Line(x=line[0], y=line[1], name=words, style=style))
         panels.append(
@@ -131,13 +131,6 @@ def _grid(table: pd.DataFrame, value: str) -> Array:
     grid = table.pivot_table(value, "intensity", "semidiagonal", dropna=False)
     found = grid.to_numpy(dtype=np.float64)
     return np.where(np.isposinf(found), _FAR, found)  # a colour and a contour need a number
-
-
-def _contour(x: Array, y: Array, values: Array, level: float) -> tuple[Array, Array]:
-    """The line of a level over the cells."""
-    if min(values.shape) < 2:
-        return np.empty(0), np.empty(0)
-    return contour(x, y, values, level)
 
 
 def _free(name: str, what: str, table: pd.DataFrame) -> Picture:

@@ -8,13 +8,13 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.studies.validity.limits.distributions import CONTRASTS, POINT, ratios
-from rockwobble.compare.studies.validity.limits.numbers import Array, Tables, column
+from rockwobble.compare.studies.validity.limits.numbers import Array, column
 from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
 from rockwobble.compare.studies.validity.rings import FREE
 from rockwobble.compare.studies.validity.study import Validity
 
 from ..palette import DARK, GREY, ORDER, Style, mark_styles
-from ..picture import Axis, Line, Panel, Picture, Pictures, Rule, at_hand, ecdf
+from ..picture import Axis, Line, Panel, Picture, Rule, ecdf, parted
 from .maps import map_pictures
 
 # of a method, in words
@@ -38,13 +38,9 @@ _LEAST = 1e-9  # what a logarithmic axis shows of nothing
 _ONE = Rule(at=1.0, axis="y", colour=GREY, dash="solid")
 
 
-def pictures(found: Validity) -> Pictures:
-    """Return what makes each figure of the report, by its name."""
-    return at_hand(*validity_pictures(found.tables))
-
-
-def validity_pictures(tables: Tables) -> list[Picture]:
+def pictures(found: Validity) -> list[Picture]:
     """Return all figures of the report, in its order."""
+    tables = found.tables
     return [
         _records(tables["records"]),
         *map_pictures(tables),
@@ -200,15 +196,10 @@ def _rings(table: pd.DataFrame) -> Picture:
         for tan_alpha, rows in chosen.groupby("tan_alpha"):
             name = f"tan α = {tan_alpha:g}"
             over = rows.groupby("clearance")[column_name]
-            x, low, high = (
-                over.min().index.to_numpy(float),
-                over.min().to_numpy(float),
-                over.max().to_numpy(float),
-            )
-            y = np.sqrt(np.maximum(low, least) * np.maximum(high, least))
-            yield Line(x=x, y=y, name=name, style=styles[name])
-            bars = np.column_stack([np.maximum(low, least), np.maximum(high, least), np.full(len(x), np.nan)])
-            yield Line(x=np.repeat(x, 3), y=bars.ravel(), style=Style(colour=styles[name].colour), width=0.8)
+            low, high = (np.maximum(end.to_numpy(float), least) for end in (over.min(), over.max()))
+            x, bars = over.min().index.to_numpy(float), Style(colour=styles[name].colour)
+            yield Line(x=x, y=np.sqrt(low * high), name=name, style=styles[name])
+            yield Line(x=np.repeat(x, 3), y=parted(low, high), style=bars, width=0.8)
 
     clearance = Axis(label="clearance / b", unit="-", log=True)
     shaken, touched = plain[plain["motion"] != FREE], plain[plain["contact_time"] > 0.0]

@@ -1,4 +1,4 @@
-"""What a comparison found: what is to be said of each row of the summary, and the sentences on it."""
+"""What a comparison found: sentences on each row of the summary, on budgets and on divergences."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from typing import Any
 
 import pandas as pd
 
+from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
+from rockwobble.compare import findings as unexplained
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
@@ -17,6 +19,7 @@ from ..words.sentences import sentence
 from .external import external_sentences, mistakes, scope, within
 
 WORDS = "comparison/findings.md.j2"
+_LISTED = 10
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -158,3 +161,37 @@ def _group(rows: pd.DataFrame, length: float) -> dict[str, object]:
         "length": length,
         "scope": scope(first) if external else "",
     }
+
+
+def budget_sentences(summary: pd.DataFrame) -> list[str]:
+    """Return the sentences on the budgets: the findings first; empty where there are no budgets."""
+    known = summary[summary["whole_rms"].notna()]
+    if not len(known):
+        return []
+    worth, found = known[known["whole_rms"] > WORTH_EXPLAINING], unexplained(known)
+    lines = [sentence(WORDS, "unexplained", row) for row in rows_of(found.head(_LISTED))]
+    counts = {
+        "more": len(found) - _LISTED,
+        "worth": len(worth),
+        "explained": len(worth) - len(found),
+        "cases": worth["case"].nunique(),
+        "explained_cases": worth["case"].nunique() - found["case"].nunique(),
+        "small": len(known) - len(worth),
+        "missing": len(summary) - len(known),
+        "largest": LARGEST_SHARE,
+        "bound": WORTH_EXPLAINING,
+    }
+    said = [sentence(WORDS, macro, counts) for macro in ("more_unexplained", "explained", "no_budget")]
+    return [*lines, *filter(None, said)]
+
+
+def divergence_sentences(summary: pd.DataFrame) -> list[str]:
+    """Return whether traces diverged when they had to, those that did so too early by name.
+
+    Of external trajectories nobody can predict that: the prediction rests on the errors of an engine.
+    """
+    summary = summary[summary["support"] != EXTERNAL]
+    counts = summary["divergence"].value_counts()
+    said = [f"{counts[verdict]} {verdict}" for verdict in counts.index if verdict]
+    early = [sentence(WORDS, "early", row) for row in rows_of(summary[summary["divergence"] == "earlier"])]
+    return [*early, sentence(WORDS, "in_time", said)] if said else early

@@ -21,11 +21,9 @@ from ...figures.thinning import kept_points
 from ..page import Page
 from ..words.cases import describe, group_of
 from ..words.sentences import fragment
-from .budgets import budget_sentences, divergence_sentences
 from .external import external_rows
-from .findings import counted_remarks, finding_sentences, headline
-from .matrix import matrix_tables
-from .tables import all_columns, diverging_runs, group_rows, main_rows, meanings, worst_first
+from .findings import budget_sentences, counted_remarks, divergence_sentences, finding_sentences, headline
+from .tables import all_columns, diverging_runs, group_rows, main_rows, matrix_tables, meanings, worst_first
 
 # up to so many cases each has a part of the report of its own
 SINGLY = 3
