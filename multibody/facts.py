@@ -34,8 +34,6 @@ class EngineFacts:
         limit.
     contact_time : str
         Name of the setting that is the time in which contact removes a velocity [s]; empty without one.
-    stopping_friction : mapping
-        Settings with which friction stops the slip of a step and does no more, where it does by default.
     alternatives : mapping
         Settings worth a price of their own in a table of costs, by what they are called there; for a
         release.
@@ -50,6 +48,5 @@ class EngineFacts:
     uplift_error: float = 2.5e-5
     smooth_uplift: bool = False
     contact_time: str = ""
-    stopping_friction: Options = field(default_factory=lambda: _NOTHING)
     alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)
     standing_alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)

@@ -11,10 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace
-from rockwobble.multibody.engines.registry import engine_facts, standard_engines
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+from rockwobble.multibody.engines.registry import standard_engines
 
-from ..comparison.prediction import time_scale
 from ..runs.choice import installed_engines, run_labels
 from ..runs.execution import Job, simulate_all
 from ..runs.progress import ProgressCallback
@@ -25,7 +23,6 @@ Array = NDArray[np.float64]
 
 # the engines that every installation is meant to have, and whose accuracy at the default step is known
 ENGINES = standard_engines()
-_RELEASE_ERROR = 5e-6  # see `EngineFacts`; bounds at the default step are for engines as good as that
 
 
 def _as_given(run: Run) -> Run:
@@ -89,12 +86,6 @@ class Bench:
 def engines_here() -> tuple[str, ...]:
     """Return those of `ENGINES` that are installed."""
     return tuple(name for name in ENGINES if name in installed_engines())
-
-
-def fitting_step(engine: str, case: Case) -> float:
-    """Return the default step [s], or a finer one for an engine that is less accurate than the best."""
-    finer = max(1, math.ceil(engine_facts(engine).release_error / _RELEASE_ERROR))
-    return REFERENCE_TIME_STEP * time_scale(case) / finer
 
 
 def not_here(what: str) -> Iterator[Finding]:

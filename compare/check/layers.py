@@ -10,14 +10,21 @@ from .bench import Bench
 from .engines import agreement, engine_baseline, engine_equations, engine_settings, time_steps, traces
 from .finding import Bound, Finding, at_most
 from .inputs import ground_motions, record_files, suites
-from .measures import batch, external_trajectories, metrics, predicted_times, spectra, sweeps
+from .measures import (
+    batch,
+    exact_functions,
+    external_trajectories,
+    metrics,
+    predicted_times,
+    spectra,
+    sweeps,
+)
 from .models import (
     after_record,
     conserved,
     demands,
     equations,
     exact,
-    exact_functions,
     invariance,
     landing,
     order,

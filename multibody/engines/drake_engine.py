@@ -40,9 +40,7 @@ _FLAT = 2e-3  # [rad] lean up to which a point carries the rim: the cylinder its
 _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 
-_FACTS = EngineFacts(
-    title="Drake", step_time=8e-5, release_error=8e-6, uplift_error=5e-5, smooth_uplift=True
-)
+_FACTS = EngineFacts(title="Drake", step_time=8e-5, release_error=8e-6, uplift_error=5e-5, smooth_uplift=True)
 
 
 class DrakeEngine(Declared):

@@ -45,7 +45,6 @@ _FACTS = EngineFacts(
     uplift_error=5e-6,
     smooth_uplift=True,  # its corners turn under the load
     contact_time="contact_time_constant",
-    stopping_friction={"friction_damping": 1.0},
     alternatives={
         **{
             f"integrator {name}": {"integrator": name}

@@ -38,7 +38,6 @@ _FACTS = EngineFacts(
     release_error=1.5e-5,
     uplift_error=5e-6,
     smooth_uplift=True,
-    stopping_friction={"friction_damping": 1.0},
 )
 
 

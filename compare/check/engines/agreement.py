@@ -5,16 +5,15 @@ ring of walls has no model of its own: until the first touch of a wall it is fla
 what every motion in a recess must show is asked for.
 
 What a run may be off comes from its suite where that states bounds; from what was measured once for the
-suite "quick" with the engines that it names; and for any other run from the run itself, see `own_bounds`.
+suite "quick"; and for any other suite from the run itself, see `own_bounds`.
 """
 
 from __future__ import annotations
 
-import functools
 import math
 from collections.abc import Iterator
 
-from rockwobble.models import Bounds, Case, Run, Trace, read_suite
+from rockwobble.models import Bounds, Case, Run, Trace
 
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale, verdict
 from ...comparison.summary import SUMMARY_COLUMNS, summary_row
@@ -42,22 +41,10 @@ def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part."""
     jobs = bench.jobs()
     traces = bench.traces(jobs)
-    own_bounds.prepare(
-        bench, [pair for pair in zip(jobs, traces, strict=True) if _bounded_by_itself(bench, pair[0])]
-    )
+    if not bench.shipped and bench.suite.bounds is None:
+        own_bounds.prepare(bench, jobs, traces)
     for job, trace in zip(jobs, traces, strict=True):
         yield from check_run(bench, job, trace)
-
-
-@functools.cache
-def _engines_of_quick() -> frozenset[str | None]:
-    return frozenset(run.engine for run in read_suite("quick").runs)
-
-
-def _bounded_by_itself(bench: Bench, job: Job) -> bool:
-    """Whether nobody states what a run may be off, and nothing was measured once."""
-    measured = bench.shipped and job.run.engine in _engines_of_quick()
-    return bench.suite.bounds is None and not measured
 
 
 def reference_of(bench: Bench, run: Run) -> Run:
@@ -77,7 +64,7 @@ def check_run(bench: Bench, job: Job, trace: Trace) -> Iterator[Finding]:
     model = bench.solve(job.case, reference.support)
     if job.run.support == "ring":
         yield from _ring(job, trace)
-    if _bounded_by_itself(bench, job):
+    if bench.suite.bounds is None and not bench.shipped:
         yield from own_bounds.held(bench, job, name, model, trace)
         return
     prediction = predict(

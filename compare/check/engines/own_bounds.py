@@ -58,10 +58,10 @@ def held(bench: Bench, job: Job, name: str, model: Trace, trace: Trace) -> Itera
             yield _held(bench, other, name, model, trace, clean=True)
 
 
-def prepare(bench: Bench, pairs: Sequence[tuple[Job, Trace]]) -> None:
+def prepare(bench: Bench, jobs: Sequence[Job], traces: Sequence[Trace]) -> None:
     """Make what `held` asks for of many runs, side by side."""
-    others = [other for job, _ in pairs if (other := _in_motion(job)) is not None]
-    known = [*pairs, *zip(others, bench.traces(others), strict=True)]
+    others = [other for job in jobs if (other := _in_motion(job)) is not None]
+    known = [*zip(jobs, traces, strict=True), *zip(others, bench.traces(others), strict=True)]
     bench.traces([other_step(job, trace)[0] for job, trace in known if trace.outcome != "failed"])
 
 

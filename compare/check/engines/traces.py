@@ -13,10 +13,12 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 
+from ...comparison.prediction import time_scale
 from ...runs.choice import own_model
 from ...runs.execution import Job, simulate_run
-from ..bench import Array, Bench, engines_here, fitting_step, largest, not_here, why
+from ..bench import Array, Bench, engines_here, largest, not_here, why
 from ..finding import Bound, Finding, at_most
 from ..problems import GRAVITY, PIER, THRESHOLD, released, steady
 
@@ -83,7 +85,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 
 def _run(engine: str, support: str, case: Case) -> Run:
-    return Run(engine, support, 0.5 * fitting_step(engine, case))
+    return Run(engine, support, 0.5 * REFERENCE_TIME_STEP * time_scale(case))
 
 
 def _shaken(bench: Bench, run: Run) -> Iterator[Finding]:

@@ -12,9 +12,9 @@ from rockwobble.models import Case, Cylinder, InitialState, Trace
 
 from ..bench import Bench
 from ..finding import Bound, Finding, none_wrong, worst_of
+from ..models import quadrature
+from ..models.lagrange import shape_of
 from ..problems import PIER
-from . import quadrature
-from .lagrange import shape_of
 
 WEAKER = 9.0  # [m/s^2]
 OWN = Cylinder(semidiagonal=2.0, tan_alpha=0.6, height=3.0, transverse_inertia=1.1, axial_inertia=0.7)
