@@ -7,6 +7,7 @@ import stat
 import sys
 import tempfile
 from collections.abc import Callable
+from functools import update_wrapper
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -21,14 +22,33 @@ F = TypeVar("F", bound=Callable[..., Any])
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
 
 
+class _Part:
+    """A function that is compiled into its callers, and by itself only where Python calls it.
+
+    What Python needs to call it takes as long to compile as what it does. The callers find it by its
+    ``_numba_type_``, as numba has it for values of other packages.
+    """
+
+    def __init__(self, function: Callable[..., Any], **options: Any) -> None:
+        update_wrapper(self, function)
+        self.py_func = function
+        self._alone = numba.njit(**_OPTIONS)(function)
+        options |= {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+        self._inner = numba.njit(**_OPTIONS, **options)(function)
+        self._numba_type_ = numba.types.Dispatcher(self._inner)
+
+    def __call__(self, *arguments: Any) -> Any:
+        return self._alone(*arguments)
+
+
 def jit(function: F) -> F:
     """Compile a function that the kernels call; it is compiled into its callers."""
-    return cast("F", numba.njit(**_OPTIONS)(function))
+    return cast("F", _Part(function))
 
 
 def inlined(function: F) -> F:
     """Compile a function into its callers without a call: for the innermost, where a call shows."""
-    return cast("F", numba.njit(forceinline=True, **_OPTIONS)(function))
+    return cast("F", _Part(function, forceinline=True))
 
 
 def kernel(function: F) -> F:
