@@ -233,7 +233,7 @@ class _MujocoStepper:
 
 
 def _stopped_clock() -> Any:
-    """Return a clock in C that always says the same, for the timers of a step: to read one takes a fifth of it."""
+    """Return a C function that always says the same time: to read a clock takes a fifth of a step."""
     return ctypes.CFUNCTYPE(ctypes.c_double)(("PyFloat_GetMax", ctypes.pythonapi))
 
 

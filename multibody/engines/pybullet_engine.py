@@ -187,7 +187,7 @@ class _PybulletStepper:
         )
 
     def _loop(self, gravity: Array) -> list[float]:
-        """Step under an apparent gravity (n, 3) [m/s^2]: rigid ground need not move. Return n poses in a row."""
+        """Return the poses, all in a row, of steps under an apparent gravity (n, 3) [m/s^2]."""
         poses, _ = self._steps(gravity[:-1])
         self._analyse(True)
         last, report = self._steps(gravity[-1:])
@@ -199,7 +199,10 @@ class _PybulletStepper:
         return poses + last
 
     def _steps(self, gravity: Array) -> tuple[list[float], Any]:
-        """Return the poses after each step, and what the last step reported."""
+        """Return the poses, all in a row, and what the last step reported.
+
+        Gravity is apparent, because rigid ground need not move.
+        """
         # local names, because this is the one loop over steps in Python
         bullet, client, body = self._bullet, self._client, self._body
         step, pose, pull = bullet.stepSimulation, bullet.getBasePositionAndOrientation, bullet.setGravity
