@@ -58,6 +58,8 @@ def _set_options(spec: Any, scene: Scene, settings: MujocoSettings) -> None:
     option.iterations = settings.iterations
     # a state that is not finite must reach the guard, not be replaced by the initial one
     option.disableflags |= mujoco.mjtDisableBit.mjDSBL_AUTORESET
+    # one body is one island: to look for others takes a twentieth of a step; not every version has it
+    option.disableflags |= getattr(mujoco.mjtDisableBit, "mjDSBL_ISLAND", 0)
     if settings.contact_time_constant < 2.0 * scene.time_step * scene.unit_time * (1.0 - 1e-9):
         # the engine would silently lengthen what the user asked for
         option.disableflags |= mujoco.mjtDisableBit.mjDSBL_REFSAFE

@@ -30,6 +30,7 @@ _RESIDUAL = 1e-10  # of an iteration, squared [m^2/s^2]; what a standing cylinde
 _RISEN = 1e-7  # [rad] lean from which the rim carries the cylinder as well as the point does
 _HAS_DIRECTION = 1e-9  # [rad]
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
+_POSE = 7  # numbers of a pose: position, and quaternion with the scalar last
 _NO_SPIN = (0.0, 0.0, 0.0)
 
 _FACTS = EngineFacts(
@@ -100,27 +101,25 @@ class _PybulletStepper:
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
         before = self._position, self._quaternion
-        positions: list[Any] = []
-        quaternions: list[Any] = []
+        poses: list[float] = []
         headings: list[float] = []
-        while self._standing and len(positions) < len(acceleration):
-            if self._held and self._slides(acceleration[len(positions)]):
+        while self._standing and len(headings) < len(acceleration):
+            now = acceleration[len(headings)]
+            if self._held and self._slides(now):
                 self._let_go()
                 still = np.zeros(3)
                 self._put(self._position, np.roll(self._quaternion, -1), still, still)
                 break
-            place, turn = self._stand(acceleration[len(positions)])
-            positions.append(place)
-            quaternions.append(turn)
+            poses += self._stand(now)
             headings.append(self._heading)
-        done = len(positions)
+        done = len(headings)
         if done < len(acceleration):
             pulls = about_vertical(-acceleration[done:] - [0.0, 0.0, self._gravity], -self._heading)
-            for poses, more in zip((positions, quaternions), self._loop(pulls.tolist()), strict=True):
-                poses += more
+            poses += self._loop(pulls)
         heading = np.array(headings + [self._heading] * (len(acceleration) - done))
-        position = about_vertical(np.array(positions), heading)
-        quaternion = np.roll(np.array(quaternions), 1, axis=1)
+        rows = np.fromiter(poses, dtype=np.float64, count=len(poses)).reshape(-1, _POSE)
+        position = about_vertical(rows[:, :3], heading)
+        quaternion = np.roll(rows[:, 3:], 1, axis=1)
         quaternion[:, 1:] = about_vertical(quaternion[:, 1:], heading)
         self._position, self._quaternion = position[-1], quaternion[-1]
         # the new velocity moves the pose, so poses give the velocities, and the loop is spared a call
@@ -128,15 +127,15 @@ class _PybulletStepper:
         spin = turning(before[1], quaternion) / self._step
         return Steps(position, quaternion, velocity, spin, unsolved=self._unsolved)
 
-    def _stand(self, acceleration: Array) -> tuple[Any, Any]:
-        """Take one step of a cylinder that stands, or rises from a point of its rim."""
+    def _stand(self, acceleration: Array) -> tuple[float, ...]:
+        """Take one step of a cylinder that stands, or rises from a point of its rim; return the pose."""
         bullet, client, (b, h) = self._bullet, self._client, self._lengths
         place, (x, y, z, w) = bullet.getBasePositionAndOrientation(self._body, client)
         axis_x, axis_y = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)
         lean = math.hypot(axis_x, axis_y)
         load = math.hypot(acceleration[0], acceleration[1]) * h / (b * (self._gravity + acceleration[2]))
         if self._held and load < 1.0:
-            return place, (x, y, z, w)
+            return (*place, x, y, z, w)
         self._held = False
         towards = self._heading
         if lean > _HAS_DIRECTION:
@@ -153,7 +152,7 @@ class _PybulletStepper:
         bullet.setGravity(*pull.tolist(), client)
         bullet.stepSimulation(client)
         place, turn = bullet.getBasePositionAndOrientation(self._body, client)
-        return place, turn
+        return (*place, *turn)
 
     def _slides(self, acceleration: Array) -> bool:
         """Whether friction does not hold a cylinder that stands."""
@@ -187,8 +186,23 @@ class _PybulletStepper:
             reportSolverAnalytics=int(wanted), physicsClientId=self._client
         )
 
-    def _loop(self, gravity: list[list[float]]) -> tuple[list[Any], list[Any]]:
-        """Step under an apparent gravity [m/s^2] for each step: rigid ground need not move."""
+    def _loop(self, gravity: Array) -> list[float]:
+        """Return the poses, all in a row, of steps under an apparent gravity (n, 3) [m/s^2]."""
+        poses, _ = self._steps(gravity[:-1])
+        self._analyse(True)
+        last, report = self._steps(gravity[-1:])
+        self._analyse(False)
+        self._unsolved = any(
+            island["numIterationsUsed"] >= self._iterations and island["remainingResidual"] > _RESIDUAL
+            for island in report
+        )
+        return poses + last
+
+    def _steps(self, gravity: Array) -> tuple[list[float], Any]:
+        """Return the poses, all in a row, and what the last step reported.
+
+        Gravity is apparent, because rigid ground need not move.
+        """
         # local names, because this is the one loop over steps in Python
         bullet, client, body = self._bullet, self._client, self._body
         step, pose, pull = bullet.stepSimulation, bullet.getBasePositionAndOrientation, bullet.setGravity
@@ -196,27 +210,19 @@ class _PybulletStepper:
         velocities, move = bullet.getBaseVelocity, bullet.resetBaseVelocity
         ground, overshoot, (b, h) = self._ground, self._overshoot, self._lengths
         atan2, sqrt = math.atan2, math.sqrt
-        positions: list[Any] = []
-        quaternions: list[Any] = []
-        add_position, add_quaternion = positions.append, quaternions.append
+        # numbers in one list, not tuples in one: those the garbage collector would go through again and again
+        poses: list[float] = []
         report: Any = ()
         _, (x, y, z, w) = pose(body, client)
-        last = len(gravity) - 1
-        for index, (along_x, along_y, along_z) in enumerate(gravity):
-            if index == last:
-                self._analyse(True)
+        for along_x, along_y, along_z in zip(*gravity.T.tolist(), strict=True):
             pull(along_x, along_y, along_z, client)
+            across_x, across_y, xy = x * z + w * y, y * z - w * x, x * x + y * y
             if stiffness and z:
                 # along the vertical plus the axis, proportional to the twist
                 pair = 2.0 * stiffness * atan2(z, w)
-                torque(
-                    body,
-                    -1,
-                    (pair * (x * z + w * y), pair * (y * z - w * x), pair * (1.0 - x * x - y * y)),
-                    world,
-                    client,
-                )
-            ax, ay, az = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), 1.0 - 2.0 * (x * x + y * y)
+                couple = pair * across_x, pair * across_y, pair * (1.0 - x * x - y * y)
+                torque(body, -1, couple, world, client)
+            ax, ay, az = 2.0 * across_x, 2.0 * across_y, 1.0 - 2.0 * xy
             sine = sqrt(ax * ax + ay * ay)
             if overshoot and sine > _LEANS:
                 # the slip velocity that the last step left at the rim of this pose; Bullet's friction
@@ -226,12 +232,8 @@ class _PybulletStepper:
                 slip_x, slip_y = vx - wy * down - wz * out * ay, vy + wz * out * ax + wx * down
                 move(ground, (-overshoot * slip_x, -overshoot * slip_y, 0.0), _NO_SPIN, client)
             report = step(client)
-            place, (x, y, z, w) = pose(body, client)
-            add_position(place)
-            add_quaternion((x, y, z, w))
-        self._analyse(False)
-        self._unsolved = any(
-            island["numIterationsUsed"] >= self._iterations and island["remainingResidual"] > _RESIDUAL
-            for island in report
-        )
-        return positions, quaternions
+            place, turn = pose(body, client)
+            x, y, z, w = turn
+            poses += place
+            poses += turn
+        return poses, report

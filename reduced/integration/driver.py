@@ -13,12 +13,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from math import pi
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .._compile import borrowed, inlined, jit
+from .._compile import borrowed, inlined, jit, once
 from ..body import Body
 from ..trigonometry import sin_cos
 from .endings import HALF_PI, may_overturn, may_sit_down, surely_falls
@@ -48,6 +48,8 @@ from .uplift import nearest_branch, start_length, started, uplift_in
 
 _LEAST_STEP = 1e-200  # a step that must be shorter fails whatever its length [s]
 _FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
+# a literal 0 has a type of its own, for which its users would be compiled too
+_FIRST_SAMPLE = cast("int", np.int64(0))
 _HAIR = 1e-6  # of 1/p; an uplift so near to the next sample leaves no more than its square
 # of 1/p; what leaves the balance, or unstable steady wobble, grows by exp(p t): in this time all motion turns
 # or falls but what is nearer to them than 3e-7, which nobody could tell from resting there
@@ -106,7 +108,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
 
     sample_rest, sample_uplift, sample_step = make_sampling(lifted, partial)
 
-    @jit
+    @once
     def march(
         body: Body,
         options: Options,
@@ -141,7 +143,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         log = empty_log(y)
         resting = y[0] == 0.0
         uplift = (np.nan, np.nan) if resting else (0.0, y[2])  # time and direction
-        now, index, sample, step_count, status = 0.0, 0, 0, 0, COMPLETED
+        now, index, sample, step_count, status = 0.0, 0, _FIRST_SAMPLE, 0, COMPLETED
         h_next, restart = _FIRST_STEP / body.p, True  # until a step has been made ready
         end, deciding, mark = options.duration, False, mark_of(y, peak, log)
 

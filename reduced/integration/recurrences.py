@@ -21,7 +21,7 @@ No term cancels near theta = 0.
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,9 @@ from .systems import scales
 from .tsit5 import State, Vector
 
 _LEAST_ORDER = 4  # below it two terms in a row may be small by accident
+# constants all the same, but of one type with every other order: a literal has a type of its own, and what
+# takes it would be compiled for each
+_SECOND, _THIRD, _FOURTH = (cast("int", np.int64(order)) for order in (2, 3, 4))
 # A step aims at a remainder of this share of the tolerance, as a geometric series with the ratio of
 # the last two terms has it: in a close pass the remainders of a hundred steps have one sign.
 AIM = 0.1
@@ -193,9 +196,9 @@ def expand(
 
     # the orders that every step takes, one by one: as constants they compile to straight code
     newest = Last(rate_1, momentum_1, s_1, v_1, cos_1, sin_1, cos0, sin0)
-    sums, newest, _ = extend(body, zero, sums, newest, h, 2, c)
-    sums, newest, before = extend(body, zero, sums, newest, h, 3, c)
-    sums, newest, last = extend(body, zero, sums, newest, h, 4, c)
+    sums, newest, _ = extend(body, zero, sums, newest, h, _SECOND, c)
+    sums, newest, before = extend(body, zero, sums, newest, h, _THIRD, c)
+    sums, newest, last = extend(body, zero, sums, newest, h, _FOURTH, c)
     order = _LEAST_ORDER
     while order < ORDER and not fits(last, before):
         order, before = order + 1, last

@@ -31,7 +31,7 @@ _INTERPRETED = """
 def jit(function):
     return function
 
-inlined = kernel = borrowed = jit
+inlined = once = kernel = borrowed = jit
 
 def in_memory(entry):
     return True
