@@ -138,7 +138,11 @@ def on_disk(entry: Callable[..., Any]) -> bool:
     newest = max(path.stat().st_mtime for path in Path(__file__).parent.rglob("*.py"))
     fresh = False
     for index in Path(cast("Any", entry).stats.cache_path).glob("*.nbi"):
-        if index.stat().st_mtime < newest:
+        try:
+            stale = index.stat().st_mtime < newest
+        except FileNotFoundError:  # another process has removed it meanwhile
+            continue
+        if stale:
             index.unlink(missing_ok=True)
         elif f".{entry.__name__}-" in index.name:
             fresh = True
