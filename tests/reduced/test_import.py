@@ -4,6 +4,9 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
+
+from rockwobble.reduced._compile import on_disk
 
 
 def test_scipy_is_loaded_by_what_uses_it():
@@ -41,3 +44,12 @@ def test_compiled_code_goes_to_a_folder_of_ours_where_it_has_no_other_place(tmp_
     folder.chmod(0o777)  # anybody may have put code there
     other, _ = start()
     assert (other.parent, other != folder) == (tmp_path, True)
+
+
+def test_stale_code_that_another_process_has_removed_meanwhile_is_no_error(monkeypatch, tmp_path):
+    kept = tmp_path / "driver.march_recess-1.py311.nbi"
+    monkeypatch.setattr(Path, "glob", lambda self, pattern: [kept])
+    entry = SimpleNamespace(stats=SimpleNamespace(cache_path=tmp_path), __name__="march_recess")
+    assert not on_disk(entry)
+    kept.touch()
+    assert on_disk(entry)
