@@ -140,7 +140,8 @@ class _DrakeStepper:
         # where it sinks by next, from the last two steps
         ahead, self._sinks = 2.0 * sinks - self._sinks, sinks
         heave = ahead if math.isfinite(ahead) else 0.0
-        if after.lean < _LEANS:
+        # with points below a base that is nearly flat, what lands would be set in motion by it
+        if after.lean < _FLAT:
             return np.array([0.0, 0.0, heave])
         slip_x, slip_y = after.slip(self._velocity.tolist())
         return np.array([-self._overshoot * slip_x, -self._overshoot * slip_y, heave])
