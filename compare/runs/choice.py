@@ -57,6 +57,11 @@ def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run]
     runs : sequence of Run
     named : sequence of str
         Engines that the user asked for by name.
+
+    Returns
+    -------
+    tuple
+        The runs, a list of Run, and the lines, a list of str.
     """
     here, found, said = installed_engines(), list[Run](), dict[str, str]()
     for run in runs:
