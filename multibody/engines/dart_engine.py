@@ -49,7 +49,7 @@ _FAR = 1e3  # of the height: ODE ends the process where something is too far awa
 _SPIN = 1.0  # [rad] about the axis of the cylinder
 
 _FACTS = EngineFacts(
-    title="DART", step_time=1.9e-5, release_error=2e-6, uplift_error=5e-6, smooth_uplift=True
+    title="DART", step_time=2.5e-5, release_error=2e-6, uplift_error=5e-6, smooth_uplift=True
 )
 
 

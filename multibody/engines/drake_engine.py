@@ -40,7 +40,7 @@ _FLAT = 2e-3  # [rad] lean up to which a point carries the rim: the cylinder its
 _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 
-_FACTS = EngineFacts(title="Drake", step_time=8e-5, release_error=8e-6, uplift_error=5e-5, smooth_uplift=True)
+_FACTS = EngineFacts(title="Drake", step_time=1.5e-4, release_error=4e-6, uplift_error=5e-6, smooth_uplift=True)
 
 
 class DrakeEngine(Declared):
@@ -140,8 +140,8 @@ class _DrakeStepper:
         # where it sinks by next, from the last two steps
         ahead, self._sinks = 2.0 * sinks - self._sinks, sinks
         heave = ahead if math.isfinite(ahead) else 0.0
-        # with points below a base that is nearly flat, what lands would be set in motion by it
-        if after.lean < _FLAT:
+        # a base that lands would be set in motion by it
+        if not rolls:
             return np.array([0.0, 0.0, heave])
         slip_x, slip_y = after.slip(self._velocity.tolist())
         return np.array([-self._overshoot * slip_x, -self._overshoot * slip_y, heave])

@@ -23,7 +23,7 @@ from .declared import Declared
 from .scene_counts import SceneCounts
 from .settings.exudyn import ExudynSettings
 
-_FACTS = EngineFacts(title="Exudyn", step_time=4e-5, order=2.0)
+_FACTS = EngineFacts(title="Exudyn", step_time=1.2e-5, order=2.0)
 
 
 class ExudynEngine(Declared):

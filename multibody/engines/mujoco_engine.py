@@ -41,7 +41,7 @@ _ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # of b, [rad]
 
 _FACTS = EngineFacts(
     title="MuJoCo",
-    step_time=1.2e-5,
+    step_time=8e-6,
     release_error=2e-6,
     uplift_error=5e-6,
     smooth_uplift=True,  # its corners turn under the load

@@ -35,7 +35,7 @@ _NO_SPIN = (0.0, 0.0, 0.0)
 
 _FACTS = EngineFacts(
     title="PyBullet",
-    step_time=3.6e-5,
+    step_time=1.2e-5,
     release_error=1.5e-5,
     uplift_error=5e-6,
     smooth_uplift=True,

@@ -23,7 +23,7 @@ BASE_LINE = "recess model"
 _TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
 # what a held contact time constant is: that of the default settings at a step of 1e-3 s [s]
 _HELD = 2e-3
-_CHEAP = 2e-5  # [s] of a step: of such an engine the finest steps are worth their time
+_CHEAP = 5e-5  # [s] of a step: of such an engine the finest steps are worth their time
 _SUPPORTS = ("recess", "flat", "ring")
 
 
