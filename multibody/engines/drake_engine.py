@@ -40,7 +40,9 @@ _FLAT = 2e-3  # [rad] lean up to which a point carries the rim: the cylinder its
 _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
 _LOADED = 0.5  # of b, eccentricity of the load from which the scene follows it
 
-_FACTS = EngineFacts(title="Drake", step_time=1.5e-4, release_error=4e-6, uplift_error=5e-6, smooth_uplift=True)
+_FACTS = EngineFacts(
+    title="Drake", step_time=1.5e-4, release_error=4e-6, uplift_error=5e-6, smooth_uplift=True
+)
 
 
 class DrakeEngine(Declared):
