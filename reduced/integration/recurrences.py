@@ -187,8 +187,7 @@ def expand(
     momentum_1 = -h * D0 * t0
     s_1, v_1 = tilt_1 * (1.0 - v0), tilt_1 * s0
     cos_1, sin_1 = -angle_1 * sin0, angle_1 * cos0
-    c[S], c[V], c[COS], c[SIN] = s0, v0, cos0, sin0
-    c[TILT], c[RATE], c[ANGLE], c[MOMENTUM], c[W] = theta, omega, phi, L, w0
+    c[TILT], c[RATE], c[ANGLE], c[MOMENTUM] = theta, omega, phi, L
     c[TILT + 1], c[RATE + 1], c[ANGLE + 1], c[MOMENTUM + 1] = tilt_1, rate_1, angle_1, momentum_1
     c[S + 1], c[V + 1], c[COS + 1], c[SIN + 1] = s_1, v_1, cos_1, sin_1
     tilt, rate, angle, momentum = theta + tilt_1, omega + rate_1, phi + angle_1, L + momentum_1

@@ -155,7 +155,7 @@ def shortest_time(body: Body, a: Vector, slope: Vector, at: float) -> float:
 
 @jit
 def starts_as_step(F0: float, F1: float, unit: float) -> bool:
-    """Return whether the jump F0 of theta'' [rad/s^2] outweighs its rise F1 t at the first of times."""
+    """Return whether the jump F0 of theta'', in any unit, outweighs its rise F1 t at the first of times."""
     return abs(F1) * STEP_START * unit < F0
 
 
@@ -163,10 +163,10 @@ def starts_as_step(F0: float, F1: float, unit: float) -> bool:
 def start_length(body: Body, rtol: float, a: Vector, slope: Vector, at: float) -> float:
     """Return for how long after uplift [s] the series is used."""
     ax, ay, az = ground(a, slope, at)
-    factor = body.p2 * body.cos_alpha / body.g
-    F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
+    # both over p^2 cos(alpha)/g
+    F0 = max(excess(body, (ax, ay, az)), 0.0)
     along = (ax * slope[0] + ay * slope[1]) / max(hypot(ax, ay), WEAK * body.g)
-    F1 = factor * (along - slope[2] * (body.sin_alpha / body.cos_alpha))
+    F1 = along - slope[2] * (body.sin_alpha / body.cos_alpha)
     unit = shortest_time(body, a, slope, at)
     if not starts_as_step(F0, F1, unit):
         return unit * min(float(rtol ** (1.0 / 3.0)), _LATEST_START)

@@ -112,7 +112,10 @@ def _uplift(bench: Bench) -> Iterator[Finding]:
     shape = shape_of(PIER)
     after = 2e-3 / math.sqrt(GRAVITY * 6.0 / quadrature.tilt_inertia(shape))
     case = Case(PIER, RECORD, duration=time + after)
-    found = bench.solve(case, sample_step=time + 0.25 * after, rtol=1e-12)
+    # next to the uplift, where a series gives the state, and after the first steps
+    shares = 1e-3, 0.25, 1.0
+    traces = [bench.solve(case, sample_step=time + share * after, rtol=1e-12) for share in shares[:2]]
+    found = traces[0]
     part = "uplift: criterion (25) and where it is located in a sample"
     yield at_most("instant of uplift inside a sample", abs(found.uplift_time - time), INSTANT, part)
     yield at_most(
@@ -121,10 +124,10 @@ def _uplift(bench: Bench) -> Iterator[Finding]:
         DIRECTION,
         "uplift: direction (26), or the components of the record",
     )
-    # where a series still gives the state, and after the first steps
+    tilts = [trace.tilt[1] for trace in traces] + [found.tilt[-1]]
     early = [
-        found.tilt[index] / _early_tilt(shape, a, slope, share * after) - 1.0
-        for index, share in ((1, 0.25), (-1, 1.0))
+        tilt / _early_tilt(shape, a, slope, share * after) - 1.0
+        for tilt, share in zip(tilts, shares, strict=True)
     ]
     yield at_most("tilt just after the uplift", largest(np.array(early)), EARLY, "start after the uplift")
     still = bench.solve(Case(PIER, RECORD.scaled(0.999 * 0.2 / math.hypot(0.24, 0.2))))
