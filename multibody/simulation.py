@@ -158,6 +158,8 @@ def _simulate(
 
 def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Trace:
     rows = _rows_to_end(recorder)
+    kept = (rows[:, 0] != recorder.asked) | (not recorder.off_grid)
+    forces, rows = recorder.forces.at(rows[:, 0])[kept], rows[kept]
     resting_at_end = recorder.uplift is None or recorder.rests.resting
     outcome = recorder.ended or ("rest" if resting_at_end else "completed")
     table = dict(zip(("time", *COLUMNS), rows.T, strict=True))
@@ -172,7 +174,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
     passes = _passes(recorder, resolution, scale)
     sampled = {
         "rolling_rate": np.where(resting, 0.0, table["rolling_rate"] / scale.time),
-        "contact_force": recorder.forces.at(table["time"]),
+        "contact_force": forces,
         "energy": table["energy"] * scale.energy,
         "energy_error": table["energy_error"] * scale.energy,
         "slip": table["slip"] * scale.length,

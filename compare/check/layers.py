@@ -7,7 +7,15 @@ import math
 from collections.abc import Callable, Iterator, Sequence
 
 from .bench import Bench
-from .engines import agreement, engine_baseline, engine_equations, engine_settings, time_steps, traces
+from .engines import (
+    agreement,
+    engine_baseline,
+    engine_equations,
+    engine_settings,
+    rings,
+    time_steps,
+    traces,
+)
 from .finding import Bound, Finding, at_most
 from .inputs import ground_motions, record_files, suites
 from .measures import (
@@ -50,7 +58,7 @@ PARTS: dict[str, tuple[Check, ...]] = {
     "residual": (residual.check,),
     "metrics": (metrics.check, predicted_times.check, external_trajectories.check),
     "studies": (batch.check, suites.check, sweeps.check, spectra.check),
-    "traces": (traces.check, time_steps.check),
+    "traces": (traces.check, time_steps.check, rings.check),
     "agreement": (engine_settings.check, agreement.check),
     "baseline": (reduced_baseline.check, engine_baseline.check),
 }

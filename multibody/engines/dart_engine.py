@@ -38,7 +38,7 @@ from .scene_counts import SceneCounts
 from .settings.dart import DartSettings
 
 _LEANS = 1e-8  # [rad] from which a lean has a direction that is not of what stood
-_OPEN = 1e-8  # [rad] lean at which the base is open; standing it stays below 5e-9
+_OPEN = 5e-8  # [rad] lean at which the base is open; standing it stays below 5e-9, landed below 3e-8
 # eccentricities of the load: from the first, of b, or of the friction, the scene follows it, at the second,
 # of b, the base may open
 _LOADED, _OPENING = 0.5, 0.999
@@ -46,6 +46,7 @@ _REDUCTION, _FASTEST_REDUCTION = 0.01, 1e-3  # [-], [m/s] by which DART itself r
 _SLOWING = 0.1  # of gravity, by which the ground slows down that takes a landed base back
 _LANDED = 2.0  # depths of the rim by which a closed base is deeper than it was kept where it has landed
 _FAR = 1e3  # of the height: ODE ends the process where something is too far away
+_SIDE = 1e-3  # cosine of the tilt up to which the cylinder lies on its side
 _SPIN = 1.0  # [rad] about the axis of the cylinder
 
 _FACTS = EngineFacts(
@@ -170,11 +171,12 @@ class _DartStepper:
                     i, j = part * (x * spin_x - y * spin_y), part * (y * spin_x + x * spin_y)
                     axis_x, axis_y = 2.0 * (i * k + w * j), 2.0 * (j * k - w * i)
             else:
-                if not self._open:
-                    self._use_for(opening=True)
+                axis_z = 1.0 - 2.0 * (i * i + j * j)
+                # on its side it is held by two points
+                if self._open != (axis_z > _SIDE):
+                    self._use_for(opening=axis_z > _SIDE)
                 # friction takes the rim to the velocity of the ground, here beyond zero by the overshoot
                 rate_x, rate_y, rate_z, slip_x, slip_y, _ = rates().tolist()
-                axis_z = 1.0 - 2.0 * (i * i + j * j)
                 out, down = b * axis_z / lean - h, h * axis_z + b * lean
                 slip_x -= rate_y * down + rate_z * out * axis_y
                 slip_y += rate_x * down + rate_z * out * axis_x

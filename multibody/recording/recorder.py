@@ -55,6 +55,7 @@ class Recorder:
         body, start = scene.body, scene.start
         self._scene, self._samples = scene, samples
         self.asked = float(samples[-1])  # end of the run that was asked for, before it was extended [s]
+        self.off_grid = False  # whether it is no sample of a run that is extended
         self._watch = UpliftWatch(body, scene.gravity, scene.time_step) if start.standing else None
         self._start: Start | None = start
         self._last: Steps | None = None  # the pose whose next velocity is still to come
@@ -62,7 +63,8 @@ class Recorder:
         self._angle, self._twist = rolling_angle, 0.0
         self._leans = not start.standing  # at the last pose analysed
         self._tail: Array = np.empty((3, 0))  # time, tilt and rolling angle of the last steps
-        self._row: Array = np.empty(len(COLUMNS) + 1)
+        # of the last step analysed: time and the fields of `COLUMNS`
+        self.last_row: Array = np.empty(len(COLUMNS) + 1)
         self._rows: list[Array] = []
         self._taken = 0
         self.forces = ForceSamples(samples, scene.time_step)
@@ -106,14 +108,9 @@ class Recorder:
         """Time of the last sample asked for [s]."""
         return float(self._samples[-1])
 
-    @property
-    def last_row(self) -> Array:
-        """The last step analysed: time and the fields of `COLUMNS`."""
-        return self._row
-
     def last_value(self, name: str) -> float:
         """Field of `COLUMNS` at the last step analysed."""
-        return float(self._row[1 + COLUMNS.index(name)])
+        return float(self.last_row[1 + COLUMNS.index(name)])
 
     @property
     def penetration(self) -> float:
@@ -186,13 +183,14 @@ class Recorder:
 
     def extend(self, samples: Array) -> None:
         """Go on to further samples, at times (n,) after the last one [s]."""
+        self.off_grid = samples[0] - self.end < (samples[1] - samples[0]) * (1.0 - 1e-6)
         self._samples = np.append(self._samples, samples)
         self.forces.extend(samples)
 
     def warn(self, text: str) -> None:
         """Keep a warning of the engine, which ends the run at the last step analysed."""
         if not self.ended:
-            self.ended, self.failure, self.end_time = "failed", "warning", float(self._row[0])
+            self.ended, self.failure, self.end_time = "failed", "warning", float(self.last_row[0])
         if self.ended == "failed":
             self.warnings.append(text)
 
@@ -275,7 +273,7 @@ class Recorder:
         needed = np.unique(np.concatenate([before, after, [last]]))
         known = rows(needed[needed >= 0])
         if needed[0] < 0:
-            known = np.vstack([self._row, known])
+            known = np.vstack([self.last_row, known])
         if len(due):
             left, right = (known[np.searchsorted(needed, at)] for at in (before, after))
             span = right[:, 0] - left[:, 0]
@@ -284,7 +282,7 @@ class Recorder:
             taken[:, 0] = due
             self._rows.append(taken)
             self._taken += len(due)
-        self._row = known[-1]
+        self.last_row = known[-1]
 
 
 def _after(last: Array, rows: Array) -> Array:

@@ -11,7 +11,7 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare.check import Bench, bench, run_checks
 from rockwobble.compare.check.engines import traces
-from rockwobble.compare.check.finding import NOT_RUN
+from rockwobble.compare.check.finding import NOT_RUN, PASSED
 from rockwobble.compare.runs import choice as runs
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.storage.fingerprint import fingerprint
@@ -46,14 +46,16 @@ def test_traces_of_an_engine_hold(monkeypatch: pytest.MonkeyPatch, engine: str) 
     monkeypatch.setattr(bench, "ENGINES", (engine,))
     monkeypatch.setattr(traces, "simulate_run", once)
     findings = list(traces.check(made()))
-    assert len(findings) == 33
+    assert len(findings) == 34
     assert not [f"{f.name}: {f.value}" for f in findings if f.failed]
 
 
 def test_an_engine_that_is_not_installed_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(bench, "installed_engines", lambda: ())
     found = list(run_checks(made(), ["traces"]))
-    assert [(f.outcome, f.part) for f in found] == [(NOT_RUN, name) for name in standard_engines()]
+    *missing, geometry = found
+    assert [(f.outcome, f.part) for f in missing] == [(NOT_RUN, name) for name in standard_engines()]
+    assert (geometry.outcome, geometry.part) == (PASSED, "geometry of a ring")
     assert found[1].note == "pybullet is not installed here"
 
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rockwobble import multibody
+from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody import stepping
 from rockwobble.multibody.recording.passes import TurningPoint
@@ -47,6 +47,18 @@ def test_a_fall_that_the_record_cuts_off_overturns(engine: str, time_step: float
     fastest = float(np.abs(short.tilt_rate[within]).max())
     assert short.contact_resolution == pytest.approx(short.time_step * fastest, rel=0.05)
     assert np.abs(short.tilt_rate).max() > 2.0 * fastest
+
+
+def test_a_fall_past_the_end_has_the_samples_of_the_reduced_model(engine: str) -> None:
+    # pushed over; 0.8 s is no multiple of 0.06 s, and no end of this run
+    case = Case(PIER, GroundMotion(np.full((2, 2), 2.0 * UPLIFT), 0.8), duration=0.8)
+    run = multibody.simulate(case, engine=engine, support="flat", sample_step=0.06)
+    model = reduced.simulate(case, support="flat", sample_step=0.06)
+    assert run.outcome == model.outcome == "overturned"
+    assert len(run.contact_force) == len(run.time)
+    held = int((model.tilt < 1.0).sum())  # from 1.3 rad on contact is open
+    np.testing.assert_allclose(run.time[:held], model.time[:held], rtol=1e-12)
+    np.testing.assert_allclose(run.tilt[:held], model.tilt[:held], atol=3e-4)
 
 
 @pytest.mark.parametrize("duration", [1.3, 1.6, 2.4, 5.69])
