@@ -198,7 +198,6 @@ def test_progress_stays_at_one_while_it_is_carried_on() -> None:
 def test_a_fall_after_the_end_is_sampled_as_the_rest(engine: str, time_step: float | None) -> None:
     case = Case(PIER, one_sine(4.0), duration=1.2034)
     run = multibody.simulate(case, sample_step=0.02, engine=engine, time_step=time_step)
-    grid = 0.02 * np.arange(61)
-    np.testing.assert_allclose(run.time[:61], grid, rtol=1e-12)
-    assert run.time[61] == 1.2034
-    np.testing.assert_allclose(run.time[62:-1], 0.02 * np.arange(61, len(run.time) - 2), rtol=1e-12)
+    # the end that was asked for is none of this run, as in the reduced models
+    assert run.time[-1] > 1.3
+    np.testing.assert_allclose(run.time[:-1], 0.02 * np.arange(len(run.time) - 1), rtol=1e-12)
