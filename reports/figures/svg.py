@@ -140,7 +140,8 @@ def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
         there, back = (lambda y: np.asarray(y) * factor), (lambda y: np.asarray(y) / factor)
         axes.secondary_yaxis("right", functions=(there, back)).set_ylabel(second.title)
     if picture.legend == "panels" and panel.entries():
-        axes.legend(*_handles([axes]), loc="best", fontsize=_SMALL)
+        # where it does cover a marker, the marker is on top
+        axes.legend(*_handles([axes]), loc="best", fontsize=_SMALL).set_zorder(1.5)
 
 
 def _scale(axes: Axes, panel: Panel) -> None:
