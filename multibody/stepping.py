@@ -89,6 +89,7 @@ def _carried_on(
     end, longest = recorder.end, LONGEST_FALL * growth_time(scene.body, scene.gravity)
     ahead = copy.deepcopy(recorder)
     first = math.floor(end / sample_step + 1e-9) + 1
+    ahead.off_grid = end - (first - 1) * sample_step > 1e-6 * sample_step
     ahead.extend(sample_step * np.arange(first, math.ceil((end + longest) / sample_step) + 1, dtype=float))
     start = TurningPoint(end, recorder.last_value("tilt"), 0.0, recorder.last_value("tilt_rate") < 0.0)
     last = done + math.ceil(longest / scene.time_step)

@@ -183,7 +183,6 @@ class Recorder:
 
     def extend(self, samples: Array) -> None:
         """Go on to further samples, at times (n,) after the last one [s]."""
-        self.off_grid = samples[0] - self.end < (samples[1] - samples[0]) * (1.0 - 1e-6)
         self._samples = np.append(self._samples, samples)
         self.forces.extend(samples)
 

@@ -61,6 +61,14 @@ def test_a_fall_past_the_end_has_the_samples_of_the_reduced_model(engine: str) -
     np.testing.assert_allclose(run.tilt[:held], model.tilt[:held], atol=3e-4)
 
 
+@pytest.mark.parametrize("sample_step", [0.9, 100.0])
+def test_a_fall_between_two_samples_is_its_start_and_its_end(sample_step: float) -> None:
+    case = Case(PIER, GroundMotion(np.full((2, 2), 2.0 * UPLIFT), 0.8), duration=0.8)
+    run, model = (each.simulate(case, sample_step=sample_step) for each in (multibody, reduced))
+    np.testing.assert_allclose(run.time[:-1], model.time[:-1], rtol=1e-12)
+    assert (run.outcome, len(run.contact_force)) == ("overturned", len(run.time))
+
+
 @pytest.mark.parametrize("duration", [1.3, 1.6, 2.4, 5.69])
 def test_wherever_still_ground_is_cut_the_fall_ends_alike(duration: float) -> None:
     # at 1.3 s the base still comes down on the side from which it will rise and fall
