@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import os
 
+import pytest
+
 
 def pytest_configure() -> None:
     """Give every run of the tests the same terminal, whatever the shell or the CI service sets."""
@@ -9,3 +11,15 @@ def pytest_configure() -> None:
     for name in ("FORCE_COLOR", "PY_COLORS", "CLICOLOR_FORCE", "GITHUB_ACTIONS"):
         os.environ.pop(name, None)
     os.environ["COLUMNS"] = "100"
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Share the models out to the workers to compile, so that on a fresh installation no two do the same."""
+    given = getattr(session.config, "workerinput", None)
+    if given is None:
+        return
+    from rockwobble.reduced import MODELS
+    from rockwobble.reduced.simulation import make_ready
+
+    for model in list(MODELS)[int(given["workerid"].removeprefix("gw")) :: given["workercount"]]:
+        make_ready(model)
