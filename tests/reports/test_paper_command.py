@@ -12,7 +12,7 @@ import pytest
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.registry import redrawn
-from rockwobble.reports.paper import earthquake
+from rockwobble.reports.paper import earthquake, overturning
 
 SVG_LIMIT = 400_000  # bytes, of each committed picture
 
@@ -22,9 +22,12 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         # three neighbours tell as much of the command as forty do
         patch.setattr(earthquake, "_NEIGHBOURS", (0.95, 1.0, 1.05))
+        # and coarse steps of the search of figure 6 as much as fine ones
+        asked = overturning.problem
+        patch.setattr(overturning, "problem", lambda grid: asked(grid) | {"search_step": 0.2})
         folder = tmp_path_factory.mktemp("paper")
         with pytest.raises(SystemExit) as ended:
-            main(["figures", "--grid", "8", "--out", str(folder)])
+            main(["figures", "--grid", "6", "--out", str(folder)])
     assert ended.value.code == 0
     return folder
 
