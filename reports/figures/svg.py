@@ -28,6 +28,9 @@ _GRID = "#dddddd"
 # no text is smaller than 8 pt at the width at which it is shown
 _STYLE: Any = {
     "svg.hashsalt": "rockwobble",
+    # what is placed stays where it is, whatever the user has set
+    "figure.autolayout": False,
+    "figure.constrained_layout.use": False,
     "font.size": 9.5,
     "axes.titlesize": 10,
     "axes.titlelocation": "left",
@@ -101,7 +104,7 @@ def _settle(drawn: Figure) -> None:
     assert layout is not None
     for _ in range(2):  # what is placed decides how much room its labels take
         layout.execute(drawn)
-    drawn.set_layout_engine("none")
+    drawn.set_layout_engine(None)  # with one, even one that places nothing, saving draws everything twice
     for axes in drawn.axes:
         x, y, width, height = (round(each, 3) for each in axes.get_position(original=True).bounds)
         axes.set_position((x, y, width, height))

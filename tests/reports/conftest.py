@@ -1,4 +1,4 @@
-"""A comparison without engines: reduced models in an engine's clothes."""
+"""Comparisons without engines, as reduced models in an engine's clothes, and runs without processes."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare import Comparison, compare
 from rockwobble.compare.comparison import driver
+from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
 
@@ -60,3 +61,14 @@ def comparison(no_engines: Callable[..., None], monkeypatch: pytest.MonkeyPatch)
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940(), name="El Centro 1940")
     runs = [Run(engine, support) for support in ("recess", "flat") for engine in ("mujoco", "pybullet")]
     return compare(case, runs=runs)
+
+
+@pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run where the model is loaded already, and not in a process that must load it for each command."""
+    run_tasks = execution.run_tasks
+
+    def here(*given: Any, **options: Any) -> list[Any]:
+        return run_tasks(*given, **options | {"workers": 1})
+
+    monkeypatch.setattr(execution, "run_tasks", here)

@@ -21,6 +21,7 @@ from rockwobble.models import Trace
 from rockwobble.models.traces.lost_trace import lost_trace
 from rockwobble.multibody.engines.registry import standard_engines
 from rockwobble.reports.cli.main import main
+from rockwobble.reports.pages.comparison import report
 
 GOOD = "time [s], acceleration [g]\n0.00, 0.0\n0.01, 0.1\n0.02, 0.0\n"
 
@@ -43,6 +44,12 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "empty.csv").write_text("")
     (tmp_path / "taken").write_text("")
     return tmp_path
+
+
+@pytest.fixture
+def no_report(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Draw no report, for tests of what is printed."""
+    monkeypatch.setattr(report, "comparison_files", lambda *_: {})
 
 
 def record(x: str, y: str = "good.csv") -> list[str]:
@@ -156,7 +163,9 @@ def test_compare_prints_and_writes(folder, no_engines, capsys):
     assert (folder / "results" / "mine.txt").read_text() == "mine"
 
 
-def test_an_engine_that_is_not_installed_is_left_out_with_a_note(folder, no_engines, monkeypatch, capsys):
+def test_an_engine_that_is_not_installed_is_left_out_with_a_note(
+    folder, no_engines, no_report, monkeypatch, capsys
+):
     no_engines()
     monkeypatch.setattr(runs, "installed_engines", lambda: ("mujoco",))
     first, second = standard_engines()
@@ -178,7 +187,7 @@ def test_naming_an_engine_that_is_not_installed_is_bad_input(folder, monkeypatch
     assert list(folder.glob("rockwobble-*")) == []
 
 
-def test_free_response_from_the_command_line(folder, no_engines, capsys):
+def test_free_response_from_the_command_line(folder, no_engines, no_report, capsys):
     no_engines()
     arguments = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2"]
     assert call("compare", "--support", "recess", *arguments) == 0
@@ -248,7 +257,7 @@ def result(*arguments: str) -> dict[str, Any]:
     return made["about"] | {"inputs": made["inputs"]}
 
 
-def test_each_model_is_chosen_by_its_options(folder):
+def test_each_model_is_chosen_by_its_options(folder, in_this_process):
     release = ["--release-tilt-deg", "5", "--duration", "2"]
     spin = [*release, "--rolling-rate", "0.5"]
     recess, flat = result(*spin), result(*spin, "--support", "flat")
@@ -260,7 +269,7 @@ def test_each_model_is_chosen_by_its_options(folder):
     assert settings == {"plane": 0.3, "restitution": 0.9, "rest_tilt": 1e-6}
 
 
-def test_a_cylinder_by_its_dimensions_is_the_same_cylinder(folder):
+def test_a_cylinder_by_its_dimensions_is_the_same_cylinder(folder, in_this_process):
     # R = 5 m and tan alpha = 3/4, on the moon and on ice
     same = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "1"]
     same += ["--gravity", "1.62", "--friction", "0.1"]
@@ -361,39 +370,23 @@ def test_a_run_that_takes_its_process_with_it_is_one_line_and_exit_code_1(folder
     assert not (folder / "rockwobble-simulate").exists()
 
 
-RUN = [sys.executable, "-m", "rockwobble", "simulate", "--release-tilt-deg", "5", "--duration", "1"]
-
-
-def run(folder: Path, encoding: str, **options: Any) -> subprocess.CompletedProcess[bytes]:
-    environment = os.environ | {"PYTHONIOENCODING": encoding}
-    return subprocess.run(
-        [*RUN, "--out", str(folder / "out")], stderr=subprocess.PIPE, env=environment, check=False, **options
-    )
-
-
 def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path):
-    poor = run(tmp_path, "ascii", stdout=subprocess.PIPE)
-    assert poor.returncode == 0
-    assert b"peak tilt" in poor.stdout
-    assert b"Traceback" not in poor.stderr
-    with Path("/dev/full").open("wb") as full:
-        lost = run(tmp_path / "full", "utf-8", stdout=full)
-    assert lost.returncode == 0
-    assert b"standard output cannot be written: No space left on device" in lost.stderr
-    reader, writer = os.pipe()
-    os.close(reader)
-    closed = run(tmp_path / "closed", "utf-8", stdout=writer)
-    os.close(writer)
-    assert (closed.returncode, b"Traceback" in closed.stderr) == (0, False)
-    shut = subprocess.run(  # with no standard file at all, as under some schedulers
-        ["sh", "-c", '"$@" <&- >&- 2>&-', "sh", *RUN, "--out", str(tmp_path / "shut" / "out")], check=False
-    )
-    assert shut.returncode == 0
-    for folder in (tmp_path, tmp_path / "full", tmp_path / "closed", tmp_path / "shut"):
-        assert Trace.load(folder / "out" / "run.parquet").outcome == "completed"
+    script = Path(__file__).with_name("poor_outputs.py")
+    # with no standard file at all
+    shut = ["sh", "-c", '"$@" <&- >&- 2>&-', "sh", sys.executable, str(script)]
+    subprocess.run(shut, cwd=tmp_path, check=True)
+    codes = json.loads((tmp_path / "codes.json").read_text())
+    assert codes == dict.fromkeys(("shut", "poor", "full", "closed"), 0)
+    said = {name: (tmp_path / f"{name}.err").read_bytes() for name in ("poor", "full", "closed")}
+    assert b"peak tilt" in (tmp_path / "poor.out").read_bytes()
+    assert b"standard output cannot be written: No space left on device" in said["full"]
+    for name, errors in said.items():
+        assert b"Traceback" not in errors, name
+    for name in codes:
+        assert Trace.load(tmp_path / name / "run.parquet").outcome == "completed"
 
 
-def test_a_run_that_cannot_take_its_first_step_is_one_line_and_exit_code_1(folder, capsys):
+def test_a_run_that_cannot_take_its_first_step_is_one_line_and_exit_code_1(folder, in_this_process, capsys):
     assert call("simulate", "--release-tilt-deg", "3", "--rolling-rate", "1e40") == 1
     *_, said = capsys.readouterr().err.splitlines()
     assert said.startswith("rockwobble: recess model left no result: ")

@@ -19,8 +19,8 @@ from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.figures.picture import Band, Line
-from rockwobble.reports.figures.svg import svg
 from rockwobble.reports.pages.fragility import fragility_page
+from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.registry import redrawn
 
 LEVELS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
@@ -150,7 +150,7 @@ def test_the_words_are_those_of_the_tables(found):
 
 
 def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
-    ratios, pier, tower = pictures(found)
+    ratios, pier, _ = pictures(found)
     assert [panel.title for panel in ratios.panels] == ["pier", "tower", "Mean of all cylinders"]
     assert [panel.title for panel in pier.panels] == [
         "Planar analysis",
@@ -171,7 +171,6 @@ def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
     np.testing.assert_allclose(marks.x, LEVELS)
     np.testing.assert_allclose(marks.y, counts["k"] / MOTIONS)
     assert marks.notes[0] == f"recess model: {counts['k'].iloc[0]} of 15"
-    assert svg(tower) == svg(tower)
 
 
 @needs_chromium
@@ -200,7 +199,8 @@ def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
     )
 
 
-def test_a_cloud_by_another_measure(tmp_path, capsys):
+def test_a_cloud_by_another_measure(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(Page, "files", lambda _: {})  # of a page that is drawn the test above tells
     options = ["--synthetic", "8", "--cloud", "3,6", "--measure", "pgv", "--model", "worse-plane"]
     assert call("fragility", *options, "--resamples", "20", "--workers", "1", "--out", str(tmp_path)) == 0
     assert "as they are" in " ".join(capsys.readouterr().out.split())

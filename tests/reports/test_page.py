@@ -33,7 +33,7 @@ class Elements(HTMLParser):
             self.text.append(data)
 
 
-def test_page_is_whole_and_needs_nothing_else(comparison):
+def test_page_is_whole_needs_nothing_else_and_says_what_was_found(comparison):
     page = comparison_page(comparison, "rockwobble compare").html()
     assert len(page.encode()) < PAGE_LIMIT
     elements = Elements(page)
@@ -52,10 +52,7 @@ def test_page_is_whole_and_needs_nothing_else(comparison):
         *(f"residuals-0-{panel}" for panel in range(2)),
         "excitation-0-0",
     }
-
-
-def test_page_says_what_was_compared_and_found(comparison):
-    text = " ".join(" ".join(Elements(comparison_page(comparison, "rockwobble compare").html()).text).split())
+    text = " ".join(" ".join(elements.text).split())
     assert "b = 1.177 m, 2h = 11.77 m, alpha = 11.31 deg" in text
     assert "In an ideal recess, mujoco and pybullet follow the recess model" in text
     row = comparison.summary[
@@ -84,17 +81,15 @@ def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(cylinder, duration=1.0, name="still")
     no_engines()
-    still = compare(case, runs=[Run("mujoco", "recess")])
-    assert "both stay at rest" in comparison_page(still).html()
-    assert comparison_files(still)["figure.svg"]
+    still = comparison_files(compare(case, runs=[Run("mujoco", "recess")]))
+    assert "both stay at rest" in still["report.html"].decode()
+    assert still["figure.svg"]
     gained = (Diagnostic(code="energy_gain", time=0.5),)
     no_engines(outcome="failed", facts=gained, peak_tilt=float("nan"))
-    failed = compare(case, runs=[Run("mujoco", "recess")])
-    assert (
-        "mujoco recess failed: the engine gained energy that nothing supplied at 0.5 s"
-        in comparison_page(failed).html()
-    )
-    assert comparison_files(failed)["figure.svg"]
+    failed = comparison_files(compare(case, runs=[Run("mujoco", "recess")]))
+    said = "mujoco recess failed: the engine gained energy that nothing supplied at 0.5 s"
+    assert said in failed["report.html"].decode()
+    assert failed["figure.svg"]
 
 
 def test_picture_is_small_and_reproducible(comparison):

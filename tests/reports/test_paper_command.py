@@ -11,8 +11,9 @@ import pytest
 
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.registry import redrawn
-from rockwobble.reports.paper import earthquake
+from rockwobble.reports.pages.page import Page
+from rockwobble.reports.pages.registry import stored_pages
+from rockwobble.reports.paper import earthquake, overturning
 
 SVG_LIMIT = 400_000  # bytes, of each committed picture
 
@@ -22,9 +23,12 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         # three neighbours tell as much of the command as forty do
         patch.setattr(earthquake, "_NEIGHBOURS", (0.95, 1.0, 1.05))
+        # and coarse steps of the search of figure 6 as much as fine ones
+        asked = overturning.problem
+        patch.setattr(overturning, "problem", lambda grid: asked(grid) | {"search_step": 0.2})
         folder = tmp_path_factory.mktemp("paper")
         with pytest.raises(SystemExit) as ended:
-            main(["figures", "--grid", "8", "--out", str(folder)])
+            main(["figures", "--grid", "6", "--out", str(folder)])
     assert ended.value.code == 0
     return folder
 
@@ -66,8 +70,11 @@ def test_numbers_on_the_page_are_those_of_the_tables(made):
 
 
 def test_the_report_is_drawn_again_from_what_is_kept(made):
-    again = redrawn("paper", made)
-    assert {name: (made / name).read_bytes() for name in again} == again
+    again = stored_pages("paper", made)
+    assert isinstance(again, Page)
+    # the page holds what the pictures beside the document show
+    assert again.html() == (made / "paper.html").read_text()
+    assert again.markdown() == (made / "paper.md").read_text()
 
 
 def test_the_page_says_how_it_was_made(made):

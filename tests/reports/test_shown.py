@@ -16,7 +16,7 @@ RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_r
 def comparison() -> rw.Comparison:
     other = rw.Case(PIER, initial=RELEASE.initial, duration=1.0, gravity=9.0, name="lighter")
     suite = rw.Suite([RELEASE, other], [])
-    return rw.compare(suite, runs=[rw.Run(None, "flat")], reference=rw.Run(None, "recess"))
+    return rw.compare(suite, runs=[rw.Run(None, "flat")], reference=rw.Run(None, "recess"), workers=1)
 
 
 def test_trace_shows_itself():

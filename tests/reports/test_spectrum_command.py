@@ -22,6 +22,7 @@ from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat
 from rockwobble.reports.figures.spectrum import pictures
 from rockwobble.reports.figures.svg import svg
+from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.registry import redrawn
 from rockwobble.reports.pages.spectrum import spectrum_page
 
@@ -42,11 +43,12 @@ def call(*arguments: str) -> int:
 
 def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, capsys):
     (tmp_path / "kept.txt").write_text("mine")
-    assert call(*SMALL, "--tan-alpha", "0.2", "--out", str(tmp_path)) == 0
+    coarse = ["--search-step", "0.4"]
+    assert call(*SMALL, *coarse, "--tan-alpha", "0.2", "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "R = 20 m" in printed
     assert "Planar analysis is unconservative in" in printed
-    assert "in steps down to 0.015 where the tilt changes fast" in printed
+    assert "in steps down to 0.4 where the tilt changes fast" in printed
     written = PAGES | {f"{name}.parquet" for name in TABLES} | {"manifest.json"}
     assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt"}
     assert all(name in printed for name in written)
@@ -67,13 +69,15 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     assert f"numpy {np.__version__}" in page
 
 
-def test_any_record_will_do(tmp_path: Path):
+def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
+    monkeypatch.setattr(Page, "files", lambda _: {})  # of one that is drawn other tests tell
     time = np.arange(0.0, 3.0, 0.02)
     for name, phase in (("x.csv", 0.0), ("y.csv", 1.0)):
         rows = "\n".join(f"{t:.2f}, {0.3 * np.sin(5.0 * t + phase) * (t < 2.0):.6f}" for t in time)
         (tmp_path / name).write_text(f"time [s], acceleration [g]\n{rows}\n")
     records = ["--record-x", str(tmp_path / "x.csv"), "--record-y", str(tmp_path / "y.csv")]
     assert call(*SMALL, *records, "--out", str(tmp_path / "out")) == 0
+    assert "in steps down to 0.015 where the tilt" in " ".join(capsys.readouterr().out.split())
     cells = pd.read_parquet(tmp_path / "out" / "spectrum.parquet")
     assert cells["overturned"].any()
     assert not cells["peak_tilt"].isna().any()
@@ -108,9 +112,10 @@ def test_bad_input_is_one_line_and_writes_nothing(arguments, words, tmp_path, mo
 
 @pytest.fixture(scope="module")
 def spectrum() -> OverturningSpectrum:
+    whole = el_centro_1940()
     return overturning_spectrum(
         0.1,
-        el_centro_1940(),
+        GroundMotion(whole.acceleration[:1500], whole.time_step, whole.name),  # with the strongest shaking
         semidiagonals=np.linspace(0.5, 30.0, 12),
         intensities=np.linspace(1.0, 12.0, 12),
         search_step=0.2,
@@ -189,9 +194,7 @@ def test_the_check_tells_chance_from_error(spectrum):
 
 def test_the_picture_is_small_and_says_why_a_cell_has_no_tilt(spectrum):
     (picture,) = pictures(spectrum)
-    drawn = svg(picture)
-    assert len(drawn) < SVG_LIMIT
-    assert drawn == svg(picture)
+    assert len(svg(picture)) < SVG_LIMIT
     space = next(layer for layer in picture.panels[0].layers if isinstance(layer, Heat))
     fell, still, failed = (gap.cells for gap in space.gaps)
     assert np.array_equal(fell.T, spectrum.overturned(SPATIAL))
