@@ -6,12 +6,17 @@ import os
 import signal
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import numpy as np
-import pandas as pd
+if TYPE_CHECKING:
+    import pandas as pd
 
 
 def multiples(task: int) -> pd.DataFrame:
+    # here, because each process of a test would import them at its start
+    import numpy as np
+    import pandas as pd
+
     return pd.DataFrame({"multiple": np.arange(1000.0) * task})
 
 

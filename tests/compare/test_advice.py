@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
+from collections.abc import Iterator
 
 import numpy as np
 import pandas as pd
@@ -12,6 +13,7 @@ from showing import shows_itself
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.tilt import overturned
+from rockwobble.compare.studies.advice import drive
 from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.advice.drive import advise, vertical_effect
 from rockwobble.compare.studies.advice.grades import (
@@ -42,8 +44,21 @@ def case(scale: float = 1.0, **fields) -> Case:
     return Case(PIER, el_centro_1940().scaled(scale), name="El Centro", **fields)
 
 
+@pytest.fixture(scope="module", autouse=True)
+def few_records() -> Iterator[None]:
+    """Four other records in each advice: all 22 take most of its time, and are counted in their own test."""
+
+    def few(case: Case) -> tuple[dict[str, list[Case]], str]:
+        records, source = other_records(case)
+        return {name: cases[:4] for name, cases in records.items()}, source
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(drive, "other_records", few)
+        yield
+
+
 @pytest.fixture(scope="module")
-def advice() -> Advice:
+def advice(few_records: None) -> Advice:
     return advise(Case(PIER, SHORT), count=20)
 
 

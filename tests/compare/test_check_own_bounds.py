@@ -25,7 +25,7 @@ from rockwobble.models import Case, Cylinder, Run, Suite, Trace, el_centro_1940
 from rockwobble.multibody.engines.registry import standard_engines
 
 KEPT: dict[str, Trace] = {}
-SHORT = Case(PIER, el_centro_1940().scaled(2.0), duration=4.0, name="El Centro doubled")
+SHORT = Case(PIER, el_centro_1940().scaled(2.0), duration=3.0, name="El Centro doubled")
 BOTH = pytest.mark.skipif("pybullet" not in installed_engines(), reason="pybullet has no wheel here")
 
 
@@ -49,7 +49,7 @@ def test_engines_that_follow_the_models_pass() -> None:
 def test_a_base_that_every_contact_keeps_closed_is_no_error_of_the_model() -> None:
     # the model chatters at 1e-7 rad for a fifth of a second, and the engines stand still: by steps alone,
     # which both stand still, the bound was 0.023 for 0.026
-    case = dataclasses.replace(case_of(11, records()), duration=7.5)
+    case = dataclasses.replace(case_of(11, records()), duration=5.5)
     as_it_is, met = found(case, Run("pybullet", "recess"))
     assert (as_it_is.outcome, met.outcome) == ("passed", "passed")
     assert as_it_is.value < 0.5 * as_it_is.bound
@@ -132,7 +132,7 @@ def test_of_a_release_the_first_seconds_are_taken_and_of_what_stands_nothing() -
 
 @pytest.mark.parametrize("spin", [0.5, 0.05, 0.0])
 def test_a_release_that_passes_upright_gives_no_alarm_and_finds_a_wrong_model(spin: float) -> None:
-    case = dataclasses.replace(released(0.5, spin, 4.0), name=f"release, {spin:g} rad/s")
+    case = dataclasses.replace(released(0.5, spin, 2.5), name=f"release, {spin:g} rad/s")
     runs = [Run("mujoco", support) for support in ("recess", "flat")]
     assert not [f for f in found(case, *runs) if f.failed]
     wrong = [f for f in found(case, *runs, models=LargerModels) if f.failed]

@@ -93,7 +93,7 @@ def test_a_wrong_vertical_component_is_found(monkeypatch: pytest.MonkeyPatch, si
         motion = case.motion
         if motion is not None and motion.has_vertical:
             motion = GroundMotion(motion.acceleration * [1.0, 1.0, sign], motion.time_step)
-        return simulate_run(dataclasses.replace(case, motion=motion), run, **options)
+        return once(dataclasses.replace(case, motion=motion), run, **options)
 
     monkeypatch.setattr(traces, "simulate_run", wrong)
     parts = failed(monkeypatch)

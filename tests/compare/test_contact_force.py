@@ -40,8 +40,8 @@ def _agree(run: multibody.Trajectory, model: Trace, alpha: float, start: float) 
 def test_force_of_a_free_response(engine: str, support: str, tan_alpha: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     initial = InitialState(cylinder.alpha / 2, rolling_rate=0.5)
-    run = multibody.simulate(Case(cylinder, initial=initial, duration=4.0), engine=engine, support=support)
-    model = reduced.simulate(Case(cylinder, initial=initial, duration=4.0), **reduced.MODELS[MODELS[support]])
+    run = multibody.simulate(Case(cylinder, initial=initial, duration=2.5), engine=engine, support=support)
+    model = reduced.simulate(Case(cylinder, initial=initial, duration=2.5), **reduced.MODELS[MODELS[support]])
     _agree(run, model, cylinder.alpha, 0.0)
 
 

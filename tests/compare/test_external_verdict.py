@@ -89,13 +89,14 @@ KINDS = [("mass", "recess")] + [(k, m) for k in ("angles", "both", "tilt") for m
 @pytest.mark.parametrize(("kind", "model"), KINDS)
 @pytest.mark.parametrize("name", CASES)
 def test_a_right_trajectory_follows_its_model_and_is_accused_of_nothing(save, name, kind, model):
-    other = {"recess": "flat", "flat": "recess"}[model]
-    for sample_step in (0.01, 0.02):
-        for noise in (0.0, NOISE):
-            path = save(samples(name, kind, model=model, sample_step=sample_step, noise=noise))
-            assert verdict(name, path, model).differs_in == (), (sample_step, noise)
-            # the other model is another cylinder: it may differ, but by no mistake of the file
-            assert verdict(name, path, other).mistakes == (), (sample_step, noise)
+    case, other = CASES[name], {"recess": "flat", "flat": "recess"}[model]
+    # the easiest to judge and the hardest: few samples, with noise
+    for sample_step, noise in ((0.01, 0.0), (0.02, NOISE)):
+        table = samples(name, kind, model=model, sample_step=sample_step, noise=noise)
+        trajectory = read_trajectory(save(table), case)
+        assert judge(trajectory, response(name, model), case).differs_in == (), (sample_step, noise)
+        # the other model is another cylinder: it may differ, but by no mistake of the file
+        assert judge(trajectory, response(name, other), case).mistakes == (), (sample_step, noise)
 
 
 def turned(table, angle=0.0, *, mirrored=False, of=("azimuth [deg]", "x")):

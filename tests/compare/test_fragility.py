@@ -20,7 +20,7 @@ from rockwobble.models import Case, Cylinder, Run
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
 LEVELS = (1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.5, 8.0)
 COUNT = len(LEVELS)
-MOTIONS = synthetic_motions(12, peak=1.0, seed=4)
+MOTIONS = synthetic_motions(12, peak=1.0, seed=4, duration=10.0)
 RECORDS = Path(__file__).parents[2] / "models" / "records"
 NAN = math.nan
 

@@ -69,7 +69,7 @@ def test_processes_are_kept_and_are_not_this_one():
 
 def test_bad_input_is_raised_here_with_where_it_came_from():
     with pytest.raises(ValueError, match="at least 1") as caught:
-        run_tasks(refuse, [1, 2], workers=2)
+        run_tasks(refuse, [1], workers=2)
     assert "refuse" in "".join(caught.value.__notes__)
 
 
@@ -80,12 +80,9 @@ def test_a_process_that_dies_loses_only_its_own_task():
 
 
 def test_a_task_whose_process_was_ended_from_outside_begins_again(tmp_path):
-    marks = [str(tmp_path / name) for name in ("a", "b")]
-    assert run_tasks(die_once, marks, workers=2, tries=2) == marks
-    assert [type(each) for each in run_tasks(die_once, [f"{mark}2" for mark in marks], workers=2)] == [
-        Lost,
-        Lost,
-    ]
+    again, once = (str(tmp_path / name) for name in ("a", "b"))
+    assert run_tasks(die_once, [again], workers=2, tries=2) == [again]
+    assert [type(each) for each in run_tasks(die_once, [once], workers=2)] == [Lost]
 
 
 def test_ctrl_c_ends_the_processes_at_once_and_leaves_nothing(monkeypatch, tmp_path):
@@ -136,7 +133,7 @@ def test_a_damaged_file_is_named_and_its_task_runs_again(tmp_path):
         run_tasks(multiples, [1, 2], workers=1, cache=cache)
     (path,) = (tmp_path / CACHE / "study").glob(f"{2:032d}-*.parquet")
     whole = path.read_bytes()
-    for place in range(0, len(whole), 7):  # data, header and footer
+    for place in range(0, len(whole), len(whole) // 50):  # data, header and footer
         content = bytearray(whole)
         content[place] ^= 1  # a single bit
         path.write_bytes(content)
@@ -155,8 +152,8 @@ def test_a_single_task_has_a_process_of_its_own_where_it_is_asked_for():
 
 def test_a_lost_task_is_not_kept(tmp_path):
     with table_cache(tmp_path) as cache:
-        found = run_tasks(killed, [1, 2], workers=2, cache=cache)
-        assert [type(each) for each in found] == [Lost, Lost]
+        found = run_tasks(killed, [1], workers=2, cache=cache)
+        assert [type(each) for each in found] == [Lost]
         assert cache.find(1) is None
 
 

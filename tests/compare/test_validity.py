@@ -3,25 +3,28 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 from showing import shows_itself
-from tiny_validity import TINY, tiny_tables, tiny_validity
+from tiny_validity import TINY, kept_engine_runs, tiny_tables, tiny_validity
 
+from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.validity.extent import FULL, LARGEST_PEAK, QUICK
 from rockwobble.compare.studies.validity.limits import LIMITS, limits_of
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.limits.engine import damping
 from rockwobble.compare.studies.validity.limits.numbers import first_failing, reached, up_to
+from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case
 from rockwobble.compare.studies.validity.parts import PARTS, part_named
 from rockwobble.compare.studies.validity.records import HALVED, RECESS
 from rockwobble.compare.studies.validity.study import measure_all
-from rockwobble.models import Cylinder
+from rockwobble.models import Cylinder, Run
 from rockwobble.reduced import body, problem
 from rockwobble.reduced.body import Body
 from rockwobble.reduced.exact import _checks
@@ -37,9 +40,9 @@ def tables(tmp_path_factory: pytest.TempPathFactory) -> Tables:
     return tiny_tables(tmp_path_factory.getbasetemp())
 
 
-@pytest.fixture(scope="module")
-def heavier(tables: Tables, tmp_path_factory: pytest.TempPathFactory) -> Tables:
-    """The tables where the reduced models, and nothing else, have another transverse inertia."""
+@contextmanager
+def heavier_models() -> Iterator[None]:
+    """The reduced models, and nothing else, have another transverse inertia."""
 
     def heavier_body(cylinder: Cylinder, gravity: float) -> Body:
         true = body.body_of(cylinder, gravity)
@@ -51,6 +54,13 @@ def heavier(tables: Tables, tmp_path_factory: pytest.TempPathFactory) -> Tables:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(problem, "body_of", heavier_body)
         patch.setattr(_checks, "body_of", heavier_body)
+        yield
+
+
+@pytest.fixture(scope="module")
+def heavier(tables: Tables, tmp_path_factory: pytest.TempPathFactory) -> Tables:
+    """The tables of these models; an engine run of the same problem is the same, as a test shows on one."""
+    with heavier_models(), kept_engine_runs(tmp_path_factory.getbasetemp()):
         return measure_all(TINY, tmp_path_factory.mktemp("heavier"), workers=1)
 
 
@@ -77,6 +87,11 @@ def test_every_limit_rests_on_the_reduced_model_and_the_engine_does_not(
     engine = ~ours["method"].isin((RECESS, "flat-ground model", "perturbed copy"))
     np.testing.assert_array_equal(ours[engine]["peak"], theirs[engine]["peak"])
     assert (ours[~engine]["peak"].to_numpy() != theirs[~engine]["peak"].to_numpy()).all()
+    case, run = shaken_case(EL_CENTRO, 0.2, 6.0, 2.0, duration=3.0), Run("mujoco", "recess", 1e-3)
+    with heavier_models():
+        again = simulate_run(case, run)
+    np.testing.assert_array_equal(again.tilt, simulate_run(case, run).tilt)
+    assert again.peak_tilt > 0.0
 
 
 def test_no_record_is_stronger_than_earthquakes_are() -> None:
@@ -165,8 +180,7 @@ def test_soft_contact_is_told_by_its_damping_and_failures_are_counted(tables: Ta
     assert (numbers["held_up_to"], numbers["left_from"], numbers["failed"]) == (0.002, 0.01, 1.0)
 
 
-def test_an_ended_run_goes_on_where_it_was_and_finds_the_same(tmp_path: Path) -> None:
-    whole = measure_all(TINY, tmp_path / "whole", parts=FAST, workers=1)
+def test_an_ended_run_goes_on_where_it_was_and_finds_the_same(tables: Tables, tmp_path: Path) -> None:
 
     def stop(event: Progress) -> None:
         if event.state == "finished" and event.done == 3:
@@ -180,8 +194,9 @@ def test_an_ended_run_goes_on_where_it_was_and_finds_the_same(tmp_path: Path) ->
     told.clear()
     again = measure_all(TINY, tmp_path / "ended", parts=FAST, workers=1, progress=told.append)
     assert not told  # nothing ran
-    for name, table in whole.items():
-        assert table.to_csv() == found[name].to_csv() == again[name].to_csv()
+    for part in FAST:
+        csv = tables[part.name].to_csv()
+        assert csv == found[part.name].to_csv() == again[part.name].to_csv()
 
 
 def test_measures_of_limits() -> None:

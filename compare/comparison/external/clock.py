@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from ...traces.motion import Motion
@@ -43,12 +45,13 @@ def _fitted(reference: Motion, motion: Motion, start: float, end: float, scale: 
         return 0.0
 
     def misfit(delay: float) -> float:
-        covered = (time >= motion.time[0] + delay) & (time <= motion.time[-1] + delay)
+        begin = int(time.searchsorted(motion.time[0] + delay))
+        end = int(time.searchsorted(motion.time[-1] + delay, side="right"))
         # most of the window must be there, or a few samples that agree by chance decide
-        if np.count_nonzero(covered) < 0.5 * len(time):
+        if end - begin < 0.5 * len(time):
             return _WORST
-        apart = np.interp(time[covered] - delay, motion.time, motion.tilt) - wanted[covered]
-        return float(np.sqrt(np.mean(apart**2)))
+        apart = np.interp(time[begin:end] - delay, motion.time, motion.tilt) - wanted[begin:end]
+        return math.sqrt(np.add.reduce(apart * apart) / len(apart))
 
     largest = _LARGEST * float(reference.time[-1])
     step = min(scale / _FINE, 0.5 * largest)

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -138,17 +139,25 @@ def pseudo_acceleration(motion: GroundMotion, period: float) -> Array:
     Exact for a ground acceleration that is linear between samples (N. C. Nigam and P. C. Jennings, Bull.
     Seismol. Soc. Am. 59, 909-922, 1969). Coarse motions are sampled finer first: no peak is missed.
     """
-    from scipy.signal import cont2discrete, lfilter
+    from scipy.signal import lfilter
 
     parts = max(1, math.ceil(_FINE * motion.time_step / period))
     count = len(motion.acceleration)
     places = np.arange((count - 1) * parts + 1) / parts
     a = np.column_stack([np.interp(places, np.arange(count), motion.acceleration[:, i]) for i in (0, 1)])
+    numerator, denominator = _oscillator(period, motion.time_step / parts)
+    return np.asarray(lfilter(numerator, denominator, -a, axis=0), dtype=np.float64)
+
+
+@cache  # it takes longer than the motion, and most motions of a study have one step
+def _oscillator(period: float, step: float) -> tuple[Array, Array]:
+    """Return the first-order hold of the transfer from -a to omega^2 x: numerator and denominator."""
+    from scipy.signal import cont2discrete
+
     omega = 2.0 * math.pi / period
-    # the first-order hold of the transfer from -a to omega^2 x
     transfer = np.array([omega**2]), np.array([1.0, 2.0 * DAMPING * omega, omega**2])
-    numerator, denominator, _ = cont2discrete(transfer, motion.time_step / parts, method="foh")
-    return np.asarray(lfilter(np.ravel(numerator), denominator, -a, axis=0), dtype=np.float64)
+    numerator, denominator, _ = cont2discrete(transfer, step, method="foh")
+    return np.ravel(numerator), denominator
 
 
 def _value(name: str, motion: GroundMotion, cylinder: Cylinder, gravity: float, period: float) -> float:
