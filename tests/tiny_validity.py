@@ -85,7 +85,7 @@ def kept_engine_runs(base: Path) -> Iterator[None]:
     def once(case: Case, **options: Any) -> Trace:
         kept = _shared(base) / fingerprint([case, options])
         if not kept.exists():
-            part = kept.with_suffix(f".{os.getpid()}")  # whoever reads beside this finds it whole or not at all
+            part = kept.with_suffix(f".{os.getpid()}")  # another process finds it whole or not at all
             part.write_bytes(pickle.dumps(make(case, **options)))
             part.replace(kept)
         trace: Trace = pickle.loads(kept.read_bytes())
