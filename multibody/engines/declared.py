@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from importlib.metadata import version
 from typing import Any, ClassVar, Protocol
 
@@ -45,9 +46,14 @@ class Declared:
 
     def version(self) -> str:
         """Version of the package."""
-        return version(self.package)
+        return _version(self.package)
 
     def settings(self, given: Settings, scene: Scene) -> dict[str, Any]:
         """Return every setting; see the type of the settings."""
         resolved = self.settings_type.resolve(given, scene.time_step * scene.unit_time)
         return {name: getattr(resolved, name) for name in self.settings_type.__dataclass_fields__}
+
+
+@cache  # to read it takes as long as a hundred steps
+def _version(package: str) -> str:
+    return version(package)

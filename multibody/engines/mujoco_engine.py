@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..facts import EngineFacts
-from ..kinematics import axis_of
 from ..protocol import Array, Scene, Settings, Stepper, Steps, Wall
 from ..scene.ring_geometry import check_start
 from ..scene.ring_settings import RingSettings, take_ring
@@ -114,7 +113,9 @@ class _MujocoStepper:
         self._model = compile_scene(scene, settings, standing=self._standing, ring=ring)
         self._data = mujoco.MjData(self._model)
         names = [self._model.geom(index).name for index in range(self._model.ngeom)]
-        self._prisms = [index for index, name in enumerate(names) if name.startswith("prism")]
+        self._prisms = np.array([index for index, name in enumerate(names) if name.startswith("prism")], int)
+        # of a prism from the first [rad]
+        self._turns = 0.5 * np.pi / max(len(self._prisms), 1) * np.arange(len(self._prisms))
         self._model.geom_sameframe[self._prisms] = mujoco.mjtSameFrame.mjSAMEFRAME_NONE  # they will turn
         self._middle = 0.5 * scene.body.height - scene.body.mass_centre_height  # of the outline [m]
         self._warned: list[str] = []
@@ -130,22 +131,27 @@ class _MujocoStepper:
 
     def advance(self, acceleration: Array) -> Steps:
         """Take one step for each row of `acceleration`."""
-        start = self._state[None]
-        blocks, walls = [], []
+        steps = len(acceleration)
+        states, sensors = np.empty((steps + 1, len(self._state))), np.empty((steps, self._model.nsensordata))
+        states[0] = self._state
+        control = np.zeros((steps, self._model.nu))
+        control[:, : len(self._columns)] = -acceleration[:, self._columns]
+        eccentricity = self._eccentricity(acceleration) if self._standing else None
         done = 0
-        while done < len(acceleration):
-            held = self._follow_load(acceleration[done : done + _STANDING_BLOCK]) if self._standing else 0
-            end = done + held if self._standing else len(acceleration)
-            block, sensors = self._roll(acceleration[done:end])
-            blocks.append(block)
-            walls.append(sensors)
+        while done < steps:
+            end = steps
+            if eccentricity is not None and self._standing:
+                block = slice(done, done + _STANDING_BLOCK)
+                held = self._follow_load(acceleration[block], eccentricity[block])
+                end = done + held if self._standing else steps
+            self._roll(control[done:end], states[done + 1 : end + 1], sensors[done:end])
             done = end
         # time, then position, quaternion, velocity in world axes, angular velocity in body axes
         # stored by component, which the recorder takes one by one
-        rows = np.ascontiguousarray(np.vstack([start, *blocks]).T).T
+        rows = np.ascontiguousarray(states.T).T
         quaternion = rows[:, 4:8]
         velocity, spin = rows[:, 8:11], to_world(quaternion, rows[:, 11:14])
-        touch = None if self._ring is None else _wall(np.vstack(walls))
+        touch = None if self._ring is None else _wall(sensors)
         if self._staggered:
             return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:], touch, self._unsolved())
         mean = 0.5 * (velocity[:-1] + velocity[1:]), 0.5 * (spin[:-1] + spin[1:])
@@ -173,49 +179,51 @@ class _MujocoStepper:
         used = int(self._data.solver_niter.max())
         return used >= self._settings.iterations and self._settings.tolerance > 0.0
 
-    def _roll(self, acceleration: Array) -> tuple[Array, Array]:
-        """Step in C; return the states (n, 14) after each step, and the sensors at its start."""
-        control = np.zeros((1, len(acceleration), self._model.nu))
-        control[0, :, : len(self._columns)] = -acceleration[:, self._columns]
-        states, sensors = self._runner.rollout(
-            self._model,
-            self._data,
+    def _roll(self, control: Array, rows: Array, sensors: Array) -> None:
+        """Step in C; fill in the states (n, 14) after each step, and the sensors at its start."""
+        self._runner.rollout(
+            [self._model],
+            [self._data],
             self._state[None],
-            control if self._model.nu else None,
-            nstep=len(acceleration),
-            initial_warmstart=self._data.qacc_warmstart.copy(),
+            control[None] if self._model.nu else None,
+            nstep=len(control),
+            initial_warmstart=self._data.qacc_warmstart[None].copy(),
+            state=rows[None],
+            sensordata=sensors[None],
+            skip_checks=True,  # they take as long as four steps, and what stands takes single ones
         )
-        rows: Array = states[0]
-        if _warnings(self._data):
+        if self._data.warning.number.any():
             # from there on the engine repeats the last state that it could compute
             frozen = (np.diff(rows[:, 1:8], axis=0, prepend=self._state[None, 1:8]) == 0.0).all(axis=1)
             rows[frozen & (np.cumsum(~frozen[::-1])[::-1] == 0), 1:] = np.nan
         self._state = rows[-1].copy()
-        return rows, sensors[0]
 
-    def _follow_load(self, acceleration: Array) -> int:
+    def _eccentricity(self, acceleration: Array) -> Array:
+        """Of the load, over b, in each step (n,)."""
+        body = self._scene.body
+        push = np.hypot(acceleration[:, 0], acceleration[:, 1]) * body.mass_centre_height
+        load: Array = push / (body.base_radius * (self._scene.gravity + acceleration[:, 2]))
+        return load
+
+    def _follow_load(self, acceleration: Array, eccentricity: Array) -> int:
         """Turn the prisms about the axis until a corner is under the load; leave them after the uplift.
 
         Return for how many steps they stay so: for one where the base opens.
         """
-        body, corners = self._scene.body, self._settings.standing_corners
-        push = np.hypot(acceleration[:, 0], acceleration[:, 1]) * body.mass_centre_height
-        eccentricity = push / (body.base_radius * (self._scene.gravity + acceleration[:, 2]))
-        axis = axis_of(self._state[None, 4:8])[0, :2]
-        lean = float(np.hypot(*axis))
-        opens = bool(eccentricity.max() > _OPENING) or lean > _LEANS
+        w, x, y, z = self._state[4:8].tolist()
+        axis = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x)  # its horizontal part
+        lean, largest = float(np.hypot(*axis)), float(eccentricity.max())
+        opens = largest > _OPENING or lean > _LEANS
         if lean > (self._risen if eccentricity[0] > _ON_RIM else max(self._risen, _RISEN_ANYHOW)):
             self._leave_prisms()
-        if not self._standing or (eccentricity.max() < _LOADED and lean <= _LEANS):
+        if not self._standing or (largest < _LOADED and lean <= _LEANS):
             return len(acceleration)
         load = -acceleration[0] if opens else -acceleration.mean(axis=0)
         # the first corner of a prism is an eighth of a turn from its x axis
         at = axis if lean > _LEANS else load
-        first = np.arctan2(at[1], at[0]) - 0.25 * np.pi
-        half = 0.5 * (first + 2.0 * np.pi / corners * np.arange(corners // 4))
-        self._model.geom_quat[self._prisms] = np.outer(np.cos(half), [1, 0, 0, 0]) + np.outer(
-            np.sin(half), [0, 0, 0, 1]
-        )
+        half = 0.5 * (np.arctan2(at[1], at[0]) - 0.25 * np.pi + self._turns)
+        turned = self._model.geom_quat  # about the vertical, so without the other two components
+        turned[self._prisms, 0], turned[self._prisms, 3] = np.cos(half), np.sin(half)
         # neighbours that share the load of the last corner would let the base lean before it opens
         self._model.geom_pos[self._prisms[_LAST_PRISMS:], 2] = self._middle + (
             _OUT_OF_REACH if opens else 0.0

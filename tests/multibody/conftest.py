@@ -223,7 +223,7 @@ def run_release(solve_free: Callable[..., Solution]) -> Callable[..., tuple[Trac
     return run
 
 
-@pytest.fixture
+@pytest.fixture(scope="session")
 def solve_forced() -> Callable[..., Solution]:
     return forced_response
 

@@ -68,7 +68,9 @@ def test_starts_in_the_stated_state(engine: str) -> None:
 
 
 def test_a_run_repeats_bit_for_bit(engine: str, time_step: float | None) -> None:
-    case = Case(PIER, el_centro_1940().scaled(2.0), duration=2.0)
+    # from a second before it uplifts
+    record = el_centro_1940().scaled(2.0)
+    case = Case(PIER, GroundMotion(record.acceleration[100:], record.time_step), duration=1.0)
     first, second = (multibody.simulate(case, engine=engine, time_step=time_step) for _ in range(2))
     np.testing.assert_array_equal(first.tilt, second.tilt)
 

@@ -11,7 +11,7 @@ import pytest
 from rockwobble import multibody
 from rockwobble.compare import default_runs, require_runnable, reserved_engines
 from rockwobble.models import Case, Cylinder, InitialState, Run
-from rockwobble.multibody.contract import interface, mechanics
+from rockwobble.multibody.contract import interface, mechanics, sweep
 from rockwobble.multibody.engines.registry import find_engine
 from rockwobble.multibody.testing import ContractCheck, check_engine, leaves_no_trace
 
@@ -114,13 +114,18 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
     return put
 
 
-def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(install: Install) -> None:
+def test_an_engine_of_another_package_is_found_runs_and_keeps_the_contract(
+    install: Install, monkeypatch: pytest.MonkeyPatch
+) -> None:
     install(sound="external_engine:Sound")
     assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn", "sound")
     assert multibody.available_engines()[-1] == "sound"
     release = InitialState(PIER.alpha / 2, rolling_rate=0.5)
     run = multibody.simulate(Case(PIER, initial=release, duration=0.5), engine="sound", support="flat")
     assert (run.run.engine, run.outcome) == ("sound", "completed")
+    # it is MuJoCo, which the sweep takes into more directions under its own name
+    monkeypatch.setattr(sweep, "SWEEP_SLENDERNESS", (0.2,))
+    monkeypatch.setattr(sweep, "SWEEP_DIRECTIONS", 3)
     check_engine("sound")
 
 

@@ -37,16 +37,14 @@ ESTIMATE = 3.0  # Richardson is good for a factor
     ("support", "tan_alpha", "finest"),
     [
         ("recess", 0.35, 1.75e-4),
-        ("flat", 0.1, 1.75e-4),
         # what is squat rolls on a large rim, whose second order is larger
-        ("recess", 3.0, 3e-5),
         ("flat", 3.0, 3e-5),
     ],
 )
 def test_a_release_extrapolates(
     engine: str, support: str, tan_alpha: float, finest: float, run_release: Callable[..., Any]
 ) -> None:
-    options = {"duration": 3.0, "time_step": "extrapolated", "finest_step": finest}
+    options = {"duration": 2.0, "time_step": "extrapolated", "finest_step": finest}
     run, exact = run_release(engine, support, tan_alpha, **options)
     assert np.abs(run.tilt - exact.tilt).max() < RELEASED * run.case.cylinder.alpha
     assert np.abs(run.tilt - exact.tilt).max() < ESTIMATE * run.error_estimate

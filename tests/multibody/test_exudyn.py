@@ -35,9 +35,11 @@ def free(cylinder: Cylinder, initial: InitialState | None, **changes: Any) -> Tr
 def table() -> list[tuple[float, ...]]:
     lines = [line for line in TABLE.read_text().splitlines() if not line.startswith("#")]
     rows = csv.DictReader(lines)
+    # the fastest and the slowest of each slenderness
     return [
         tuple(float(row[key]) for key in ("h_over_b", "phi_rate", "rolling_turn_deg", "rolling_period_s"))
         for row in rows
+        if row["phi_rate"] != "0.1"
     ]
 
 
@@ -46,7 +48,7 @@ def test_angle_of_turn(slenderness: float, rate: float, turn: float, period: flo
     cylinder = Cylinder.from_dimensions(base_radius=1.0, height=2.0 * slenderness)
     release = InitialState(cylinder.alpha / 2, rolling_rate=rate)
     # second order in step over the time scale of the pass, its least tilt over the speed of the fall
-    finer = {(1.0, 0.03): 5.0, (1.0, 0.1): 2.0, (2.0, 0.03): 2.0}.get((slenderness, rate), 1.0)
+    finer = {(1.0, 0.03): 5.0, (2.0, 0.03): 2.0}.get((slenderness, rate), 1.0)
     step = 1e-4 * math.sqrt(cylinder.semidiagonal / 6.0) / finer
     run = free(cylinder, release, duration=period + 0.1, time_step=step)
     found = math.degrees(run.passes["angle_of_turn"].iloc[0])
@@ -55,7 +57,7 @@ def test_angle_of_turn(slenderness: float, rate: float, turn: float, period: flo
     assert run.facts == ()
 
 
-@pytest.mark.parametrize("tan_alpha", [0.1, 0.2, 0.5, 1.0, 3.0])
+@pytest.mark.parametrize("tan_alpha", [0.1, 3.0])
 def test_free_response_for_eight_seconds(tan_alpha: float, solve_free: Solve) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     release = InitialState(cylinder.alpha / 2, rolling_rate=0.5)

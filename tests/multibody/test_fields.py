@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,11 @@ SHAKING = GroundMotion(
 @pytest.fixture
 def run(engine: str) -> Trace:
     """A release under all three components, free to twist, and still ground from 0.8 s on."""
+    return _run(engine)
+
+
+@cache
+def _run(engine: str) -> Trace:
     return multibody.simulate(
         Case(PIER, SHAKING, initial=RELEASE, duration=1.0), engine=engine, support="flat", sample_step=SAMPLE
     )

@@ -25,8 +25,7 @@ def release(cylinder: Cylinder) -> InitialState:
     return InitialState(cylinder.alpha / 2, rolling_angle=0.3, rolling_rate=rate)
 
 
-@pytest.mark.parametrize("tan_alpha", [0.2, 1.0, 3.0])
-@pytest.mark.parametrize("support", ["recess", "flat"])
+@pytest.mark.parametrize(("support", "tan_alpha"), [("flat", 0.2), ("recess", 3.0)])
 def test_free_response_follows_the_model_of_its_support(
     engine: str, support: str, tan_alpha: float, solve_free: Callable[..., Any]
 ) -> None:
@@ -43,27 +42,35 @@ def test_free_response_follows_the_model_of_its_support(
     # the recess holds the twist but for what its stiffness gives, 5e-6 rad; open ground lets it grow
     assert np.abs(run.twist - exact.twist).max() < 20 * budget + 6e-6
     assert (np.abs(run.twist).max() > 2e-3) == (support == "flat")
+    # a kinetic energy of 0.5 m^2/s^2 for the pier; the creep of the rim takes or gives 1e-6 of it
+    if tan_alpha == 0.2:
+        assert np.abs(run.energy_error).max() < 5e-6
+        np.testing.assert_allclose(run.energy, run.energy[0], atol=5e-6)
+        height = run.centre_of_mass[0, 2] - cylinder.mass_centre_height
+        assert run.energy[0] > 9.81 * height > 0.0
     # and the two supports are not the same: at tan alpha 3 they differ by 0.05 alpha
     other = solve_free(cylinder, initial, run.time, rolls_out=support != "flat")
     assert np.abs(run.tilt - other.tilt).max() > 8e-4 * cylinder.alpha
 
 
-@pytest.mark.parametrize("semidiagonal", [0.01, 100.0])
-def test_accuracy_does_not_depend_on_size(engine: str, semidiagonal: float) -> None:
+def test_accuracy_does_not_depend_on_size(engine: str) -> None:
     reference = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=0.2)
-    time = (semidiagonal / 6.0) ** 0.5
-    there = multibody.simulate(Case(reference, initial=release(reference), duration=2.0), engine=engine)
-    here = multibody.simulate(
-        Case(cylinder, initial=release(cylinder), duration=2.0 * time), sample_step=0.01 * time, engine=engine
-    )
-    assert here.time_step == pytest.approx(1e-4 * time, rel=1e-12)
-    np.testing.assert_allclose(here.tilt, there.tilt, rtol=SIZE)
-    np.testing.assert_allclose(here.tilt_rate * time, there.tilt_rate, rtol=SIZE, atol=SIZE)
-    scale = semidiagonal / 6.0
-    np.testing.assert_allclose(here.contact_point, there.contact_point * scale, rtol=SIZE, atol=SIZE * scale)
-    np.testing.assert_allclose(here.energy, there.energy * scale, rtol=1e-7)
-    np.testing.assert_allclose(here.passes["time"], there.passes["time"] * time, rtol=SIZE)
+    there = multibody.simulate(Case(reference, initial=release(reference), duration=2.7), engine=engine)
+    assert len(there.passes) == 1
+    for scale in (0.01 / 6.0, 100.0 / 6.0):
+        cylinder, time = Cylinder(semidiagonal=6.0 * scale, tan_alpha=0.2), scale**0.5
+        here = multibody.simulate(
+            Case(cylinder, initial=release(cylinder), duration=2.7 * time),
+            sample_step=0.01 * time,
+            engine=engine,
+        )
+        assert here.time_step == pytest.approx(1e-4 * time, rel=1e-12)
+        np.testing.assert_allclose(here.tilt, there.tilt, rtol=SIZE)
+        np.testing.assert_allclose(here.tilt_rate * time, there.tilt_rate, rtol=SIZE, atol=SIZE)
+        point = there.contact_point * scale
+        np.testing.assert_allclose(here.contact_point, point, rtol=SIZE, atol=SIZE * scale)
+        np.testing.assert_allclose(here.energy, there.energy * scale, rtol=1e-7)
+        np.testing.assert_allclose(here.passes["time"], there.passes["time"] * time, rtol=SIZE)
 
 
 def test_weak_gravity_is_a_slow_run(pier: Cylinder) -> None:
@@ -94,12 +101,12 @@ def test_a_body_with_inertias_of_its_own(engine: str, solve_free: Callable[..., 
 def test_error_falls_with_the_step(engine: str, solve_free: Callable[..., Any]) -> None:
     squat = Cylinder(semidiagonal=6.0, tan_alpha=1.0)
     initial = release(squat)
-    steps = np.array([4e-4, 2e-4, 1e-4])
+    steps = np.array([8e-4, 4e-4, 2e-4])
 
     def errors(**settings: float) -> np.ndarray:
         found = []
         for step in steps:
-            case = Case(squat, initial=initial, duration=4.0)
+            case = Case(squat, initial=initial, duration=2.5)
             run = multibody.simulate(case, engine=engine, time_step=step, **settings)
             exact = solve_free(squat, initial, run.time)
             found.append(np.abs(run.tilt - exact.tilt).max() / squat.alpha)
@@ -126,13 +133,3 @@ def test_angle_of_turn(engine: str, support: str, turn: float) -> None:
     assert run.passes["resolved"].all()
     # second order in the step over the length of the pass: 4.8e-4 deg in MuJoCo, 6.1e-4 in Bullet
     assert np.degrees(run.passes["angle_of_turn"][0]) == pytest.approx(turn, abs=1e-3)
-
-
-def test_energy_is_kept(engine: str, pier: Cylinder) -> None:
-    run = multibody.simulate(Case(pier, initial=release(pier), duration=4.0), engine=engine)
-    # a kinetic energy of 0.5 m^2/s^2; the creep of the rim takes or gives 1e-6 of it
-    assert np.abs(run.energy_error).max() < 5e-6
-    np.testing.assert_allclose(run.energy, run.energy[0], atol=5e-6)
-    h = pier.mass_centre_height
-    height = 9.81 * (run.centre_of_mass[0, 2] - h)
-    assert run.energy[0] > height > 0.0

@@ -52,12 +52,13 @@ def test_clearance_is_that_of_the_points_of_the_cylinder(
 ) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=tan_alpha)
     b = cylinder.base_radius
-    points = _rims(cylinder, tilt)
+    points = _rims(cylinder, tilt, 1440)
     # how far out of the original circle each point lies along the ground, in the direction of each wall
     azimuth = np.linspace(0.0, math.pi, 721)
     radial = np.outer(points[:, 0], np.cos(azimuth)) + np.outer(points[:, 1], np.sin(azimuth))
     out = (radial - points[:, 2:] * math.tan(inclination)).max() / b - 1.0
-    # walls 0.25 deg apart: (half a step)^2/2 is 2e-6, of a body up to 20 b high; the wall ahead is among them
+    # walls and points 0.25 deg apart: (half a step)^2/2 is 2e-6, of a body up to 20 b high; the wall ahead is
+    # among them
     assert clearance_needed(cylinder, tilt, inclination) == pytest.approx(max(out, 0.0), abs=2e-5)
 
 
@@ -75,7 +76,7 @@ def test_walls_that_lean_enough_need_none_and_upright_ones_the_side() -> None:
 @pytest.mark.parametrize("tilt", [0.01, 0.3, 1.2])
 def test_overhang_of_the_rim_is_that_of_its_points(tilt: float) -> None:
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    base = _rims(cylinder, tilt)[:7200]
+    base = _rims(cylinder, tilt, 7200)[:7200]
     reach = np.hypot(base[:, 0], base[:, 1])
     furthest = int(np.argmax(reach))
     overhang, height = rim_overhang(tilt)
@@ -88,7 +89,7 @@ def test_overhang_of_the_rim_is_that_of_its_points(tilt: float) -> None:
     assert overhang == pytest.approx(design, abs=ROUNDING)
 
 
-@pytest.mark.parametrize("tan_alpha", SLENDERNESS)
+@pytest.mark.parametrize("tan_alpha", [SLENDERNESS[0], SLENDERNESS[-1]])
 @pytest.mark.parametrize(("tilt", "inclination"), [angles for angles in ANGLES if angles[0] > angles[1]])
 def test_engine_touches_a_wall_just_where_the_geometry_says(
     tan_alpha: float, tilt: float, inclination: float
@@ -122,10 +123,10 @@ def test_angles_out_of_range_are_refused(change: dict[str, float]) -> None:
         clearance_needed(cylinder, **{"tilt": 0.1, "inclination": 0.1, **change})
 
 
-def _rims(cylinder: Cylinder, tilt: float) -> Array:
-    """Points of the rim of the base, then of the top, leaning along x on the original circle, (14400, 3)."""
+def _rims(cylinder: Cylinder, tilt: float, count: int) -> Array:
+    """Points of the rim of the base, then of the top, leaning along x on the first circle, (2 count, 3)."""
     b, s, c = cylinder.base_radius, math.sin(tilt), math.cos(tilt)
-    around = 2.0 * math.pi * np.arange(7200) / 7200
+    around = 2.0 * math.pi * np.arange(count) / count
     # the lowest point is that at which `around` is zero
     base = np.column_stack(
         [b * (1.0 - c) + b * c * np.cos(around), b * np.sin(around), b * s * (1.0 - np.cos(around))]
