@@ -10,9 +10,10 @@ import itertools
 import math
 from typing import NamedTuple
 
+import numba
 import numpy as np
 from numpy.typing import NDArray
-from rigid_body import crossing, energy, excess, jit, lifted, step, tilt_of
+from rigid_body import crossing, energy, excess, lifted, step, tilt_of
 
 from rockwobble.reduced.body import body_of
 
@@ -33,7 +34,7 @@ class Sampled(NamedTuple):
     azimuth: Array
 
 
-@jit
+@numba.njit  # not kept: what is kept would not notice that another file has changed
 def advance(
     P: Array, p: float, y: Array, length: float, a: Array, slope: Array, rtol: float, first: float
 ) -> tuple[Array, float]:

@@ -49,6 +49,11 @@ def tables(name: str, form: Form, **more: float) -> dict[str, Table]:
     return {run: form(trace) for run, trace in traces(name, **more).items()}
 
 
+def sparse(found: dict[str, Table]) -> dict[str, Table]:
+    """Each fourth of two thousand samples: a search for mistakes goes through them a thousand times."""
+    return {run: {key: values[::4] for key, values in table.items()} for run, table in found.items()}
+
+
 def with_sliding(found: dict[str, Table]) -> dict[str, Table]:
     """The reduced model does not slide: as the closed form says, x'' = -(a_x - mu (g + a_z))."""
     for run, (case, _) in cases_of(PUBLISHED / "cases" / SLIDING).items():
@@ -86,9 +91,9 @@ def test_every_format_is_read(judge: Judge, name: str, form: Form) -> None:
     assert ("not given" not in judged.text) == told
 
 
-@pytest.mark.parametrize("name", ["turn-flat", "turn-recess", "near-upright-pass", "scale-invariance"])
+@pytest.mark.parametrize("name", ["turn-flat", "turn-recess", "scale-invariance"])
 def test_a_body_one_percent_too_large_fails_and_is_recognised(judge: Judge, name: str) -> None:
-    judged = judge(name, tables(name, tilt_and_azimuth, larger=0.01))
+    judged = judge(name, sparse(tables(name, tilt_and_azimuth, larger=0.01)))
     assert judged.verdict == "fail"
     (said,) = judged.mistakes
     found = re.fullmatch(r"it moves as a body of \+(.*) % in size \(R\)", said)
@@ -165,6 +170,13 @@ MISTAKES: dict[str, tuple[Form, Callable[[Table], Table], str]] = {
         lambda t: t | {key: -t[key] for key in ("qx", "qy", "qz")},
         "the quaternion is inverse",
     ),
+    "degrees and late": (
+        tilt_and_azimuth,
+        lambda t: (
+            t | {"tilt": np.degrees(t["tilt"]), "azimuth": np.degrees(t["azimuth"]), "time": t["time"] + 0.05}
+        ),
+        "angles are in degrees; times are off by 0.05 s",
+    ),
     "late": (tilt_and_azimuth, lambda t: t | {"time": t["time"] + 0.05}, "times are off by 0.05 s"),
 }
 
@@ -172,7 +184,7 @@ MISTAKES: dict[str, tuple[Form, Callable[[Table], Table], str]] = {
 @pytest.mark.parametrize("mistake", MISTAKES)
 def test_a_mistake_in_units_axes_or_clock_is_named(judge: Judge, mistake: str) -> None:
     form, change, words = MISTAKES[mistake]
-    judged = judge(SINGLE, {SPIN: change(tables("turn-recess", form)[SPIN])})
+    judged = judge(SINGLE, {SPIN: change(sparse(tables("turn-recess", form))[SPIN])})
     assert judged.verdict == "fail", judged.text
     for part, said in zip(words.split("; "), judged.mistakes, strict=True):
         assert part in said
@@ -183,7 +195,7 @@ def test_two_mistakes_at_once_are_both_named(judge: Judge) -> None:
         angles = {key: np.degrees(sign * table[key]) for key, sign in (("tilt", 1.0), ("azimuth", -1.0))}
         return table | angles
 
-    found = {run: change(table) for run, table in tables("turn-flat", tilt_and_azimuth).items()}
+    found = {run: change(table) for run, table in sparse(tables("turn-flat", tilt_and_azimuth)).items()}
     judged = judge("turn-flat", found)
     assert len(judged.mistakes) == 2
     assert "degrees" in judged.mistakes[0]
@@ -244,6 +256,7 @@ def test_samples_that_say_too_little_are_rejected(
 
 def test_a_third_of_every_peak_does_not_fit_the_distribution(judge: Judge) -> None:
     found = tables("records-distribution", tilt_and_azimuth)
-    assert judge("records-distribution", found).verdict == "exact"
-    weak = {run: table | {"tilt": table["tilt"] / 3.0} for run, table in found.items()}
-    assert judge("records-distribution", weak).verdict == "fail"
+    weak = {run: {"time": table["time"], "tilt": table["tilt"] / 3.0} for run, table in found.items()}
+    judged = judge("records-distribution", weak)
+    assert judged.verdict == "fail"
+    assert not judged.mistakes

@@ -80,13 +80,12 @@ KINDS = (
 def coverage(kind: Kind, studies: int, draws: int = RESAMPLES, seed: int = 1) -> tuple[float, float, float]:
     """Return the shares of studies whose intervals hold the median, the dispersion and the ratio of 1."""
     random = np.random.default_rng(seed)
-    inside = np.zeros((studies, 3))
+    inside, once = np.zeros((studies, 3)), np.ones((1, kind.motions))
     for place in range(studies):
         weights = resamples(kind.motions, draws, int(random.integers(2**31)))
         ours, theirs = kind.draw(random)
         found, other, drawn, others = (
-            each.curves(weights) if many else each.curves()
-            for each, many in ((ours, False), (theirs, False), (ours, True), (theirs, True))
+            each.curves(drawing) for drawing in (once, weights) for each in (ours, theirs)
         )
         with np.errstate(invalid="ignore"):
             ratio, ratios = found.centre[0] - other.centre[0], drawn.centre - others.centre

@@ -12,7 +12,7 @@ from benchmarks import false_alarms
 from rockwobble.models import Case, Cylinder, el_centro_1940
 
 SHORT = Case(
-    Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940().scaled(2.0), duration=2.5, name="short"
+    Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940().scaled(2.0), duration=2.0, name="short"
 )
 
 

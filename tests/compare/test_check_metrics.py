@@ -1,4 +1,7 @@
-"""The layers records, metrics and studies hold, and find metrics and readers that are wrong."""
+"""The layers records, metrics and studies hold, and find metrics and readers that are wrong.
+
+With them hold the parts of other layers that no other file asks: time steps.
+"""
 
 from __future__ import annotations
 
@@ -12,13 +15,17 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.check import Bench
+from rockwobble.compare.check.engines import time_steps
 from rockwobble.compare.check.finding import NOT_RUN
 from rockwobble.compare.check.inputs import ground_motions, record_files, suites
-from rockwobble.compare.check.measures import external_trajectories, metrics, predicted_times, sweeps
+from rockwobble.compare.check.measures import external_trajectories, metrics, predicted_times, spectra, sweeps
 from rockwobble.models import Case, GroundMotion, read_record, read_suite
 
 BENCH = Bench(reduced=reduced, suite=read_suite("quick"))
-PARTS = (record_files, ground_motions, metrics, predicted_times, external_trajectories, suites, sweeps)
+PARTS = (
+    *(record_files, ground_motions, metrics, predicted_times, external_trajectories, suites, sweeps, spectra),
+    time_steps,
+)
 
 
 @pytest.mark.parametrize("part", PARTS, ids=lambda part: part.__name__.rsplit(".", 1)[-1])

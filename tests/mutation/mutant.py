@@ -13,6 +13,7 @@ import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import cache
 from importlib.abc import InspectLoader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec, spec_from_loader
@@ -104,6 +105,11 @@ def mutated(*faults: Fault) -> Iterator[Any]:
             del sys.modules[name]
 
 
+@cache  # all files but those with a fault are the same in each copy
+def _compiled(source: str, place: str) -> CodeType:
+    return compile(source, place, "exec", dont_inherit=True)
+
+
 class _Sources(MetaPathFinder, InspectLoader):
     """Finds and loads the modules of one copy."""
 
@@ -132,7 +138,7 @@ class _Sources(MetaPathFinder, InspectLoader):
         return self._text(place)
 
     def get_code(self, fullname: str) -> CodeType:
-        return compile(self.get_source(fullname), str(self._place(fullname)), "exec", dont_inherit=True)
+        return _compiled(self.get_source(fullname), str(self._place(fullname)))
 
     def _text(self, place: Path) -> str:
         text = place.read_text(encoding="utf-8")

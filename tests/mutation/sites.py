@@ -11,6 +11,7 @@ import difflib
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 
 from . import expressions, names
 from .names import Signatures
@@ -140,6 +141,7 @@ def _place(node: ast.AST, starts: list[int]) -> tuple[int, int]:
     return starts[node.lineno - 1] + node.col_offset, starts[node.end_lineno - 1] + node.end_col_offset
 
 
+@lru_cache(maxsize=4)  # the source without a fault is asked for with each
 def _meaning(source: str) -> str | None:
     try:
         return ast.dump(ast.parse(source))

@@ -25,7 +25,7 @@ E3, E5 = np.array(pair.E3), np.array(pair.E5)
 TURN = 4e-3  # of 1/p: a maximum is looked for in steps no longer, by a cubic
 
 Array = NDArray[np.float64]
-jit = numba.njit
+jit = numba.njit(cache=True)  # all of them are in this file: what is kept is as old as the file
 
 
 class Result(NamedTuple):
