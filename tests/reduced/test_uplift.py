@@ -63,8 +63,10 @@ def test_the_solution_does_not_depend_on_where_the_series_is_left(turning, jump)
     assert run.y[0, -1] == pytest.approx(theta, rel=3e-9, abs=0.0)
     # each power of t weighs by its exponent: that of the first term left out is twice that of the leading one
     assert run.y[1, -1] == pytest.approx(omega, rel=6e-9, abs=0.0)
-    # the lag is x^2 of what the ground turns meanwhile; its own rest is again a thousandth of it
-    assert run.y[2, -1] == pytest.approx(phi, abs=2e-8 * (1.0 + min(abs(turning), 1.0 / end)))
+    # the lag is x^2 of what the ground turns meanwhile, and its own rest again a thousandth of it; after a
+    # jump it grows with the turn, and what is left is x = 1e-6 of that
+    turned = abs(turning) * end / (THRESHOLD + jump)
+    assert run.y[2, -1] == pytest.approx(phi, rel=0.0, abs=(3e-7 if jump else 2e-8) * turned)
 
 
 def spin_momentum(theta, rate):
