@@ -9,7 +9,7 @@ import math
 
 import numpy as np
 import pytest
-from shaken_problems import G, Problem, joined, problem, resampled, sensitivity
+from shaken_problems import G, Problem, is_firm, joined, problem, resampled
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, Trace
@@ -26,8 +26,10 @@ def test_the_same_function_of_time_sampled_finer():
     firm, off = 0, []
     for seed in range(140):
         given = problem(seed, models=("recess", "flat"), time_steps=(0.005, 0.01, 0.02))
+        if given.chatters:
+            continue
         plain = given.simulate()
-        if sensitivity(given, plain) < FIRM:
+        if is_firm(given, plain, FIRM):
             firm += 1
             finer = {parts: given.simulate(motion=resampled(given.motion, parts)) for parts in (2, 5)}
             off += [(seed, parts) for parts, response in finer.items() if changed(plain, response)]
@@ -90,7 +92,7 @@ def test_a_weak_foreshock_that_comes_to_rest_before_the_main_shock():
         alone = given.simulate(rest_tilt=1e-2)
         if weak.outcome != "rest" or not len(weak.rests) or weak.peak_tilt >= alone.peak_tilt:
             continue
-        if sensitivity(given, alone, rest_tilt=1e-2) < FIRM:
+        if is_firm(given, alone, FIRM, rest_tilt=1e-2):
             firm += 1
             both = given.simulate(motion=joined(first, given.motion), rest_tilt=1e-2)
             off += [seed] * changed(alone, both)
@@ -133,7 +135,7 @@ def test_two_runs_joined_at_a_rest():
         alone = other.simulate(rest_tilt=3e-2)
         if given.simulate(motion=first, rest_tilt=3e-2).outcome != "rest":
             continue
-        if sensitivity(other, alone, rest_tilt=3e-2) < FIRM:
+        if is_firm(other, alone, FIRM, rest_tilt=3e-2):
             firm += 1
             both = other.simulate(motion=joined(first, second), rest_tilt=3e-2)
             if both.peak_tilt > given.simulate(motion=first, rest_tilt=3e-2).peak_tilt:
@@ -158,12 +160,14 @@ def test_rotated_by_any_angle(late):
     firm, off = 0, []
     for seed in range(100):
         given = problem(seed, models=("recess", "flat"), slenderness=(0.05, 1.0))
+        if given.chatters:
+            continue
         if late:
             given = given._replace(motion=planar_at_first(given, seed))
         plain = given.simulate()
         # where the rounding of the first part chose a side, a copy with another first part would tell nothing
         later = slice((seed + 1) % 2, (seed + 1) % 2 + 1) if late else slice(None)
-        if sensitivity(given, plain, components=later) < FIRM:
+        if is_firm(given, plain, FIRM, components=later):
             firm += 1
             turned = [given.simulate(motion=given.motion.rotated(angle)) for angle in (0.7, -2.3, 3.0)]
             off += [seed] * any(changed(plain, response) for response in turned)
@@ -174,13 +178,15 @@ def test_rotated_by_any_angle(late):
 def test_overturned_is_what_still_ground_for_as_long_as_it_takes_decides():
     """Records cut in the middle of the strong part."""
     fell, later = 0, 0
-    for seed in range(150):
+    for seed in range(120):
         given = problem(seed, slenderness=(0.05, 0.5), released=seed % 4 == 0)
+        if given.chatters:
+            continue
         cut = round(0.4 * len(given.motion.acceleration)) * given.motion.time_step
         plain = given.simulate(duration=cut, rtol=1e-10)
         record = given.motion.acceleration[: round(cut / given.motion.time_step) + 1]
         motion = GroundMotion(record, given.motion.time_step)
-        longer = cut + max(30.0, 60.0 / plain.source.problem.body.p)
+        longer = cut + 30.0 / plain.source.problem.body.p  # twice as long as a run takes to decide
         padded = given.simulate(motion=motion, duration=longer, rtol=1e-10)
         assert (plain.outcome == "overturned") == (padded.outcome == "overturned"), seed
         if plain.outcome == "overturned":
@@ -245,8 +251,10 @@ def test_the_error_falls_with_the_tolerance():
     tolerances = (1e-5, 1e-7, 1e-9)
     for seed in range(60):
         given = problem(seed)
+        if given.chatters:
+            continue
         exact = given.simulate(rtol=1e-12)
-        if exact.outcome != "overturned" and sensitivity(given, exact) < 1e-5:
+        if exact.outcome != "overturned" and is_firm(given, exact, 1e-5):
             firm += 1
             peaks = [given.simulate(rtol=rtol).peak_tilt for rtol in tolerances]
             errors.append(np.abs(np.array(peaks) / exact.peak_tilt - 1.0))

@@ -41,7 +41,8 @@ def energies() -> tuple[Any, Any]:
     centre = sp.Matrix(ground) + base + h * rotation[:, 2]  # (11)
     velocity = centre.diff(time)
     spin = rotation.T * rotation.diff(time)  # skew: the angular velocity (14) in body axes
-    angular_velocity = sp.Matrix([spin[2, 1], spin[0, 2], spin[1, 0]])
+    # short before they are squared
+    angular_velocity = sp.Matrix([reduced(each, phi, theta) for each in (spin[2, 1], spin[0, 2], spin[1, 0])])
     kinetic = (velocity.dot(velocity) + angular_velocity.dot(sp.diag(I1, I1, I2) * angular_velocity)) / 2
     return reduced(kinetic, phi, theta), g * centre[2]
 
@@ -124,7 +125,8 @@ def vanishes(expression: Any) -> bool:
         expression = expression.xreplace({sp.sin(angle): s, sp.cos(angle): c})
     assert not expression.has(sp.sin, sp.cos, tilt, azimuth)
     numerator, _ = sp.fraction(sp.together(expression))
-    return bool(sp.expand(numerator) == 0)
+    # expanded as a polynomial: several times faster than as an expression
+    return not sp.ring(sorted(numerator.free_symbols, key=str) or [time], sp.QQ)[0].from_expr(numerator)
 
 
 def is_nonzero_somewhere(expression: Any) -> bool:
@@ -188,6 +190,7 @@ def test_equations_18_and_19_follow_from_the_energies(motion: tuple[Any, Any]) -
 def test_recess_equations_are_lagranges(motion: tuple[Any, Any]) -> None:
     assert on_symbols(equations.recess_rhs)(constants(I1, I2), *STATE)[0] == omega
     for residual in recess_residuals(constants(I1, I2), motion):
+        assert not is_nonzero_somewhere(residual)  # one point: the changed ones below are not zero there
         assert vanishes(residual)
 
 
@@ -196,7 +199,6 @@ def test_recess_equations_are_lagranges(motion: tuple[Any, Any]) -> None:
 def test_a_changed_coefficient_is_seen(name: str, factor: Any, motion: tuple[Any, Any]) -> None:
     body = constants(I1, I2)
     changed = body._replace(**{name: factor * getattr(body, name)})
-    assert not any(is_nonzero_somewhere(residual) for residual in recess_residuals(body, motion))
     assert any(is_nonzero_somewhere(residual) for residual in recess_residuals(changed, motion))
 
 
