@@ -240,19 +240,26 @@ def own_model(run: Run) -> Run:
     return Run(None, _OWN_MODELS.get(run.support, "recess"))
 
 
-def references_of(case: Case, run: Run, label: str, reference: Run | None = None) -> dict[str, Run]:
+def references_of(
+    case: Case, run: Run, label: str, reference: Run | None = None, *, named: str = ""
+) -> dict[str, Run]:
     """Return what a run is held against, by label: `reference`, or what its support asks for.
 
+    The reference is called `named`, by default as it calls itself.
+
     A run in a recess is held against the recess model; one on flat ground against that and the flat-ground
-    model; one in a ring against the recess model and itself at half its step.
+    model; one in a ring against the recess model and itself at half its step, or, where that is sought,
+    at half the default step.
     """
     recess = Run(None, "recess")
     if reference is not None:
-        chosen = {str(reference): reference}
+        chosen = {named or str(reference): reference}
     elif run.support == "flat":
         chosen = {str(model): model for model in (recess, Run(None, "flat"))}
     elif run.support == "ring":
-        chosen = {str(recess): recess, f"{label}, half the step": _finer(case, run)}
+        # the step of a run that seeks its own is not known beforehand
+        half = "half the default step" if isinstance(run.time_step, str) else "half the step"
+        chosen = {str(recess): recess, f"{label}, {half}": _finer(case, run)}
     else:
         chosen = {str(recess): recess}
     return {name: other for name, other in chosen.items() if other != run}
@@ -268,6 +275,22 @@ def _finer(case: Case, run: Run) -> Run:
 
 def _step_label(time_step: float | str) -> str:
     return time_step if isinstance(time_step, str) else f"{time_step:g} s"
+
+
+def labels_beside_references(runs: Sequence[Run], reference: Run | None) -> tuple[tuple[str, ...], str]:
+    """Return a label for each run and that of the reference, all different and none that of another model.
+
+    A reduced model at its defaults keeps its name.
+    """
+    run_labels(runs)  # none of them twice
+    others: list[Run] = []
+    models = Run(None, "recess"), Run(None, "flat")
+    for each in (*models, *(() if reference is None else (reference,))):
+        if each not in (*runs, *others):
+            others.append(each)
+    labels = run_labels((*runs, *others))
+    named = "" if reference is None else labels[[*runs, *others].index(reference)]
+    return labels[: len(runs)], named
 
 
 def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
