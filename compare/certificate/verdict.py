@@ -220,9 +220,11 @@ def read(path: Path) -> Certificate:
         raise ValueError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     if not isinstance(found, dict) or found.get("kind") != KIND:
         raise ValueError(f"{path} is no certificate: its kind must be {KIND!r}")
-    for name, kind in (("format", int), ("method", dict)):
-        if not isinstance(found.get(name), kind):
-            raise ValueError(f"{path} is no whole certificate: it has no {name}")
+    missing = [
+        name for name, kind in (("format", int), ("method", dict)) if not isinstance(found.get(name), kind)
+    ]
+    if missing:
+        raise ValueError(f"{path} is no whole certificate: it has no {missing[0]}")
     return found
 
 

@@ -61,8 +61,8 @@ def passes(poses: Poses, start: float, stands: float) -> pd.DataFrame:
     """Tilt minima between two maxima; one next to a guessed change of azimuth is not resolved."""
     points = turning_points(poses.time, poses.tilt, poses.rolling_angle)
     if poses.tilt[0] > stands and poses.tilt[0] >= poses.tilt[1]:  # released at rest: a maximum
-        first = (float(each[0]) for each in (poses.time, poses.tilt, poses.rolling_angle))
-        points.insert(0, TurningPoint(*first, is_maximum=True))
+        time, tilt, angle = (float(each[0]) for each in (poses.time, poses.tilt, poses.rolling_angle))
+        points.insert(0, TurningPoint(time=time, tilt=tilt, rolling_angle=angle, is_maximum=True))
     found = passes_between(
         [point for point in points if point.time >= min(start, float(poses.time[0]))], stands
     )
