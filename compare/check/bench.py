@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.multibody.engines.registry import standard_engines
 
-from ..runs.choice import installed_engines, run_labels
+from ..runs.choice import installed_engines
 from ..runs.execution import Job, simulate_all
+from ..runs.labels import run_labels
 from ..runs.progress import ProgressCallback
 from ..storage.fingerprint import fingerprint
 from .finding import Finding, not_run

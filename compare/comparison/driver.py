@@ -12,12 +12,12 @@ from rockwobble.models import Case, Run, Suite, Trace
 
 from ..runs.choice import (
     default_runs,
-    labels_beside_references,
     own_model,
     references_of,
     require_runnable,
 )
 from ..runs.execution import Job, open_trace_cache, simulate_all
+from ..runs.labels import labels_beside_references
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import require_writable
 from ..storage.provenance import package_versions

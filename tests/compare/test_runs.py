@@ -13,7 +13,8 @@ from rockwobble.compare import (
     reserved_engines,
     runs_here,
 )
-from rockwobble.compare.runs.choice import references_of, require_runnable, run_labels, unsupported
+from rockwobble.compare.runs.choice import references_of, require_runnable, unsupported
+from rockwobble.compare.runs.labels import run_labels
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 

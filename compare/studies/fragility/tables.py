@@ -131,9 +131,7 @@ def contrast_table(
 
 
 def _differences(pair: Sequence[Curves]) -> Array:
-    """Differences (4, B) of two sets of curves: of the logarithms of the medians, of the dispersions, and
-    between which the first lies.
-    """
+    """Differences (4, B): of the medians' logarithms, of dispersions, and the first's least and largest."""
     first, second = pair
     with np.errstate(invalid="ignore"):  # of two curves that are never reached there is none
         return np.array(
@@ -152,8 +150,8 @@ def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dic
     Parameters
     ----------
     found, drawn : ndarray, shapes (4, 1) and (4, B)
-        Differences of the logarithms of the medians and of the dispersions and ends of the first, see
-        `_differences`, and those of the resamples.
+        Differences of the logarithms of the medians, of the dispersions, and the least and the largest that
+        the first may be, and those of the resamples.
     motions : int
     margin : float
     """
