@@ -61,7 +61,7 @@ class Bench:
     workers: int | None = None
     progress: ProgressCallback | None = None
     kept: dict[str, Trace] = field(default_factory=dict)
-    engines: Sequence[str] = ENGINES
+    engines: Sequence[str] = field(default_factory=lambda: ENGINES)
 
     def jobs(self) -> list[Job]:
         """Return every run of the suite, labelled as in tables."""
@@ -87,9 +87,9 @@ class Bench:
         return trace
 
 
-def engines_here(among: Sequence[str] = ENGINES) -> tuple[str, ...]:
+def engines_here(among: Sequence[str] | None = None) -> tuple[str, ...]:
     """Return those of some engines, or of `ENGINES`, that are installed."""
-    return tuple(name for name in among if name in installed_engines())
+    return tuple(name for name in (ENGINES if among is None else among) if name in installed_engines())
 
 
 def not_here(what: str, engines: Sequence[str]) -> Iterator[Finding]:
