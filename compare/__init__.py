@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from .runs.progress import Progress
     from .runs.run_settings import with_settings
     from .runs.scheduler import run_tasks
-    from .storage.files import replace_files, require_writable
+    from .storage.files import replace_files
+    from .storage.manifest import require_writable
     from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
     from .studies.ensemble.study import Ensemble, ensemble
     from .studies.fragility.intensity import MEASURES
@@ -66,7 +67,8 @@ _MODULES = {
     "runs.progress": ("Progress",),
     "runs.run_settings": ("with_settings",),
     "runs.scheduler": ("run_tasks",),
-    "storage.files": ("replace_files", "require_writable"),
+    "storage.files": ("replace_files",),
+    "storage.manifest": ("require_writable",),
     "studies.ensemble.members": (
         "far_field_motions",
         "perturbed_starts",

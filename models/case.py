@@ -66,6 +66,8 @@ class Case:
         if not self.name:
             name = "free response" if self.motion is None else self.motion.name
             object.__setattr__(self, "name", name or "record")
+        if self.name.splitlines() != [self.name]:
+            raise ValueError(f"the name of a case must be one line, got {self.name!r}")
         # kept as it was given, so that a copy with another motion follows that motion
         run_duration(self.motion, self.duration)
 

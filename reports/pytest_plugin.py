@@ -123,7 +123,7 @@ class SuiteFile(pytest.File):
 
     def collect(self) -> Iterator[SuiteItem]:
         """Yield the items."""
-        from rockwobble.compare.runs.choice import run_labels
+        from rockwobble.compare.runs.labels import run_labels
 
         try:
             suite = rw.read_suite(self.path)

@@ -15,7 +15,7 @@ from ..storage.provenance import commit, package_versions
 from .claims import claims_of
 from .fingerprint import Method, engine_method, fingerprint, reduced_method, repeated
 from .short_cases import short_cases
-from .verdict import KIND, Answer, Certificate, Described, compare, read
+from .verdict import KIND, Answer, Certificate, Described, compare, read, require_whole
 
 FORMAT = 3
 
@@ -97,6 +97,7 @@ def read_certificate(path: Path) -> Certificate:
     found = read(path)
     if found["format"] != FORMAT:
         raise ValueError(f"{path} has format {found['format']}, this version reads {FORMAT}")
+    require_whole(found, path)
     return found
 
 

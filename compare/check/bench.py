@@ -13,8 +13,9 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.multibody.engines.registry import standard_engines
 
-from ..runs.choice import installed_engines, run_labels
+from ..runs.choice import installed_engines
 from ..runs.execution import Job, simulate_all
+from ..runs.labels import run_labels
 from ..runs.progress import ProgressCallback
 from ..storage.fingerprint import fingerprint
 from .finding import Finding, not_run
@@ -49,6 +50,8 @@ class Bench:
         Told of the start and the end of each engine run.
     kept : dict, optional
         Engine runs that were made; may be shared by benches.
+    engines : sequence of str, optional
+        Those of `ENGINES` that the checks run beside the suite, where they are installed. Default: all.
     """
 
     reduced: Any
@@ -58,6 +61,7 @@ class Bench:
     workers: int | None = None
     progress: ProgressCallback | None = None
     kept: dict[str, Trace] = field(default_factory=dict)
+    engines: Sequence[str] = field(default_factory=lambda: ENGINES)
 
     def jobs(self) -> list[Job]:
         """Return every run of the suite, labelled as in tables."""
@@ -83,15 +87,15 @@ class Bench:
         return trace
 
 
-def engines_here() -> tuple[str, ...]:
-    """Return those of `ENGINES` that are installed."""
-    return tuple(name for name in ENGINES if name in installed_engines())
+def engines_here(among: Sequence[str] | None = None) -> tuple[str, ...]:
+    """Return those of some engines, or of `ENGINES`, that are installed."""
+    return tuple(name for name in (ENGINES if among is None else among) if name in installed_engines())
 
 
-def not_here(what: str) -> Iterator[Finding]:
-    """Yield for each of `ENGINES` that is not installed that `what` was not checked with it."""
-    for name in ENGINES:
-        if name not in engines_here():
+def not_here(what: str, engines: Sequence[str]) -> Iterator[Finding]:
+    """Yield for each of some engines that is not installed that `what` was not checked with it."""
+    for name in engines:
+        if name not in engines_here(engines):
             yield not_run(f"{what}, {name}", name, f"{name} is not installed here")
 
 

@@ -27,6 +27,8 @@ def case_budgets(
     reference: Run | None,
     results: Mapping[Key, Trace],
     simulate: Simulate,
+    *,
+    named: str = "",
 ) -> dict[tuple[str, str, str], ErrorBudget]:
     """Return the budget of each run and reference: by name of the case, label and label of the reference.
 
@@ -53,7 +55,7 @@ def case_budgets(
                 continue
             found = {
                 model: horizon
-                for model in references_of(case, run, label, reference)
+                for model in references_of(case, run, label, reference, named=named)
                 if (horizon := _agreement(case, results[case.name, model], trajectory)) is not None
             }
             if not found:

@@ -10,10 +10,16 @@ import pandas as pd
 
 from rockwobble.models import Case, Run, Suite, Trace
 
-from ..runs.choice import default_runs, own_model, references_of, require_runnable, run_labels
+from ..runs.choice import (
+    default_runs,
+    own_model,
+    references_of,
+    require_runnable,
+)
 from ..runs.execution import Job, open_trace_cache, simulate_all
+from ..runs.labels import labels_beside_references
 from ..runs.progress import ProgressCallback
-from ..storage.files import require_writable
+from ..storage.manifest import require_writable
 from ..storage.provenance import package_versions
 from ..traces.trajectory import External, read_trajectories
 from .case_budgets import case_budgets
@@ -88,23 +94,25 @@ def compare(
     """
     if out is not None:
         require_writable(out)
+    if until is not None and not until > 0.0:
+        raise ValueError(f"until must be positive [s], got {until!r}")
     cases = case_or_suite.cases if isinstance(case_or_suite, Suite) else (case_or_suite,)
     chosen = _runs(case_or_suite, runs, needed=not (external := tuple(external)))
     for case in cases:
         for run in (*chosen, *(() if reference is None else (reference,))):
             require_runnable(case, run)
-    labels = run_labels(chosen)
-    brought = read_trajectories(external, cases, taken=labels)
+    labels, named = labels_beside_references(chosen, reference)
     by_label = dict(zip(labels, chosen, strict=True))
-    held_against = Run(None, "recess") if reference is None else reference
-    jobs = _jobs(cases, by_label, reference, also=(held_against,) if brought else ())
+    held_against = {named or "recess model": Run(None, "recess") if reference is None else reference}
+    jobs = _jobs(cases, by_label, reference, named, also=held_against if external else {})
+    brought = read_trajectories(external, cases, taken={label for _, label in jobs})
     with nullcontext() if resume is None else open_trace_cache(resume, KIND) as cache:
 
         def run_all(jobs: list[Job]) -> list[Trace]:
             return simulate_all(jobs, workers=workers, progress=progress, cache=cache)
 
         found = dict(zip(jobs, run_all(list(jobs.values())), strict=True))
-        budgets = case_budgets(cases, by_label, reference, found, run_all) if budget else {}
+        budgets = case_budgets(cases, by_label, reference, found, run_all, named=named) if budget else {}
 
         def copy_of(case: Case, run: Run) -> Trace:
             # milliseconds: not worth a process, nor a word about its progress
@@ -114,11 +122,12 @@ def compare(
             _row(case, name, found, label, run, budgets.get((case.name, label, name)), copy_of, until)
             for case in cases
             for label, run in by_label.items()
-            for name in references_of(case, run, label, reference)
+            for name in references_of(case, run, label, reference, named=named)
         ]
     rows += [
-        external_row(cases[0], found[name, str(held_against)], label, trajectory, until=until)
+        external_row(cases[0], other, found[name, other], label, trajectory, until=until)
         for (name, label), trajectory in brought.items()
+        for other in held_against
     ]
     table = pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))
     comparison = Comparison(
@@ -135,14 +144,20 @@ def compare(
 
 
 def _jobs(
-    cases: Iterable[Case], runs: Mapping[str, Run], reference: Run | None, *, also: Iterable[Run]
+    cases: Iterable[Case],
+    runs: Mapping[str, Run],
+    reference: Run | None,
+    named: str,
+    *,
+    also: Mapping[str, Run],
 ) -> dict[tuple[str, str], Job]:
     """Return what has to run, by name of the case and label: references, own models, then the runs."""
     jobs: dict[tuple[str, str], Job] = {}
     for case in cases:
-        needed = {str(run): run for run in also}
+        needed = dict(also)
         for label, run in runs.items():
-            needed |= {**references_of(case, run, label, reference), str(own_model(run)): own_model(run)}
+            needed |= references_of(case, run, label, reference, named=named)
+            needed[str(own_model(run))] = own_model(run)
         jobs |= {(case.name, label): Job(case=case, run=run, label=label) for label, run in needed.items()}
     for case in cases:
         jobs |= {(case.name, label): Job(case=case, run=run, label=label) for label, run in runs.items()}

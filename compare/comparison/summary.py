@@ -181,6 +181,7 @@ def _divergence(trial: Trace, horizon: Agreement, prediction: Prediction) -> str
 
 def external_row(
     case: Case,
+    name: str,
     reference: Trace,
     label: str,
     trial: Trace,
@@ -194,7 +195,7 @@ def external_row(
     verdict = judge(trial, reference, case)
     row = summary_row(
         case,
-        str(reference.run),
+        name,
         reference,
         label,
         trial,

@@ -42,7 +42,7 @@ def _work(motion: GroundMotion, time: FloatArray, place: FloatArray) -> float:
     Between two samples the mean acceleration is exact; its slope meets the change of velocity,
     which adds (a1 - a0)(v1 - v0) h/12.
     """
-    if len(time) < 3:
+    if len(time) < 2:
         return 0.0
     work = 0.0
     step = np.diff(time)

@@ -240,19 +240,26 @@ def own_model(run: Run) -> Run:
     return Run(None, _OWN_MODELS.get(run.support, "recess"))
 
 
-def references_of(case: Case, run: Run, label: str, reference: Run | None = None) -> dict[str, Run]:
+def references_of(
+    case: Case, run: Run, label: str, reference: Run | None = None, *, named: str = ""
+) -> dict[str, Run]:
     """Return what a run is held against, by label: `reference`, or what its support asks for.
 
+    The reference is called `named`, by default as it calls itself.
+
     A run in a recess is held against the recess model; one on flat ground against that and the flat-ground
-    model; one in a ring against the recess model and itself at half its step.
+    model; one in a ring against the recess model and itself at half its step, or, where that is sought,
+    at half the default step.
     """
     recess = Run(None, "recess")
     if reference is not None:
-        chosen = {str(reference): reference}
+        chosen = {named or str(reference): reference}
     elif run.support == "flat":
         chosen = {str(model): model for model in (recess, Run(None, "flat"))}
     elif run.support == "ring":
-        chosen = {str(recess): recess, f"{label}, half the step": _finer(case, run)}
+        # the step of a run that seeks its own is not known beforehand
+        half = "half the default step" if isinstance(run.time_step, str) else "half the step"
+        chosen = {str(recess): recess, f"{label}, {half}": _finer(case, run)}
     else:
         chosen = {str(recess): recess}
     return {name: other for name, other in chosen.items() if other != run}
@@ -264,28 +271,3 @@ def _finer(case: Case, run: Run) -> Run:
         step = REFERENCE_TIME_STEP * froude_scale(case.cylinder.semidiagonal, case.gravity).time
     settings = {name: value for name, value in run.settings.items() if name not in STEP_SETTINGS}
     return Run(run.engine, run.support, 0.5 * step, **settings)
-
-
-def _step_label(time_step: float | str) -> str:
-    return time_step if isinstance(time_step, str) else f"{time_step:g} s"
-
-
-def run_labels(runs: Sequence[Run]) -> tuple[str, ...]:
-    """Return a label for each run: engine and support, and as much more as tells them apart."""
-    labels = [str(run) for run in runs]
-    if len(set(labels)) < len(labels):
-        labels = [
-            f"{label} {_step_label(run.time_step)}" if run.time_step and labels.count(label) > 1 else label
-            for label, run in zip(labels, runs, strict=True)
-        ]
-    if len(set(labels)) < len(labels):
-        labels = [
-            " ".join([label, *(f"{key}={value}" for key, value in run.settings.items())])
-            if labels.count(label) > 1
-            else label
-            for label, run in zip(labels, runs, strict=True)
-        ]
-    for label in labels:
-        if labels.count(label) > 1:
-            raise ValueError(f"the runs of a comparison must differ, got {label!r} twice")
-    return tuple(labels)

@@ -17,7 +17,7 @@ _PART = ".part"
 _LOCK = ".lock"
 
 
-def require_writable(folder: str | Path) -> Path:
+def require_folder(folder: str | Path) -> Path:
     """Return `folder` as a path if files can be written there, and leave no trace.
 
     A folder that does not exist yet is one that can be made: its nearest ancestor decides.
@@ -68,7 +68,7 @@ def replace_files(folder: str | Path, contents: Mapping[str, bytes]) -> None:
     path = Path(folder)
     streams = {path / name: content for name, content in contents.items() if _is_stream(path / name)}
     if len(streams) < len(contents):
-        require_writable(path)
+        require_folder(path)
     beside: dict[Path, Path] = {}
     try:
         path.mkdir(parents=True, exist_ok=True)
@@ -124,7 +124,7 @@ def sole_writer(folder: Path) -> Iterator[None]:
     ValueError
         If another process holds it.
     """
-    path = require_writable(folder)
+    path = require_folder(folder)
     path.mkdir(parents=True, exist_ok=True)
     try:
         import fcntl

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 from rockwobble.models import plain_json
 
-from .files import replace_files, write_whole
+from .files import replace_files, require_folder, write_whole
 from .parquet_file import pack
 from .provenance import code_digests, commit, package_versions, processor
 
@@ -96,6 +96,34 @@ def made_now(
         headline=dict(headline or {}),
         about=dict(about or {}),
     )
+
+
+def require_writable(folder: str | Path) -> Path:
+    """Return `folder` as a path if results can be written there, and leave no trace: asked before a run.
+
+    Parameters
+    ----------
+    folder : str or Path
+        One that does not exist yet is made later.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    ValueError
+        If something else is in the way, nothing may be written there, or its manifest.json is none of ours.
+    """
+    path = require_folder(folder)
+    try:
+        _read_all(path)
+    except ValueError:
+        raise ValueError(
+            f"the output folder must have no {MANIFEST} but one of rockwobble, got {path / MANIFEST}: "
+            "move it away, or choose another folder"
+        ) from None
+    return path
 
 
 def write_results(

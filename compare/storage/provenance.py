@@ -7,6 +7,7 @@ import importlib.metadata
 import importlib.util
 import platform
 import subprocess
+import sys
 from functools import cache
 from pathlib import Path
 
@@ -76,7 +77,21 @@ def reduced_makers() -> dict[str, str]:
 def engine_makers(*engines: str) -> dict[str, str]:
     """Return versions and code on which the runs of engines depend."""
     packages = engine_packages()
-    return _makers(("rockwobble", "numpy", *(packages.get(name, name) for name in engines)), "multibody")
+    own = _makers(
+        ("rockwobble", "numpy", *(packages[name] for name in engines if name in packages)), "multibody"
+    )
+    return own | {f"engine {name}": _of_another_package(name) for name in engines if name not in packages}
+
+
+@cache
+def _of_another_package(name: str) -> str:
+    """Version of an engine that another package declares, and a hash of the folder of its module."""
+    from rockwobble.multibody.engines.registry import find_engine
+
+    engine = find_engine(name)
+    module = sys.modules[type(engine).__module__]
+    place = Path(str(module.__file__))
+    return f"{engine.version()}, {_digest_of(place.parent if module.__package__ else place)}"
 
 
 def _makers(packages: tuple[str, ...], folder: str) -> dict[str, str]:
@@ -89,8 +104,15 @@ def _source_digest(folder: str) -> str:
     """Hash of the sources of one folder: in a checkout they change without a change of version."""
     found = importlib.util.find_spec(f"rockwobble.{folder}")  # importing it would load the compiler
     assert found is not None
-    place = Path(str(found.origin)).parent
+    return _digest_of(Path(str(found.origin)).parent)
+
+
+def _digest_of(place: Path) -> str:
     digest = hashlib.sha256()
-    for path in sorted(place.rglob("*.py")):
-        digest.update(f"{path.relative_to(place).as_posix()}\0".encode() + path.read_bytes())
+    # the scenes of an engine are sources, too
+    found = (
+        [place] if place.is_file() else [path for path in place.rglob("*") if path.suffix in (".py", ".xml")]
+    )
+    for path in sorted(found):
+        digest.update(f"{path.relative_to(place.parent).as_posix()}\0".encode() + path.read_bytes())
     return digest.hexdigest()[:16]

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Cylinder
-from rockwobble.multibody.recording.passes import passes_between, turning_points
+from rockwobble.multibody.recording.passes import TurningPoint, passes_between, turning_points
 
 from ..runs.execution import SAMPLE_STEP
 from .file import Array
@@ -60,7 +60,12 @@ def peak(poses: Poses) -> float:
 def passes(poses: Poses, start: float, stands: float) -> pd.DataFrame:
     """Tilt minima between two maxima; one next to a guessed change of azimuth is not resolved."""
     points = turning_points(poses.time, poses.tilt, poses.rolling_angle)
-    found = passes_between([point for point in points if point.time >= start], stands)
+    if poses.tilt[0] > stands and poses.tilt[0] >= poses.tilt[1]:  # released at rest: a maximum
+        time, tilt, angle = (float(each[0]) for each in (poses.time, poses.tilt, poses.rolling_angle))
+        points.insert(0, TurningPoint(time=time, tilt=tilt, rolling_angle=angle, is_maximum=True))
+    found = passes_between(
+        [point for point in points if point.time >= min(start, float(poses.time[0]))], stands
+    )
     guesses = poses.time[~poses.followed]
     near = 1.5 * float(np.median(np.diff(poses.time)))
     names = ("time", "minimum_tilt", "angle_of_turn")

@@ -60,6 +60,8 @@ class External:
     def __post_init__(self) -> None:
         object.__setattr__(self, "path", Path(self.path))
         object.__setattr__(self, "label", self.label or self.path.stem)
+        if self.label.splitlines() != [self.label]:
+            raise ValueError(f"the label of a trajectory must be one line, got {self.label!r}")
         if not math.isfinite(self.time_offset):
             raise ValueError(f"time_offset must be finite [s], got {self.time_offset!r}")
         if self.noise is not None and not 0.0 < self.noise < 0.5 * math.pi:

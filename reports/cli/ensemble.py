@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -82,6 +83,7 @@ def ensemble(
                 stated = rw.read_suite(suite)
                 print(f"Suite {suite}: {len(stated.cases)} members")
             else:
+                _refuse_ignored(context, synthetic, p695)
                 case = problem.case()
                 # each engine and its own model, and a perturbed copy of that
                 methods = [rw.Run(None, "recess"), *(_runs(engine, support, time_step, stated=False) or ())]
@@ -93,6 +95,8 @@ def ensemble(
                 for line in describe(case)[:1] if motions else describe(case):
                     print(line)
                 print(f"Members: {len(motions) or members}, {_source(synthetic, p695, perturbation)}")
+            if engine == ["none"] and (support or time_step is not None):
+                raise ValueError("--support and --time-step belong to engines, got one with --engine none")
             runs = _runs(engine, support, time_step, stated=suite is not None)
         from rockwobble.compare.storage.manifest import made_now
         from rockwobble.compare.studies.ensemble.study import KIND
@@ -124,6 +128,18 @@ def ensemble(
         tables = {"members": found.members, "methods": found.methods, "contrasts": found.contrasts}
         sheets = {f"{name}.csv": table.to_csv(index=False).encode() for name, table in tables.items()}
         show_and_write(out, ensemble_page(found, manifest), manifest, tables, sheets)
+
+
+def _refuse_ignored(context: typer.Context, synthetic: float | None, far_field: float | None) -> None:
+    """Refuse what the members are not made of."""
+    for option, value in (("--synthetic", synthetic), ("--p695", far_field)):
+        if value is not None:
+            if not 0.0 < value < math.inf:
+                raise ValueError(f"{option} must be positive and finite [g tan alpha], got {value:g}")
+            ignored = {"perturbation", "record", "record_x", "record_y", "record_z", "units", "scale"}
+            if option == "--p695":
+                ignored |= {"members", "seed"}
+            refuse(context, ignored, f"does not go with {option}: its motions are the members")
 
 
 def _motions(

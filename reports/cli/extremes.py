@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rockwobble.compare.storage.files import require_writable
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_write
@@ -37,7 +37,7 @@ def extremes(
     """
     with interruptible(out):
         with user_input():
-            require_writable(out)
+            rc.require_writable(out)
         from rockwobble.compare.studies.extremes.study import KIND, measure_extremes
 
         from ..pages.extremes import extremes_page

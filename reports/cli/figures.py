@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rockwobble.compare.storage.files import require_writable
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_write
@@ -32,7 +32,7 @@ def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-figures")) -> 
         with user_input():
             if not _LEAST_GRID <= grid <= _MOST_GRID:
                 raise ValueError(f"--grid must be from {_LEAST_GRID} to {_MOST_GRID}, got {grid}")
-            require_writable(out)
+            rc.require_writable(out)
         from ..paper.page import compute, paper_page
 
         with shown_progress("figures") as tell:

@@ -6,6 +6,8 @@ import math
 from pathlib import Path
 from typing import Annotated
 
+import typer
+
 import rockwobble as rw
 import rockwobble.compare as rc
 
@@ -15,6 +17,7 @@ from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 from .inputs.grid import values_of
 from .inputs.method_values import settings
+from .inputs.problem import refuse
 from .inputs.several import DEFAULT_COUNT, cylinders_of, methods_of, motions_of
 from .sweep import Scheduler, Workers
 
@@ -94,6 +97,7 @@ Seed = Annotated[int, _statistics("Of everything random.")]
 
 
 def fragility(
+    context: typer.Context,
     semidiagonal: Annotated[float, options.body("R, in m.")] = 6.0,
     tan_alpha: Annotated[float, options.TAN_ALPHA] = 0.2,
     cylinder: Cylinders = None,
@@ -140,6 +144,18 @@ def fragility(
     with interruptible(out):
         with user_input():
             rc.require_writable(out)
+            if seed < 0:
+                raise ValueError(f"--seed must not be negative, got {seed}")
+            if synthetic is not None and synthetic < 2:
+                raise ValueError(f"--synthetic must be at least 2 motions, got {synthetic}")
+            if cylinder:
+                refuse(
+                    context, {"semidiagonal", "tan_alpha"}, "does not go with --cylinder, which states both"
+                )
+            if not engine:
+                refuse(context, {"step_factor"}, "belongs to engines, give --engine as well")
+            if model and not {"planar-x", "planar-y", "worse-plane"} & set(model):
+                refuse(context, {"restitution"}, "belongs to planar models, give --model planar-x or another")
             bodies = cylinders_of(cylinder, semidiagonal, tan_alpha)
             motions, source = motions_of(p695, records, synthetic, units, seed)
             methods = methods_of(

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rockwobble.compare.storage.files import require_writable
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_write
@@ -33,7 +33,7 @@ def tradeoff(quick: Quick = False, out: options.Out = Path("rockwobble-tradeoff"
     """
     with interruptible():
         with user_input():
-            require_writable(out)
+            rc.require_writable(out)
         from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
 
         from ..pages.tradeoff import tradeoff_page

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rockwobble.compare.storage.files import require_writable
+import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_write
@@ -43,7 +43,7 @@ def validity(
         with user_input():
             if workers is not None and workers < 1:
                 raise ValueError(f"--workers must be at least 1, got {workers}")
-            require_writable(out)
+            rc.require_writable(out)
         from rockwobble.compare.studies.validity.extent import FULL, QUICK
         from rockwobble.compare.studies.validity.study import measure_all, validity_of
 

@@ -38,7 +38,9 @@ def pictures(found: Fragility) -> list[Picture]:
     """Return the ratios of the medians, and the curves of each cylinder."""
     ratios = _ratios(found)
     curves = [
-        _curves(found, str(name), place) for place, name in enumerate(found.about["cylinders"], start=1)
+        _curves(found, str(name), place)
+        for place, name in enumerate(found.about["cylinders"], start=1)
+        if ((found.counts["cylinder"] == name) & (found.counts["limit"] == OVERTURNED)).any()
     ]
     return ([ratios] if ratios else []) + curves
 

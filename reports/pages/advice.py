@@ -55,7 +55,8 @@ def advice_values(facts: Mapping[str, Any]) -> dict[str, Any]:
 
     groups = []
     for row in facts["answers"]:
-        group = {**row, "name": GROUPS[row["group"]], "short": SHORT[row["group"]]}
+        name = "copies of this release" if facts["released"] else GROUPS[row["group"]]  # it has no others
+        group = {**row, "name": name, "short": SHORT[row["group"]]}
         for share in ("05", "50", "95"):
             group |= {f"{name}_{share}": value for name, value in moved(row[f"peak_tilt_{share}"]).items()}
         groups.append(group)

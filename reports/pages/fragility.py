@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from typing import Any
 
 from rockwobble.compare import Fragility
@@ -92,6 +93,6 @@ def _states(found: Fragility) -> list[dict[str, Any]]:
         key = str(row["cylinder"]), str(row["method"])
         made = rows.setdefault(key, {"cylinder": key[0], "method": key[1]})
         low, high = (float(ends[end][key[0]]) for end in ("min", "max"))
-        bounds = {ALWAYS: f"< {low:.3g}", NEVER: f"> {high:.3g}"}
-        made[str(row["limit"])] = bounds.get(str(row["kind"]), row["median"])
+        bounds = {0.0: f"< {low:.3g}", math.inf: f"> {high:.3g}"}
+        made[str(row["limit"])] = bounds.get(float(row["median"]), row["median"])
     return list(rows.values())

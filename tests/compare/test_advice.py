@@ -142,6 +142,7 @@ def test_trust_turns_on_what_comes_before_the_largest_tilt(methods, data, peak, 
         (False, NEAR * 0.99, [0.0], "care"),
         (False, NEAR, [0.0], "good"),
         (False, math.nan, [], "good"),
+        (False, math.nan, [math.nan, 0.5], "bad"),  # a group whose members all failed hides no other
     ],
 )
 def test_overturning_is_likely_near_or_far(fell, lowest, chances, grade):
@@ -241,6 +242,13 @@ def test_a_cylinder_at_rest_needs_nothing():
     assert found.grades == {}
     assert facts["uplift_factor"] == pytest.approx(uplift_factor(SHORT, 0.2, 9.81) / 0.3)
     assert plain_json.loads(plain_json.dumps(facts))["moves"] is False
+
+
+def test_what_only_the_vertical_moves_needs_no_recess() -> None:
+    shaking = np.zeros((301, 3))
+    shaking[:, 2] = 0.5 * np.sin(0.09 * np.arange(301))
+    found = advise(Case(PIER, GroundMotion(shaking, 0.01, "up")), count=20)
+    assert (found.recess(), found.facts()["moves"]) == (None, False)
 
 
 def test_a_fall_that_the_record_does_not_see_is_a_fall_in_all_that_is_run():

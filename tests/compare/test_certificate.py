@@ -284,12 +284,6 @@ def test_findings_become_claims_and_what_did_not_run_is_said() -> None:
         claims_of([finding("exact", "period", 1.0, 1e-12)])
 
 
-def test_a_file_that_is_no_certificate_is_refused(tmp_path: Path) -> None:
-    (tmp_path / "other.json").write_text('{"kind": "something"}')
-    with pytest.raises(ValueError, match="no certificate"):
-        read_certificate(tmp_path / "other.json")
-
-
 def test_the_fingerprint_is_of_the_model_that_is_installed() -> None:
     one = next(fingerprint(reduced_method()))
     short = short_cases()[0]

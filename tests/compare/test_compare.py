@@ -9,9 +9,9 @@ import pytest
 from rockwobble.compare import SUMMARY_COLUMNS, compare
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.runs import execution
-from rockwobble.compare.runs.execution import Job, simulate_all
+from rockwobble.compare.runs.execution import Job, simulate_all, simulate_run
 from rockwobble.compare.storage.manifest import read_manifests
-from rockwobble.models import Case, Diagnostic, GroundMotion, InitialState, Run, Suite
+from rockwobble.models import Case, Cylinder, Diagnostic, GroundMotion, InitialState, Run, Suite
 from rockwobble.models.traces.lost_trace import lost_trace
 
 ROUNDING = 1e-12
@@ -221,6 +221,37 @@ def test_a_folder_that_cannot_be_written_is_refused_before_anything_runs(monkeyp
     (tmp_path / "taken").write_text("")
     with pytest.raises(ValueError, match="must be a folder"):
         compare(case, runs=[Run("mujoco", "recess")], workers=1, out=tmp_path / "taken")
+    (tmp_path / "manifest.json").write_text('{"name": "app"}')
+    with pytest.raises(ValueError, match=r"output folder must have no manifest\.json but one of rockwobble"):
+        compare(case, runs=[Run("mujoco", "recess")], workers=1, out=tmp_path)
+
+
+@pytest.mark.parametrize("until", [0.0, -1.0, math.nan])
+def test_a_window_that_is_none_is_refused_before_anything_runs(
+    monkeypatch: pytest.MonkeyPatch, case: Case, until: float
+) -> None:
+    monkeypatch.setattr(execution, "run_job", lambda _: pytest.fail("it ran"))
+    with pytest.raises(ValueError, match=r"until must be positive \[s\], got "):
+        compare(case, runs=[Run("mujoco", "recess")], workers=1, until=until)
+
+
+@pytest.mark.parametrize(
+    ("run", "reference"),
+    [
+        (Run(None, "recess", rtol=1e-3), None),
+        (Run(None, "recess", plane=0.0), Run(None, "recess", plane=1.5)),
+        (Run("mujoco", "recess", 1e-3), Run("mujoco", "recess", 5e-4)),
+        (Run("mujoco", "recess", 1e-3), Run(None, "recess", rtol=1e-3)),
+    ],
+)
+def test_no_run_is_held_against_itself(cylinder: Cylinder, run: Run, reference: Run | None) -> None:
+    pushed = Case(cylinder, GroundMotion([[3.0, 1.0], [3.0, 1.0]], 0.5, "push"))
+    found = compare(pushed, runs=[run], reference=reference, workers=1)
+    (row,) = found.summary.to_dict("records")
+    assert row["run"] != row["reference"]
+    for label, wanted in ((row["run"], run), (row["reference"], reference or Run(None, "recess"))):
+        assert found.traces["push", label].peak_tilt == simulate_run(pushed, wanted).peak_tilt
+    assert row["peak_tilt_difference"] != 0.0
 
 
 def test_the_same_run_in_other_processes_is_the_same(cylinder):

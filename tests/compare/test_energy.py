@@ -7,7 +7,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.energy import energy_loss
-from rockwobble.models import Case, GroundMotion, InitialState, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 # the path is known at samples 0.01 s apart: what the fourth differences leave of the work
 SAMPLING = 2e-5
@@ -55,3 +55,10 @@ def test_energies_that_say_nothing(make_trace):
     assert energy_loss(make_trace(time, np.zeros_like(time)), None) == 0.0
     broken = make_trace(time, np.zeros_like(time), energy=np.full_like(time, np.nan))
     assert math.isnan(energy_loss(broken, None))
+
+
+def test_the_work_between_two_samples_counts(cylinder: Cylinder) -> None:
+    push = GroundMotion([[3.0, 0.0], [3.0, 0.0]], 0.3)
+    trace = reduced.simulate(Case(cylinder, push, duration=0.003))
+    assert len(trace.time) == 2
+    assert energy_loss(trace, push) == pytest.approx(0.0, abs=0.01)  # of 1, which is all of the motion's

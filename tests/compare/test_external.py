@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -234,5 +236,17 @@ def test_labels_and_cases_must_be_clear(guided, save):
     path = save(angles(guided["release"]))
     with pytest.raises(ValueError, match="each run must have its own label, got 'table' twice"):
         compare(RELEASE, runs=[], external=[path, path])
+    with pytest.raises(ValueError, match="each run must have its own label, got 'recess model' twice"):
+        compare(RELEASE, runs=[], external=[External(path=path, label="recess model")])
     with pytest.raises(ValueError, match="a trajectory belongs to one case, got 2 cases"):
         compare(Suite([RELEASE, SHAKEN], []), external=[path])
+
+
+def test_half_turns_of_planar_motion_are_passes_and_no_turn(save: Callable[..., Path]) -> None:
+    start = InitialState(0.5 * PIER.alpha)
+    case = Case(PIER, initial=start, duration=6.0, name="planar")
+    planar = reduced.simulate(Case(PIER, initial=start, duration=6.0), sample_step=0.005)
+    path = save(pd.DataFrame({"time": planar.time, "tilt [rad]": planar.signed_tilt, "azimuth [rad]": 0.0}))
+    assert len(read_trajectory(path, case).passes) == len(planar.passes) == 2
+    (row,) = compare(case, runs=[], external=[path], workers=1).summary.to_dict("records")
+    assert row["turn_difference"] == pytest.approx(0.0, abs=1e-6)  # as above

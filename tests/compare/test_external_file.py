@@ -80,6 +80,8 @@ def test_a_file_that_is_not_there_and_options_out_of_range(tmp_path):
         read_trajectory(tmp_path / "none.csv", RELEASE)
     with pytest.raises(ValueError, match="time_offset must be finite"):
         External(path=tmp_path / "x.csv", time_offset=math.nan)
+    with pytest.raises(ValueError, match=r"label of a trajectory must be one line, got 'a\\nb'"):
+        External(path=tmp_path / "x.csv", label="a\nb")
     with pytest.raises(ValueError, match="noise must be above 0"):
         External(path=tmp_path / "x.csv", noise=0.0)
 

@@ -2,11 +2,14 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 from rockwobble.compare.runs.execution import Job, job_fingerprint
+from rockwobble.compare.storage import provenance
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 
@@ -95,3 +98,51 @@ def test_code_and_versions_are_in_the_name(monkeypatch):
     monkeypatch.undo()
     monkeypatch.setattr("rockwobble.compare.storage.provenance._version", lambda package: "0")
     assert job_fingerprint(job()) != before
+
+
+def test_scenes_of_an_engine_are_code(tmp_path: Path) -> None:
+    scene = tmp_path / "scenes" / "recess.xml"
+    scene.parent.mkdir()
+    (tmp_path / "engine.py").write_text("")
+    digests = []
+    for text in ("<mujoco/>", "<mujoco model='other'/>", "<mujoco/>"):
+        scene.write_text(text)
+        digests.append(provenance._digest_of(tmp_path))
+    assert digests[0] == digests[2] != digests[1]
+
+
+SOURCE = """
+from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
+
+class Own(MujocoEngine):
+    def version(self):
+        return "1"
+"""
+
+
+@pytest.fixture
+def own_engine(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Callable[[str], dict[str, str]]:
+    """Install an engine of another package with this source, and return what makes its runs."""
+    about = tmp_path / "external-1.0.dist-info"
+    about.mkdir()
+    (about / "METADATA").write_text("Metadata-Version: 2.1\nName: external\nVersion: 1.0\n")
+    (about / "entry_points.txt").write_text("[rockwobble.engines]\nown = own_engine:Own\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+
+    def made(source: str) -> dict[str, str]:
+        (tmp_path / "own_engine.py").write_text(source)
+        monkeypatch.delitem(sys.modules, "own_engine", raising=False)
+        provenance._of_another_package.cache_clear()  # kept for a process, in which no code changes
+        return provenance.engine_makers("own")
+
+    return made
+
+
+def test_an_engine_of_another_package_that_changed_makes_other_runs(
+    own_engine: Callable[[str], dict[str, str]],
+) -> None:
+    first, changed, again = (own_engine(source) for source in (SOURCE, SOURCE + "# changed\n", SOURCE))
+    assert first == again != changed
+    assert first["engine own"].startswith("1, ")
+    assert {"numpy", "rockwobble"} <= first.keys()
+    assert "mujoco" not in first

@@ -135,10 +135,21 @@ def test_contrasts_are_ratios_of_the_fits_and_alike_methods_are_equal(found):
         assert row["ratio_low"] <= row["ratio"] <= row["ratio_high"]
     twice = found.runs[found.runs["method"] == "recess model"]
     both = pd.concat([twice, twice.assign(method="the same")])
-    same = fragility_of(both, found.points, found.about).contrasts
-    row = same[same["limit"] == "0.5 alpha"].iloc[0]
+    same = fragility_of(both, found.points, found.about).contrasts.set_index("limit")
+    row = same.loc["1 alpha"]
     assert (row["ratio"], row["ratio_low"], row["ratio_high"], row["verdict"]) == (1.0, 1.0, 1.0, "within")
     assert row["within"] == 0.0
+    # in some resamples only one level has runs of both kinds: a median may be anywhere beside it
+    row = same.loc["0.5 alpha"]
+    assert (row["ratio"], row["ratio_high"], row["verdict"]) == (1.0, pytest.approx(3.2 / 2.5), "undecided")
+
+
+def test_a_first_method_that_always_fails_leaves_the_others(found: Fragility) -> None:
+    runs = found.runs[found.runs["method"].isin(["recess model", "planar x"])].copy()
+    runs.loc[runs["method"] == "recess model", ["outcome", "peak_tilt"]] = ["failed", NAN]
+    assert set(fragility_of(runs, found.points, found.about).fits["method"]) == {"planar x"}
+    with pytest.raises(ValueError, match=rf"got {12 * COUNT} runs that all failed"):
+        fragility_of(runs[runs["outcome"] == "failed"], found.points, found.about)
 
 
 def test_pairs_leave_out_what_failed_by_either(found):

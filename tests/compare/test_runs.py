@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import importlib.util
+from typing import Literal
 
 import pytest
 
@@ -13,7 +14,8 @@ from rockwobble.compare import (
     reserved_engines,
     runs_here,
 )
-from rockwobble.compare.runs.choice import references_of, require_runnable, run_labels, unsupported
+from rockwobble.compare.runs.choice import references_of, require_runnable, unsupported
+from rockwobble.compare.runs.labels import labels_beside_references, run_labels
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 
@@ -176,3 +178,22 @@ def test_labels_tell_runs_apart_with_as_little_as_possible():
 def test_the_same_run_twice_is_refused():
     with pytest.raises(ValueError, match=r"must differ, got 'mujoco flat' twice"):
         run_labels([Run("mujoco", "flat"), Run("mujoco", "flat")])
+
+
+@pytest.mark.parametrize("step", ["auto", "extrapolated"])
+def test_half_of_a_step_that_is_sought_is_half_of_the_default(
+    case: Case, step: Literal["auto", "extrapolated"]
+) -> None:
+    found = references_of(case, Run("mujoco", "ring", step), "mujoco ring")
+    assert list(found) == ["recess model", "mujoco ring, half the default step"]
+
+
+def test_a_run_has_a_label_beside_a_reference_and_models_of_its_name() -> None:
+    fine, coarse = Run("mujoco", "recess", 5e-4), Run("mujoco", "recess", 1e-3)
+    assert labels_beside_references([coarse], fine) == (("mujoco recess 0.001 s",), "mujoco recess 0.0005 s")
+    assert labels_beside_references([coarse], None) == (("mujoco recess",), "")
+    loose = Run(None, "recess", rtol=1e-3)
+    assert labels_beside_references([loose, coarse], loose) == (
+        ("recess model rtol=0.001", "mujoco recess"),
+        "recess model rtol=0.001",
+    )

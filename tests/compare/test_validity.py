@@ -17,8 +17,9 @@ from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.validity.extent import FULL, LARGEST_PEAK, QUICK
 from rockwobble.compare.studies.validity.limits import LIMITS, limits_of
-from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
+from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts, vertical
 from rockwobble.compare.studies.validity.limits.engine import damping
+from rockwobble.compare.studies.validity.limits.needs import friction
 from rockwobble.compare.studies.validity.limits.numbers import first_failing, reached, up_to
 from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case
 from rockwobble.compare.studies.validity.parts import PARTS, part_named
@@ -159,6 +160,25 @@ def test_a_cell_is_of_records_signed_and_knows_who_overturns(tables: Tables) -> 
     assert found["flat_ratio"] == pytest.approx(0.5)
     assert found["flat_90"] == math.inf
     assert found["copy_ratio"] == pytest.approx(1.0)
+
+
+def test_the_vertical_component_counts_what_it_alone_overturns() -> None:
+    fell = 0.5 * math.pi / math.atan(0.2)
+    recess, other = [0.5] * 8 + [0.5, fell, fell], [0.55] * 8 + [fell, 0.5, fell]
+    table = pd.DataFrame({"tan_alpha": 0.2, "recess": recess, "vertical": other, "copy": recess})
+    found = vertical({"peaks": table})
+    assert (found["cells"], found["vertical_compared"]) == (11.0, 10.0)  # twice overturned there is no ratio
+    assert (found["vertical_05"], found["vertical_95"]) == (0.0, math.inf)
+    assert found["vertical_half"] == pytest.approx(1.1)
+
+
+def test_a_friction_that_slips_at_one_release_does_not_hold() -> None:
+    slip = pd.DataFrame(
+        {"share": [0.5, 0.9, 1.0] * 2, "slip": [0.0, 0.0, 0.0, 0.1, 0.1, 0.0], "tilt_rms": 0.0}
+    )
+    needed = pd.DataFrame({"tan_alpha": [0.2], "friction": [0.2]})
+    found = friction({"free_response": needed, "slip": slip, "peaks": needed})
+    assert (found["slips_at"], found["holds_from"]) == (0.9, 1.0)
 
 
 def test_soft_contact_is_told_by_its_damping_and_failures_are_counted(tables: Tables) -> None:

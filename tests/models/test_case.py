@@ -92,3 +92,9 @@ def test_refuses_a_suite_of_nothing_and_two_cases_of_one_name() -> None:
         Suite([], [Run("mujoco", "recess")])
     with pytest.raises(ValueError, match=r"^the cases of a suite must have different names, got 'b' twice$"):
         Suite([Case(PIER, SHORT, name=name) for name in "abcb"], [])
+
+
+@pytest.mark.parametrize("name", ["a\nb", "a\u2028b", "a\n"])
+def test_the_name_of_a_case_is_one_line(name: str) -> None:
+    with pytest.raises(ValueError, match="the name of a case must be one line, got"):
+        Case(PIER, SHORT, name=name)

@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import pytest
 
-from rockwobble.compare.check import LAYERS
+import rockwobble.compare.certificate as certificate_package
+from rockwobble.compare.certificate.fingerprint import Method
+from rockwobble.compare.check import LAYERS, Bench, Finding
+from rockwobble.compare.check.engines import rings, time_steps, traces
+from rockwobble.models import Case, Trace
+from rockwobble.models import Run as ModelRun
+from rockwobble.models.traces.lost_trace import lost_trace
+from rockwobble.multibody.engines.registry import standard_engines
 from rockwobble.reports.cli.main import main
 
 pytest_plugins = ["pytester"]
@@ -73,6 +80,31 @@ def test_bad_input_is_said_before_anything_runs(run: Run) -> None:
     assert run("check", "--model", "nothing") == 2
     assert run("check", "--model", "a:b", "--trajectory", "c.csv") == 2
     assert run("check", "--model", "a:b", "--only", "exact") == 2
+
+
+@pytest.mark.parametrize("engine", standard_engines())
+def test_a_certificate_of_an_engine_holds_claims_of_no_other(
+    run: Run, monkeypatch: pytest.MonkeyPatch, engine: str
+) -> None:
+    """What would be claimed, where every run of an engine fails at once."""
+    found: list[Finding] = []
+
+    def make(_: Method, findings: Iterable[Finding]) -> dict[str, list[str]]:
+        found.extend(findings)
+        return {"claims": [], "fingerprint": []}
+
+    def lost(case: Case, run: ModelRun, **_: object) -> Trace:
+        return lost_trace(case, run, "not run")
+
+    monkeypatch.setattr(certificate_package, "certify", make)
+    monkeypatch.setattr(Bench, "traces", lambda _, jobs: [lost(job.case, job.run) for job in jobs])
+    for part in (rings, time_steps, traces):
+        monkeypatch.setattr(part, "simulate_run", lost)
+    assert run("certify", "--engine", engine, "--only", "traces", "--only", "agreement") == 0
+    words = [f"{finding.name} {finding.part}" for finding in found]
+    (other,) = set(standard_engines()) - {engine}
+    assert sum(engine in each for each in words) > 20
+    assert not [each for each in words if other in each]
 
 
 def test_pytest_has_an_item_for_the_certificate(pytester: pytest.Pytester, certificate: Path) -> None:

@@ -44,7 +44,7 @@ def row(**values):
     return SimpleNamespace(**(common | no_verdict() | AGREES | values))
 
 
-def said(given):
+def said(given, end=math.nan):
     return finding(
         Finding(
             row=given,
@@ -53,7 +53,7 @@ def said(given):
             reference_uplifted=True,
             reason=reason(given, 8.0),
             bound=within(given),
-            end=math.nan,
+            end=end,
         )
     )
 
@@ -185,3 +185,13 @@ def test_a_divergence_of_an_external_trajectory_has_its_own_reasons():
     assert "not chance but the body, its start, the ground motion or the method differs" in none
     assert "resolve" not in text + none
     assert "then they diverge: see the likely mistake." in said(row(diverged=True, **WRONG))
+
+
+def test_a_file_that_ends_early_is_not_the_whole_run() -> None:
+    assert headline(table(row()), 20.0) == (
+        "Brought from elsewhere, table follows the recess model within 1 % of alpha to its end (8.0 s), "
+        "in tilt, azimuth and path."
+    )
+    words = said(row(reference_peak_tilt=0.5), end=8.0)
+    assert "to its end, at 8 s of the run (3 passes by upright); what comes after is not known." in words
+    assert "Peak tilt is 0.25 alpha up to there against 0.5 alpha of the whole run." in words

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,10 +12,11 @@ import pytest
 from browser import complaints, needs_chromium
 from showing import shows_itself
 
-from rockwobble.compare import Fragility
+from rockwobble.compare import Fragility, fragility, synthetic_motions
 from rockwobble.compare.storage.manifest import Manifest, read_manifests, read_results
 from rockwobble.compare.studies.fragility.questions import main_contrasts
-from rockwobble.compare.studies.fragility.result import KIND, fragility_of, stored_fragility
+from rockwobble.compare.studies.fragility.result import KIND, fragility_of, manifest_of, stored_fragility
+from rockwobble.models import Cylinder
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.fragility import pictures
@@ -23,6 +25,7 @@ from rockwobble.reports.pages.fragility import fragility_page
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.registry import redrawn
 
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 LEVELS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 MOTIONS = 15
 SMALL = [
@@ -210,6 +213,23 @@ def test_a_cloud_by_another_measure(tmp_path, capsys, monkeypatch):
     assert set(counts["method"]) == {"planar x", "planar y", "worse plane"}
 
 
+def test_a_cloud_of_motions_of_one_peak_has_a_count_for_each_scale() -> None:
+    motions = synthetic_motions(4, peak=1.0, seed=1)
+    cloud = fragility(PIER, motions, methods=["recess"], scales=[2.0, 6.0], resamples=2, workers=1)
+    assert cloud.counts.loc[cloud.counts["limit"] == "overturned", "n"].tolist() == [4, 4]
+    assert "as they are, times 2, 6;" in fragility_page(cloud, manifest_of(cloud)).markdown()
+
+
+def test_without_overturning_the_page_has_the_other_limits_alone() -> None:
+    motions = synthetic_motions(3, peak=1.0, seed=1)
+    options: dict[str, Any] = {"methods": ["recess"], "levels": [2.0, 4.0], "limits": ["uplift"]}
+    lifted = fragility(PIER, motions, resamples=20, workers=1, **options)
+    words = fragility_page(lifted, manifest_of(lifted)).markdown()
+    assert "uplift" in words
+    assert "## Medians of overturning" not in words
+    assert pictures(lifted) == []
+
+
 def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(p695.importlib.util, "find_spec", lambda name: None)
     p695.p695_far_field.cache_clear()
@@ -237,7 +257,14 @@ def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsy
         (["--levels", "2", "--cloud", "1"], "got both"),
         (["--limit", "tilt"], "a limit must be one of uplift"),
         (["--measure", "pgd"], "an intensity must be one of"),
-        (["--synthetic", "1"], "at least 2 members"),
+        (["--synthetic", "1"], "--synthetic must be at least 2 motions, got 1"),
+        (["--seed", "-1"], "--seed must not be negative, got -1"),
+        (
+            ["--cylinder", "pier=6,0.2", "--tan-alpha", "0.3"],
+            "does not go with --cylinder, which states both",
+        ),
+        (["--step-factor", "2"], "belongs to engines, give --engine as well"),
+        (["--model", "recess", "--restitution", "0.5"], "belongs to planar models, give --model planar-x"),
         (["--restitution", "soft"], 'must be a number or "momentum"'),
     ],
 )

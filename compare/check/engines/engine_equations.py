@@ -28,8 +28,8 @@ ACCELERATION = Bound(1e-3, "contact of steps of 1e-4 s, over 0.1 s", "g/R")
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this half."""
     cases = list(_cases())
-    yield from not_here("accelerations")
-    engines = engines_here()
+    yield from not_here("accelerations", bench.engines)
+    engines = engines_here(bench.engines)
     jobs = [Job(case=case, run=bench.adjust(Run(engine, "recess"))) for engine in engines for case in cases]
     found = iter(bench.traces(jobs))
     models = {case.name: bench.solve(case, rtol=1e-12) for case in cases}

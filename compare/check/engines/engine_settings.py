@@ -31,8 +31,8 @@ def check(bench: Bench) -> Iterator[Finding]:
         return
     exact = bench.solve(CASE, rtol=1e-11)
     alpha = CASE.cylinder.alpha
-    yield from not_here("contact and time step")
-    for engine in engines_here():
+    yield from not_here("contact and time step", bench.engines)
+    for engine in engines_here(bench.engines):
         run = bench.adjust(Run(engine, "recess", STEP))
         step = run.time_step if isinstance(run.time_step, float) else STEP
         finer = Run(engine, "recess", 0.5 * step, **run.settings)

@@ -42,7 +42,7 @@ def check(bench: Bench) -> Iterator[Finding]:
         for cylinder, tilt, inclination in LEANS
     }
     yield worst_of("clearance that a ring needs", errors, REACH, "geometry of a ring")
-    for engine in engines_here():
+    for engine in engines_here(bench.engines):
         yield from _falls(bench, engine)
         if "ring" in find_engine(engine).supports:
             yield from _rolls_out(bench, engine)

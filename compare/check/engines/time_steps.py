@@ -38,7 +38,7 @@ ENDS = Bound(0.0, "the run must reach its end")
 
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part; the part before says which engines are not installed."""
-    for engine in engines_here():
+    for engine in engines_here(bench.engines):
         yield from _shaken(bench, bench.adjust(Run(engine, "flat", "extrapolated")))
         yield from _shaken(bench, bench.adjust(Run(engine, "flat", "auto")))
         yield from _released(bench, bench.adjust(Run(engine, "recess", "extrapolated")))

@@ -76,8 +76,8 @@ SLIDE = Bound(0.05, "closed form; contact chatters as it slides: 0.01 and 0.03 w
 
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this layer."""
-    yield from not_here("fields of a trace")
-    for engine in engines_here():
+    yield from not_here("fields of a trace", bench.engines)
+    for engine in engines_here(bench.engines):
         for support in ("recess", "flat"):
             yield from _shaken(bench, bench.adjust(_run(engine, support, SHAKEN)))
         yield from _uplift(bench, engine)

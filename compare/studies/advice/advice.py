@@ -175,8 +175,10 @@ class Advice(Shown):
             which the rim stands out farthest, and clearance, by which a vertical wall of this height must
             stand back [m].
         """
+        if self.support == "flat" or not len(self.answers):  # nothing was run of what never moves
+            return None
         rows = self.answers[np.isfinite(self.answers["peak_tilt_95"])]
-        if self.support == "flat" or not len(rows):
+        if not len(rows):
             return None
         cylinder, tilt = self.case.cylinder, float(rows["peak_tilt_95"].max())
         theta, b = tilt * cylinder.alpha, cylinder.base_radius

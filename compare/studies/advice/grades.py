@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from typing import Literal
 
@@ -81,7 +82,7 @@ def grade_overturning(overturned: bool, lowest: float, chances: Iterable[float])
     chances : iterable of float
         Share of each group of members that overturns.
     """
-    worst = max(chances, default=0.0)
+    worst = max((chance for chance in chances if not math.isnan(chance)), default=0.0)
     if overturned or worst > UNSAFE:
         return "bad"
     return "care" if worst > 0.0 or lowest < NEAR else "good"

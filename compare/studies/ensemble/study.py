@@ -13,8 +13,9 @@ import pandas as pd
 from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.shown import Shown
 
-from ...runs.choice import default_runs, own_model, require_runnable, run_labels
+from ...runs.choice import default_runs, own_model, require_runnable
 from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
+from ...runs.labels import run_labels
 from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Results

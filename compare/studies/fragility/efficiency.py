@@ -29,6 +29,8 @@ def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFram
     for cylinder in blocks.cylinders:
         if (cylinder, method) not in blocks.runs:
             continue
+        if np.isnan(blocks.exceeded(cylinder, method, OVERTURNED)).all():  # every run failed
+            continue
         measures = [measure for measure in MEASURES if blocks.known(cylinder, measure)]
         samples = {m: blocks.sample(cylinder, method, OVERTURNED, m) for m in measures}
         found = {m: sample.curves() for m, sample in samples.items()}

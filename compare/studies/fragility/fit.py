@@ -36,7 +36,10 @@ class Curves:
     ----------
     centre : ndarray, shape (B,)
         Logarithm of the median intensity: infinite where no run exceeds the limit, minus infinity where all
-        do, between the two intensities where the counts are separated; NaN where the share does not grow.
+        do; where the counts are separated between the two intensities, or that of the level with both, but
+        infinite where the median lies beyond the levels; NaN where the share does not grow.
+    low, high : ndarray, shape (B,)
+        Between which the median lies, as far as the counts tell: both the centre where there is a curve.
     dispersion : ndarray, shape (B,)
         Standard deviation of the logarithm; 0 where separated, NaN where there is no curve.
     kinds : ndarray of int, shape (B,)
@@ -44,6 +47,8 @@ class Curves:
     """
 
     centre: Array
+    low: Array
+    high: Array
     dispersion: Array
     kinds: NDArray[np.int64]
 
@@ -90,10 +95,10 @@ def _fit(x: Array, n: Array, k: Array, solve: Callable[[Array, Array, Array], tu
     kinds[highest_miss <= lowest_hit] = KINDS.index(SEPARATED)
     kinds[~misses.any(axis=1)] = KINDS.index(ALWAYS)
     kinds[~hits.any(axis=1)] = KINDS.index(NEVER)
-    with np.errstate(invalid="ignore"):
-        middle = 0.5 * (highest_miss + lowest_hit)
+    middle, low, high = _between(x, n, k, highest_miss, lowest_hit)
     known = {NEVER: math.inf, ALWAYS: -math.inf, FALLING: math.nan}
     centre = np.select([kinds == KINDS.index(kind) for kind in known], list(known.values()), middle)
+    low, high = (np.where(kinds == KINDS.index(FALLING), math.nan, end) for end in (low, high))
     dispersion = np.where(kinds == KINDS.index(SEPARATED), 0.0, math.nan)
     free = np.flatnonzero(kinds == KINDS.index(FITTED))
     if len(free):
@@ -103,8 +108,29 @@ def _fit(x: Array, n: Array, k: Array, solve: Callable[[Array, Array, Array], tu
         with np.errstate(divide="ignore", invalid="ignore"):
             centre[free] = np.where(rising, shift - spread * a / b, math.nan)
             dispersion[free] = np.where(rising, spread / b, math.nan)
+        low[free] = high[free] = centre[free]
         kinds[free[~rising]] = KINDS.index(FALLING)
-    return Curves(centre=centre, dispersion=dispersion, kinds=kinds)
+    return Curves(centre=centre, low=low, high=high, dispersion=dispersion, kinds=kinds)
+
+
+def _between(
+    x: Array, n: Array, k: Array, highest_miss: Array, lowest_hit: Array
+) -> tuple[Array, Array, Array]:
+    """Return the median (B,) of counts without a curve, and between which logarithms of intensities it lies.
+
+    One level may have runs of both kinds: where more than half of them exceed the limit the median is no
+    higher, where fewer do no lower, and how far from it nobody knows but by the levels beside it.
+    """
+    there, at = n > 0.0, (x == lowest_hit[:, None]) & (highest_miss == lowest_hit)[:, None]
+    over = np.sign((at * (2.0 * k - n)).sum(axis=1))  # 0 where no level has both
+    low = _highest(x, there & (x <= highest_miss[:, None]) & ~(at & (over > 0.0)[:, None]))
+    high = _lowest(x, there & (x >= lowest_hit[:, None]) & ~(at & (over < 0.0)[:, None]))
+    with np.errstate(invalid="ignore"):
+        middle = np.where(highest_miss == lowest_hit, lowest_hit, 0.5 * (highest_miss + lowest_hit))
+    middle = np.where(
+        np.isinf(low) & (over > 0.0), low, np.where(np.isinf(high) & (over < 0.0), high, middle)
+    )
+    return middle, low, high
 
 
 def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> dict[str, float]:

@@ -34,7 +34,11 @@ def island_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
         whole, early = sample.curves(), stopped.curves()
         with np.errstate(invalid="ignore"):
             value = float(early.centre[0] - whole.centre[0])
-            drawn = stopped.curves(weights).centre - sample.curves(weights).centre
+            many_early, many = stopped.curves(weights), sample.curves(weights)
+            low, high = many_early.low - many.high, many_early.high - many.low
+            # of the same counts the same curve, wherever it lies
+            same = (stopped.counts(weights)[2] == sample.counts(weights)[2]).all(axis=1)
+            low, high = (np.where(same, 0.0, end) for end in (low, high))
         found = islands(sample.y)
         rows.append(
             {
@@ -46,7 +50,7 @@ def island_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
                 "islands": int(found.sum()),
                 "median": float(np.exp(whole.centre[0])),
                 "median_incremental": float(np.exp(early.centre[0])),
-                **interval(value, drawn, motions).exponential().columns("bias"),
+                **interval(value, low, motions, above=high).exponential().columns("bias"),
             }
         )
     return pd.DataFrame(rows)

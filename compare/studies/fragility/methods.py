@@ -9,7 +9,7 @@ from typing import Any
 
 from rockwobble.models import Run
 
-from ...runs.choice import run_labels
+from ...runs.labels import run_labels
 
 # The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
 WORSE_PLANE = "worse-plane"

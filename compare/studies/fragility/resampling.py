@@ -18,6 +18,8 @@ from .fit import Curves, fit_curve, fit_curves
 
 Array = NDArray[np.float64]
 
+# of logarithms of intensities: motions of one peak differ by the rounding of their samples
+_SAME = 1e-9
 # numbers held at once in a fit of many resamples
 _MOST_NUMBERS = 2_000_000
 
@@ -48,7 +50,7 @@ class Sample:
         weights = np.ones((1, len(self.y))) if weights is None else weights
         known = (~np.isnan(self.y)).astype(np.float64)
         over = np.where(known > 0.0, self.y, 0.0)
-        if np.ptp(self.x, axis=0).max(initial=0.0) == 0.0:
+        if np.ptp(self.x, axis=0).max(initial=0.0) <= _SAME:
             return self.x[0], weights @ known, weights @ over
         there = known.ravel() > 0.0
         motion = np.repeat(np.arange(len(self.y)), self.y.shape[1])[there]
@@ -65,6 +67,8 @@ class Sample:
         parts = [fit_curves(*self.counts(weights[i : i + size])) for i in range(0, len(weights), size)]
         return Curves(
             centre=np.concatenate([part.centre for part in parts]),
+            low=np.concatenate([part.low for part in parts]),
+            high=np.concatenate([part.high for part in parts]),
             dispersion=np.concatenate([part.dispersion for part in parts]),
             kinds=np.concatenate([part.kinds for part in parts]),
         )
@@ -79,16 +83,17 @@ def expanded_shares(motions: int) -> tuple[float, float]:
     return low, 1.0 - low
 
 
-def interval(value: float, drawn: Array, motions: int) -> Interval:
-    """Return the interval of a number from its resamples (B,).
+def interval(value: float, drawn: Array, motions: int, *, above: Array | None = None) -> Interval:
+    """Return the interval of a number from its resamples (B,), or from what bounds them below and above.
 
     Infinite ones are values like others. One that is not known, because the resample has no curve, may be
     anything: it counts as minus infinity at the lower end and as infinity at the upper one.
     """
     low, high = expanded_shares(motions)
     ends = []
-    for share, unknown in ((low, -math.inf), (high, math.inf)):
-        ordered = np.sort(np.where(np.isnan(drawn), unknown, drawn))
+    uppers = drawn if above is None else above
+    for share, unknown, bounds in ((low, -math.inf, drawn), (high, math.inf, uppers)):
+        ordered = np.sort(np.where(np.isnan(bounds), unknown, bounds))
         # the nearest to the outside: between minus infinity and a number lies nothing
         place = share * (len(ordered) - 1)
         ends.append(float(ordered[math.floor(place) if unknown < 0.0 else math.ceil(place)]))

@@ -96,6 +96,8 @@ class Fragility(Shown):
 
 def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, about: Mapping[str, Any]) -> Fragility:
     """Return what runs say, of the plan that `about` states."""
+    if (runs["outcome"] == "failed").all():
+        raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")
     blocks = blocks_of(runs, points, about["limits"], str(about["measure"]))
     weights = resamples(len(blocks.motions), int(about["resamples"]), int(about["seed"]))
     fitted, drawn = curves_of(blocks), curves_of(blocks, weights)

@@ -52,7 +52,7 @@ def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, 
         x, n, k = sample.counts()
         centre, dispersion = float(found.centre[0]), float(found.dispersion[0])
         kind = KINDS[found.kinds[0]]
-        median = interval(centre, many.centre, motions)
+        median = interval(centre, many.low, motions, above=many.high)
         spread = spread_interval(dispersion, many.dispersion, motions)
         held = goodness(x, n[0], k[0], centre, dispersion) if kind == FITTED else _NO_FIT
         rows.append(
@@ -131,10 +131,17 @@ def contrast_table(
 
 
 def _differences(pair: Sequence[Curves]) -> Array:
-    """Differences (2, B) of the logarithms of the medians, and of the dispersions, of two sets of curves."""
+    """Differences (4, B): of the medians' logarithms, of dispersions, and the first's least and largest."""
     first, second = pair
     with np.errstate(invalid="ignore"):  # of two curves that are never reached there is none
-        return np.array([first.centre - second.centre, first.dispersion - second.dispersion])
+        return np.array(
+            [
+                first.centre - second.centre,
+                first.dispersion - second.dispersion,
+                first.low - second.high,
+                first.high - second.low,
+            ]
+        )
 
 
 def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, Any]:
@@ -142,13 +149,14 @@ def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dic
 
     Parameters
     ----------
-    found, drawn : ndarray, shapes (2, 1) and (2, B)
-        Differences of the logarithms of the medians and of the dispersions, and those of the resamples.
+    found, drawn : ndarray, shapes (4, 1) and (4, B)
+        Differences of the logarithms of the medians, of the dispersions, and the least and the largest that
+        the first may be, and those of the resamples.
     motions : int
     margin : float
     """
-    (centre, spread), (many, spreads) = found[:, 0], drawn
-    ratio = interval(float(centre), many, motions).exponential()
+    (centre, spread), (spreads, lows, highs) = found[:2, 0], drawn[1:]
+    ratio = interval(float(centre), lows, motions, above=highs).exponential()
     return {
         **ratio.columns("ratio"),
         **interval(float(spread), spreads, motions).columns("dispersion_difference"),

@@ -11,8 +11,9 @@ from rockwobble.models.shown import Brief
 from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
-from ...runs.choice import require_runnable, run_labels
+from ...runs.choice import require_runnable
 from ...runs.execution import Job, job_fingerprint, makers_of, run_job
+from ...runs.labels import run_labels
 from ...storage.fingerprint import fingerprint
 
 # An engine's run takes seconds, a reduced one milliseconds.

@@ -19,7 +19,7 @@ FLAT = 0.5
 def reaches(line: pd.DataFrame, target: float) -> pd.DataFrame:
     """Return the points of a line below an error that hold it at the next finer value of the knob, too.
 
-    An error that happens to be small at one value does not count.
+    An error that happens to be small at one value does not count, but at the finest, which none follows.
     """
     ordered = line.sort_values("value", ascending=False)
     good = (ordered["error"] <= target).to_numpy()

@@ -73,7 +73,7 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
 
 def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
     """Yield the lines that echo what will run, and how long it may take."""
-    from rockwobble.compare.runs.choice import run_labels
+    from rockwobble.compare.runs.labels import run_labels
 
     groups = Counter(group_of(case.name) for case in cases)
     yield f"Suite {name}: {len(cases)} cases x {len(runs)} runs = {len(cases) * len(runs)} runs of engines"

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from rockwobble.compare.storage.files import require_writable
+import rockwobble.compare as rc
 
 from ...console.terminal import interruptible, user_input
 from ...pages.registry import KINDS, redrawn
@@ -31,7 +31,7 @@ def report(folder: Folder, out: Out = None) -> None:
     with interruptible(), user_input():
         from rockwobble.compare.storage.manifest import read_manifests, write_pages
 
-        require_writable(place)
+        rc.require_writable(place)
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
         if not kinds:
             raise ValueError(f"pages are drawn of {', '.join(KINDS)}; {folder} holds none of them")

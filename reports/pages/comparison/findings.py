@@ -158,7 +158,9 @@ def _group(rows: pd.DataFrame, length: float) -> dict[str, object]:
         "diverged": bool(rows["diverged"].any()),
         "shortest": float(rows["agreement_time"].min()),
         "longest": float(rows["agreement_time"].max()),
-        "length": length,
+        # the file of an external trajectory may end before the run does
+        "length": min(length, float(rows["agreement_time"].max())) if external else length,
+        "short": external and float(rows["agreement_time"].max()) < length * (1.0 - 1e-9),
         "scope": scope(first) if external else "",
     }
 

@@ -220,7 +220,31 @@ def read(path: Path) -> Certificate:
         raise ValueError(f"{path} cannot be read: {getattr(error, 'strerror', None) or error}") from None
     if not isinstance(found, dict) or found.get("kind") != KIND:
         raise ValueError(f"{path} is no certificate: its kind must be {KIND!r}")
+    missing = [
+        name for name, kind in (("format", int), ("method", dict)) if not isinstance(found.get(name), kind)
+    ]
+    if missing:
+        raise ValueError(f"{path} is no whole certificate: it has no {missing[0]}")
     return found
+
+
+def require_whole(found: Certificate, path: Path) -> None:
+    """Refuse a certificate of this format whose fingerprint lacks something.
+
+    Raises
+    ------
+    ValueError
+        With what is missing.
+    """
+    entries = found.get("fingerprint")
+    if not isinstance(entries, list) or not all(isinstance(one, dict) for one in entries):
+        raise ValueError(f"{path} is no whole certificate: its fingerprint must be a list of cases")
+    for place, one in enumerate(entries, start=1):
+        missing = sorted({*Entry.__annotations__} - {"copies", *one})
+        if missing:
+            raise ValueError(
+                f"{path} is no whole certificate: case {place} of its fingerprint has no {missing[0]}"
+            )
 
 
 def main(arguments: list[str]) -> int:
@@ -236,8 +260,14 @@ def main(arguments: list[str]) -> int:
     if old["method"] != new["method"]:
         print(f"{CHANGED}: the method was {old['method']}, and is {new['method']}")
         return 1
-    if old["format"] != new["format"] or len(old["fingerprint"]) != len(new["fingerprint"]):
+    if old["format"] != new["format"] or len(old.get("fingerprint", ())) != len(new.get("fingerprint", ())):
         print("the certificates are of other formats or have other cases: make both anew", file=sys.stderr)
+        return 2
+    try:
+        for one, argument in zip((old, new), arguments, strict=True):
+            require_whole(one, Path(argument))
+    except ValueError as error:
+        print(error, file=sys.stderr)
         return 2
     answer = compare(old["fingerprint"], new["fingerprint"])
     print(answer.words())

@@ -158,11 +158,12 @@ def vertical(tables: Tables) -> Numbers:
         other = column(table, name)
         theirs = _fell(other, tan_alpha)
         logarithms = log_ratios(other, recess, theirs, fell)
-        finite = logarithms[np.isfinite(logarithms)]
+        # of those that overturn by one alone the ratio is infinite or zero, by both there is none
         numbers |= {
-            f"{name}_05": math.exp(quantile(finite, 0.05)),
-            f"{name}_half": math.exp(quantile(finite, 0.5)),
-            f"{name}_95": math.exp(quantile(finite, 0.95)),
+            f"{name}_compared": float((~np.isnan(logarithms)).sum()),
+            f"{name}_05": math.exp(reached(logarithms, 0.05)),
+            f"{name}_half": math.exp(reached(logarithms, 0.5)),
+            f"{name}_95": math.exp(reached(logarithms, 0.95)),
             f"{name}_fell": float(theirs.sum()),
             f"{name}_other": float((theirs != fell).sum()),
         }

@@ -29,6 +29,7 @@ def friction(tables: Tables) -> Numbers:
     held, nine, beyond = _moderate(tan_alpha, need)
     share, slipped = column(slip, "share"), column(slip, "slip") > SLIPPED
     slips_at, sticks = largest(share[slipped]), share[~slipped]
+    sticks = sticks[~(sticks <= slips_at)]  # what slips at one release does not hold at all
     nearest = slip[share == slips_at]
     return {
         "free_response": largest(column(free, "friction") / column(free, "tan_alpha")),
