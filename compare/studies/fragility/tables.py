@@ -125,7 +125,8 @@ def contrast_table(
             row = contrast_row(*found[-1], len(blocks.motions), margin)
             rows.append({"cylinder": cylinder, **about, **row})
         if len(found) == len(blocks.cylinders) > 1:
-            mean, means = (np.mean(each, axis=0) for each in zip(*found, strict=True))
+            with np.errstate(invalid="ignore"):  # of one beyond all levels and one below there is none
+                mean, means = (np.mean(each, axis=0) for each in zip(*found, strict=True))
             rows.append({"cylinder": ALL, **about, **contrast_row(mean, means, len(blocks.motions), margin)})
     return pd.DataFrame(rows)
 
