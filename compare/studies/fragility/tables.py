@@ -131,9 +131,7 @@ def contrast_table(
 
 
 def _differences(pair: Sequence[Curves]) -> Array:
-    """Differences (4, B) of two sets of curves: of the logarithms of the medians, of the dispersions, and
-    between which the first lies.
-    """
+    """Differences (4, B) of the logarithms of the medians, of the dispersions, and ends of the first."""
     first, second = pair
     with np.errstate(invalid="ignore"):  # of two curves that are never reached there is none
         return np.array(
