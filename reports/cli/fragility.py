@@ -82,7 +82,10 @@ Restitution = Annotated[
 ]
 StepFactor = Annotated[
     float,
-    options.method("On the default time step of the engines: a share of many runs needs less than a trace."),
+    options.method(
+        "On the default time step of the engines, in place of --time-step: a share of many runs needs less "
+        "than a trace."
+    ),
 ]
 Limits = Annotated[
     list[str] | None,
