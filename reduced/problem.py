@@ -7,6 +7,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, fields
 from functools import cached_property
+from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -229,6 +230,9 @@ def make_problem(
     """Check the options of a run and put them together; see `simulate`."""
     if support not in SUPPORTS:
         raise ValueError(f"support must be one of {', '.join(SUPPORTS)} for a reduced model, got {support!r}")
+    for name, value in (("rtol", rtol), ("rest_tilt", rest_tilt), ("plane", plane or 0.0)):
+        if not isinstance(value, Real):
+            raise ValueError(f"{name} must be a number, got {value!r}")  # noqa: TRY004 (bad input)
     if not 1e-13 <= rtol <= 1e-2:
         raise ValueError(f"rtol must be from 1e-13 to 1e-2, got {rtol!r}")
     if not 0.0 <= rest_tilt <= LARGEST_REST_TILT:

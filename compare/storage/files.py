@@ -47,6 +47,20 @@ def require_folder(folder: str | Path) -> Path:
     return path
 
 
+def require_file(what: str, path: Path) -> None:
+    """Refuse a place where a file cannot be written, and leave no trace.
+
+    Raises
+    ------
+    ValueError
+        If it is a folder, or in one that does not exist or cannot be written.
+    """
+    if path.is_dir() or not path.absolute().parent.is_dir():
+        raise ValueError(f"{what} must be a file in a folder that exists, got {path}")
+    if not _is_stream(path):
+        require_folder(path.resolve().parent)
+
+
 def replace_files(folder: str | Path, contents: Mapping[str, bytes]) -> None:
     """Write files into `folder`, all of them or, where one cannot be written, none.
 

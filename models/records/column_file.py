@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .component import NUMBER, Component, parse_number
-from .units import stated_unit
+from .units import require_seconds, stated_unit
 
 _COMMENT_MARKS = "#%!"
 # printed times are rounded, as 0.0167 for 1/60: a sample may stand this much of a step off its place
@@ -32,7 +32,7 @@ def read_columns(path: Path, lines: list[str]) -> Component:
 def read_table(path: Path, lines: list[str]) -> list[Component]:
     """Read lines of time [s] and the accelerations x, y and, where there is one, z.
 
-    Where the last line of the header names the columns x, y, z, their order is that of the names.
+    Where a line of the header names the columns x, y, z, their order is that of the names.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def _rows(
     for number, line in enumerate(lines, start=1):
         text = line.replace('"', "").strip()
         cells = _cells(text)
-        is_data = text[:1] not in _COMMENT_MARKS and (rows or any(map(_is_number, cells)))
+        is_data = text[:1] not in _COMMENT_MARKS and (rows or _begins_data(cells))
         if _has_decimal_comma(text) and (is_data or not rows):
             raise ValueError(
                 f"{path.name}, line {number}: numbers must have a decimal point, got a comma in {text[:60]!r}"
@@ -76,14 +76,20 @@ def _rows(
 def _component(
     path: Path, header: list[str], rows: list[list[float]], numbers: list[int], place: int
 ) -> Component:
+    require_seconds(path, header)
     time, values = np.array([row[0] for row in rows]), np.array([row[place] for row in rows])
     return Component(path, values, _even_step(path, time, numbers), stated_unit(path, header), float(time[0]))
 
 
 def _places(path: Path, header: list[str], width: int) -> list[int]:
     """Return the columns of x, y and z: by their names where the header has them, else by their order."""
-    names = [re.split(r"[\s\[(]", cell.lower())[0] for cell in _cells(header[-1])] if header else []
-    if len(names) != width or not set(names[1:]) & set("xyz"):
+    for line in reversed(header):
+        names = _names(line, width)
+        axes = set(names[1:]) & set("xyz")
+        # a sentence further up may hold an x, too
+        if len(names) == width and axes and (axes == set(names[1:]) or line is header[-1]):
+            break
+    else:
         return list(range(1, width))
     wanted = "xyz"[: width - 1]
     if sorted(names[1:]) != list(wanted):
@@ -91,6 +97,19 @@ def _places(path: Path, header: list[str], width: int) -> list[int]:
             f"{path.name}: its columns must be time, {', '.join(wanted)}, got {', '.join(names)}"
         )
     return [names.index(axis) for axis in wanted]
+
+
+def _names(line: str, width: int) -> list[str]:
+    """Return the first words of the cells of a header line, without units in brackets."""
+    cells = _cells(re.sub(r"\[[^\]]*\]|\([^)]*\)", " ", line.lower()))
+    names = [re.split(r"[\s\[(]", cell)[0] for cell in cells]
+    return names[1:] if len(names) > width and not names[0].strip(_COMMENT_MARKS) else names
+
+
+def _begins_data(cells: list[str]) -> bool:
+    """Return whether a line is the first of the data, even if damaged, and no heading with a year in it."""
+    numbers = [_is_number(cell) for cell in cells]
+    return any(numbers) and (numbers[0] or 2 * sum(numbers) >= len(numbers))
 
 
 def _cells(text: str) -> list[str]:

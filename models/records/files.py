@@ -110,8 +110,10 @@ def _lines(path: Path) -> list[str]:
         raise ValueError(f"the record {path} is text in UTF-16: save it as UTF-8 or plain text")
     if b"\0" in content:
         raise ValueError(f"the record {path} is no text: it holds null bytes")
-    # utf-8-sig drops the byte-order mark that spreadsheets write
-    lines = content.decode("utf-8-sig", errors="replace").splitlines()
+    try:  # utf-8-sig drops the byte-order mark that spreadsheets write
+        lines = content.decode("utf-8-sig").splitlines()
+    except UnicodeDecodeError:  # an older file, whose m/s² is one byte shorter
+        lines = content.decode("cp1252", errors="replace").splitlines()
     if not any(line.strip() for line in lines):
         raise ValueError(f"the record {path} is empty")
     return lines

@@ -17,7 +17,12 @@ _SPELLINGS = {
 _UNIT_OF = {spelling: unit for unit, spellings in _SPELLINGS.items() for spelling in spellings.split()}
 # a word that can only be a unit, so that one which is not allowed is refused instead of overlooked
 _RATE = re.compile(r"[a-z]{1,3}/s(?:ec)?\S*", re.IGNORECASE)
-_WORD = r"([^\s,;()\[\]]+)"
+# parts of g, which no spelling above allows
+_PART = re.compile(r"%\s?g|m(?:illi-?)?g(?:al)?|[µμ]g", re.IGNORECASE)
+_OTHER_TIME = re.compile(
+    r"\b(?:time|t)\s*[\[(]\s*((?:m|milli|[uµμ]|micro)s(?:ec(?:ond)?s?)?|min(?:ute)?s?)\s*[\])]", re.IGNORECASE
+)
+_WORD = r"(%\s?g|[^\s,;()\[\]]+)"
 _PLACES = tuple(
     re.compile(place, re.IGNORECASE)
     for place in (
@@ -46,11 +51,25 @@ def stated_unit(path: Path, header: list[str]) -> str | None:
             unit = _UNIT_OF.get(word.lower())
             if unit is not None:
                 found[unit] = word
-            elif _RATE.fullmatch(word):
+            elif _RATE.fullmatch(word) or _PART.fullmatch(word):
                 raise ValueError(f"{path.name} is in {word[:20]}, allowed are {', '.join(UNITS)}")
     if len(found) > 1:
         raise ValueError(f"{path.name} states two units: {' and '.join(found.values())}")
     return next(iter(found), None)
+
+
+def require_seconds(path: Path, header: list[str]) -> None:
+    """Refuse times that the header states in another unit than seconds.
+
+    Raises
+    ------
+    ValueError
+        If it does, as "time [ms]".
+    """
+    for line in header:
+        other = _OTHER_TIME.search(line)
+        if other is not None:
+            raise ValueError(f"{path.name} gives times in {other[1]}, allowed is s")
 
 
 def factor(path: Path, stated: str | None, given: str | None) -> float:

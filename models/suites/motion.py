@@ -52,6 +52,8 @@ def build_motion(
         records[source] = _record(table, values, folder)
     motion = records[source]
     if "times_uplift" in values:
+        if motion.peak == 0.0:
+            raise KeyedError("times_uplift", "needs a horizontal acceleration to scale, got none")
         motion = motion.scaled(values["times_uplift"] * uplift / motion.peak)
     motion = motion.scaled(values.get("scale", 1.0))
     if "rotation_deg" in values:

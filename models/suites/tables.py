@@ -93,6 +93,8 @@ class MotionTable(_Table):
         self.refuse_others(kind)
         if kind == "record":
             _require_known("record", self.record, RECORDS)
+            if self.record == "p695" and not self.given("pair"):
+                raise KeyedError("pair", "must be given: 1 to 22")
         if kind == "x":
             for name in ("x", "y"):
                 if not self.given(name):
@@ -191,6 +193,13 @@ class RunTable(_Table):
     support: Texts = ["recess"]
     time_step: Annotated[tuple[TimeStep, ...] | None, BeforeValidator(_steps)] = None
     settings: dict[str, Any] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _settings_of_the_method(self) -> RunTable:
+        for name in self.settings:
+            if name in type(self).model_fields:
+                raise KeyedError(f"settings.{name}", "must be left out: it is a key of the run")
+        return self
 
 
 class BoundsTable(_Table):

@@ -59,7 +59,7 @@ def expanded(given: Any, check: Check = any_number) -> tuple[float, ...]:
     """
     if isinstance(given, dict):
         values = _range(given)
-        for value in (values[0], values[-1]):
+        for value in values:
             _require(check(value))
         return values
     if not isinstance(given, list):
@@ -84,10 +84,14 @@ def _number(given: Any, check: Check) -> float:
             "must be a number, a list, or a range such as { from = 1, to = 3, step = 0.5 }, "
             f"got {shown(given)}"
         )
-    if not math.isfinite(given):
-        raise ValueError(f"must be a finite number, got {given}")
-    _require(check(float(given)))
-    return float(given)
+    try:
+        value = float(given)
+    except OverflowError:  # a whole number of hundreds of digits
+        value = math.inf
+    if not math.isfinite(value):
+        raise ValueError(f"must be a finite number, got {shown(given)}")
+    _require(check(value))
+    return value
 
 
 def _require(complaint: str) -> None:

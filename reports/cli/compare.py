@@ -18,10 +18,8 @@ from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible, time_needed
 from .inputs.method_values import settings
-from .inputs.problem import Problem, states_problem
+from .inputs.problem import Problem, refuse_options_of_engines, states_problem
 from .inputs.suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
-
-ALL = "all"  # in place of the name of an engine
 
 
 @states_problem
@@ -59,6 +57,7 @@ def compare(
         with user_input():
             from rockwobble.compare.runs.choice import unable_engines
 
+            refuse_options_of_engines(context, engine)
             if suite is not None:
                 refuse_problem_options(context, suite)
                 cases, runs = _suite(suite, engine, support, time_step)
@@ -79,7 +78,7 @@ def compare(
             print(*describe(cases[0]), *time_needed(cases, runs), sep="\n")
         else:
             print(*describe_suite(suite, cases, runs), sep="\n")
-        if engine == [ALL]:
+        if engine == [options.ALL]:
             for reason in unable_engines(cases):
                 complain(reason)
         elif not engine and suite is None:
@@ -110,7 +109,7 @@ def _suite(
     from rockwobble.compare.runs.choice import all_runs
 
     suite = rw.read_suite(name)
-    if engines == [ALL]:
+    if engines == [options.ALL]:
         asked = supports or list(dict.fromkeys(run.support for run in suite.runs)) or None
         return list(suite.cases), [
             rw.Run(run.engine, run.support, time_step) for run in all_runs(suite.cases, asked)
@@ -123,11 +122,11 @@ def _runs(
 ) -> list[rw.Run]:
     from rockwobble.compare.runs.choice import all_runs
 
-    if engines == ["none"]:
+    if engines == [options.NO_ENGINE]:
         if not alone:
             raise ValueError("--engine none leaves nothing to compare, give a --trajectory as well")
         return []
-    every = engines == [ALL]
+    every = engines == [options.ALL]
     runs = all_runs([case], supports or None) if every else rc.default_runs(engines or None, supports or None)
     return [rw.Run(run.engine, run.support, time_step) for run in runs]
 

@@ -18,8 +18,8 @@ from ..console.terminal import command_line, interruptible, user_input
 from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible
-from .inputs.problem import Problem, refuse, states_problem
-from .inputs.suite_choice import refuse_problem_options
+from .inputs.problem import Problem, refuse, refuse_options_of_engines, states_problem
+from .inputs.suite_choice import chosen_runs, refuse_problem_options, without_missing
 
 _MEMBERS = {"members", "perturbation", "synthetic", "p695"}  # options that state them
 
@@ -65,8 +65,8 @@ def ensemble(
     """Hold the peak tilts of many members by each method against each other, member by member.
 
     Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly different starts. With
-    --synthetic or --p695 the members are ground motions, with a SUITE its cases. --engine none runs the
-    reduced models alone.
+    --synthetic or --p695 the members are ground motions, with a SUITE its cases, by its runs, among which
+    --engine and --support choose. --engine none runs the reduced models alone.
 
     Whatever ends it, the same command goes on where it stopped.
 
@@ -76,18 +76,22 @@ def ensemble(
     with interruptible(out):
         with user_input():
             rc.require_writable(out)
+            refuse_options_of_engines(context, engine)
+            if seed < 0:
+                raise ValueError(f"--seed must not be negative, got {seed}")
             stated: rw.Case | rw.Suite | list[rw.Case]
             if suite is not None:
                 refuse(context, _MEMBERS, f"does not go with a suite, got {suite}: its cases are the members")
                 refuse_problem_options(context, suite)
                 stated = rw.read_suite(suite)
+                runs = _runs(engine, support, time_step, stated)
                 print(f"Suite {suite}: {len(stated.cases)} members")
             else:
                 _refuse_ignored(context, synthetic, p695)
                 case = problem.case()
+                runs = _runs(engine, support, time_step, None)
                 # each engine and its own model, and a perturbed copy of that
-                methods = [rw.Run(None, "recess"), *(_runs(engine, support, time_step, stated=False) or ())]
-                require_feasible([case], methods, members=members, samples=False)
+                require_feasible([case], [rw.Run(None, "recess"), *runs], members=members, samples=False)
                 motions = _motions(case, members, synthetic, p695, seed)
                 # named by the motion alone: the others are all the same
                 each = [dataclasses.replace(case, name=motion.name, motion=motion) for motion in motions]
@@ -95,9 +99,6 @@ def ensemble(
                 for line in describe(case)[:1] if motions else describe(case):
                     print(line)
                 print(f"Members: {len(motions) or members}, {_source(synthetic, p695, perturbation)}")
-            if engine == ["none"] and (support or time_step is not None):
-                raise ValueError("--support and --time-step belong to engines, got one with --engine none")
-            runs = _runs(engine, support, time_step, stated=suite is not None)
         from rockwobble.compare.storage.manifest import made_now
         from rockwobble.compare.studies.ensemble.study import KIND
 
@@ -132,14 +133,13 @@ def ensemble(
 
 def _refuse_ignored(context: typer.Context, synthetic: float | None, far_field: float | None) -> None:
     """Refuse what the members are not made of."""
-    for option, value in (("--synthetic", synthetic), ("--p695", far_field)):
-        if value is not None:
-            if not 0.0 < value < math.inf:
-                raise ValueError(f"{option} must be positive and finite [g tan alpha], got {value:g}")
-            ignored = {"perturbation", "record", "record_x", "record_y", "record_z", "units", "scale"}
-            if option == "--p695":
-                ignored |= {"members", "seed"}
-            refuse(context, ignored, f"does not go with {option}: its motions are the members")
+    ignored = {"perturbation", "record", "record_x", "record_y", "record_z", "units", "scale"}
+    for option, peak, more in (("--synthetic", synthetic, set()), ("--p695", far_field, {"members", "seed"})):
+        if peak is None:
+            continue
+        if not 0.0 < peak < math.inf:
+            raise ValueError(f"{option} must be positive and finite [g tan alpha], got {peak:g}")
+        refuse(context, ignored | more, f"does not go with {option}: its motions are the members")
 
 
 def _motions(
@@ -157,13 +157,13 @@ def _motions(
 
 
 def _runs(
-    engines: list[str] | None, supports: list[str] | None, time_step: Any, *, stated: bool
-) -> list[rw.Run] | None:
-    """Return the runs of the options; None where those of a suite count."""
-    if engines == ["none"]:
+    engines: list[str] | None, supports: list[str] | None, time_step: Any, suite: rw.Suite | None
+) -> list[rw.Run]:
+    """Return the runs of the options, chosen among those of a suite."""
+    if engines == [options.NO_ENGINE]:
         return []
-    if stated and not (engines or supports or time_step):
-        return None
+    if suite is not None:
+        return without_missing(chosen_runs(suite, engines, supports, time_step), engines)
     chosen = rc.default_runs(engines or None, supports or None)
     return [rw.Run(run.engine, run.support, time_step) for run in chosen]
 

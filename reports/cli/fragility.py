@@ -82,7 +82,10 @@ Restitution = Annotated[
 ]
 StepFactor = Annotated[
     float,
-    options.method("On the default time step of the engines: a share of many runs needs less than a trace."),
+    options.method(
+        "On the default time step of the engines, in place of --time-step: a share of many runs needs less "
+        "than a trace."
+    ),
 ]
 Limits = Annotated[
     list[str] | None,
@@ -154,6 +157,8 @@ def fragility(
                 )
             if not engine:
                 refuse(context, {"step_factor"}, "belongs to engines, give --engine as well")
+            if time_step is not None:
+                refuse(context, {"step_factor"}, "does not go with --time-step, which states the step")
             if model and not {"planar-x", "planar-y", "worse-plane"} & set(model):
                 refuse(context, {"restitution"}, "belongs to planar models, give --model planar-x or another")
             bodies = cylinders_of(cylinder, semidiagonal, tan_alpha)

@@ -62,7 +62,10 @@ def advice_values(facts: Mapping[str, Any]) -> dict[str, Any]:
         groups.append(group)
     planar = [each["factor"] for name, each in facts["lowest"].items() if name in (PLANAR_X, PLANAR_Y)]
     known = [factor for factor in planar if math.isfinite(factor)]
+    # results of earlier versions do not say what moves the ground
+    unsaid = {"shaken": True, "has_vertical": bool(facts["vertical"] and facts["vertical"]["given"])}
     return {
+        **unsaid,
         **facts,
         "given": moved(facts["peak"]) if facts["moves"] and not facts["overturned"] else None,
         "groups": groups,

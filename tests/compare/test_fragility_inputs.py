@@ -78,7 +78,9 @@ def test_a_folder_of_records_with_its_table(tmp_path):
         ("x,north\n", "must have the columns x and y"),
         (f"x,y\n{east},\n", "line 2: both horizontal components"),
         (f"x,y,scale\n{east},{north},-1\n", "line 2: scale must be a positive number, got '-1'"),
-        (f"x,y\n{east},none.AT2\n", "line 2: cannot read the record"),
+        (f"x,y\n\n{east},none.AT2\n", "line 3: cannot read the record"),
+        (f"x,y,name,scale\n{east},{north},El Centro, 1940,2\n", "line 2: must have 4 cells, got 5"),
+        ("x,y\n", "must list ground motions, one in a line, got none"),
     ):
         table.write_text(text)
         with pytest.raises(ValueError, match=words):

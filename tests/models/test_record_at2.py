@@ -136,6 +136,7 @@ def record(header: str = "NPTS= 6, DT= .01 SEC", title: str = UNITS, values: str
         ),
         (record(title="DISPLACEMENT IN UNITS OF CM\n"), r"x.txt is not an acceleration record"),
         (record(title="ACCELERATION IN UNITS OF FT/S2\n"), r"x.txt is in FT/S2, allowed are g, m/s2, cm/s2"),
+        (record(title="ACCELERATION IN UNITS OF MG\n"), r"x.txt is in MG, allowed are g, m/s2, cm/s2"),
         (record(title="ACCELERATION [m/s2], UNITS OF G\n"), r"x.txt states two units: m/s2 and G"),
     ],
 )

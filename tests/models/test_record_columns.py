@@ -60,11 +60,18 @@ def test_comment_lines_stand_anywhere(write: Write, mark: str) -> None:
         ("time acc in gal", 0.01),
         ("# acceleration [g], peak velocity 20 cm/s", 9.81),
         ('"time [s]","acceleration [cm/sec/sec]"', 0.01),
+        ("Peak acceleration: 0.35 g\nEl Centro 1940\n# time (UTC) 04:36\ntime (sec),acc [g]", 9.81),
     ],
 )
 def test_the_unit_that_the_header_states(write: Write, header: str, factor: float) -> None:
     path = write(f"{header}\n{TEXT}")
     assert read_record(path, path).acceleration[2, 0] == pytest.approx(-2.5 * factor, rel=1e-15)
+
+
+def test_a_superscript_of_an_older_encoding(tmp_path: Path) -> None:
+    path = tmp_path / "latin.txt"
+    path.write_bytes(f"t,a [m/s²]\n{TEXT}".encode("cp1252"))
+    assert read_record(path, path).acceleration[2, 0] == -2.5
 
 
 @pytest.mark.parametrize(
@@ -118,6 +125,10 @@ def test_printed_times_may_be_rounded(write: Write) -> None:
         ("0 0\n1 0\n1e308 0\n", r"x.txt, line \d: times must rise in even steps"),
         ("t,velocity [cm/s]\n" + TEXT, r"x.txt is not an acceleration record, it says 't,velocity \[cm/s\]'"),
         ("t [s],acc [ft/s2]\n" + TEXT, r"x.txt is in ft/s2, allowed are g, m/s2, cm/s2"),
+        ("t,acc [mg]\n" + TEXT, r"x.txt is in mg, allowed are g, m/s2, cm/s2"),
+        ("t,acc (% g)\n" + TEXT, r"x.txt is in % g, allowed are g, m/s2, cm/s2"),
+        ("time [ms],acc [g]\n" + TEXT, r"x.txt gives times in ms, allowed is s"),
+        ("# t (Milliseconds), acc\n" + TEXT, r"x.txt gives times in Milliseconds, allowed is s"),
         ("t,acc [g]\n# units: cm/s2\n" + TEXT, r"x.txt states two units: g and cm/s2"),
     ],
 )
@@ -146,6 +157,23 @@ def test_one_file_of_all_components_is_read_by_the_names_of_its_columns(write: W
     assert (turned.acceleration / 9.81)[1].tolist() == pytest.approx([0.5, 0.6, 0.4], rel=1e-15)
     flat = read_record(write("# no names\n0 1 2\n0.5 3 4\n"), units="m/s2")
     assert flat.acceleration.tolist() == [[1.0, 2.0], [3.0, 4.0]]
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "time,z,x,y\n\n",
+        "time,z,x,y\ns,m/s2,m/s2,m/s2\n",
+        "time,z,x,y\n# unit: m/s2\n",
+        "# time z x y\n",
+        "#time;z acc;x acc;y acc\n# Measured along x\n# 1940\n",
+        "time [s] z [m/s2] x [m/s2] y [m/s2]\n",
+        "El Centro 1940\ntime,z,x,y\n",
+    ],
+)
+def test_names_of_columns_stand_in_any_line_of_the_header(write: Write, header: str) -> None:
+    path = write(f"{header}0 0.1 0.2 0.3\n0.01 0.4 0.5 0.6\n")
+    assert read_record(path, units="m/s2").acceleration[1].tolist() == [0.5, 0.6, 0.4]
 
 
 @pytest.mark.parametrize(

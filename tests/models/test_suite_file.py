@@ -1,12 +1,10 @@
 from __future__ import annotations
 
 import math
-from pathlib import Path
 
 import pytest
 
-from rockwobble import models
-from rockwobble.models import el_centro_1940, read_suite, shipped_suites
+from rockwobble.models import el_centro_1940, read_suite
 
 CASE = """
 [[cases]]
@@ -113,6 +111,14 @@ def test_files_of_a_record_stand_beside_the_suite(write, tmp_path, monkeypatch):
     monkeypatch.chdir("/")
     (case,) = read_suite(path).cases
     assert case.motion.acceleration.tolist() == [[0.0, 0.0], [3.0, 6.0], [0.0, 0.0]]
+
+
+def test_times_uplift_needs_something_to_scale(write):
+    motion = 'motion = { x = "x.txt", y = "x.txt", units = "g", times_uplift = 2 }'
+    path = write(replaced(STILL, motion), "still.suite.toml")
+    write("0 0\n1 0\n", "x.txt")
+    with pytest.raises(ValueError, match=r"motion.times_uplift: needs a horizontal .*, got none"):
+        read_suite(path)
 
 
 def test_times_uplift_is_the_peak_over_g_tan_alpha(write):
@@ -228,6 +234,13 @@ WRONG = {
     replaced(STILL, 'motion = { record = "el_centro_1940", time_shift = -60 }'): (
         "motion.time_shift: must leave a part of the record, which lasts 53.45 s, got -60"
     ),
+    replaced(STILL, 'motion = { record = "p695" }'): "cases[0].motion.pair: must be given: 1 to 22",
+    replaced(STILL, 'motion = { record = "p695", pair = { from = 1, to = 4, count = 3 } }'): (
+        "cases[0].motion.pair: must be a positive whole number, got 2.5"
+    ),
+    replaced(
+        "duration = 8", f"duration = 1{400 * '0'}"
+    ): "cases[0].duration: must be a finite number, got 1000",
     replaced(STILL, 'motion = { x = "x.csv" }'): "cases[0].motion.y: must be given: a record has two",
     replaced(STILL, 'motion = { x = "x.csv", y = "y.csv" }'): "cases[0].motion: cannot read the record ",
     replaced(STILL, 'motion = { x = "x.csv", y = "y.csv", units = "ft" }'): (
@@ -256,6 +269,9 @@ WRONG = {
     ),
     '[[runs]]\nsupport = "flat"\n' + CASE: "runs[0].engine: must be given",
     '[[runs]]\nengine = "mujoco"\ntime_step = -1\n' + CASE: "runs[0].time_step: must be positive, got -1",
+    '[[runs]]\nengine = "mujoco"\nsettings = { time_step = 3 }\n' + CASE: (
+        "runs[0].settings.time_step: must be left out: it is a key of the run"
+    ),
     '[run]\nengine = "mujoco"\n' + CASE: "run: is not known here, did you mean runs?",
     "[[cases]\n": "is not a TOML file: ",
     replaced("tan_alpha = 0.2", "tan_alpha = -0.2").replace("duration = 8", "duration = -8"): (
@@ -273,28 +289,6 @@ def test_whatever_is_wrong_is_one_line_with_the_path_of_the_key(write, text, wor
     assert words in message
     assert "\n" not in message
     assert "pydantic" not in message
-
-
-def test_a_file_that_is_not_there(tmp_path):
-    with pytest.raises(ValueError, match=r"none\.toml: No such file.*that ship are canon, p695, quick"):
-        read_suite(tmp_path / "none.toml")
-
-
-@pytest.mark.parametrize("name", ["quick", "canon"])
-def test_the_suites_that_ship_can_be_read_by_name(name):
-    suite = read_suite(name)
-    folder = Path(str(models.__path__[0])) / "suites"
-    again = read_suite(folder / f"{name}.suite.toml")
-    assert [case.name for case in suite.cases] == [case.name for case in again.cases]
-    assert {run.engine for run in suite.runs} == {"mujoco", "pybullet"}
-    assert name in shipped_suites()
-
-
-def test_the_canon_is_as_large_and_as_various_as_it_says():
-    cases = read_suite("canon").cases
-    assert len(cases) >= 40
-    groups = {case.name.split(":")[0].split(",")[0] for case in cases}
-    assert {"free response", "steady wobble", "one-sine pulse from rest", "El Centro"} <= groups
 
 
 def test_importing_the_models_loads_no_pydantic():

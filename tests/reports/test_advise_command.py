@@ -61,7 +61,12 @@ def options_of(records: Path, **names: str) -> list[str]:
     [
         ({"x": "x", "y": "y"}, [], ["of copies of this record", "Largest tilt (5 / 50 / 95 %)"]),
         ({"x": "x", "y": "y", "z": "z"}, ["--scale", "2"], ["It is in this record: with it"]),
-        ({"x": "x", "y": "y"}, ["--scale", "0.3"], ["The cylinder stays at rest: it takes"]),
+        ({"x": "x", "y": "y", "z": "z"}, ["--scale", "0.3"], ["no soil, no neighbours.", "stays at rest"]),
+        (
+            {"x": "x", "y": "y"},
+            ["--scale", "0.3"],
+            ["no neighbours, no vertical component", "The cylinder stays at rest: it takes"],
+        ),
         ({"x": "still", "y": "y"}, ["--scale", "2"], ["This motion stays in one plane"]),
         ({"x": "x", "y": "y"}, ["--scale", "6"], ["It overturns as given. Overturning: 100 %"]),
         ({"x": "x", "y": "y"}, ["--friction", "0.1"], ["A friction of 0.1 is below b/h = 0.2"]),
@@ -91,6 +96,12 @@ def test_every_kind_of_case_gets_its_page(names, more, words, records, tmp_path,
         assert again.html() == (tmp_path / "advice.html").read_text()  # with all that the pictures show
 
 
+def test_nothing_is_said_of_a_ground_motion_where_there_is_none(tmp_path):
+    assert call("--release-tilt-deg", "0", "--duration", "2", *FAST, "--out", str(tmp_path)) == 0
+    text = (tmp_path / "advice.md").read_text()
+    assert "stays at rest: without a ground motion nothing moves it.**" in text
+
+
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory: pytest.TempPathFactory, records: Path) -> Path:
     folder = tmp_path_factory.mktemp("advice")
@@ -118,6 +129,15 @@ def test_displacements_are_those_of_the_tilted_cylinder(stored):
     assert values["given"]["top"] == pytest.approx(b * (1.0 - math.cos(theta)) + 2.0 * h * math.sin(theta))
     fallen = advice_values({**facts, "answers": [{**facts["answers"][0], "peak_tilt_95": math.inf}]})
     assert (fallen["groups"][0]["top_95"], fallen["groups"][0]["rim_95"]) == (math.inf, math.inf)
+
+
+def test_results_of_earlier_versions_still_have_their_page(stored):
+    facts = dict(read_results(stored, KIND).manifest.about["advice"])
+    for name in ("shaken", "has_vertical"):
+        del facts[name]
+    for given in (False, True):
+        values = advice_values({**facts, "vertical": {"given": given}})
+        assert (values["shaken"], values["has_vertical"]) == (True, given)
 
 
 ENGINE = {

@@ -77,6 +77,7 @@ def test_bad_input_is_said_before_anything_runs(run: Run) -> None:
     assert run("certify", "--time-step", "1e-4") == 2
     assert run("certify", "--only", "none") == 2
     assert run("certify", "--out", "no/such/folder/certificate.json") == 2
+    assert run("certify", "--only", "residual", "--out", "/proc/certificate.json") == 2
     assert run("check", "--model", "nothing") == 2
     assert run("check", "--model", "a:b", "--trajectory", "c.csv") == 2
     assert run("check", "--model", "a:b", "--only", "exact") == 2

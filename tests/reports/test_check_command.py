@@ -5,13 +5,15 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
+import re
+from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
 
 from rockwobble.compare.check import FAILED, NOT_RUN, PASSED, layers
-from rockwobble.compare.check.finding import Bound, at_most, not_run
+from rockwobble.compare.check.finding import Bound, Finding, at_most, not_run
 from rockwobble.compare.storage.files import replace_files
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.check import as_junit, headline, page
@@ -82,12 +84,29 @@ def test_a_failure_names_the_part_and_ends_with_1(
         (["--trajectory", "a.csv", "--workers", "2"], "--workers belongs to the engines"),
         (["--update-baseline", "--only", "exact"], "--update-baseline goes with neither --suite nor --only"),
         (["--json", "no/such/folder/a.json"], "a report must be a file in a folder that exists, got no/such"),
+        (["--only", "exact", "--json", "/proc/a.json"], "the output folder /proc cannot be written"),
+        (["--only", "exact", "--markdown", "/proc/a.md"], "the output folder /proc cannot be written"),
     ],
 )
 def test_bad_input_is_one_line(arguments: list[str], line: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert run(*arguments) == 2
     (said,) = capsys.readouterr().err.splitlines()
     assert said.startswith(f"rockwobble: {line}")
+
+
+@pytest.mark.parametrize("option", ["--json", "--junit", "--markdown"])
+def test_a_report_that_cannot_be_written_in_the_end_is_one_line_after_the_result(
+    option: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path
+) -> None:
+    def in_the_way(_: object) -> Iterator[Finding]:
+        (tmp_path / "a").mkdir()
+        yield GOOD
+
+    monkeypatch.setitem(layers.PARTS, "exact", (in_the_way,))
+    assert run("--only", "exact", option, str(tmp_path / "a")) == 2
+    out, err = capsys.readouterr()
+    assert out.splitlines()[-1].startswith("1 checks passed, in ")
+    assert re.fullmatch(r"checking exact \.\.\.\nrockwobble: [^\n]*/a\b[^\n]*\n", err)
 
 
 def test_interrupted(

@@ -13,6 +13,7 @@ from rich.console import Console
 from rockwobble.compare import Ensemble
 from rockwobble.compare.storage.manifest import Manifest, read_manifests
 from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of
+from rockwobble.models import Run
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.ensemble import pictures, ratio_span, ratio_ticks
@@ -23,6 +24,18 @@ from rockwobble.reports.pages.registry import redrawn
 
 FALLEN = 7.9  # [alpha]
 RELEASE = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--members", "3"]
+
+SUITE = """
+[[runs]]
+engine = "mujoco"
+settings = { iterations = 50 }
+
+[[cases]]
+name = "release"
+cylinder = { semidiagonal = 6, tan_alpha = [0.1, 0.2] }
+release = { tilt_over_alpha = 0.5 }
+duration = 2
+"""
 
 
 def call(*arguments: str) -> int:
@@ -162,6 +175,21 @@ def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsy
     assert not (tmp_path / "out").exists()
 
 
+def test_a_suite_keeps_its_runs_beside_options(tmp_path, monkeypatch):
+    """As in `compare`: a time step goes to the runs that the file has, and adds none."""
+    given: list[Run] = []
+
+    def stopped(*_: object, runs: list[Run], **__: object) -> None:
+        given.extend(runs)
+        raise ValueError("seen")
+
+    monkeypatch.setattr("rockwobble.ensemble", stopped)
+    path = tmp_path / "mine.suite.toml"
+    path.write_text(SUITE)
+    assert call("ensemble", str(path), "--time-step", "2e-4", "--out", str(tmp_path / "out")) == 2
+    assert given == [Run("mujoco", "recess", 2e-4, iterations=50)]
+
+
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
@@ -171,9 +199,13 @@ def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsy
         (["quick", "--semidiagonal", "4"], "--semidiagonal does not go with a suite"),
         (["--synthetic", "0"], "--synthetic must be positive and finite [g tan alpha], got 0"),
         (["--p695", "-1"], "--p695 must be positive and finite [g tan alpha], got -1"),
-        (["--synthetic", "2", "--perturbation", "0.01"], "--perturbation does not go with --synthetic: its"),
-        (["--p695", "2", "--members", "4"], "--members does not go with --p695: its motions are the members"),
-        (["--time-step", "1e-4"], "--support and --time-step belong to engines, got one with --engine none"),
+        (["--synthetic", "2", "--record-x", "a.csv"], "--record-x does not go with --synthetic"),
+        (["--synthetic", "2", "--perturbation", "0.1"], "--perturbation does not go with --synthetic"),
+        (["--p695", "2", "--members", "40"], "--members does not go with --p695"),
+        (["--support", "ring"], "--support belongs to engines, got it with --engine none"),
+        (["quick", "--time-step", "1e-4"], "--time-step belongs to engines, got it with --engine none"),
+        (["--engine", "mujoco"], "'--engine': none stands alone, got mujoco and none"),
+        (["--seed", "-1"], "--seed must not be negative, got -1"),
         (["--members", "1"], "at least 2 members"),
         (["--perturbation", "1"], "perturbation must be above 0 and at most 0.1"),
     ],

@@ -259,12 +259,13 @@ def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsy
         (["--measure", "pgd"], "an intensity must be one of"),
         (["--synthetic", "1"], "--synthetic must be at least 2 motions, got 1"),
         (["--seed", "-1"], "--seed must not be negative, got -1"),
+        (["--cylinder", "a=6,0.2", "--tan-alpha", "0.3"], "--tan-alpha does not go with --cylinder"),
+        (["--step-factor", "2"], "--step-factor belongs to engines"),
         (
-            ["--cylinder", "pier=6,0.2", "--tan-alpha", "0.3"],
-            "does not go with --cylinder, which states both",
+            ["--engine", "mujoco", "--step-factor", "2", "--time-step", "1e-4"],
+            "--step-factor does not go with",
         ),
-        (["--step-factor", "2"], "belongs to engines, give --engine as well"),
-        (["--model", "recess", "--restitution", "0.5"], "belongs to planar models, give --model planar-x"),
+        (["--model", "recess", "--restitution", "0.9"], "--restitution belongs to planar models"),
         (["--restitution", "soft"], 'must be a number or "momentum"'),
     ],
 )

@@ -63,6 +63,14 @@ def test_settings_of_an_engine_need_one(tmp_path: Path, capsys: pytest.CaptureFi
     assert "no run has a setting 'cone'; there are plane, restitution, rtol" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("name", ["rtol", "rest_tilt", "plane"])
+def test_settings_of_a_model_are_numbers(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert call("simulate", *RELEASE, "--out", str(tmp_path), "--set", f"{name}=abc") == 2
+    assert capsys.readouterr().err == f"rockwobble: {name} must be a number, got 'abc'\n"
+
+
 def test_auto_says_what_error_is_left(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     method = ["--engine", "mujoco", "--time-step", "auto", "--set", "step_tolerance=1e-4"]
     assert call("simulate", *RELEASE, *method, "--out", str(tmp_path)) == 0

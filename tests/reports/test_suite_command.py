@@ -83,6 +83,14 @@ BAD = {
         "table.csv does not say the unit of tilt",
     ),
     "an option of a trajectory alone": (["--trajectory-offset", "1"], "need a --trajectory"),
+    "a support of no engine": (
+        [*RELEASE, "--trajectory", "table.csv", "--engine", "none", "--support", "ring"],
+        "--support belongs to engines, got it with --engine none",
+    ),
+    "all engines and one": (
+        ["--engine", "all", "--engine", "mujoco"],
+        "all stands alone, got all and mujoco",
+    ),
     "no engine and no trajectory": (["--engine", "none"], "give a --trajectory as well"),
 }
 

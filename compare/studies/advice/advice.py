@@ -221,6 +221,8 @@ class Advice(Shown):
             "peak_rank": float((known < self.peak).mean()) if len(known) else math.nan,
             "in_one_plane": self.moves and not np.any(trace.rolling_rate),
             "released": is_release(case),
+            "shaken": case.motion is not None,
+            "has_vertical": case.motion is not None and case.motion.has_vertical,
             "alpha": cylinder.alpha,
             "b": cylinder.base_radius,
             "h": cylinder.half_height,

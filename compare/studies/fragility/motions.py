@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
+from typing import Any
 
 from rockwobble.models import GroundMotion, p695_far_field, read_record
 
@@ -49,7 +50,7 @@ def read_records(folder: str | Path, *, units: str | None = None) -> list[Ground
         with path.open(newline="", encoding="utf-8-sig") as file:
             reader = csv.DictReader(file)
             columns = list(reader.fieldnames or ())
-            rows = list(reader)
+            rows = [(reader.line_num, row) for row in reader]
     except (OSError, UnicodeDecodeError, csv.Error) as error:
         reason = getattr(error, "strerror", None) or error
         raise ValueError(f"the table of records {path} cannot be read: {reason}") from None
@@ -60,8 +61,10 @@ def read_records(folder: str | Path, *, units: str | None = None) -> list[Ground
             f"{path} must have the columns x and y, and may have z, name, units and scale, "
             f"got {', '.join(columns) or 'none'}"
         )
+    if not rows:
+        raise ValueError(f"{path} must list ground motions, one in a line, got none")
     motions = []
-    for number, row in enumerate(rows, start=2):
+    for number, row in rows:
         try:
             motions.append(_motion(path.parent, row, units))
         except ValueError as error:
@@ -69,7 +72,10 @@ def read_records(folder: str | Path, *, units: str | None = None) -> list[Ground
     return motions
 
 
-def _motion(folder: Path, row: dict[str, str | None], units: str | None) -> GroundMotion:
+def _motion(folder: Path, row: dict[Any, Any], units: str | None) -> GroundMotion:
+    beyond = row.get(None, [])  # cells under no column
+    if any(cell.strip() for cell in beyond):
+        raise ValueError(f"must have {len(row) - 1} cells, got {len(row) - 1 + len(beyond)}")
     cells = {name: (cell or "").strip() for name, cell in row.items() if isinstance(cell, str)}
     if not (cells.get("x") and cells.get("y")):
         raise ValueError("both horizontal components are needed, x and y")

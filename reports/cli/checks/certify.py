@@ -50,6 +50,7 @@ def certify(
         from rockwobble.compare.certificate import engine_method, reduced_method
         from rockwobble.compare.certificate.certificate import write_certificate
         from rockwobble.compare.check import LAYERS, Bench, run_checks
+        from rockwobble.compare.storage.files import require_file
         from rockwobble.multibody.engines.registry import find_engine
 
         if time_step is not None and engine is None:
@@ -58,8 +59,7 @@ def certify(
         for layer in layers:
             if layer not in LAYERS:
                 raise ValueError(f"--only must be one of {', '.join(LAYERS)}, got {layer!r}")
-        if out.is_dir() or not out.absolute().parent.is_dir():
-            raise ValueError(f"--out must be a file in a folder that exists, got {out}")
+        require_file("--out", out)
         method = reduced_method() if engine is None else engine_method(engine, time_step)
         bench = Bench(reduced=rw.reduced, suite=rw.read_suite("quick"))
         if engine is not None:

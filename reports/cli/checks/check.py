@@ -95,6 +95,7 @@ def check(
     with interruptible():
         with user_input():
             from rockwobble.compare.check import LAYERS
+            from rockwobble.compare.storage.files import require_file
 
             if reason is not None and not update_baseline:
                 raise ValueError("--reason belongs to --update-baseline, got it alone")
@@ -105,8 +106,8 @@ def check(
             if suite is not None and not of_suite:
                 raise ValueError(f"--suite is for the layer agreement, got --only {' '.join(only or ())}")
             for path in (json, junit, markdown):
-                if path is not None and (path.is_dir() or not path.absolute().parent.is_dir()):
-                    raise ValueError(f"a report must be a file in a folder that exists, got {path}")
+                if path is not None:
+                    require_file("a report", path)
             require_used(model, trajectory, suite, support, tolerance, workers)
             begun, outside, bench = time.monotonic(), None, None
             if model is None and trajectory is None:
@@ -136,7 +137,8 @@ def check(
         else:
             findings, seconds = outside or [], time.monotonic() - begun
             print_outside(findings)
-        _write(findings, seconds, json, junit, markdown)
+        with user_input():
+            _write(findings, seconds, json, junit, markdown)
     if any(finding.failed for finding in findings):
         raise typer.Exit(FAILED)
 
@@ -181,13 +183,15 @@ def _write(
 
     from ...pages.check import as_json, as_junit, headline, page
 
+    print(f"\n{headline(findings, seconds)}")
     versions = package_versions()
     if json is not None:
         rc.replace_files(json.parent, {json.name: as_json(findings, versions, seconds).encode()})
     if junit is not None:
         rc.replace_files(junit.parent, {junit.name: as_junit(findings, seconds).encode()})
     if markdown is not None:
-        # the summary of a CI job may hold pages of other steps
-        with markdown.open("a", encoding="utf-8") as file:
-            file.write(page(findings, versions, seconds).markdown())
-    print(f"\n{headline(findings, seconds)}")
+        try:  # the summary of a CI job may hold pages of other steps
+            with markdown.open("a", encoding="utf-8") as file:
+                file.write(page(findings, versions, seconds).markdown())
+        except OSError as error:
+            raise ValueError(f"{markdown} cannot be written: {error.strerror or error}") from None

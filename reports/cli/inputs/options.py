@@ -64,13 +64,29 @@ RollingRate = Annotated[float, _release("Rolling rate at release, in rad/s.")]
 Duration = Annotated[
     float | None, _release("Length of the run, in s. Default: that of the ground motion, 10 s without one.")
 ]
+ALL, NO_ENGINE = "all", "none"  # in place of the names of engines
+
+
+def _standing_alone(names: list[str] | None) -> list[str] | None:
+    word = next((word for word in (ALL, NO_ENGINE) if word in (names or ())), None)
+    if names and word and len(names) > 1:
+        raise typer.BadParameter(f"{word} stands alone, got {' and '.join(names)}")
+    return names
+
+
 _ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only)"
 Engine = Annotated[str | None, method(f"{_ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"
-Engines = Annotated[list[str] | None, method(f"{_ENGINES}; may be repeated. {_DEFAULT}.")]
+Engines = Annotated[
+    list[str] | None, method(f"{_ENGINES}; may be repeated. {_DEFAULT}.", callback=_standing_alone)
+]
 EnginesOrAll = Annotated[
-    list[str] | None, method(f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed.")
+    list[str] | None,
+    method(
+        f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed.",
+        callback=_standing_alone,
+    ),
 ]
 Support = Annotated[str, method(f"{_SUPPORTS}.")]
 Supports = Annotated[list[str] | None, method(f"{_SUPPORTS}; may be repeated. Default: recess and flat.")]

@@ -176,4 +176,10 @@ def refuse(context: typer.Context, names: set[str], why: str) -> None:
             raise ValueError(f"--{name.replace('_', '-')} {why}")
 
 
+def refuse_options_of_engines(context: typer.Context, engines: list[str] | None) -> None:
+    """Refuse options that belong to engines where there are none."""
+    if engines == [options.NO_ENGINE]:
+        refuse(context, {"support", "time_step"}, "belongs to engines, got it with --engine none")
+
+
 PROBLEM = frozenset(field.name for field in fields(Problem))
