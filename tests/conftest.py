@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import gc
 import os
 
 import pytest
@@ -23,3 +24,8 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
     for model in list(MODELS)[int(given["workerid"].removeprefix("gw")) :: given["workercount"]]:
         make_ready(model)
+
+
+def pytest_collection_finish() -> None:
+    """Leave out of the garbage collector's rounds what stays until the end: libraries and tests."""
+    gc.freeze()
