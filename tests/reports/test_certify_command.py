@@ -76,6 +76,7 @@ def test_verify_answers_with_one_word_and_its_exit_code(
 def test_bad_input_is_said_before_anything_runs(run: Run) -> None:
     assert run("certify", "--time-step", "1e-4") == 2
     assert run("certify", "--only", "none") == 2
+    assert run("certify", "--engine", "exudyn") == 2  # it has no recess, in which the fingerprint runs
     assert run("certify", "--out", "no/such/folder/certificate.json") == 2
     assert run("certify", "--only", "residual", "--out", "/proc/certificate.json") == 2
     assert run("check", "--model", "nothing") == 2

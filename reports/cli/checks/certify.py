@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 import json
+import sys
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 import rockwobble as rw
 
+from ...console.progress import shown_progress
 from ...console.terminal import interruptible, user_input
+
+if TYPE_CHECKING:
+    from rockwobble.compare.check import Finding
 
 # of the checks, those that make claims; with an engine, also those that need its runs
 _LAYERS = ("equations", "conserved", "exact", "rest", "invariance", "order", "residual")
@@ -62,12 +67,19 @@ def certify(
         require_file("--out", out)
         method = reduced_method() if engine is None else engine_method(engine, time_step)
         bench = Bench(reduced=rw.reduced, suite=rw.read_suite("quick"))
+        # claims of no other engine; those of one whose accuracy is not known rest on the suite
+        bench.engines = [name for name in bench.engines if name == engine]
         if engine is not None:
-            # claims of no other engine; those of one whose accuracy is not known rest on the suite
-            runs = [rw.Run(engine, support, time_step) for support in find_engine(engine).supports]
+            supports = find_engine(engine).supports
+            if "recess" not in supports:
+                raise ValueError(f"--engine must have a recess, got {engine} with {', '.join(supports)}")
+            runs = [rw.Run(engine, support, time_step) for support in supports]
             bench.suite = rw.Suite(bench.suite.cases, runs, bench.suite.bounds)
-            bench.engines = [name for name in bench.engines if name == engine]
-        findings = run_checks(bench, layers)
+        findings: list[Finding] = []
+        for layer in layers:
+            print(f"checking {layer} ...", file=sys.stderr, flush=True)
+            with shown_progress("engine runs") as bench.progress:
+                findings += run_checks(bench, [layer])
         found = make(method, findings)
         write_certificate(found, out)
     print(f"{out}: {len(found['claims'])} claims, {len(found['fingerprint'])} cases")
