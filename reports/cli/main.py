@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import os
 import sys
+from functools import cache
 from typing import Annotated, Any
 
 import typer
+from typer.main import get_command
 
 from ..console.terminal import BAD_INPUT, INTERRUPTED, complain, forgive_output
 from .advise import advise
@@ -71,12 +73,18 @@ def _root(
         print(context.get_help())
 
 
+@cache
+def _commands() -> Any:
+    """Return what typer makes of all signatures, which takes it longer than most commands take to refuse."""
+    return get_command(app)
+
+
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line; exit code 0 done, 1 a check failed, 2 bad input, 130 interrupted."""
     forgive_output()
     os.environ["MPLBACKEND"] = "svg"  # pictures are files here, whatever a notebook has set
     try:
-        code = app(arguments, prog_name="rockwobble", standalone_mode=False)
+        code = _commands()(arguments, prog_name="rockwobble", standalone_mode=False)
     except _USAGE_ERROR as error:
         # one clear line, without the box that typer draws around it
         complain(error.format_message())

@@ -40,27 +40,29 @@ def disguised(job: Job, **fields: Any) -> Trace:
     return dataclasses.replace(model, **given)
 
 
+def simulate_disguised(jobs: list[Job], fields: dict[str, Any]) -> list[Trace]:
+    return [disguised(job, **fields) for job in jobs]
+
+
 @pytest.fixture
 def no_engines(monkeypatch: pytest.MonkeyPatch) -> Callable[..., None]:
     """Replace the engines of every comparison in this test; `fields` are those of their traces."""
 
     def use(**fields: Any) -> None:
-        def simulate_all(jobs: list[Job], **_: Any) -> list[Trace]:
-            return [disguised(job, **fields) for job in jobs]
-
-        monkeypatch.setattr(driver, "simulate_all", simulate_all)
+        monkeypatch.setattr(driver, "simulate_all", lambda jobs, **_: simulate_disguised(jobs, fields))
 
     return use
 
 
-@pytest.fixture
-def comparison(no_engines: Callable[..., None], monkeypatch: pytest.MonkeyPatch) -> Comparison:
-    no_engines()
-    # no engine runs, so none needs to be installed: PyBullet is not everywhere
-    monkeypatch.setattr(driver, "require_runnable", lambda case, run: None)
+@pytest.fixture(scope="session")
+def comparison() -> Comparison:
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940(), name="El Centro 1940")
     runs = [Run(engine, support) for support in ("recess", "flat") for engine in ("mujoco", "pybullet")]
-    return compare(case, runs=runs)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(driver, "simulate_all", lambda jobs, **_: simulate_disguised(jobs, {}))
+        # no engine runs, so none needs to be installed: PyBullet is not everywhere
+        patch.setattr(driver, "require_runnable", lambda case, run: None)
+        return compare(case, runs=runs)
 
 
 @pytest.fixture

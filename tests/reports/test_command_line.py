@@ -22,6 +22,7 @@ from rockwobble.models.traces.lost_trace import lost_trace
 from rockwobble.multibody.engines.registry import standard_engines
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.comparison import report
+from rockwobble.reports.pages.page import Page
 
 GOOD = "time [s], acceleration [g]\n0.00, 0.0\n0.01, 0.1\n0.02, 0.0\n"
 
@@ -133,8 +134,10 @@ def test_no_engine_and_no_trajectory_leave_nothing_to_compare(folder, capsys):
     assert "--engine none leaves nothing to compare, give a --trajectory as well" in capsys.readouterr().err
 
 
-def test_compare_prints_and_writes(folder, no_engines, capsys):
+def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
     no_engines()
+    monkeypatch.setattr(report, "svg", lambda *_, **__: b"")  # tests of the page draw it
+    monkeypatch.setattr(Page, "html", lambda _: "")
     (folder / "results").mkdir()
     (folder / "results" / "mine.txt").write_text("mine")
     arguments = ["compare", "--engine", "mujoco", "--out", "results", "--duration", "10", "--scale", "1.5"]
@@ -204,7 +207,7 @@ def test_ctrl_c_is_one_line_and_nothing_written(folder, monkeypatch, capsys):
     assert not (folder / "rockwobble-compare").exists()
 
 
-def test_simulate_a_reduced_model(folder, capsys):
+def test_simulate_a_reduced_model(folder, in_this_process, capsys):
     assert call("simulate", "--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2") == 0
     captured = capsys.readouterr()
     assert "peak tilt" in captured.out

@@ -141,7 +141,7 @@ def test_a_narrow_terminal_leaves_out_details_and_no_name(columns, details):
     assert "pybullet recess" in words
 
 
-def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, capsys):
+def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process, capsys):
     assert call("ensemble", *RELEASE, "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "alpha = 11.31 deg" in printed

@@ -5,6 +5,9 @@ from html.parser import HTMLParser
 
 from rockwobble.compare import SUMMARY_COLUMNS, compare
 from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run
+from rockwobble.reports.figures.comparison.tilt import tilt_picture
+from rockwobble.reports.figures.comparison.view import case_views
+from rockwobble.reports.figures.svg import svg
 from rockwobble.reports.pages.comparison.report import comparison_files, comparison_page
 
 PAGE_LIMIT = 8_000_000  # [bytes]
@@ -33,7 +36,7 @@ class Elements(HTMLParser):
             self.text.append(data)
 
 
-def test_page_is_whole_needs_nothing_else_and_says_what_was_found(comparison):
+def test_page_is_whole_small_reproducible_and_says_what_was_found(comparison):
     page = comparison_page(comparison, "rockwobble compare").html()
     assert len(page.encode()) < PAGE_LIMIT
     elements = Elements(page)
@@ -64,6 +67,14 @@ def test_page_is_whole_needs_nothing_else_and_says_what_was_found(comparison):
         if name not in ("case", "run", "reference"):
             assert name.replace("_", " ") in text
     assert "nan" not in re.findall(r"\w+", text)
+    files = comparison_files(comparison, "rockwobble compare")
+    assert set(files) == {"report.html", "report.md", "figure.svg"}
+    assert files["report.html"] == page.encode(), "drawn again it must be the same"
+    picture = files["figure.svg"]
+    assert picture.startswith(b"<?xml")
+    assert len(picture) < PICTURE_LIMIT
+    assert picture == svg(tilt_picture(case_views(comparison)[0], "figure"), titled=True)
+    assert b"](figure.svg)" in files["report.md"]
 
 
 def test_still_ground_has_no_excitation_and_markup_in_a_name_stays_text(no_engines):
@@ -90,12 +101,3 @@ def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
     said = "mujoco recess failed: the engine gained energy that nothing supplied at 0.5 s"
     assert said in failed["report.html"].decode()
     assert failed["figure.svg"]
-
-
-def test_picture_is_small_and_reproducible(comparison):
-    files = comparison_files(comparison)
-    assert set(files) == {"report.html", "report.md", "figure.svg"}
-    assert files["figure.svg"].startswith(b"<?xml")
-    assert len(files["figure.svg"]) < PICTURE_LIMIT
-    assert files == comparison_files(comparison)
-    assert b"](figure.svg)" in files["report.md"]

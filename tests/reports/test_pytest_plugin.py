@@ -70,7 +70,7 @@ def test_engines_that_follow_the_models_pass(suite) -> None:
     suite().runpytest("-W", "error").assert_outcomes(passed=4)
 
 
-def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite) -> None:
+def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite, in_this_process) -> None:
     # open ground moves by another model, which shows on a squat cylinder at once
     pytester = suite(bounded('tilt_rms = 1e-5\nagreement_time = 0.8\nreference = "recess"'))
     result = pytester.runpytest("-k", "alpha and not 0.2", "-W", "error")
