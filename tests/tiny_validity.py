@@ -45,7 +45,7 @@ TINY = dataclasses.replace(
     trace_points=((0.2, 6.0, 2.0),),
     trace_length=2.5,
     rings=(Ring(),),
-    ring_length=2.5,
+    ring_length=2.2,
     time_constants=(2e-3,),
     dampings=(1.0,),
 )

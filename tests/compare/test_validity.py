@@ -24,6 +24,7 @@ from rockwobble.compare.studies.validity.limits.numbers import first_failing, re
 from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case
 from rockwobble.compare.studies.validity.parts import PARTS, part_named
 from rockwobble.compare.studies.validity.records import HALVED, RECESS
+from rockwobble.compare.studies.validity.rings import FREE
 from rockwobble.compare.studies.validity.study import measure_all
 from rockwobble.models import Cylinder, Run
 from rockwobble.reduced import body, problem
@@ -68,6 +69,8 @@ def heavier(tables: Tables, tmp_path_factory: pytest.TempPathFactory) -> Tables:
 def test_every_part_measures_and_every_limit_has_numbers(tables: Tables) -> None:
     assert set(tables) == {part.name for part in PARTS}
     assert all(len(table) for table in tables.values())
+    ring = tables["rings"].query("support == 'ring'")
+    assert set(ring[ring["peak"] > 0.0]["motion"]) == {FREE, EL_CENTRO}
     limits = limits_of(tables)
     assert set(limits) == set(LIMITS)
     assert all(isinstance(value, float) for numbers in limits.values() for value in numbers.values())

@@ -72,7 +72,7 @@ def overturning_spectrum(
     --------
     >>> from rockwobble.models import el_centro_1940
     >>> spectrum = overturning_spectrum(
-    ...     0.1, el_centro_1940(), semidiagonals=[1.0, 20.0], intensities=[0.9, 4.0]
+    ...     0.1, el_centro_1940(), semidiagonals=[1.0, 20.0], intensities=[0.9, 4.0], search_step=0.2
     ... )
     >>> spectrum.overturned("3d").tolist()
     [[False, True], [False, False]]

@@ -128,7 +128,8 @@ def _shaken(table: pd.DataFrame, name: str, title: str, caption: str, column: st
 
 
 def _grid(table: pd.DataFrame, value: str) -> Array:
-    grid = table.pivot_table(value, "intensity", "semidiagonal", dropna=False)
+    # one row a cell: an aggregation would take most of the time of the page
+    grid = table.pivot(index="intensity", columns="semidiagonal", values=value)  # noqa: PD010
     found = grid.to_numpy(dtype=np.float64)
     return np.where(np.isposinf(found), _FAR, found)  # a colour and a contour need a number
 
@@ -140,7 +141,8 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
     for tan_alpha in chosen:
         own = table[table["tan_alpha"] == tan_alpha]
         (x, x_ticks), (y, y_ticks) = (names(sorted(own[axis].unique())) for axis in ("spin", "release"))
-        values = np.asarray(own.pivot_table("off", "release", "spin", dropna=False).to_numpy(np.float64))
+        grid = own.pivot(index="release", columns="spin", values="off")  # noqa: PD010
+        values = grid.to_numpy(dtype=np.float64)
         falls = Gap(name="overturns on flat ground", colour=GREY, cells=np.isnan(values))
         panels.append(
             Panel(
