@@ -115,10 +115,12 @@ class _Sources(MetaPathFinder, InspectLoader):
 
     def __init__(self, name: str, folder: Path, faults: tuple[Fault, ...]) -> None:
         self.name, self._folder, self._faults = name, folder, faults
+        self._texts: dict[Path, str] = {}  # with the faults, each made once
 
     def require_faults(self) -> None:
-        for file in dict.fromkeys(fault.file for fault in self._faults):
-            self._text(self._folder / file)
+        for fault in self._faults:
+            place = self._folder / fault.file
+            self._texts[place] = fault.applied(self._text(place))
 
     def find_spec(self, fullname: str, path: Any = None, target: Any = None) -> ModuleSpec | None:
         if fullname.split(".")[0] != self.name:
@@ -141,11 +143,7 @@ class _Sources(MetaPathFinder, InspectLoader):
         return _compiled(self.get_source(fullname), str(self._place(fullname)))
 
     def _text(self, place: Path) -> str:
-        text = place.read_text(encoding="utf-8")
-        for fault in self._faults:
-            if self._folder / fault.file == place:
-                text = fault.applied(text)
-        return text
+        return self._texts.get(place) or place.read_text(encoding="utf-8")
 
     def _place(self, fullname: str) -> Path:
         inside = self._folder.joinpath(*fullname.split(".")[1:])

@@ -138,11 +138,11 @@ def _address(scheduler_file: Path) -> str:
 
 
 def dask_sweep_with_a_death(
-    folder: Path, *, sizes: int, chunk_size: int = CHUNK_SIZE
+    folder: Path, *, sizes: int, chunk_size: int = CHUNK_SIZE, workers: int = 3
 ) -> tuple[pd.DataFrame, int]:
-    """Sweep on three Dask workers and kill one in the middle; return table and chunks done by then."""
+    """Sweep on Dask workers and kill one in the middle; return table and chunks done by then."""
     killed_at: list[int] = []
-    with dask_cluster(3) as (address, processes):
+    with dask_cluster(workers) as (address, processes):
 
         def tell(event: Progress) -> None:
             if not killed_at and 3 * event.done >= event.total:

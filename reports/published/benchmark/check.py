@@ -244,7 +244,7 @@ class Case:
             return math.inf
         if one.get("measure") == "largest":
             return float(apart[known].max())
-        length = (np.diff(time, append=time[-1]) + np.diff(time, prepend=time[0]))[known]
+        length = (np.concatenate([step := np.diff(time), [0.0]]) + np.concatenate([[0.0], step]))[known]
         return math.sqrt(float(np.sum(length * apart[known] ** 2) / np.sum(length)))
 
 
