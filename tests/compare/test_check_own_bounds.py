@@ -130,7 +130,7 @@ def test_of_a_release_the_first_seconds_are_taken_and_of_what_stands_nothing() -
     assert own_bounds.in_motion(Case(PIER, duration=1.0)) is None
 
 
-@pytest.mark.parametrize("spin", [0.05, 0.0])
+@pytest.mark.parametrize("spin", [0.5, 0.05, 0.0])
 def test_a_release_that_passes_upright_gives_no_alarm_and_finds_a_wrong_model(spin: float) -> None:
     case = dataclasses.replace(released(0.5, spin, 2.5), name=f"release, {spin:g} rad/s")
     runs = [Run("mujoco", support) for support in ("recess", "flat")]

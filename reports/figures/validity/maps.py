@@ -141,7 +141,7 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
     for tan_alpha in chosen:
         own = table[table["tan_alpha"] == tan_alpha]
         (x, x_ticks), (y, y_ticks) = (names(sorted(own[axis].unique())) for axis in ("spin", "release"))
-        grid = own.pivot(index="release", columns="spin", values="off")  # noqa: PD010
+        grid = own.pivot(index="release", columns="spin", values="off")  # noqa: PD010 - one row a cell here, too
         values = grid.to_numpy(dtype=np.float64)
         falls = Gap(name="overturns on flat ground", colour=GREY, cells=np.isnan(values))
         panels.append(
