@@ -69,7 +69,7 @@ def advise(
     Examples
     --------
     >>> from rockwobble.models import Cylinder, el_centro_1940
-    >>> pier = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940(), duration=10.0)
+    >>> pier = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
     >>> found = advise(pier, count=20)
     >>> found.trust.kind, found.grades["overturning"]
     ('statistics', 'care')

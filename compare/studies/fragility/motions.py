@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from rockwobble.models import GroundMotion, p695_far_field, read_record
 
@@ -72,8 +72,8 @@ def read_records(folder: str | Path, *, units: str | None = None) -> list[Ground
     return motions
 
 
-def _motion(folder: Path, row: dict[Any, Any], units: str | None) -> GroundMotion:
-    beyond = row.get(None, [])  # cells under no column
+def _motion(folder: Path, row: Mapping[str | None, str | list[str]], units: str | None) -> GroundMotion:
+    beyond = list(row.get(None, ()))  # cells under no column
     if any(cell.strip() for cell in beyond):
         raise ValueError(f"must have {len(row) - 1} cells, got {len(row) - 1 + len(beyond)}")
     cells = {name: (cell or "").strip() for name, cell in row.items() if isinstance(cell, str)}
