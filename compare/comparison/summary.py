@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
+import numpy as np
+
 from rockwobble.models import Case, Trace
 
 from ..metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
@@ -190,7 +192,8 @@ def external_row(
 ) -> Row:
     """Return the row of an external trajectory: nothing is known of its steps and errors.
 
-    Its uplift is compared as its samples show it: see `external.uplift_difference`.
+    Its uplift is compared as its samples show it: see `external.uplift_difference`. Its peak is compared with
+    that of the reference while the file lasts.
     """
     verdict = judge(trial, reference, case)
     row = summary_row(
@@ -206,6 +209,10 @@ def external_row(
     for name, part in (("uplift_time", verdict.uplift_time), ("uplift_direction", verdict.uplift_direction)):
         if part is not None:
             row[f"{name}_difference"] = part.size
+    covered = (reference.time >= trial.time[0]) & (reference.time <= trial.time[-1])
+    largest = float(np.max(reference.tilt[covered], initial=0.0))
+    if np.max(reference.tilt[~covered], initial=0.0) > largest:  # the file does not reach the peak
+        row["peak_tilt_difference"] = (trial.peak_tilt - largest) / case.cylinder.alpha
     return row | verdict.columns()
 
 

@@ -250,3 +250,12 @@ def test_half_turns_of_planar_motion_are_passes_and_no_turn(save: Callable[..., 
     assert len(read_trajectory(path, case).passes) == len(planar.passes) == 2
     (row,) = compare(case, runs=[], external=[path], workers=1).summary.to_dict("records")
     assert row["turn_difference"] == pytest.approx(0.0, abs=1e-6)  # as above
+
+
+def test_the_peak_of_a_file_that_ends_early_is_held_against_the_same_stretch(tmp_path: Path) -> None:
+    trace = reduced.simulate(SHAKEN)
+    early = angles(trace)[trace.time <= 0.7 * trace.time[int(np.argmax(trace.tilt))]]
+    early.to_csv(tmp_path / "early.csv", index=False)
+    row = compare(SHAKEN, runs=[], external=[tmp_path / "early.csv"], workers=1).summary.iloc[0]
+    assert row["reference_peak_tilt"] > 1.1 * row["peak_tilt"]
+    assert row["peak_tilt_difference"] == pytest.approx(0.0, abs=1e-6)  # samples of a smooth tilt
