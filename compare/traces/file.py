@@ -137,10 +137,13 @@ def read_columns(path: Path, angle_unit: str | None = None) -> Columns:
 def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
     """Yield number and cells of each line that is neither empty nor a comment."""
     try:
-        lines = path.read_text(encoding="utf-8-sig").splitlines()
+        endless = path.is_char_device()
+        lines = [] if endless else path.read_text(encoding="utf-8-sig").splitlines()
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or "it is no text"
         raise ValueError(f"cannot read the trajectory {path}: {reason}") from None
+    if endless:
+        raise ValueError(f"cannot read the trajectory {path}: it is a device, which may never end")
     mark = ""
     for number, line in enumerate(lines, start=1):
         text = line.strip()

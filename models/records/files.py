@@ -102,10 +102,13 @@ def _read_all(path: Path) -> list[Component]:
 
 def _lines(path: Path) -> list[str]:
     try:
-        content = path.read_bytes()
+        endless = path.is_char_device()
+        content = b"" if endless else path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a null byte in the name
         reason = getattr(error, "strerror", None) or error
         raise ValueError(f"cannot read the record {path}: {reason}") from None
+    if endless:
+        raise ValueError(f"cannot read the record {path}: it is a device, which may never end")
     if content.startswith(_UTF16):
         raise ValueError(f"the record {path} is text in UTF-16: save it as UTF-8 or plain text")
     if b"\0" in content:

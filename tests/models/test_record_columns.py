@@ -189,3 +189,8 @@ def test_names_of_columns_stand_in_any_line_of_the_header(write: Write, header: 
 def test_one_file_of_all_components_says_what_is_wrong(write: Write, text: str, words: str) -> None:
     with pytest.raises(ValueError, match=words):
         read_record(write(text), units="g")
+
+
+def test_a_device_is_no_record() -> None:
+    with pytest.raises(ValueError, match="/dev/null: it is a device, which may never end"):
+        read_record(Path("/dev/null"), Path("/dev/null"), units="g")
