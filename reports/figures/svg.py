@@ -93,8 +93,8 @@ def figure(picture: Picture, *, titled: bool = False) -> Figure:
             _colour_bar(drawn, places, picture.shades)
         if picture.legend == "below" and picture.entries():
             _legend(drawn, list(places.flat[: len(picture.panels)]))
-        drawn.align_ylabels()
         _settle(drawn)
+        drawn.align_ylabels()  # now, since each label asks all others for their place
     return drawn
 
 
@@ -102,8 +102,7 @@ def _settle(drawn: Figure) -> None:
     """Place the axes where the layout has them, rounded: in its last digits it differs from call to call."""
     layout = drawn.get_layout_engine()
     assert layout is not None
-    for _ in range(2):  # what is placed decides how much room its labels take
-        layout.execute(drawn)
+    layout.execute(drawn)
     drawn.set_layout_engine(None)  # with one, even one that places nothing, saving draws everything twice
     for axes in drawn.axes:
         x, y, width, height = (round(each, 3) for each in axes.get_position(original=True).bounds)
