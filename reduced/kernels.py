@@ -1,4 +1,4 @@
-"""The compiled entry points: one march for each model of the ladder."""
+"""The compiled entry points: one march for each model of the ladder, and the momentum that a release has."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from rockwobble.models import Cylinder
 
 from ._compile import kernel
 from .body import Body, body_of
-from .integration.driver import make_driver
+from .integration.driver import make_driver, spin_momentum
 from .integration.march import March, Options
 from .integration.stepping import runge_kutta, taylor_series
 from .integration.systems import (
@@ -68,6 +68,12 @@ def march_flat(
 ) -> March:
     """Solve the flat-ground model; see `driver.make_driver`."""
     return _march_flat(body, options, record, time_step, initial, times, later)
+
+
+@kernel
+def momentum_of_release(body: Body, tilt: float, rolling_rate: float) -> float:
+    """Return L = B phi' [m^2/s]; an entry point of its own, since to compile it takes longer than a run."""
+    return spin_momentum(body, tilt, rolling_rate)
 
 
 MARCHES = {"planar": march_planar, "recess": march_recess, "flat": march_flat}

@@ -18,7 +18,6 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from . import kernels
 from .body import Body, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
-from .integration.driver import spin_momentum
 from .integration.march import March, Options
 
 SUPPORTS = ("recess", "flat")
@@ -133,7 +132,7 @@ class Problem:
 
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""
-        return len(self._set_up.start) == kernels.SIZES["planar"]
+        return self._plane is not None
 
     @cached_property
     def _peak(self) -> float:
@@ -156,13 +155,12 @@ class Problem:
 
         Rounding would otherwise choose on which side such motion passes upright.
         """
-        record = three_columns(self.motion)
-        plane = self._plane(record)
+        plane = self._plane
         if plane is not None:
             start = self._start(kernels.SIZES["planar"], plane.azimuth)
             return SetUp(kernels.march_planar, plane.record, start, plane.azimuth)
         start = self._start(kernels.SIZES[self.model], 0.0)
-        return SetUp(kernels.MARCHES[self.model], record, start, 0.0)
+        return SetUp(kernels.MARCHES[self.model], three_columns(self.motion), start, 0.0)
 
     @cached_property
     def _later(self) -> NDArray[np.float64]:
@@ -192,12 +190,14 @@ class Problem:
         rate = float(initial.rolling_rate)
         if 0.0 < abs(rate) < _LEAST_SPIN * body.p:
             rate = math.copysign(_LEAST_SPIN * body.p, rate)
-        L = float(spin_momentum(body, float(initial.tilt), rate))
+        L = float(kernels.momentum_of_release(body, float(initial.tilt), rate))
         start = (float(initial.tilt), float(initial.tilt_rate), float(initial.rolling_angle), L)
         return start + (0.0,) * (size - len(start))
 
-    def _plane(self, record: NDArray[np.float64]) -> Plane | None:
+    @cached_property
+    def _plane(self) -> Plane | None:
         """The vertical plane that the motion stays in, if there is one."""
+        record = three_columns(self.motion)
         if self.model == "planar":
             azimuth = self.plane
         elif self.initial is not None and self.initial.tilt > 0.0:
