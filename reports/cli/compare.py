@@ -108,6 +108,8 @@ def _suite(
 ) -> tuple[list[rw.Case], list[rw.Run]]:
     from rockwobble.compare.runs.choice import all_runs
 
+    if engines == [options.NO_ENGINE]:
+        raise ValueError(f"--engine none is for a case given by options, and {name} is a suite with runs")
     suite = rw.read_suite(name)
     if engines == [options.ALL]:
         asked = supports or list(dict.fromkeys(run.support for run in suite.runs)) or None

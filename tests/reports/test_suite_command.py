@@ -91,6 +91,10 @@ BAD = {
         ["--engine", "all", "--engine", "mujoco"],
         "all stands alone, got all and mujoco",
     ),
+    "no engine in a suite": (
+        ["mine.suite.toml", "--engine", "none"],
+        "--engine none is for a case given by options, and mine.suite.toml is a suite",
+    ),
     "no engine and no trajectory": (["--engine", "none"], "give a --trajectory as well"),
 }
 

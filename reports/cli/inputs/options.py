@@ -74,12 +74,18 @@ def _standing_alone(names: list[str] | None) -> list[str] | None:
     return names
 
 
+def _named(names: list[str] | None) -> list[str] | None:
+    if names and ALL in names:
+        raise typer.BadParameter("all is for compare; name each engine here, or none")
+    return _standing_alone(names)
+
+
 _ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only)"
 Engine = Annotated[str | None, method(f"{_ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"
 Engines = Annotated[
-    list[str] | None, method(f"{_ENGINES}; may be repeated. {_DEFAULT}.", callback=_standing_alone)
+    list[str] | None, method(f"{_ENGINES}; may be repeated. {_DEFAULT}.", callback=_named)
 ]
 EnginesOrAll = Annotated[
     list[str] | None,
