@@ -19,8 +19,9 @@ _UNIT_OF = {spelling: unit for unit, spellings in _SPELLINGS.items() for spellin
 _RATE = re.compile(r"[a-z]{1,3}/s(?:ec)?\S*", re.IGNORECASE)
 # parts of g, which no spelling above allows
 _PART = re.compile(r"%\s?g|m(?:illi-?)?g(?:al)?|[µμ]g", re.IGNORECASE)
+_TIME = r"((?:m|milli|[uµμ]|micro)s(?:ec(?:ond)?s?)?|min(?:ute)?s?)"
 _OTHER_TIME = re.compile(
-    r"\b(?:time|t)\s*[\[(]\s*((?:m|milli|[uµμ]|micro)s(?:ec(?:ond)?s?)?|min(?:ute)?s?)\s*[\])]", re.IGNORECASE
+    rf"\b(?:time|t)(?:\s*[\[(]\s*{_TIME}\s*[\])]|(?:\s+in\s+|_){_TIME}\b)", re.IGNORECASE
 )
 _WORD = r"(%\s?g|[^\s,;()\[\]]+)"
 _PLACES = tuple(
@@ -69,7 +70,7 @@ def require_seconds(path: Path, header: list[str]) -> None:
     for line in header:
         other = _OTHER_TIME.search(line)
         if other is not None:
-            raise ValueError(f"{path.name} gives times in {other[1]}, allowed is s")
+            raise ValueError(f"{path.name} gives times in {other[1] or other[2]}, allowed is s")
 
 
 def factor(path: Path, stated: str | None, given: str | None) -> float:

@@ -47,6 +47,11 @@ def test_methods_by_name():
         ({"resamples": 1}, "resamples must be at least 2"),
         ({"measure": "pgd"}, "an intensity must be one of"),
         ({"step_factor": -1.0}, "step_factor must be positive"),
+        ({"step_factor": 2.0, "methods": ["recess"]}, "step_factor is for engines at their default"),
+        (
+            {"step_factor": 2.0, "methods": [Run("mujoco", "recess", 1e-4)]},
+            "step_factor is for engines at their default",
+        ),
     ],
 )
 def test_bad_input(options, words):

@@ -129,6 +129,8 @@ def test_printed_times_may_be_rounded(write: Write) -> None:
         ("t,acc (% g)\n" + TEXT, r"x.txt is in % g, allowed are g, m/s2, cm/s2"),
         ("time [ms],acc [g]\n" + TEXT, r"x.txt gives times in ms, allowed is s"),
         ("# t (Milliseconds), acc\n" + TEXT, r"x.txt gives times in Milliseconds, allowed is s"),
+        ("time in ms, acc in g\n" + TEXT, r"x.txt gives times in ms, allowed is s"),
+        ("time_ms acc\n" + TEXT, r"x.txt gives times in ms, allowed is s"),
         ("t,acc [g]\n# units: cm/s2\n" + TEXT, r"x.txt states two units: g and cm/s2"),
     ],
 )

@@ -47,7 +47,8 @@ class Plan:
     contact : bool
         Whether it is asked where reduced models lose contact.
     step_factor : float
-        On the default time step of engines: a share of runs needs less than a trace.
+        On the default time step of engines: a share of runs needs less than a trace. Runs that state a step
+        keep it.
 
     Raises
     ------
@@ -82,6 +83,10 @@ class Plan:
                 _require_increasing(label, values)
         if not (math.isfinite(self.step_factor) and self.step_factor > 0.0):
             raise ValueError(f"step_factor must be positive and finite, got {self.step_factor!r}")
+        if self.step_factor != 1.0 and not any(map(_has_default_step, self.methods)):
+            raise ValueError(
+                f"step_factor is for engines at their default time step, got {self.step_factor!r}"
+            )
         for cylinder in self.cylinders.values():
             for motion in self.motions:
                 intensity(self.measure, motion, cylinder, gravity=self.gravity, period=self.period)
@@ -173,6 +178,10 @@ def _together(singles: Sequence[Task]) -> Iterator[Task]:
     for i in range(0, len(singles), size):
         part = singles[i : i + size]
         yield replace(part[0], shakings=tuple(shaking for task in part for shaking in task.shakings))
+
+
+def _has_default_step(method: Method) -> bool:
+    return method.run is not None and method.run.engine is not None and method.run.time_step is None
 
 
 def _require_increasing(label: str, values: Sequence[float]) -> None:
