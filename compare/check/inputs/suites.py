@@ -47,6 +47,11 @@ cylinder = { semidiagonal = 6, tan_alpha = 0.2 }
 motion = { x = "x.csv", y = "y.csv", units = "g", scale = 1.5, rotation_deg = 90, time_shift = 0.4 }
 
 [[cases]]
+name = "earlier"
+cylinder = { semidiagonal = 6, tan_alpha = 0.2 }
+motion = { x = "x.csv", y = "y.csv", units = "g", time_shift = -0.4 }
+
+[[cases]]
 name = "strength"
 cylinder = { semidiagonal = 6, tan_alpha = 0.25 }
 motion = { x = "x.csv", y = "y.csv", units = "g", times_uplift = [1.5, 2] }
@@ -96,7 +101,9 @@ def _expansion(suite: Suite) -> Finding:
         assert case.initial is not None
         tilted = abs(case.initial.tilt / math.atan(tan_alpha) - share) < ROUNDING.most
         stated = (case.name, case.cylinder.semidiagonal, case.cylinder.tan_alpha, case.length)
-        if not (tilted and stated == (f"{name}, duration {duration:g}", size, tan_alpha, duration)):
+        released = case.initial.tilt_rate, case.initial.rolling_angle, case.initial.rolling_rate
+        as_stated = stated == (f"{name}, duration {duration:g}", size, tan_alpha, duration)
+        if not (tilted and as_stated and released == (0.0, 0.0, 0.5)):
             wrong.append(case.name)
     runs = [(run.engine, run.support, run.time_step, dict(run.settings)) for run in suite.runs]
     expected = itertools.product(
@@ -142,6 +149,7 @@ def _motion_errors(named: dict[str, Case]) -> dict[str, float]:
     along = np.where(at >= 0.5, 1.2 * 9.81 * 0.25 * np.sin(math.pi * (at - 0.5)), 0.0)
     expected = {
         "record": (shifted, STEP),
+        "earlier": (both[2:], STEP),
         "strength: times_uplift 1.5": (1.5 * uplifts, STEP),
         "strength: times_uplift 2": (2.0 * uplifts, STEP),
         "pulse": (np.column_stack([0.0 * along, along]), PULSE_STEP),
