@@ -17,7 +17,7 @@ from .engines import (
     traces,
 )
 from .finding import Bound, Finding, at_most
-from .inputs import ground_motions, record_files, suites
+from .inputs import ground_motions, record_files, refusals, suites
 from .measures import (
     batch,
     exact_functions,
@@ -47,7 +47,7 @@ Check = Callable[[Bench], Iterator[Finding]]
 
 # what comes later rests on what comes earlier
 PARTS: dict[str, tuple[Check, ...]] = {
-    "records": (record_files.check, ground_motions.check),
+    "records": (record_files.check, ground_motions.check, refusals.check),
     "equations": (equations.check, engine_equations.check),
     "conserved": (conserved.check,),
     "exact": (exact.check, exact_functions.check),

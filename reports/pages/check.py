@@ -14,7 +14,7 @@ from .page import Page
 from .table import NONE, Row, Table, columns_of, number
 
 LAYER_WORDS = {
-    "records": "Records: files of every form, the records that ship, pulses",
+    "records": "Records: files of every form, records that ship, pulses, values that are refused",
     "equations": "Equations: Lagrange's, (18) and (19) on computed motions; accelerations in the engines",
     "conserved": "Conserved: energy and L in free motion, and the work of the ground",
     "exact": "Exact solutions: uplift, periods, angles of turn, steady wobble",

@@ -18,7 +18,7 @@ from rockwobble import reduced
 from rockwobble.compare.check import Bench
 from rockwobble.compare.check.engines import time_steps
 from rockwobble.compare.check.finding import NOT_RUN
-from rockwobble.compare.check.inputs import ground_motions, record_files, suites
+from rockwobble.compare.check.inputs import ground_motions, record_files, refusals, suites
 from rockwobble.compare.check.measures import external_trajectories, metrics, predicted_times, spectra, sweeps
 from rockwobble.models import Case, GroundMotion, p695_far_field, read_record, read_suite
 from rockwobble.models.records import column_file
@@ -26,7 +26,17 @@ from rockwobble.models.suites import motion as suite_motion
 
 BENCH = Bench(reduced=reduced, suite=read_suite("quick"))
 PARTS = (
-    *(record_files, ground_motions, metrics, predicted_times, external_trajectories, suites, sweeps, spectra),
+    *(
+        record_files,
+        ground_motions,
+        refusals,
+        metrics,
+        predicted_times,
+        external_trajectories,
+        suites,
+        sweeps,
+        spectra,
+    ),
     time_steps,
 )
 
@@ -176,6 +186,12 @@ def test_records_that_are_installed_and_refused_are_found(monkeypatch: pytest.Mo
     p695_far_field.cache_clear()
     with pytest.raises(ValueError, match="from 1 to 0"):
         list(ground_motions.check(BENCH))
+
+
+@pytest.mark.parametrize("place", ["models.cylinder.require_positive", "models.initial_state.require_finite"])
+def test_a_value_that_is_taken_unseen_is_found(monkeypatch: pytest.MonkeyPatch, place: str) -> None:
+    monkeypatch.setattr(f"rockwobble.{place}", lambda name, value, unit: value)
+    assert failed_parts(refusals) == ["refusal of wrong values"]
 
 
 def test_a_motion_that_begins_a_sample_off_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
