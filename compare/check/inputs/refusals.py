@@ -20,7 +20,8 @@ from ..finding import Finding, none_wrong
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 STILL = Case(PIER, initial=InitialState(0.1), duration=1.0)
 MOTION = GroundMotion([[0.0, 0.0], [1.0, 0.5], [0.0, 0.0]], 0.01)
-Makers = Mapping[str, Callable[[], Any]]
+Maker = Callable[[Any], object]
+Makers = Mapping[str, Callable[[], object]]
 NO_SIZES = (0.0, -1.0, math.nan, math.inf)
 NO_NUMBERS = (math.nan, math.inf)
 
@@ -54,7 +55,7 @@ def _accepted(makers: Makers) -> list[str]:
     return wrong
 
 
-def _is_done(change: Callable[[], Any]) -> bool:
+def _is_done(change: Callable[[], object]) -> bool:
     try:
         change()
     except (ValueError, AttributeError, TypeError):
@@ -62,7 +63,7 @@ def _is_done(change: Callable[[], Any]) -> bool:
     return True
 
 
-def _each(name: str, values: tuple[Any, ...], make: Callable[[Any], Any], of: str = "") -> Makers:
+def _each(name: str, values: tuple[object, ...], make: Maker, of: str = "") -> Makers:
     return {f"{name} = {value!r}{of}": partial(make, value) for value in values}
 
 
@@ -73,7 +74,7 @@ def _values() -> Makers:
     of_body = {key: lambda value, key=key: Cylinder.from_dimensions(**{**body, key: value}) for key in body}
     sine = {"amplitude": 1.0, "period": 1.0}
     of_pulse = {key: lambda value, key=key: pulse("one-sine", **{**sine, key: value}) for key in sine}
-    sizes: dict[str, Callable[[Any], Any]] = {
+    sizes: dict[str, Maker] = {
         "semidiagonal": lambda value: Cylinder(semidiagonal=value, tan_alpha=0.2),
         "tan_alpha": lambda value: Cylinder(semidiagonal=6.0, tan_alpha=value),
         **of_body,
@@ -82,7 +83,7 @@ def _values() -> Makers:
         "gravity": lambda value: replace(STILL, gravity=value),
         "time_step": lambda value: Run("mujoco", "recess", value),
     }
-    numbers: dict[str, Callable[[Any], Any]] = {
+    numbers: dict[str, Maker] = {
         "tilt": InitialState,
         "tilt_rate": lambda value: InitialState(0.1, tilt_rate=value),
         "rolling_angle": lambda value: InitialState(0.1, rolling_angle=value),
@@ -92,7 +93,7 @@ def _values() -> Makers:
         "acceleration": lambda value: GroundMotion([[0.0, 0.0], [value, 0.0]], 0.01),
         "start": lambda value: pulse("one-sine", amplitude=1.0, period=1.0, start=value),
     }
-    found: dict[str, Callable[[], Any]] = {}
+    found: dict[str, Callable[[], object]] = {}
     for name, make in sizes.items():
         found |= _each(name, NO_SIZES, make)
     for name, make in numbers.items():
@@ -112,14 +113,14 @@ def _values() -> Makers:
 def _options(bench: Bench) -> Makers:
     """Options of the reduced models, and of an engine, which is not run."""
     solve = bench.reduced.simulate
-    asked: dict[str, tuple[Any, ...]] = {
+    asked: dict[str, tuple[object, ...]] = {
         "rtol": (0.0, 1.0, math.nan),
         "rest_tilt": (-1e-3, 0.5, math.nan),
         "sample_step": NO_SIZES,
         "support": ("ring", ""),
         "plane": NO_NUMBERS,
     }
-    found: dict[str, Callable[[], Any]] = {}
+    found: dict[str, Callable[[], object]] = {}
     for option, values in asked.items():
         found |= {f"{option} = {value!r}": partial(solve, STILL, **{option: value}) for value in values}
     found |= _each("restitution", (-0.1, 1.1), lambda value: solve(STILL, plane=0.0, restitution=value))
