@@ -124,6 +124,7 @@ class SuiteFile(pytest.File):
     def collect(self) -> Iterator[SuiteItem]:
         """Yield the items."""
         from rockwobble.compare.runs.labels import run_labels
+        from rockwobble.multibody.engines.registry import engine_lack
 
         try:
             suite = rw.read_suite(self.path)
@@ -137,7 +138,7 @@ class SuiteFile(pytest.File):
                     self, name=f"{case.name}, {label}", suite=suite, case=case, run=run, label=label
                 )
                 if run not in here:
-                    item.add_marker(pytest.mark.skip(reason=f"{run.engine} is not installed here"))
+                    item.add_marker(pytest.mark.skip(reason=f"{run.engine} {engine_lack(str(run.engine))}"))
                 yield item
 
 

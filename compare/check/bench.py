@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace
-from rockwobble.multibody.engines.registry import standard_engines
+from rockwobble.multibody.engines.registry import engine_lack, standard_engines
 
 from ..runs.choice import installed_engines
 from ..runs.execution import Job, simulate_all
@@ -96,7 +96,7 @@ def not_here(what: str, engines: Sequence[str]) -> Iterator[Finding]:
     """Yield for each of some engines that is not installed that `what` was not checked with it."""
     for name in engines:
         if name not in engines_here(engines):
-            yield not_run(f"{what}, {name}", name, f"{name} is not installed here")
+            yield not_run(f"{what}, {name}", name, f"{name} {engine_lack(name)}")
 
 
 def why(trace: Trace) -> str:

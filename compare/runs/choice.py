@@ -6,7 +6,13 @@ from collections.abc import Sequence
 
 from rockwobble.models import Case, Run
 from rockwobble.multibody import BrokenEngineError, available_engines
-from rockwobble.multibody.engines.registry import engine_packages, find_engine, stand_in, standard_engines
+from rockwobble.multibody.engines.registry import (
+    engine_lack,
+    engine_packages,
+    find_engine,
+    stand_in,
+    standard_engines,
+)
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 from rockwobble.multibody.scene.guard import check_time_step
 from rockwobble.multibody.scene_of_case import resolved_settings
@@ -46,6 +52,11 @@ def missing_engines() -> tuple[str, ...]:
     return tuple(name for name in standard_engines() if name not in installed_engines())
 
 
+def left_out(name: str) -> str:
+    """Return the line on an engine that every installation is meant to have, where this one lacks it."""
+    return f"{name} {engine_lack(name)}; it is left out"
+
+
 def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run], list[str]]:
     """Return the runs of a suite that this installation can make, and a line on each engine it lacks.
 
@@ -72,7 +83,7 @@ def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run]
                 run = Run(other, run.support, run.time_step)
                 said.setdefault(name, f"{name} has no wheel here, {other} takes its place")
             elif other is not None or name in missing_engines():
-                said.setdefault(name, f"{name} is not installed here and is left out")
+                said.setdefault(name, left_out(name))
                 continue
         if run not in found:
             found.append(run)

@@ -7,14 +7,16 @@ has no entry points, and one of ours is known by name where its package has no w
 
 from __future__ import annotations
 
+import ctypes
 import importlib
 import importlib.util
 import platform
 import sys
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from types import MappingProxyType
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, NamedTuple, cast
 
 from ..facts import EngineFacts
 from ..protocol import MEMBERS, Engine
@@ -26,11 +28,21 @@ GROUP = "rockwobble.engines"
 
 
 class EngineNotInstalledError(ValueError):
-    """A known engine whose package cannot be imported here."""
+    """A known engine whose package, or a library that it needs, is not installed here."""
 
 
 class BrokenEngineError(ValueError):
     """An engine that another package declares and that does not load."""
+
+
+class _Libraries(NamedTuple):
+    """Libraries of the system that a wheel for Linux does not bring."""
+
+    names: tuple[str, ...]
+    remedy: str
+
+
+_NONE = _Libraries((), "")
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,8 +52,11 @@ class _Entry:
     remedy: str
     module: str = ""  # to import, where it is not called as the package
     standard: bool = True  # comes with every installation of this package, where it has a wheel
+    libraries: _Libraries = _NONE
 
 
+# what draws, and is linked even where nothing is drawn; a container without a screen has none of it
+_GRAPHICS = _Libraries(("libGL.so.1", "libX11.so.6"), "apt install libgl1 libx11-6")
 # of PyBullet; elsewhere DART takes its place in a default run
 _WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
@@ -54,13 +69,26 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             standard=_WHEEL,
         ),
         "dart": _Entry(
-            "dartpy", ".dart_engine:DartEngine", "pip install 'dartpy>=6.20,<7'", standard=not _WHEEL
+            "dartpy",
+            ".dart_engine:DartEngine",
+            "pip install 'dartpy>=6.20,<7'",
+            standard=not _WHEEL,
+            libraries=_GRAPHICS,
         ),
         "drake": _Entry(
-            "drake", ".drake_engine:DrakeEngine", "pip install 'drake>=1.51'", "pydrake", standard=False
+            "drake",
+            ".drake_engine:DrakeEngine",
+            "pip install 'drake>=1.51'",
+            module="pydrake",
+            standard=False,
+            libraries=_Libraries(("libglib-2.0.so.0",), "apt install libglib2.0-0"),
         ),
         "exudyn": _Entry(
-            "exudyn", ".exudyn_engine:ExudynEngine", "pip install 'exudyn>=1.13.6,<2'", standard=False
+            "exudyn",
+            ".exudyn_engine:ExudynEngine",
+            "pip install 'exudyn>=1.13.6,<2'",
+            standard=False,
+            libraries=_GRAPHICS,
         ),
     }
 )
@@ -111,6 +139,11 @@ def available_engines() -> tuple[str, ...]:
     return (*own_engines(), *_declared())
 
 
+def engine_lack(name: str) -> str:
+    """Return what one of our engines lacks here and how to get it, to follow its name; empty if nothing."""
+    return _lack(_ENGINES[name])
+
+
 def find_engine(name: str) -> Engine:
     """Return the engine called `name`.
 
@@ -130,7 +163,7 @@ def find_engine(name: str) -> Engine:
             raise ValueError(f"engine must be one of {', '.join((*_ENGINES, *declared))}, got {name!r}")
         return _load(name, declared[name])
     if not _is_here(entry):
-        raise EngineNotInstalledError(f"engine {name!r} is not installed here: {entry.remedy}")
+        raise EngineNotInstalledError(f"engine {name!r} {_lack(entry)}")
     return _made(entry)
 
 
@@ -152,7 +185,24 @@ def engine_packages() -> dict[str, str]:
 
 
 def _is_here(entry: _Entry) -> bool:
-    return importlib.util.find_spec(entry.module or entry.package) is not None
+    return not _lack(entry)
+
+
+def _lack(entry: _Entry) -> str:
+    """What an engine lacks here, to follow its name, and how to get it; nothing where it is here."""
+    if importlib.util.find_spec(entry.module or entry.package) is None:
+        return f"is not installed here: {entry.remedy}"
+    missing = [name for name in entry.libraries.names if not _has_library(name)]
+    return f"needs {' and '.join(missing)} of the system: {entry.libraries.remedy}" if missing else ""
+
+
+@cache
+def _has_library(name: str) -> bool:
+    """Whether a library of the system can be loaded; elsewhere than on Linux, wheels bring what they need."""
+    try:
+        return sys.platform != "linux" or bool(ctypes.CDLL(name))
+    except OSError:
+        return False
 
 
 def _made(entry: _Entry) -> Engine:

@@ -154,9 +154,9 @@ def _external(
 
 
 def _say_what_is_left_out(supports: list[str]) -> None:
-    from rockwobble.compare.runs.choice import unsupported
+    from rockwobble.compare.runs.choice import left_out, unsupported
 
     for name in rc.missing_engines():
-        complain(f"{name} is not installed here and is left out")
+        complain(left_out(name))
     for reason in unsupported(supports):
         complain(reason)

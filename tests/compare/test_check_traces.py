@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib.util
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.models import Case, GroundMotion, Run, Trace, read_suite
 from rockwobble.models.traces.trace_source import Known
-from rockwobble.multibody.engines.registry import standard_engines
+from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 
 KEPT: dict[str, Trace] = {}
 TRACES: dict[str, Trace] = {}  # made once, and given to every test with another fault in them
@@ -51,12 +52,13 @@ def test_traces_of_an_engine_hold(monkeypatch: pytest.MonkeyPatch, engine: str) 
 
 
 def test_an_engine_that_is_not_installed_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(bench, "installed_engines", lambda: ())
+    packages, find = engine_packages().values(), importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in packages else find(name))
     found = list(run_checks(made(), ["traces"]))
     *missing, geometry = found
     assert [(f.outcome, f.part) for f in missing] == [(NOT_RUN, name) for name in standard_engines()]
     assert (geometry.outcome, geometry.part) == (PASSED, "geometry of a ring")
-    assert found[1].note == f"{standard_engines()[1]} is not installed here"
+    assert found[1].note.startswith(f"{standard_engines()[1]} is not installed here: pip install")
 
 
 @pytest.mark.parametrize(

@@ -1,6 +1,8 @@
 from __future__ import annotations
 
 import importlib.util
+import re
+import sys
 from typing import Literal
 
 import pytest
@@ -17,6 +19,7 @@ from rockwobble.compare import (
 from rockwobble.compare.runs.choice import references_of, require_runnable, unsupported
 from rockwobble.compare.runs.labels import labels_beside_references, run_labels
 from rockwobble.models import Case, Cylinder, InitialState, Run
+from rockwobble.multibody.engines import registry
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 
 # of two seconds: 3e-7 of the tilt by its own model was measured, 5e-4 by the other
@@ -51,7 +54,8 @@ def test_an_engine_without_a_wheel_is_left_out_and_refused_by_name(monkeypatch, 
 
 
 def test_a_suite_runs_with_what_takes_the_place_of_an_engine_without_a_wheel(monkeypatch):
-    pytest.importorskip("dartpy", reason="dart is not installed")
+    if "dart" not in installed_engines():
+        pytest.skip("dart is not installed")
     place = {"pybullet": "dart"}.get
     monkeypatch.setattr("rockwobble.compare.runs.choice.stand_in", place)
     monkeypatch.setattr("rockwobble.compare.runs.choice.installed_engines", lambda: ("mujoco", "dart"))
@@ -68,15 +72,35 @@ def test_a_suite_runs_with_what_takes_the_place_of_an_engine_without_a_wheel(mon
 
 
 def test_a_suite_leaves_out_an_engine_that_is_missing_and_keeps_an_extra(monkeypatch):
-    monkeypatch.setattr("rockwobble.compare.runs.choice.installed_engines", lambda: ())
+    packages, find = engine_packages().values(), importlib.util.find_spec
+    monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in packages else find(name))
     name = standard_engines()[0]
     runs = [Run(name, "recess"), Run(None, "recess"), Run("drake", "recess")]
-    assert runs_here(runs) == (runs[1:], [f"{name} is not installed here and is left out"])
+    found, (said,) = runs_here(runs)
+    assert found == runs[1:]
+    assert re.fullmatch(rf"{name} is not installed here: pip install .*; it is left out", said)
+
+
+def test_an_engine_that_lacks_a_library_of_the_system_is_left_out_and_says_which(monkeypatch, case):
+    name = "exudyn"  # comes with the tests, and is linked with what draws
+    if name not in installed_engines():
+        pytest.skip("exudyn is not installed")
+    monkeypatch.setattr(registry, "_has_library", lambda library: library != "libGL.so.1")
+    assert name not in installed_engines()
+    with pytest.raises(ValueError, match=r"'exudyn' needs libGL.so.1 of the system: apt install libgl1"):
+        require_runnable(case, Run(name, "flat"))
+
+
+def test_a_library_that_is_not_there_is_missing():
+    if sys.platform != "linux":
+        pytest.skip("elsewhere wheels bring what they need")
+    assert registry._has_library("libc.so.6")
+    assert not registry._has_library("libnothing.so.9")
 
 
 def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeypatch, case):
-    pytest.importorskip("exudyn", reason="exudyn is not installed")
-    assert "exudyn" in installed_engines()
+    if "exudyn" not in installed_engines():
+        pytest.skip("exudyn is not installed")
     assert "exudyn" not in {run.engine for run in default_runs()}
     assert reserved_engines()["exudyn"] == "exudyn has no recess support and no uplift"
     # named, it runs on open ground; a support that is named stays, and is refused
