@@ -11,13 +11,13 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
+from rockwobble.compare.check.bench import engines_here
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.tradeoff import problem as problems
 from rockwobble.compare.studies.tradeoff import study
 from rockwobble.compare.studies.tradeoff.conclusions import costs, engine_factors, plateaus, rest_tilt_price
 from rockwobble.compare.studies.tradeoff.methods import BASE_LINE, BASE_TOLERANCE, Method, methods_for
 from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, Problem
-from rockwobble.multibody.engines.registry import standard_engines
 
 # a release at a tolerance of 1e-8 turns by 1.5e-7 deg too much or too little
 TURN_ERROR = 1e-6
@@ -105,7 +105,7 @@ def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
     few = replace(turn, steps=turn.steps[:2], few_steps=turn.steps[:2])
     monkeypatch.setattr(study, "problems", lambda **_: [few])
     for each in ("methods", "scene_cost"):  # what is installed beyond these is timed in the same way
-        monkeypatch.setattr(f"rockwobble.compare.studies.tradeoff.{each}.own_engines", standard_engines)
+        monkeypatch.setattr(f"rockwobble.compare.studies.tradeoff.{each}.own_engines", engines_here)
     told: list[Progress] = []
     found = study.measure_tradeoff(quick=True, progress=told.append, command="rockwobble tradeoff")
     assert (told[-1].state, told[-1].done, told[-1].share) == ("finished", told[-1].total, 1.0)

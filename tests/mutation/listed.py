@@ -20,8 +20,9 @@ import numpy as np
 
 import rockwobble.reduced
 from rockwobble.compare.check import LAYERS, Bench, Finding, first_failure, run_checks
-from rockwobble.compare.check.bench import ENGINES
-from rockwobble.models import Run, read_suite
+from rockwobble.compare.check.bench import engines_here
+from rockwobble.compare.runs.choice import runs_here
+from rockwobble.models import Run, Suite, read_suite
 
 from .mutant import Fault, mutated
 from .places import after_assignment, appended, before_assignment, scaled_argument, wrapped
@@ -163,7 +164,7 @@ def _engines() -> list[Mutation]:
             named=("contact of mujoco",),
         )
     ]
-    if "pybullet" in ENGINES:
+    if "pybullet" in engines_here():
         margin = setting("pybullet", collision_margin=0.04)
         named = ("contact of pybullet",)
         found.append(
@@ -176,7 +177,7 @@ def _engines() -> list[Mutation]:
             layer="agreement",
             named=(f"time step of {engine}",),
         )
-        for engine in ENGINES
+        for engine in engines_here()
     ]
 
 
@@ -189,7 +190,9 @@ def failures(
     """
     with ExitStack() as stack:
         reduced = stack.enter_context(mutated(*mutation.faults)) if mutation.faults else rockwobble.reduced
-        bench = Bench(reduced=reduced, suite=read_suite("quick"), workers=1 if first else None)
+        quick = read_suite("quick")
+        suite = Suite(quick.cases, runs_here(quick.runs)[0], quick.bounds)
+        bench = Bench(reduced=reduced, suite=suite, workers=1 if first else None)
         bench.kept = {} if kept is None else kept
         if mutation.adjust is not None:
             bench.adjust = mutation.adjust
