@@ -49,7 +49,12 @@ def test_compiled_code_goes_to_a_folder_of_ours_where_it_has_no_other_place(tmp_
 
 def test_stale_code_that_another_process_has_removed_meanwhile_is_no_error(monkeypatch, tmp_path):
     kept = tmp_path / "driver.march_recess-1.py311.nbi"
-    monkeypatch.setattr(Path, "glob", lambda *_, **__: [kept])
+    true = Path.glob  # that of the sources goes on
+
+    def glob(self, pattern, **options):
+        return [kept] if pattern == "*.nbi" else true(self, pattern, **options)
+
+    monkeypatch.setattr(Path, "glob", glob)
     entry = SimpleNamespace(stats=SimpleNamespace(cache_path=tmp_path), __name__="march_recess")
     assert not on_disk(entry)
     kept.touch()
