@@ -15,7 +15,7 @@ from rockwobble.models.case import TimeStep
 from rockwobble.models.traces.trace_source import Known
 
 from .engines.ability import require_able
-from .engines.registry import find_engine
+from .engines.registry import EngineNotInstalledError, find_engine
 from .protocol import Scene
 from .recording.diagnostics import diagnostics
 from .recording.passes import passes_between, true_swings
@@ -142,7 +142,13 @@ def _simulate(
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(scene, samples, release.rolling_angle, release.tilt_rate == 0.0)
     means = StepMeans(case.motion, scale, scene.time_step)
-    recorder = run_steps(backend, scene, resolved, recorder, means, sample_step / scale.time, progress)
+    try:
+        recorder = run_steps(backend, scene, resolved, recorder, means, sample_step / scale.time, progress)
+    except ImportError as error:
+        reason = " ".join(str(error).split())
+        raise EngineNotInstalledError(
+            f"engine {engine!r} is installed and does not load: {reason}"
+        ) from error
     return _trace(
         recorder,
         scene,

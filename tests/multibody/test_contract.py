@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import contextlib
 import importlib.util
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
+from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)
@@ -207,6 +209,18 @@ def test_an_engine_that_is_not_installed_is_named(monkeypatch: pytest.MonkeyPatc
         multibody.EngineNotInstalledError, match="'pybullet' is not installed here: pip install"
     ):
         multibody.simulate(Case(PIER, initial=RELEASE, duration=0.1), engine="pybullet")
+
+
+def test_an_engine_that_does_not_load_is_named_with_the_reason(monkeypatch: pytest.MonkeyPatch) -> None:
+    @contextlib.contextmanager
+    def broken(*_: Any) -> Iterator[Any]:
+        yield from ()
+        raise ImportError("libSomething.so.1: cannot open\nshared object file")
+
+    monkeypatch.setattr(MujocoEngine, "open", broken)
+    words = "'mujoco' is installed and does not load: libSomething.so.1: cannot open shared object file"
+    with pytest.raises(multibody.EngineNotInstalledError, match=words):
+        multibody.simulate(Case(PIER, initial=RELEASE, duration=0.1))
 
 
 def test_without_a_motion_but_standing_it_stands(engine: str) -> None:
