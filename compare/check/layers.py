@@ -24,6 +24,7 @@ from .measures import (
     external_trajectories,
     metrics,
     predicted_times,
+    sample_statistics,
     spectra,
     sweeps,
 )
@@ -56,7 +57,7 @@ PARTS: dict[str, tuple[Check, ...]] = {
     "properties": (properties.check, turning_points.check, demands.check),
     "order": (order.check,),
     "residual": (residual.check,),
-    "metrics": (metrics.check, predicted_times.check, external_trajectories.check),
+    "metrics": (metrics.check, predicted_times.check, external_trajectories.check, sample_statistics.check),
     "studies": (batch.check, suites.check, sweeps.check, spectra.check),
     "traces": (traces.check, time_steps.check, rings.check),
     "agreement": (engine_settings.check, agreement.check),

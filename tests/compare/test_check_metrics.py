@@ -19,7 +19,14 @@ from rockwobble.compare.check import Bench
 from rockwobble.compare.check.engines import time_steps
 from rockwobble.compare.check.finding import NOT_RUN
 from rockwobble.compare.check.inputs import ground_motions, record_files, refusals, suites
-from rockwobble.compare.check.measures import external_trajectories, metrics, predicted_times, spectra, sweeps
+from rockwobble.compare.check.measures import (
+    external_trajectories,
+    metrics,
+    predicted_times,
+    sample_statistics,
+    spectra,
+    sweeps,
+)
 from rockwobble.models import Case, GroundMotion, p695_far_field, read_record, read_suite
 from rockwobble.models.records import column_file
 from rockwobble.models.suites import motion as suite_motion
@@ -37,6 +44,7 @@ PARTS = (
         sweeps,
         spectra,
     ),
+    sample_statistics,
     time_steps,
 )
 
@@ -109,6 +117,25 @@ def test_a_wrong_prediction_or_distribution_is_found(
 ) -> None:
     changed(monkeypatch, predicted_times, name, change)
     assert len(failed_parts(predicted_times)) == 1
+
+
+@pytest.mark.parametrize(
+    ("name", "change"),
+    [
+        ("mcnemar_p", lambda p: 0.5 * p),
+        ("adjusted", lambda p: np.minimum(p, 0.05)),
+        ("largest_share_unseen", lambda share: 1.01 * share),
+        ("fewest_to_tell", lambda count: count - 1),
+        ("ratio_within_reach", lambda ratio: 1.01 * ratio),
+        ("log_ratios", lambda ratios: -ratios),
+        ("paired_difference", lambda found: replace(found, low=-found.high, high=-found.low)),
+        ("quantile_interval", lambda found: replace(found, low=found.low + 0.01)),
+        ("share_interval", lambda found: replace(found, high=0.99 * found.high)),
+    ],
+)
+def test_a_wrong_statistic_is_found(monkeypatch: pytest.MonkeyPatch, name: str, change: Any) -> None:
+    changed(monkeypatch, sample_statistics, name, change)
+    assert failed_parts(sample_statistics)
 
 
 @pytest.mark.parametrize("field", ["tilt", "rolling_angle", "contact_point", "centre_of_mass", "passes"])
