@@ -5,18 +5,22 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Iterator
-from typing import Any
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, Run, Trace
 
-from ...comparison.prediction import Prediction, close_pass, estimated_error, predict, verdict
+from ...comparison.prediction import Prediction, close_pass, estimated_error, measured_error, predict, verdict
 from ...metrics.distributions import contrast
 from ..bench import Array, Bench
 from ..finding import Bound, Finding, worst_of
 from ..problems import PIER, released
 from .made_traces import RECESS, made, passes
+
+if TYPE_CHECKING:
+    from ...comparison.error_budget import ErrorBudget
 
 ALPHA = PIER.alpha
 STEP = 0.01
@@ -95,11 +99,17 @@ def _verdicts() -> dict[str, float]:
     small = Case(Cylinder(semidiagonal=0.06, tan_alpha=0.2), duration=1.0)
     error = estimated_error(shaken, "mujoco", 1e-4)
     leaning = (released(0.5, 0.0, 1.0, Cylinder(semidiagonal=6.0, tan_alpha=a)) for a in (0.2, 0.6))
+    halved, exact = (
+        cast("ErrorBudget", SimpleNamespace(time=TIME, numerics=np.where(TIME < 1.005, error, 1.0)))
+        for error in (3e-5, 0.0)
+    )
     slender, squat = (estimated_error(case, "pybullet", 1e-4) for case in leaning)
     return errors | {
         "twice the step": estimated_error(shaken, "mujoco", 2e-4) / error - 2.0,
         "a hundredth of the size": estimated_error(small, "mujoco", 1e-5) / error - 1.0,
         "three times as squat, released": squat / slender - 9.0,
+        "shown by another step": measured_error(shaken, halved) / 3e-5 - 1.0,
+        "shown by another step, none": measured_error(shaken, exact) / 1e-9 - 1.0,
     }
 
 
