@@ -23,7 +23,7 @@ LAYER_WORDS = {
     "properties": "Properties: one motion stated in several ways; turning points, peaks and passes",
     "order": "Order: error against tolerance and time step",
     "residual": "Residual: no displacement and no twist is left",
-    "metrics": "Metrics: differences, agreement times, external trajectories and intervals, on made-up traces",
+    "metrics": "Metrics: differences, agreement times, external trajectories, intervals, on made-up traces",
     "studies": "Studies: peak_tilts, suites, sweeps and spectra against single runs",
     "traces": "Traces: every field of an engine's trace",
     "agreement": "Agreement: engines against the reduced models",
