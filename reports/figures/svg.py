@@ -130,6 +130,8 @@ def _panel(axes: Axes, panel: Panel, picture: Picture) -> None:
         else:
             assert picture.shades is not None
             _heat(axes, layer, panel, picture.shades)
+    if picture.columns > 2 and not panel.x.log and not panel.x.ticks:
+        axes.locator_params(axis="x", nbins=5)  # in a narrow panel more numbers would touch
     # after what is drawn, which would move them
     axes.set_xlim(panel.x.low, panel.x.high)
     axes.set_ylim(panel.y.low, panel.y.high)
