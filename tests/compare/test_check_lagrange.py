@@ -10,7 +10,7 @@ from newton_euler import State, kinetic_energy, newton_euler, vector
 
 from rockwobble import reduced
 from rockwobble.compare.check import differences
-from rockwobble.compare.check.models import lagrange, quadrature
+from rockwobble.compare.check.models import equations, lagrange, quadrature
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.reduced.body import body_of
 
@@ -51,6 +51,21 @@ def test_accelerations_of_newton_and_euler_leave_no_residual() -> None:
         SHAPE, *arguments, one(1.01 * float(motion.theta), float(motion.phi)), np.array([ground])
     )
     assert abs(wrong[0][0]) > 1e-2
+
+
+@pytest.mark.parametrize("place", [1, 2, 3])
+def test_a_coefficient_of_the_equations_as_written_is_found(
+    monkeypatch: pytest.MonkeyPatch, place: int
+) -> None:
+    right = reduced.equations.recess_rhs
+
+    def wrong(*state: float) -> list[float]:
+        return [rate * (1.0 + 1e-9 * (at == place)) for at, rate in enumerate(right(*state))]
+
+    assert max(equations._written(reduced, CYLINDER)) < ROUNDING
+    monkeypatch.setattr(reduced.equations, "recess_rhs", wrong)
+    off = equations._written(reduced, CYLINDER)
+    assert [error > ROUNDING for error in off] == [place == at for at in (1, 2, 3)]
 
 
 def test_differences_are_exact_for_polynomials_and_good_for_sines() -> None:

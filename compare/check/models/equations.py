@@ -9,11 +9,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from types import ModuleType
 
 import numpy as np
 
+from rockwobble.models import Cylinder
+
 from ..bench import Array, Bench, largest
 from ..finding import Bound, Finding, at_most, worst_of
+from ..problems import GRAVITY
 from . import lagrange
 from .lagrange import Shape
 from .short_motions import CYLINDERS, FailedMotionError, Sampled, sample
@@ -27,6 +31,8 @@ RATE = Bound(1e-9, REST_OF, "of p")
 FORCE = Bound(1e-9, "second differences of the mass centre", "weights")
 # the same through the fit, whose condition number is up to a hundred
 COEFFICIENT = Bound(1e-7, "each coefficient fitted to differences of computed positions")
+WRITTEN = Bound(1e-12, "derivatives of the energies by complex steps")
+STATES = 24
 ENDS = Bound(0.0, "a third of a swing, far from upright")
 
 
@@ -59,6 +65,15 @@ def check(bench: Bench) -> Iterator[Finding]:
     newton = {name: _newton(motion) for name, motion in motions.items()}
     part = "contact force (reduced/forces.py), or positions of the mass centre"
     yield worst_of("contact force against Newton's law", newton, FORCE, part)
+    if isinstance(bench.reduced, ModuleType):  # a model from outside shows its motion alone
+        written = {name: _written(bench.reduced, cylinder) for name, cylinder in CYLINDERS.items()}
+        for place, quantity in enumerate(("theta''", "phi'", "L'")):
+            yield worst_of(
+                f"{quantity} of recess_rhs against Lagrange's equations",
+                {name: each[place] for name, each in written.items()},
+                WRITTEN,
+                "equations (18) and (19) as written (reduced/equations.py)",
+            )
 
 
 def _lagrange(motion: Sampled) -> tuple[float, float]:
@@ -73,6 +88,26 @@ def _newton(motion: Sampled) -> float:
     weight = np.array([0.0, 0.0, motion.shape.g])
     force = (motion.centre_curve + motion.ground + weight) / motion.shape.g
     return largest(force - motion.stated_force)
+
+
+def _written(reduced: ModuleType, cylinder: Cylinder) -> tuple[float, float, float]:
+    """Errors of theta'', phi' and L' of the equations as written, relative to their largest.
+
+    Runs do not show them: the Taylor series of the recess model has the same equations as recurrences.
+    """
+    shape, body = lagrange.shape_of(cylinder), reduced.body.body_of(cylinder, GRAVITY)
+    drawn = np.random.default_rng(19)
+    theta, phi = drawn.uniform(0.05, 1.2, STATES), drawn.uniform(-3.0, 3.0, STATES)
+    tilt_rate, spin = drawn.normal(0.0, body.p, (2, STATES))
+    ground = drawn.normal(0.0, 0.3 * GRAVITY, (STATES, 3))
+    by_tilt, momentum = lagrange.momenta(shape, theta, phi, tilt_rate, spin)
+    needed = lagrange.forces(shape, theta, phi, tilt_rate, spin, ground)
+    states = zip(theta, tilt_rate, phi, momentum, *ground.T, strict=True)
+    found = np.array([reduced.equations.recess_rhs(body, *state) for state in states]).T
+    # the momentum of the tilt is theta' times a constant
+    expected = needed[0] * tilt_rate / by_tilt, spin, needed[1]
+    errors = [largest(a - b) / largest(b) for a, b in zip(found[1:], expected, strict=True)]
+    return errors[0], errors[1], errors[2]
 
 
 def _coefficients(equation: str, terms: Mapping[str, Terms]) -> Iterator[Finding]:
