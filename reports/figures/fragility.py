@@ -92,7 +92,7 @@ def _ratios(found: Fragility) -> Picture | None:
                 ),
                 y=Axis(
                     label="pair",
-                    unit="-",
+                    unit="",
                     low=-0.6,
                     high=len(pairs) - 0.4,
                     ticks=[(float(i), f"{a}\n/ {b}") for i, (a, b) in enumerate(pairs)],

@@ -126,6 +126,18 @@ def test_stopping_early_makes_the_median_smaller(found):
     )
 
 
+def test_a_curve_that_all_or_none_exceed_ends_with_the_levels(found):
+    calm = found.runs.assign(peak_tilt=0.3, outcome="completed")
+    limits = ["0.1 alpha", "1 alpha"]
+    about = {**found.about, "limits": limits, "resamples": 2}
+    curves = fragility_of(calm, found.points, about).curves
+    curves = curves[curves["method"] == "recess model"].set_index("limit")["intensity"]
+    # all exceed the first limit, none the second; elsewhere a curve goes to half or twice the levels
+    assert (curves["0.1 alpha"].min(), curves["0.1 alpha"].max()) == pytest.approx((LEVELS[0], 16.0))
+    assert (curves["1 alpha"].min(), curves["1 alpha"].max()) == pytest.approx((0.625, LEVELS[-1]))
+    assert (curves.groupby("limit").count() == 60).all()
+
+
 def test_contrasts_are_ratios_of_the_fits_and_alike_methods_are_equal(found):
     medians = found.fits[found.fits["limit"] == "0.5 alpha"].set_index("method")["median"]
     pairs = found.contrasts[found.contrasts["limit"] == "0.5 alpha"]

@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from ...metrics.order_statistics import Interval
-from .fit import FITTED, KINDS, Curves, goodness
+from .fit import ALWAYS, FITTED, KINDS, NEVER, Curves, goodness
 from .resampling import Array, Sample, bands, interval, spread_interval
 from .samples import Blocks, Key
 
@@ -74,12 +74,15 @@ def fit_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, 
 
 
 def curve_table(blocks: Blocks, fitted: Mapping[Key, Curves], drawn: Mapping[Key, Curves]) -> pd.DataFrame:
-    """Return the curves point by point, each with its band."""
+    """Return the curves point by point, each with its band.
+
+    One that all runs exceed is unknown below the intensities that were run, one that none exceeds above.
+    """
     tables = []
     for key, found in fitted.items():
-        sample = blocks.sample(*key)
-        ends = sample.x.min() - math.log(_BEYOND), sample.x.max() + math.log(_BEYOND)
-        x = np.linspace(*ends, _POINTS)
+        sample, kind = blocks.sample(*key), KINDS[found.kinds[0]]
+        first = sample.x.min() - math.log(_BEYOND) * (kind != ALWAYS)
+        x = np.linspace(first, sample.x.max() + math.log(_BEYOND) * (kind != NEVER), _POINTS)
         low, high = bands(drawn[key], x, len(blocks.motions))
         tables.append(
             pd.DataFrame(
