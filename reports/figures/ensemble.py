@@ -130,7 +130,7 @@ def _ratios(found: Ensemble, rows: list[dict[str, Any]]) -> Panel:
             high=high,
             ticks=[(tick, f"{tick:g}") for tick in ratio_ticks(low, high)],
         ),
-        y=Axis(label="pair", unit="", low=-0.6, high=len(rows) - 0.4, ticks=ticks, reverse=True),
+        y=Axis(label="", unit="", low=-0.6, high=len(rows) - 0.4, ticks=ticks, reverse=True),
         layers=layers,
         title="Ratio of the peaks of each member",
         height=_LINE * len(rows) + 1.4,

@@ -91,7 +91,7 @@ def _ratios(found: Fragility) -> Picture | None:
                     ticks=[(tick, f"{tick:g}") for tick in _RATIOS if low <= tick <= high],
                 ),
                 y=Axis(
-                    label="pair",
+                    label="",
                     unit="",
                     low=-0.6,
                     high=len(pairs) - 0.4,
