@@ -20,7 +20,7 @@ class Assumptions:
     largest_friction_needed : float
         In motion; inf where contact is lost, 0 if it never moves.
     largest_restraining_moment : float
-        Of the recess, over the weight [m].
+        Kappa of the moment kappa (z_world + z_body) of the recess, over the weight [m].
     friction : float
         The coefficient it was held against.
 

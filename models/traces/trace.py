@@ -54,7 +54,8 @@ class Trace(Limited, Shown):
     friction_needed : ndarray, shape (n,)
         Horizontal over normal force [-]; inf where the normal force is not positive.
     restraining_moment : ndarray, shape (n,)
-        Moment along z_world + z_body that the recess supplies, over the weight [m].
+        Kappa of the moment kappa (z_world + z_body) that the recess supplies, over the weight [m]; about the
+        vertical, as about the axis, that is 1 + cos(tilt) times kappa.
     energy_error : ndarray, shape (n,)
         Energy that neither the start nor the excitation supplied [m^2/s^2].
     slip, wall_contact, wall_impulse : ndarray, shape (n,)

@@ -39,7 +39,7 @@ COLUMNS = {
     "force_y": ("weights", "likewise"),
     "force_z": ("weights", "likewise, up"),
     "friction_needed": ("", "horizontal over normal force; infinite where the normal force is not positive"),
-    "restraining_moment": ("m", "moment of the recess about the vertical, over the weight"),
+    "restraining_moment": ("m", "of the recess: kappa in kappa (z_world + z_body), over the weight"),
     "energy": ("m2/s2", "relative to the ground, per unit mass, zero standing"),
     "energy_error": ("m2/s2", "energy that neither the start nor the excitation supplied"),
     "slip": ("m", "distance slipped so far"),

@@ -122,7 +122,7 @@ def _facts(trace: rw.Trace) -> dict[str, str]:
         needed = held.largest_friction_needed
         facts["friction needed"] = f"{needed:.3f}" if math.isfinite(needed) else "contact lost"
         if held.largest_restraining_moment > 0.0:
-            facts["restraining moment"] = f"{held.largest_restraining_moment:.3g} m times the weight"
+            facts["restraining moment"] = f"kappa = {held.largest_restraining_moment:.3g} m times the weight"
     if trace.run.engine is not None or trace.run.support != "recess":
         facts["residual displacement"] = f"{trace.residual_displacement / cylinder.base_radius:.3g} b"
         facts["residual twist"] = f"{math.degrees(trace.residual_twist):.3g} deg"

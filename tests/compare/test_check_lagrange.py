@@ -11,7 +11,7 @@ from newton_euler import State, kinetic_energy, newton_euler, vector
 from rockwobble import reduced
 from rockwobble.compare.check import differences
 from rockwobble.compare.check.models import equations, lagrange, quadrature
-from rockwobble.models import Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState
 from rockwobble.reduced.body import body_of
 
 CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.4, transverse_inertia=9.0, axial_inertia=2.0)
@@ -51,6 +51,30 @@ def test_accelerations_of_newton_and_euler_leave_no_residual() -> None:
         SHAPE, *arguments, one(1.01 * float(motion.theta), float(motion.phi)), np.array([ground])
     )
     assert abs(wrong[0][0]) > 1e-2
+    force = np.array([motion.force], dtype=float)
+    curves = one(float(motion.theta), float(motion.phi))
+    kappa = lagrange.restraining(SHAPE, *arguments, curves, force)[0]
+    assert kappa == pytest.approx(float(motion.couple), rel=ROUNDING)
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+def test_the_moment_about_the_vertical_is_1_plus_cos_theta_times_kappa(support: str) -> None:
+    release = InitialState(tilt=0.5 * CYLINDER.alpha, rolling_rate=1.2)
+    step = 1e-3
+    found = reduced.simulate(
+        Case(CYLINDER, initial=release, duration=1.0), support=support, sample_step=step, rtol=1e-12
+    )
+    # angular momentum about the vertical through the mass centre, from the stored angles alone
+    s, c = np.sin(found.tilt), np.cos(found.tilt)
+    twist_rate = np.gradient(found.twist, step, edge_order=2)
+    about_axis = twist_rate - (1.0 - c) * found.rolling_rate
+    momentum = SHAPE.I1 * s**2 * found.rolling_rate + SHAPE.I2 * c * about_axis
+    arm = found.contact_point - found.centre_of_mass[:, :2]
+    force = SHAPE.g * found.contact_force
+    moment = np.gradient(momentum, step) - (arm[:, 0] * force[:, 1] - arm[:, 1] * force[:, 0])
+    stated = (1.0 + c) * SHAPE.g * found.restraining_moment
+    assert np.abs(stated).max() > 1e-3 if support == "recess" else (stated == 0.0).all()
+    np.testing.assert_allclose(moment[2:-2], stated[2:-2], rtol=0.0, atol=2e-9)
 
 
 @pytest.mark.parametrize("place", [1, 2, 3])

@@ -29,6 +29,7 @@ REST_OF = "differences of positions known to rounding"
 RESIDUAL = Bound(1e-9, REST_OF, "of g (b + h)")
 RATE = Bound(1e-9, REST_OF, "of p")
 FORCE = Bound(1e-9, "second differences of the mass centre", "weights")
+MOMENT = Bound(1e-9, "second differences of positions", "of weight times b")
 # the same through the fit, whose condition number is up to a hundred
 COEFFICIENT = Bound(1e-7, "each coefficient fitted to differences of computed positions")
 WRITTEN = Bound(1e-12, "derivatives of the energies by complex steps")
@@ -65,6 +66,9 @@ def check(bench: Bench) -> Iterator[Finding]:
     newton = {name: _newton(motion) for name, motion in motions.items()}
     part = "contact force (reduced/forces.py), or positions of the mass centre"
     yield worst_of("contact force against Newton's law", newton, FORCE, part)
+    euler = {name: _euler(motion) for name, motion in motions.items()}
+    part = "restraining moment (reduced/forces.py)"
+    yield worst_of("restraining moment against Euler's law", euler, MOMENT, part)
     if isinstance(bench.reduced, ModuleType):  # a model from outside shows its motion alone
         written = {name: _written(bench.reduced, cylinder) for name, cylinder in CYLINDERS.items()}
         for place, quantity in enumerate(("theta''", "phi'", "L'")):
@@ -85,9 +89,18 @@ def _lagrange(motion: Sampled) -> tuple[float, float]:
 
 
 def _newton(motion: Sampled) -> float:
-    weight = np.array([0.0, 0.0, motion.shape.g])
-    force = (motion.centre_curve + motion.ground + weight) / motion.shape.g
-    return largest(force - motion.stated_force)
+    return largest(_needed_force(motion) / motion.shape.g - motion.stated_force)
+
+
+def _euler(motion: Sampled) -> float:
+    place, rates = (motion.theta, motion.phi), (motion.theta_rate, motion.phi_rate)
+    curves = (motion.theta_curve, motion.phi_curve)
+    kappa = lagrange.restraining(motion.shape, place, rates, curves, _needed_force(motion))
+    return largest(kappa / motion.shape.g - motion.stated_moment) / motion.shape.b
+
+
+def _needed_force(motion: Sampled) -> Array:
+    return np.asarray(motion.centre_curve + motion.ground + [0.0, 0.0, motion.shape.g])
 
 
 def _written(reduced: ModuleType, cylinder: Cylinder) -> tuple[float, float, float]:

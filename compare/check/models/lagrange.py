@@ -163,5 +163,37 @@ def residuals(
     return by_tilt, by_turn
 
 
+def restraining(
+    shape: Shape,
+    place: tuple[Array, Array],
+    rates: tuple[Array, Array],
+    curves: tuple[Array, Array],
+    force: Array,
+) -> Array:
+    """Return kappa of the moment kappa (z_world + z_body) that Euler's law asks of the recess (n,) [m^2/s^2].
+
+    About the mass centre, per unit mass; `force` (n, 3) [m/s^2] acts at the contact point.
+    """
+    theta, phi = place
+    s, c, sp, cp = np.sin(theta), np.cos(theta), np.sin(phi), np.cos(phi)
+    axis, out = np.stack([s * cp, s * sp, c], axis=-1), np.stack([c * cp, c * sp, -s], axis=-1)
+    along = axis + np.array([0.0, 0.0, 1.0])
+    steps = (x + 1j * _STEP * v for x, v in zip((*place, *rates), (*rates, *curves), strict=True))
+    change = _angular_momentum(shape, *steps).imag / _STEP
+    needed = change - np.cross(shape.b * out - shape.h * axis, force)
+    return np.asarray((needed * along).sum(axis=-1) / (along * along).sum(axis=-1))
+
+
+def _angular_momentum(shape: Shape, theta: Array, phi: Array, theta_rate: Array, phi_rate: Array) -> Array:
+    """Return the angular momentum about the mass centre per unit mass (n, 3) [m^2/s]; psi = -phi."""
+    s, c, sp, cp = np.sin(theta), np.cos(theta), np.sin(phi), np.cos(phi)
+    none = np.zeros_like(s)
+    axis = np.stack([s * cp, s * sp, c], axis=-1)
+    over = np.stack([-sp, cp, none], axis=-1)
+    spin = theta_rate[:, None] * over + phi_rate[:, None] * ([0.0, 0.0, 1.0] - axis)
+    about_axis = (spin * axis).sum(axis=-1, keepdims=True)
+    return np.asarray(shape.I1 * spin + (shape.I2 - shape.I1) * about_axis * axis)
+
+
 def _matrix(rows: list[list[Array]]) -> Array:
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)

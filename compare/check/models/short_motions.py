@@ -55,6 +55,7 @@ class Sampled:
     ground: Array  # its acceleration [m/s^2]
     stated_rate: Array  # theta' as the trace states it [rad/s]
     stated_force: Array  # and the contact force [weights]
+    stated_moment: Array  # and kappa of the restraining moment, over the weight [m]
     centre_curve: Array  # acceleration of the mass centre relative to O, by differences [m/s^2]
 
 
@@ -87,6 +88,7 @@ def sample(bench: Bench, cylinder: Cylinder) -> Sampled:
                 "ground": ((1.0 - share) * before + share * after)[reach:-reach],
                 "stated_rate": found.tilt_rate[cut][reach:-reach],
                 "stated_force": found.contact_force[cut][reach:-reach],
+                "stated_moment": found.restraining_moment[cut][reach:-reach],
                 "centre_curve": differences.second(found.centre_of_mass[cut], step),
             }
             for name, values in states.items():

@@ -74,9 +74,10 @@ _MAPS = (
     (
         "need-moment",
         "Moment that the recess must supply",
-        "Restraining moment that nine in ten of the records that rock without overturning need at most.",
+        "κ of the restraining moment κ (vertical + axis) that nine in ten of the records that rock without "
+        "overturning need at most.",
         "moment_90",
-        Shades(label="moment / (weight × b)", unit="-", low=0.01, high=1.0, log=True),
+        Shades(label="κ / (weight × b)", unit="-", low=0.01, high=1.0, log=True),
     ),
 )
 
