@@ -15,11 +15,13 @@ import numpy as np
 
 from rockwobble.models import Trace
 
+from ...comparison.summary import SUMMARY_COLUMNS, external_row
 from ...traces.trajectory import External, read_trajectory
 from ..bench import Array, Bench, largest
 from ..finding import Bound, Finding, worst_of
 from ..models import lagrange
 from ..problems import PIER, released
+from .made_traces import made
 
 B, H, ALPHA = PIER.base_radius, PIER.mass_centre_height, PIER.alpha
 LENGTH = 5.0
@@ -49,6 +51,8 @@ def check(bench: Bench) -> Iterator[Finding]:
         yield worst_of(f"external trajectory, {name}", _errors(_read(text, offset), name), bound, PART)
     turning = _turning(_read(_quaternions(fine, placed=True), 0.0))
     yield worst_of("turning points of an external trajectory", turning, TURNING, PART)
+    row = _row(_read(_quaternions(fine, placed=True), 0.0), fine)
+    yield worst_of("a row of the summary, of an external trajectory", row, TURNING, PART)
 
 
 def _motion(time: Array) -> tuple[Array, Array, Array, Array]:
@@ -60,6 +64,18 @@ def _motion(time: Array) -> tuple[Array, Array, Array, Array]:
 def _centre(time: Array) -> Array:
     tilt, azimuth, _, drift = _motion(time)
     return lagrange.mass_centre(lagrange.shape_of(PIER), tilt, azimuth) + drift
+
+
+def _row(trial: Trace, time: Array) -> dict[str, float]:
+    """What the summary says of a file that has the very motion of the reference, but for the turn."""
+    tilt, azimuth, _, _ = _motion(time)
+    at = B * np.column_stack([np.cos(azimuth), np.sin(azimuth)])
+    places = {"rolling_angle": azimuth, "contact_point": at, "uplift_direction": 0.4}
+    found = external_row(CASE, "made", made(time, tilt, **places), "file", trial)
+    known = {"tilt_rms": 0.0, "peak_tilt_difference": 0.0, "diverged": 0.0, "agreement_time": LENGTH}
+    known |= {"uplift_time_difference": 0.0, "uplift_direction_difference": 0.0}
+    errors = {name: float(found[name]) - value for name, value in known.items()}
+    return {**errors, "columns": float(len({*SUMMARY_COLUMNS} ^ {*found}))}
 
 
 def _errors(found: Trace, form: str) -> dict[str, float]:

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from rockwobble.models import Case, GroundMotion, Trace
+from rockwobble.models import Case, Diagnostic, GroundMotion, Trace
 
 from ...comparison.prediction import Prediction
-from ...comparison.summary import summary_row
+from ...comparison.summary import SUMMARY_COLUMNS, lost_row, summary_row
 from ...metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
 from ...metrics.contact import contact_rms
 from ...metrics.energy import energy_loss
@@ -32,6 +32,7 @@ TIME: Array = 0.01 * np.arange(1001, dtype=np.float64)
 LEAN: Array = np.full(len(TIME), 0.1)
 ROUNDING = Bound(1e-12, "made up so that each value is known; rounding")
 # the slope of the velocity within a sample comes from its neighbours; 3e-9 was measured
+ROW = "columns of the summary (compare/comparison/summary.py)"
 WORK = Bound(1e-7, "made up so that each value is known; samples 0.01 s apart")
 
 
@@ -44,7 +45,8 @@ def check(bench: Bench) -> Iterator[Finding]:
         ("distance of the contact points", _contacts(), "contact RMS (compare/metrics/contact.py)"),
         ("differences of turn and direction", _turns(), "turning (compare/metrics/turning.py)"),
         ("agreement time and passes", _agreement(), "agreement time (compare/metrics/agreement.py)"),
-        ("a row of the summary", _row(), "columns of the summary (compare/comparison/summary.py)"),
+        ("a row of the summary", _row(), ROW),
+        ("rows of runs that end early", _early_rows(), ROW),
     ):
         yield worst_of(name, errors, ROUNDING, part)
     yield worst_of("energy lost", _energies(), WORK, "energy lost (compare/metrics/energy.py)")
@@ -126,6 +128,7 @@ def _turns() -> dict[str, float]:
             _pair(one, turned), until=10.0, direction_difference=named_apart
         )
         - 0.2,
+        "a direction that is unknown": turn_difference(pair, until=2.5, direction_difference=math.nan) - 2.5,
         "direction across the cut": direction_difference(*across) - 0.2,
         "first pass that is not resolved": first_unresolved_pass(engine) - 1.0,
         "the same after the uplift of the reference": first_unresolved_pass(engine, start=1.5) - 4.0,
@@ -217,6 +220,24 @@ def _row() -> dict[str, float]:
         "contact_resolution": 1e-4,
     }
     return {name: float(found[name]) - value for name, value in expected.items()}
+
+
+def _early_rows() -> dict[str, float]:
+    """Of a run that left no samples, and of one that leaves the model after it touched a wall, or before."""
+    case, expected = Case(PIER, duration=10.0, name="made"), Prediction(length=8.0, reason="pass")
+    reference = made(TIME, np.full(len(TIME), 0.4 * ALPHA), wall_time=0.5)
+    lost = lost_row(case, "recess model", reference, "made", made(TIME[:1], LEAN[:1], outcome="failed"))
+    known = {"diverged": 1.0, "agreement_time": 0.0, "agreed_passes": 0.0, "reference_peak_tilt": 0.4}
+    off = {f"lost: {name}": float(lost[name]) - value for name, value in known.items()}
+    off["lost: columns"] = float(len({*SUMMARY_COLUMNS} ^ {*lost}))
+    off |= {f"lost: {name}": _none(float(lost[name])) for name in ("peak_tilt", "tilt_rms", "wall_time")}
+    for when, said in ((1.0, "after it touched a wall"), (4.0, "earlier")):
+        touch = Diagnostic(code="wall_contact", time=when, duration=0.1, size=1.0)
+        tilt = reference.tilt + 0.1 * ALPHA * (TIME > 2.0)
+        trial = made(TIME, tilt, facts=(touch,))
+        row = summary_row(case, "recess model", reference, "made", trial, prediction=expected)
+        off[f"left {said}"] = float(row["divergence"] != said)
+    return off
 
 
 def _rolling(rate: float, start: float, **fields: Any) -> Trace:

@@ -19,6 +19,7 @@ from ..problems import polyline
 
 TAN_ALPHA, WEAKER = 0.25, 9.0  # [-], [m/s^2]
 SIZES, LEVELS = (1.5, 3.0), (0.8, 2.0, 6.0)
+RISING = 1.5  # intensity that uplifts and does not overturn
 # of the series, in the order of `SERIES`: in space and in the planes of x and y
 OPTIONS: tuple[dict[str, Any], ...] = ({"support": "recess"}, {"plane": 0.0}, {"plane": 0.5 * math.pi})
 VALUES = (
@@ -40,7 +41,7 @@ def check(bench: Bench) -> Iterator[Finding]:
     found = overturning_spectrum(
         TAN_ALPHA, MOTION, semidiagonals=SIZES, intensities=LEVELS, gravity=WEAKER, workers=1
     )
-    apart, off = [], []
+    apart, off, on_grid = [], [], []
     wrong: list[str] = []
     for series, options in zip(SERIES, OPTIONS, strict=True):
         start = _uplift(options.get("plane"))
@@ -48,12 +49,24 @@ def check(bench: Bench) -> Iterator[Finding]:
         for row, size in enumerate(SIZES):
             peaks = [_peak(size, level, options) for level in LEVELS]
             apart.append(np.abs(found.peak_tilt[series][row] - peaks).max() / math.atan(TAN_ALPHA))
+            fell = (level for level, peak in zip(LEVELS, peaks, strict=True) if peak > 1.0)
+            on_grid.append(next(fell, 0.0))
             lowest = float(found.lowest[series][row])
             wrong += [f"{series}, {size:g} m: {what}" for what in _wrong(size, lowest, start, options)]
     yield at_most("peaks of a spectrum against single runs", max(apart), CELLS, PART)
     yield at_most("intensity of uplift of a spectrum", max(off), THRESHOLD, PART)
+    told = np.nan_to_num(found.lowest_frame()["on_grid"].to_numpy())
+    unlike = [f"{a:g}, not {b:g}" for a, b in zip(told, on_grid, strict=True) if a != b]
+    yield none_wrong(
+        "lowest intensities on the grid that are not", unlike, "single runs, 0 where none falls", PART
+    )
     reason = f"single runs from the uplift up, at each {STEP:g}"
     yield none_wrong("lowest overturning intensities that are not the lowest", wrong, reason, PART)
+    usual = overturning_spectrum(TAN_ALPHA, MOTION, semidiagonals=SIZES[:1], intensities=[RISING])
+    strong = MOTION.scaled(UNIT / WEAKER * 9.81 * RISING)
+    single = reduced.simulate(Case(Cylinder(semidiagonal=SIZES[0], tan_alpha=TAN_ALPHA), strong), rtol=1e-9)
+    default = abs(float(usual.peak_tilt[SERIES[0]][0, 0]) - single.peak_tilt) / math.atan(TAN_ALPHA)
+    yield at_most("peak of a spectrum with the gravity of its default", default, CELLS, PART)
 
 
 def _wrong(size: float, lowest: float, start: float, options: dict[str, Any]) -> Iterator[str]:
