@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 
 import numpy as np
@@ -9,9 +10,9 @@ import pytest
 from newton_euler import State, kinetic_energy, newton_euler, vector
 
 from rockwobble import reduced
-from rockwobble.compare.check import differences
-from rockwobble.compare.check.models import equations, lagrange, quadrature
-from rockwobble.models import Case, Cylinder, InitialState
+from rockwobble.compare.check import Bench, differences
+from rockwobble.compare.check.models import equations, lagrange, quadrature, short_motions
+from rockwobble.models import Case, Cylinder, InitialState, read_suite
 from rockwobble.reduced.body import body_of
 
 CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.4, transverse_inertia=9.0, axial_inertia=2.0)
@@ -55,6 +56,13 @@ def test_accelerations_of_newton_and_euler_leave_no_residual() -> None:
     curves = one(float(motion.theta), float(motion.phi))
     kappa = lagrange.restraining(SHAPE, *arguments, curves, force)[0]
     assert kappa == pytest.approx(float(motion.couple), rel=ROUNDING)
+
+
+def test_a_restraining_moment_that_is_off_by_a_millionth_is_found() -> None:
+    motion = short_motions.sample(Bench(reduced=reduced, suite=read_suite("quick")), CYLINDER)
+    assert equations._euler(motion) < equations.MOMENT.most
+    wrong = dataclasses.replace(motion, stated_moment=(1.0 + 1e-6) * motion.stated_moment)
+    assert equations._euler(wrong) > equations.MOMENT.most
 
 
 @pytest.mark.parametrize("support", ["recess", "flat"])

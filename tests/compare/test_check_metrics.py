@@ -95,7 +95,23 @@ def test_a_wrong_metric_is_found(monkeypatch: pytest.MonkeyPatch, name: str, cha
 )
 def test_a_wrong_column_of_the_summary_is_found(monkeypatch: pytest.MonkeyPatch, column: str) -> None:
     changed(monkeypatch, metrics, "summary_row", lambda row: row | {column: -row[column]})
-    assert failed_parts(metrics) == ["columns of the summary (compare/comparison/summary.py)"]
+    assert failed_parts(metrics) == [metrics.ROW]
+
+
+@pytest.mark.parametrize(
+    ("part", "name", "wrong", "blamed"),
+    [
+        (metrics, "lost_row", {"diverged": False}, metrics.ROW),
+        (metrics, "lost_row", {"tilt_rms": 0.0}, metrics.ROW),
+        (metrics, "summary_row", {"divergence": "earlier"}, metrics.ROW),
+        (external_trajectories, "external_row", {"uplift_direction_difference": 0.1}, None),
+    ],
+)
+def test_a_wrong_row_of_a_run_that_ends_early_or_of_a_file_is_found(
+    monkeypatch: pytest.MonkeyPatch, part: Any, name: str, wrong: dict[str, Any], blamed: str | None
+) -> None:
+    changed(monkeypatch, part, name, lambda row: row | wrong)
+    assert failed_parts(part) == [blamed or part.PART]
 
 
 @pytest.mark.parametrize(

@@ -70,8 +70,8 @@ def _row(trial: Trace, time: Array) -> dict[str, float]:
     """What the summary says of a file that has the very motion of the reference, but for the turn."""
     tilt, azimuth, _, _ = _motion(time)
     at = B * np.column_stack([np.cos(azimuth), np.sin(azimuth)])
-    places = {"rolling_angle": azimuth, "contact_point": at, "uplift_direction": 0.4}
-    found = external_row(CASE, "made", made(time, tilt, **places), "file", trial)
+    reference = made(time, tilt, rolling_angle=azimuth, contact_point=at, uplift_direction=0.4)
+    found = external_row(CASE, "made", reference, "file", trial)
     known = {"tilt_rms": 0.0, "peak_tilt_difference": 0.0, "diverged": 0.0, "agreement_time": LENGTH}
     known |= {"uplift_time_difference": 0.0, "uplift_direction_difference": 0.0}
     errors = {name: float(found[name]) - value for name, value in known.items()}
