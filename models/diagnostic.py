@@ -54,9 +54,12 @@ class Diagnostic:
     time : float
         When it first holds [s]; NaN where it has no time.
     duration : float
-        For how long altogether [s]; NaN where that is not known.
+        For how long altogether [s], NaN where that is not known; of "settled", "unsettled" and
+        "extrapolated" until when.
     size, bound : float
-        How large it is, and the limit that it is held against; units in `CODES`. NaN where there is none.
+        How large it is, and the limit that it is held against; units in `CODES`. NaN where there is none. The
+        bound of "settled" and "extrapolated" is the order of convergence, that of "unresolved_pass" the tilt
+        that is resolved [rad].
     detail : str
         What an engine or a file says, word for word. Not for decisions.
 

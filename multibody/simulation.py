@@ -202,7 +202,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         source=Known(sampled),
         passes=passes,
         facts=tuple(diagnostics(recorder, passes, resolution, scale.time)),
-        rests=np.array(recorder.rests.rests(), dtype=float).reshape(-1, 2) * scale.time,
+        rests=np.array(recorder.rests.after_motion(), dtype=float).reshape(-1, 2) * scale.time,
         extrema=_extrema(recorder, scale),
         contact_resolution=resolution,
         residual_displacement=float(np.hypot(table["base_x"][-1], table["base_y"][-1])) * scale.length,

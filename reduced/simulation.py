@@ -45,7 +45,8 @@ def simulate(
         "recess": no slip, no roll-out, the paper's two degrees of freedom, (18) and (19); "flat": no slip,
         free to roll out.
     plane : float, optional
-        Azimuth of a vertical plane that holds the motion [rad]: planar motion, on either support.
+        Azimuth of a vertical plane that holds the motion [rad]: planar motion, on either support. The
+        component of the record across the plane is left out.
     restitution : float or "momentum", optional
         Ratio of tilt rates at an impact (planar motion only); 1 as in the paper's 2D spectra,
         "momentum" from the moment of momentum about the new pivot.
@@ -53,7 +54,8 @@ def simulate(
         Relative tolerance of one step.
     rest_tilt : float, optional
         Rest threshold: the cylinder is at rest again when its energy is below that of a standstill at the
-        tilt ``rest_tilt * alpha``; 0 leaves the rule out, as in the paper.
+        tilt ``rest_tilt * alpha``, less the share of the load that would uplift it; 0 leaves the rule out, as
+        in the paper.
     sample_step : float, optional
         Spacing of the samples returned [s]; does not influence the solution.
 

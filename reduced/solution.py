@@ -136,7 +136,7 @@ class Solution:
         return forces.derived_quantities(
             self.problem.body,
             np.ascontiguousarray(states),
-            ground_at(self.problem.motion, self.problem.duration, times),
+            ground_at(self.problem.driving_motion, self.problem.duration, times),
             self.problem.model == "flat",
         )
 

@@ -31,6 +31,8 @@ class Limited:
     def assumptions_until(self, end: float) -> Assumptions | None:
         """Return whether contact and friction held until the time `end` [s], such as that of a fall.
 
+        A trace that was stored knows it of its whole run alone.
+
         Parameters
         ----------
         end : float

@@ -59,8 +59,8 @@ class Trace(Limited, Shown):
     energy_error : ndarray, shape (n,)
         Energy that neither the start nor the excitation supplied [m^2/s^2].
     slip, wall_contact, wall_impulse : ndarray, shape (n,)
-        Distance slipped so far [m], time in contact with walls so far [s], impulse of the walls so far per
-        unit mass [m/s].
+        Distance slipped so far [m], time in contact with walls so far [s], size of the force of the walls
+        summed over time so far, per unit mass [m/s].
     peak_tilt : float
         Largest tilt of the continuous motion [rad]; pi/2 if overturned, NaN if failed.
     outcome : {"rest", "completed", "overturned", "failed"}
@@ -84,9 +84,10 @@ class Trace(Limited, Shown):
     wall_time : float
         Computing time without compilation [s].
     step_count : int
-        Steps tried.
+        Steps tried; 0 where that is not known.
     contact_resolution : float
-        Smallest minimum tilt of a pass that contact resolves [rad].
+        Smallest minimum tilt of a pass that the engine resolves [rad]: by which contact gives, or by which
+        the tilt changes in a time step where it is fastest, whichever is more.
     residual_displacement : float
         Horizontal distance of the base centre from O at the end [m].
     error_estimate, settled_until : float

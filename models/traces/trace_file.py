@@ -44,13 +44,13 @@ COLUMNS = {
     "energy_error": ("m2/s2", "energy that neither the start nor the excitation supplied"),
     "slip": ("m", "distance slipped so far"),
     "wall_contact": ("s", "time at the walls of a ring so far"),
-    "wall_impulse": ("m/s", "impulse of those walls so far, per unit mass"),
+    "wall_impulse": ("m/s", "size of the force of those walls, summed over time so far, per unit mass"),
 }
 PASS_COLUMNS = {
     "time": ("s", "of the least tilt"),
     "minimum_tilt": ("rad", "the least tilt"),
     "angle_of_turn": ("rad", "of the azimuth, from maximum to maximum"),
-    "resolved": ("", "whether contact was stiff enough for it"),
+    "resolved": ("", "whether contact was stiff and steps short enough for it"),
 }
 METADATA = b"rockwobble"  # name of our part of the metadata of a file, beside that of pandas
 VECTORS = {

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -53,3 +55,10 @@ class RestWatch:
         if self._since is None or not self.resting:
             return list(self._over)
         return [*self._over, (self._since, self._last)]
+
+    def after_motion(self) -> list[tuple[float, float]]:
+        """Return the same without the stand before the first motion; NaN ends one that lasts."""
+        later = [rest for rest in self.rests() if rest[0] > 0.0]
+        if later and self.resting:
+            later[-1] = (later[-1][0], math.nan)
+        return later

@@ -66,7 +66,7 @@ def _contrasts(table: pd.DataFrame) -> list[dict[str, object]]:
     """The rows of paired ratios with their point in words; a ring against itself is told in the text."""
     rows = []
     for row in table.to_dict("records"):
-        if row["against"] not in METHODS:
+        if row["method"] not in METHODS:
             continue
         point = f"tan α = {row['tan_alpha']:g}, R = {row['semidiagonal']:g} m, {row['intensity']:g} g tan α"
         rows.append({str(k): v for k, v in row.items()} | {"point": point, "method": METHODS[row["method"]]})

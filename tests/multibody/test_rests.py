@@ -24,6 +24,12 @@ def test_a_rest_is_a_tilt_that_stays_below_the_level(chunks: list[int]) -> None:
         watch.take(STEP * at, tilt[at])
     assert SHORTEST > 3 * STEP
     np.testing.assert_allclose(watch.rests(), [(0.1, 0.15), (0.4, 0.499)])
+    # a trace calls rest what follows a motion, and does not end one that lasts
+    np.testing.assert_allclose(watch.after_motion(), [(0.1, 0.15), (0.4, np.nan)])
+    stood = RestWatch(1e-5)
+    stood.take(STEP * np.arange(500), np.where(np.arange(500) < 100, 0.0, 1e-3))
+    assert stood.rests()[0][0] == 0.0
+    assert stood.after_motion() == []
     assert watch.resting
 
 

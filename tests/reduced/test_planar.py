@@ -130,3 +130,20 @@ def test_overturning_by_a_one_sine_pulse_without_impact(row):
         impacts = response.extrema[:, 1] == 0.0
         verdicts.append(response.outcome == "overturned" and not impacts.any())
     assert verdicts == [False, True]
+
+
+def test_what_shakes_across_the_plane_has_no_part_in_forces_either():
+    azimuth, record = 0.3, el_centro_1940()
+    along = record.acceleration[:, :2] @ [math.cos(azimuth), math.sin(azimuth)]
+    inside = GroundMotion(np.outer(along, [math.cos(azimuth), math.sin(azimuth)]), record.time_step)
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    given, alone = (
+        reduced.simulate(Case(cylinder, motion, duration=15.0, friction=0.3), plane=azimuth)
+        for motion in (record, inside)
+    )
+    np.testing.assert_allclose(given.contact_force, alone.contact_force, atol=1e-9)
+    across = given.contact_force[:, :2] @ [-math.sin(azimuth), math.cos(azimuth)]
+    assert np.abs(across).max() < 1e-12
+    assert np.abs(given.restraining_moment).max() < 1e-12
+    needs = [each.assumptions.largest_friction_needed for each in (given, alone)]
+    assert needs[0] == pytest.approx(needs[1], rel=1e-9)

@@ -102,10 +102,11 @@ def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
 
 
 def engine_factors(points: pd.DataFrame) -> tuple[float, float]:
-    """Return the least and the largest cost of an engine at an error asked for; NaN where none reaches one.
+    """Return the least and the largest cost of an engine in a recess at an error asked for; NaN of none.
 
     In computing times of the recess model at its default tolerance, as everywhere.
     """
     found = costs(points)
-    ratios = found.loc[~found["family"].isin(("reduced", "scipy")), "ratio"]
+    engines = ~found["family"].isin(("reduced", "scipy")) & (found["support"] == "recess")
+    ratios = found.loc[engines, "ratio"]
     return float(ratios.min()), float(ratios.max())

@@ -225,7 +225,7 @@ def _rings(table: pd.DataFrame) -> Picture:
                 x=clearance,
                 y=Axis(label="energy lost / largest", unit="-", log=True),
                 layers=list(lines("loss", touched, 1e-6)),
-                title="energy that walls take",
+                title="energy lost",
             ),
         ],
         columns=2,

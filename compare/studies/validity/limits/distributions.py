@@ -22,7 +22,7 @@ _NAMES = {
     ("flat", RECESS): "flat",
     (FLAT, RECESS): "model",
     (PERTURBED, RECESS): "copy",
-    ("ring", HALVED): "halved",
+    (HALVED, "ring"): "halved",
 }
 CONTRASTS = tuple(_NAMES)
 _SHARE = 0.9
@@ -57,9 +57,9 @@ def records(tables: Tables) -> Numbers:
     """Return what holds of each method over the points.
 
     NAME_least and NAME_largest, of the median ratio to the recess model; NAME_05 and NAME_95, what 5 % and
-    95 % of the records do not exceed, median over the points; NAME_within and NAME_beyond, the number of
-    points where the median is known to be within the margin, and beyond it. NAME "halved" is the ring
-    against itself at half the step.
+    95 % of the records do not exceed, median over the points, of two middle ones the outer; NAME_within and
+    NAME_beyond, the number of points where the median is known to be within the margin, and beyond it. NAME
+    "halved" is the ring at half the step against itself.
     """
     table, runs = contrasts(tables), tables["records"]
     numbers: Numbers = {
@@ -72,7 +72,7 @@ def records(tables: Tables) -> Numbers:
             f"{name}_least": float(own["ratio"].min()),
             f"{name}_largest": float(own["ratio"].max()),
             f"{name}_05": reached(column(own, "ratio_05"), 0.5),
-            f"{name}_95": reached(column(own, "ratio_95"), 0.5),
+            f"{name}_95": -reached(-column(own, "ratio_95"), 0.5),
             f"{name}_within": float((own["verdict"] == "within").sum()),
             f"{name}_beyond": float((own["verdict"] == "beyond").sum()),
         }

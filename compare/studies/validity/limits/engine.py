@@ -121,7 +121,8 @@ def soft_contact(tables: Tables) -> Numbers:
     table = tables["contact"]
     failed = (table["free_outcome"] == "failed") | (table["outcome"] == "failed")
     known = table[~failed]
-    softness = column(known, "softness")
+    # what reads alike is one: the same contact at two slendernesses differs in the fourth digit
+    softness = np.array([float(f"{value:.2g}") for value in column(known, "softness")])
     off = np.abs(column(known, "peak") / column(known, "recess_peak") - 1.0)
     held = up_to(softness, off <= SMALL)
     within = softness <= held if math.isfinite(held) else np.zeros(len(softness), dtype=bool)
