@@ -54,6 +54,13 @@ def stays_in_plane(record: NDArray[np.float64], azimuth: float, tolerance: float
     return float(np.abs(across).max(initial=0.0)) <= tolerance * peak
 
 
+def in_plane(record: NDArray[np.float64], azimuth: float) -> NDArray[np.float64]:
+    """Return a record (n, 3) without its component across the vertical plane at `azimuth` [rad]."""
+    cosine, sine = math.cos(azimuth), math.sin(azimuth)
+    along = record[:, 0] * cosine + record[:, 1] * sine
+    return np.column_stack([along * cosine, along * sine, record[:, 2]])
+
+
 # kept for the runs that follow with the same motion: it takes a tenth of the time of a short one
 @lru_cache(maxsize=4)
 def three_columns(motion: GroundMotion | None) -> NDArray[np.float64]:

@@ -195,17 +195,6 @@ class Problem:
         return start + (0.0,) * (size - len(start))
 
     @cached_property
-    def driving_motion(self) -> GroundMotion | None:
-        """The motion without what planar motion leaves out: its component across the plane."""
-        if self.motion is None or self.model != "planar":
-            return self.motion
-        plane = self._plane
-        assert plane is not None
-        along, _, up = plane.record.T
-        in_plane = [along * math.cos(plane.azimuth), along * math.sin(plane.azimuth), up]
-        return dataclasses.replace(self.motion, acceleration=np.column_stack(in_plane))
-
-    @cached_property
     def _plane(self) -> Plane | None:
         """The vertical plane that the motion stays in, if there is one."""
         record = three_columns(self.motion)

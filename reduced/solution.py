@@ -15,7 +15,7 @@ from rockwobble.models.traces.trace_source import friction_of
 
 from . import forces
 from .assumptions import Demands, review
-from .columns import ground_at
+from .columns import ground_at, in_plane
 from .integration.march import MAXIMUM, MINIMUM
 from .problem import Problem
 
@@ -133,11 +133,12 @@ class Solution:
         return Demands(force[:, 2], friction_of(force), derived[:, forces.COUPLE], march.moving[:reached])
 
     def _derive(self, times: Array, states: Array) -> Array:
+        problem = self.problem
+        ground = ground_at(problem.motion, problem.duration, times)
+        if problem.model == "planar":
+            ground = in_plane(ground, problem.plane)
         return forces.derived_quantities(
-            self.problem.body,
-            np.ascontiguousarray(states),
-            ground_at(self.problem.driving_motion, self.problem.duration, times),
-            self.problem.model == "flat",
+            problem.body, np.ascontiguousarray(states), ground, problem.model == "flat"
         )
 
 

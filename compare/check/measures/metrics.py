@@ -31,8 +31,8 @@ ALPHA, B = PIER.alpha, PIER.base_radius
 TIME: Array = 0.01 * np.arange(1001, dtype=np.float64)
 LEAN: Array = np.full(len(TIME), 0.1)
 ROUNDING = Bound(1e-12, "made up so that each value is known; rounding")
-# the slope of the velocity within a sample comes from its neighbours; 3e-9 was measured
 ROW = "columns of the summary (compare/comparison/summary.py)"
+# the slope of the velocity within a sample comes from its neighbours; 3e-9 was measured
 WORK = Bound(1e-7, "made up so that each value is known; samples 0.01 s apart")
 
 
