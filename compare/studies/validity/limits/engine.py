@@ -121,14 +121,14 @@ def soft_contact(tables: Tables) -> Numbers:
     table = tables["contact"]
     failed = (table["free_outcome"] == "failed") | (table["outcome"] == "failed")
     known = table[~failed]
-    # what reads alike is one: the same contact at two slendernesses differs in the fourth digit
-    softness = np.array([float(f"{value:.2g}") for value in column(known, "softness")])
+    # one contact is one point, though its softness differs by slenderness in the third digit
+    softness, constant = column(known, "softness"), column(known, "time_constant")
     off = np.abs(column(known, "peak") / column(known, "recess_peak") - 1.0)
-    held = up_to(softness, off <= SMALL)
-    within = softness <= held if math.isfinite(held) else np.zeros(len(softness), dtype=bool)
+    held, left = up_to(constant, off <= SMALL), first_failing(constant, off <= SMALL)
+    within = constant <= held  # none where it is NaN
     return {
-        "held_up_to": held,
-        "left_from": first_failing(softness, off <= SMALL),
+        "held_up_to": -largest(-softness[constant == held]),
+        "left_from": -largest(-softness[constant == left]),
         "held_peak": largest(off[within]),
         "held_loss": max(largest(column(known, "loss")[within]), 0.0),
         "failed": float(failed.sum()),
