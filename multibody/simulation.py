@@ -203,16 +203,18 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         passes=passes,
         facts=tuple(diagnostics(recorder, passes, resolution, scale.time)),
         rests=np.array(recorder.rests.after_motion(), dtype=float).reshape(-1, 2) * scale.time,
-        extrema=_extrema(recorder, scale),
+        extrema=_extrema(recorder, scene, scale),
         contact_resolution=resolution,
         residual_displacement=float(np.hypot(table["base_x"][-1], table["base_y"][-1])) * scale.length,
         **method,
     )
 
 
-def _extrema(recorder: Recorder, scale: Scale) -> Array:
+def _extrema(recorder: Recorder, scene: Scene, scale: Scale) -> Array:
     """Turning points (k, 4): time [s], tilt, rolling angle [rad], 1 for a maximum and -1 for a minimum."""
     points = true_swings([point for point in recorder.points if point.time <= recorder.end], _SWING)
+    if scene.start.standing and points and not points[0].is_maximum:
+        del points[0]  # where it lifted off: the tilt of one that stands turns nowhere
     rows = [
         (point.time * scale.time, point.tilt, point.rolling_angle, 1.0 if point.is_maximum else -1.0)
         for point in points

@@ -105,6 +105,13 @@ def uplifts_when_due(engine: str, support: str) -> None:
     small(found.uplift_time - 0.4, UPLIFT_TIME, "it does not uplift at 0.4 s")
     off = math.remainder(found.uplift_direction - math.pi, 2.0 * math.pi)
     small(off, UPLIFT_DIRECTION, "it does not uplift against the acceleration")
+    small(
+        found.rolling_angle[-1] - found.uplift_direction,
+        UPLIFT_DIRECTION,
+        "it leans elsewhere, or a turn away",
+    )
+    # which rises on with the load: what was lowest at the uplift is no turning point
+    hold(len(found.extrema) == 0, f"a tilt that only rises turns at {found.extrema[:, 0]} s")
 
 
 def _energy_scale() -> float:

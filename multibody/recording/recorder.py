@@ -141,6 +141,10 @@ class Recorder:
             poses, after = _rows(poses, inside), _rows(after, inside)
             state = Kinematics(*(getattr(state, field.name)[inside] for field in fields(state)))
             wall = wall and Wall(wall.touching[inside], wall.force[inside], wall.depth[inside])
+        if self._watch is not None and self.uplift is None:
+            self.uplift = self._watch.watch(time, state.tilt, poses, after, acceleration)
+            if self.uplift is not None:
+                self._angle = self.uplift[1]  # of the azimuths a whole turn apart that of the uplift
         leans = state.tilt > self.floor
         angle = unwrap(
             state.azimuth,
@@ -151,8 +155,6 @@ class Recorder:
         )
         slip = self._slip(time, state)
         wall_contact, wall_impulse = self.walls.take(time, wall)
-        if self._watch is not None and self.uplift is None:
-            self.uplift = self._watch.watch(time, state.tilt, poses, after, acceleration)
 
         def rows(at: Indices) -> Array:
             some, later = _rows(poses, at), _rows(after, at)
@@ -255,7 +257,7 @@ class Recorder:
             self._at_turn = False
         if joined.shape[1] > 2 and self.uplift is not None:
             # the two carried steps were inner ones already, except for the last of them
-            self.points.extend(turning_points(*fresh))
+            self.points += [point for point in turning_points(*fresh) if point.time >= self.uplift[0]]
         self._tail = joined[:, -3:].copy()
         # the last step may lie beyond the last sample
         self.peak = max(self.peak, float(tilt[joined[0] <= self.end].max(initial=0.0)))

@@ -158,7 +158,7 @@ def _merged(pair: Sequence[Trace], order: int, good: int) -> Trace:
         extrema=np.vstack([_rows(extrema, order), fine.extrema[len(extrema[-1]) :]]),
         peak_tilt=_number(pair, "peak_tilt", order) if peaks_alike else fine.peak_tilt,
         uplift_time=_number(pair, "uplift_time", order),
-        uplift_direction=_number(pair, "uplift_direction", order),
+        uplift_direction=_limit(_one_branch([np.array(run.uplift_direction) for run in pair]), order),
         residual_displacement=abs(_number(pair, "residual_displacement", order))
         if whole
         else fine.residual_displacement,
@@ -174,16 +174,28 @@ def _samples(values: Sequence[Array], order: int, good: int, kept: NDArray[np.bo
 
 
 def _number(pair: Sequence[Trace], name: str, order: int) -> float:
-    values = [np.array(getattr(run, name)) for run in pair]
+    return _limit([np.array(getattr(run, name)) for run in pair], order)
+
+
+def _limit(values: Sequence[Array], order: int) -> float:
     reached = float(to_zero_step(values, order))
     return reached if math.isfinite(reached) else float(values[-1])
 
 
+def _one_branch(angles: Sequence[Array]) -> list[Array]:
+    """Return two angles, each row of the coarser in the turn in which it is next to the finer."""
+    coarse, fine = angles
+    return [coarse - 2.0 * math.pi * np.round((coarse - fine) / (2.0 * math.pi)), fine]
+
+
 def _rows(tables: Sequence[Array], order: int) -> Array:
-    """Return the limit of tables with the same rows, else the last of them."""
-    if len(tables[0]) != len(tables[-1]):
-        return tables[-1]
-    return to_zero_step(tables, order)
+    """Return the limit of turning points with the same rows, else the last of them."""
+    coarse, fine = tables
+    if len(coarse) != len(fine) or (coarse[:, 3] != fine[:, 3]).any():
+        return fine
+    found = to_zero_step(tables, order)
+    found[:, 2] = to_zero_step(_one_branch([table[:, 2] for table in tables]), order)
+    return found
 
 
 def _passes(tables: Sequence[pd.DataFrame], order: int, end: float) -> pd.DataFrame:

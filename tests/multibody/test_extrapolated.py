@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
@@ -109,6 +110,25 @@ def test_a_series_of_one_term_is_taken_off(order: int) -> None:
     assert found.peak_tilt == pytest.approx(0.1, abs=1e-15)
     assert [(fact.code, fact.bound) for fact in found.facts] == [("extrapolated", order)]
     assert found.settled_until == found.time[-1]
+
+
+def test_angles_a_turn_apart_are_one_angle() -> None:
+    shape = 1e-5 * np.sin(0.1 * np.arange(100))
+    # pushed along an axis, rounding decides whether it leans towards pi or -pi; a maximum, then a minimum
+    turns = [math.pi, -math.pi, math.pi - 3e-5]
+    runs = [
+        replace(
+            run,
+            uplift_direction=turn,
+            extrema=np.array([[0.2, 0.1, turn, 1.0], [0.4, 0.0, turn + 0.5, -1.0]]),
+        )
+        for run, turn in zip(three(lambda step: shape * step), turns, strict=True)
+    ]
+    found = extrapolation(runs, ALPHA)
+    assert found.uplift_direction == pytest.approx(math.pi - 6e-5, abs=1e-12)
+    np.testing.assert_allclose(found.extrema[:, 2], [math.pi - 6e-5, math.pi - 6e-5 + 0.5], atol=1e-12)
+    runs[1] = replace(runs[1], extrema=runs[1].extrema[::-1])  # other turning points have no common limit
+    np.testing.assert_array_equal(extrapolation(runs, ALPHA).extrema, runs[2].extrema)
 
 
 def test_the_estimate_is_the_term_that_is_left() -> None:
