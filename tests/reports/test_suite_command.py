@@ -15,11 +15,11 @@ from rockwobble import reduced
 from rockwobble.compare import Comparison, compare
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.runs import execution
-from rockwobble.models import Case, Cylinder, InitialState, Run, read_suite
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, read_suite
 from rockwobble.reports.cli.inputs.suite_choice import chosen_runs
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.comparison import report
-from rockwobble.reports.pages.words.cases import group_of
+from rockwobble.reports.pages.words.cases import describe, group_of
 
 PAGE_LIMIT = 8_000_000  # [bytes]
 CASES = 6
@@ -172,6 +172,15 @@ def test_a_group_is_the_name_up_to_its_values():
     assert group_of("release: tan_alpha 0.1, scale 2") == "release"
     assert group_of("El Centro, slender: scale 2") == "El Centro"
     assert group_of("pier") == "pier"
+
+
+def test_a_peak_is_told_in_times_of_what_uplifts_under_the_vertical_component():
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    level = [[0.0, 0.0], [1.5, 2.0], [0.0, 0.0]]
+    falling = [[x, y, -3.0 * (x > 0.0)] for x, y in level]
+    for motion, times in ((level, 2.5 / 9.81 / 0.2), (falling, 2.5 / 6.81 / 0.2)):
+        _, ground, _ = describe(Case(pier, GroundMotion(motion, 0.1)))
+        assert f"peak 0.255 g ({times:.2f} times the uplift threshold)" in ground
 
 
 def test_a_trajectory_is_one_more_run(folder, no_engines, monkeypatch, capsys):

@@ -10,13 +10,14 @@ import numpy as np
 from rockwobble.models import Case, Cylinder, GroundMotion, Trace, el_centro_1940
 
 from ..bench import Array, Bench
-from ..finding import Bound, Finding, at_most
+from ..finding import Bound, Finding, at_most, worst_of
 from ..problems import GRAVITY, PIER, refined
 
 DURATION, RTOL = 6.0, 1e-10
 EXACT = Bound(0.0, "exact in binary arithmetic", "alpha")
 # of every step, and one of the record; 1e-12 was measured
 ROUNDING = Bound(1e-9, "rounding, magnified by the passes of 6 s", "alpha")
+IN_PLANE = Bound(0.0, "exact in binary arithmetic", "alpha, weights, m")
 ANGLE = Bound(100.0 * ROUNDING.most, ROUNDING.reason, "alpha")
 
 
@@ -51,8 +52,8 @@ def check(bench: Bench) -> Iterator[Finding]:
     turned = run(motion.rotated(2.0))
     components = "components of the record, or their signs"
     yield same("record rotated by 2 rad", turned.tilt, ROUNDING, components)
-    angle = np.nanmax(np.abs(turned.rolling_angle - plain.rolling_angle - 2.0) % (2.0 * math.pi))
-    angle = min(angle, abs(2.0 * math.pi - angle))
+    off = turned.rolling_angle - plain.rolling_angle - 2.0
+    angle = np.nanmax(np.abs(off - 2.0 * math.pi * np.round(off / (2.0 * math.pi))))
     yield at_most("rolling angle with the record rotated", angle, ANGLE, components)
     late = 32.0 * step
     delayed = run(GroundMotion(np.vstack([np.zeros((32, 2)), a]), step), duration=DURATION + late)
@@ -71,3 +72,16 @@ def check(bench: Bench) -> Iterator[Finding]:
     yield same("record with samples halfway between", between.tilt, ROUNDING, "samples of the record")
     fine = run(motion, sample_step=0.005)
     yield same("output twice as often", fine.tilt[::2], EXACT, "output that influences the steps")
+    yield _planar(bench, motion)
+
+
+def _planar(bench: Bench, motion: GroundMotion) -> Finding:
+    """Planar motion and its forces under a record, with and without what shakes across the plane."""
+    inside = GroundMotion(motion.acceleration * [1.0, 0.0], motion.time_step)
+    one, other = (bench.solve(Case(PIER, each, duration=DURATION), "planar") for each in (motion, inside))
+    differences = {
+        name: np.nanmax(np.abs(getattr(one, name) - getattr(other, name)))
+        for name in ("tilt", "contact_force", "friction_needed", "restraining_moment")
+    }
+    part = "planar motion: the component of the record in its plane"
+    return worst_of("planar motion under a record that leaves its plane", differences, IN_PLANE, part)

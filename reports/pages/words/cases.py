@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 if TYPE_CHECKING:
-    from rockwobble.models import Case
+    from rockwobble.models import Case, GroundMotion
 
 
 def describe(case: Case) -> list[str]:
@@ -23,7 +25,7 @@ def describe(case: Case) -> list[str]:
         lines.append(
             f"Ground: {motion.name or 'record'}, {count} samples of {motion.time_step:g} s, "
             f"{components} components, peak {peak:.3f} g "
-            f"({peak / cylinder.tan_alpha:.2f} times the uplift threshold)"
+            f"({_uplift_ratio(case, motion):.2f} times the uplift threshold)"
         )
     if initial is not None:
         lines.append(
@@ -32,6 +34,15 @@ def describe(case: Case) -> list[str]:
         )
     lines.append(f"Length of the run: {case.length:.4g} s")
     return lines
+
+
+def _uplift_ratio(case: Case, motion: GroundMotion) -> float:
+    """Return the largest horizontal acceleration over tan(alpha) times gravity and the vertical one."""
+    x, y, *z = motion.acceleration.T
+    weight = case.gravity + sum(z)
+    with np.errstate(divide="ignore"):
+        shares = np.hypot(x, y) / np.maximum(weight, 0.0) / case.cylinder.tan_alpha
+    return float(np.nanmax(shares))
 
 
 def group_of(name: str) -> str:
