@@ -75,7 +75,7 @@ class Lift(NamedTuple):
 
 def make_driver(system: System, stepper: Stepper) -> Driver:
     """Return the compiled march of one model by one method."""
-    workspace, restarted, _, partial = stepper
+    workspace, restarted, _, partial, _ = stepper
     tried, ending_of = make_events(system, stepper)
     derivative, momenta = system.derivative, system.momenta
     placed: Callable[..., State] = system.placed

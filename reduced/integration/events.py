@@ -17,10 +17,13 @@ from .endings import HALF_PI
 from .march import MAXIMUM, MINIMUM
 from .stepping import Stepper
 from .systems import System
-from .tsit5 import State, Vector
+from .tsit5 import State, Vector, ground
 
 TAKEN, REPEATED = range(2)  # what becomes of a step
 NO_TURN = 0.0  # beside MAXIMUM and MINIMUM
+# evaluations before the last, which moves a turning point by so little of the step
+_FEWEST, _CLOSE = 2, 1e-7
+_TANGENTS = 20  # evaluations in search of a reversal
 _RETRY = 1.0 / 32.0  # of a step that went wrong; the next may be four times as long
 
 
@@ -66,7 +69,8 @@ class Events(NamedTuple):
 
 def make_events(system: System, stepper: Stepper) -> Events:
     """Return the search for events in the steps that `stepper` takes."""
-    advance, partial, momenta = stepper.advance, stepper.partial, system.momenta
+    _, restarted, advance, partial, acceleration = stepper
+    momenta = system.momenta
 
     @inlined
     def is_flat(y: State) -> bool:
@@ -80,17 +84,25 @@ def make_events(system: System, stepper: Stepper) -> Events:
     ) -> tuple[float, float, float]:
         """Return when, in a step of length `h`, the tilt rate is zero, and tilt and rolling angle there.
 
-        Newton's method on partial steps. What it leaves is of second order in the tilt.
+        Newton's method on partial steps, kept inside the bracket by bisection: of a rate that bends, a
+        tangent may lead elsewhere. What it leaves is of second order in the tilt.
         """
+        low, high = 0.0, h
         at = h * y[1] / (y[1] - rate_at_end)
         tilt, angle = y[0], y[2]
-        for _ in range(3):
+        for count in range(80):
             y_at, k_at = partial(body, work, path, at)
+            if y_at[1] * y[1] > 0.0:
+                low = at
+            else:
+                high = at
             change = -y_at[1] / k_at[1]
+            if not low <= at + change <= high:
+                change = 0.5 * (low + high) - at
             tilt, angle = y_at[0] + 0.5 * y_at[1] * change, y_at[2] + k_at[2] * change
-            if not 0.0 <= at + change <= h:
-                break
             at += change
+            if count >= _FEWEST and abs(change) <= _CLOSE * h:
+                break
         return at, tilt, angle
 
     @jit
@@ -121,6 +133,36 @@ def make_events(system: System, stepper: Stepper) -> Events:
             at = guess
         return at, y_at
 
+    @jit
+    def reversal(
+        body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, rate_at_end: float
+    ) -> float:
+        """Return a time in a step at which the tilt rate has the sign that it has at neither end; 0 if none.
+
+        Where the rate is least in size is sought by its tangents, above which it stays between a time at
+        which it falls in size and one at which it grows.
+        """
+        sign = 1.0 if y[1] > 0.0 else -1.0
+        _, k_at = partial(body, work, path, h)
+        low, rate_low, slope_low = 0.0, sign * y[1], sign * acceleration(work, path)
+        high, rate_high, slope_high = h, sign * rate_at_end, sign * k_at[1]
+        for _ in range(_TANGENTS):
+            if slope_high <= 0.0:
+                break
+            # where the tangents at both ends meet
+            at = (rate_high - rate_low + slope_low * low - slope_high * high) / (slope_low - slope_high)
+            if rate_low + slope_low * (at - low) > 0.0:
+                break
+            y_at, k_at = partial(body, work, path, at)
+            rate, slope = sign * y_at[1], sign * k_at[1]
+            if rate < 0.0:
+                return at
+            if slope < 0.0:
+                low, rate_low, slope_low = at, rate, slope
+            else:
+                high, rate_high, slope_high = at, rate, slope
+        return 0.0
+
     @inlined
     def turn_in(body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, y_new: State) -> Turn:
         """Return the turning point of the tilt in a step from `y` to `y_new`."""
@@ -148,6 +190,11 @@ def make_events(system: System, stepper: Stepper) -> Events:
         h, h_next, count, y_new, k, path = advance(body, rtol, y, k, work, h, length, a, slope)
         if h == 0.0:
             return Trial(REPEATED, h, h_next, count, y_new, k, path, Turn(NO_TURN, 0.0, 0.0, 0.0), False)
+        if y[1] * y_new[1] > 0.0 and y[1] * (y[1] + acceleration(work, path) * h) < 0.0:
+            at = reversal(body, work, path, y, h, y_new[1])
+            if at > 0.0:  # two turning points in one step: it ends between them
+                h, (y_new, _) = at, partial(body, work, path, at)
+                k = restarted(body, y_new, ground(a, slope, at), work)
         flat = is_flat(y) and is_flat(y_new)
         turn = turn_in(body, work, path, y, h, y_new)
         if turn.kind != NO_TURN and not flat and turn.tilt <= 0.0:

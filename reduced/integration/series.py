@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .._compile import jit
+from .._compile import inlined, jit
 from ..body import Body
 from .tsit5 import State
 
@@ -59,3 +59,10 @@ def partial(body: Body, c: NDArray[np.float64], path: Path, time: float) -> Any:
         torque = torque * x + k * c[MOMENTUM + k]
     y = state_at(c, order, x)
     return y, (y[1], acceleration / unit, angle_rate / unit, torque / unit)
+
+
+@inlined
+def acceleration(c: NDArray[np.float64], path: Path) -> float:
+    """Return the second derivative of the tilt at the start of the step [rad/s^2]."""
+    unit, _ = path
+    return c[RATE + 1] / unit

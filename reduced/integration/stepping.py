@@ -26,7 +26,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._compile import jit
+from .._compile import inlined, jit
 from ..body import Body
 from . import taylor
 from .systems import System
@@ -52,6 +52,7 @@ class Stepper(NamedTuple):
     # for the next step, number of trials, new state, k, path
     advance: Callable[..., Any]
     partial: Callable[..., Any]  # (body, work, path, time) -> (y, y') in the last step
+    acceleration: Callable[..., Any]  # (work, path) -> theta'' at the start of the last step
 
 
 @jit
@@ -121,9 +122,13 @@ def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callab
         y_new, k_new, _, _ = step(body, y, k, time, a, slope)
         return y_new, k_new
 
-    return Stepper(_no_workspace, restarted, advance, partial)
+    @inlined
+    def acceleration(work: NDArray[np.float64], path: Any) -> float:
+        return float(path[1][1])
+
+    return Stepper(_no_workspace, restarted, advance, partial, acceleration)
 
 
 def taylor_series() -> Stepper:
     """Return the steps of `taylor` for the recess model."""
-    return Stepper(taylor.workspace, taylor.restarted, taylor.advance, taylor.partial)
+    return Stepper(taylor.workspace, taylor.restarted, taylor.advance, taylor.partial, taylor.acceleration)

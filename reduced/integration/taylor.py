@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from .._compile import inlined, jit
 from ..body import Body
 from .recurrences import AIM, LAST_BUT_ONE, expand, fits
-from .series import STEPS_LEFT, Path, partial, state_at, workspace
+from .series import STEPS_LEFT, Path, acceleration, partial, state_at, workspace
 from .tsit5 import State, Vector
 
-__all__ = ["advance", "partial", "restarted", "workspace"]
+__all__ = ["acceleration", "advance", "partial", "restarted", "workspace"]
 
 _SAFETY = 0.9  # on the length of a step that the order limits
 _GROWTH = 4.0  # bound on the growth of the step from one to the next

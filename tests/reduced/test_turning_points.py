@@ -1,0 +1,64 @@
+"""Turning points of the tilt, two or more of which may fall within one step where samples are far apart."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
+
+SAMPLE = 0.001  # [s]
+STILL = 1e-8  # of the largest tilt rate
+PROBLEMS = 60
+OPTIONS = {"recess": {"support": "recess"}, "flat": {"support": "flat"}, "planar": {"plane": 0.0}}
+
+
+def rough(seed: int, time_step: float) -> Case:
+    """Return a cylinder under ten seconds of noise whose samples are far apart."""
+    random = np.random.default_rng(seed)
+    cylinder = Cylinder(
+        semidiagonal=random.choice([3.0, 6.0, 15.0, 30.0]), tan_alpha=random.uniform(0.08, 0.5)
+    )
+    strength = random.uniform(0.6, 1.5) * cylinder.tan_alpha * 9.81
+    acceleration = strength * random.normal(size=(round(10.0 / time_step), 2))
+    return Case(cylinder, GroundMotion(acceleration, time_step), duration=10.0)
+
+
+@pytest.mark.parametrize("time_step", [0.05, 0.1])
+@pytest.mark.parametrize("model", OPTIONS)
+def test_each_turn_of_the_samples_is_listed_and_each_that_is_listed_turns(
+    model: str, time_step: float
+) -> None:
+    turned = 0
+    for seed in range(PROBLEMS):
+        found = reduced.simulate(rough(seed, time_step), sample_step=SAMPLE, **OPTIONS[model])
+        if found.outcome == "overturned":
+            continue
+        assert found.peak_tilt >= found.tilt.max(), seed
+        moving = np.isfinite(found.rolling_angle)
+        rising = np.diff(found.tilt) > 0.0
+        turns = 1 + np.flatnonzero(rising[1:] != rising[:-1])
+        turns = turns[moving[turns - 1] & moving[turns] & moving[turns + 1]]
+        times, tilts, _, _ = found.extrema.T
+        for turn in turns:
+            assert np.abs(times - found.time[turn]).min() < 2.0 * SAMPLE, (seed, found.time[turn])
+        turned += len(turns)
+        march, _ = found.source.problem.solve(times)
+        turning = tilts > 0.0  # where the base lands in a plane it has a speed
+        rates = np.abs(march.samples[turning, 1])
+        assert rates.max() < STILL * np.abs(found.tilt_rate).max(), (seed, times[turning][rates.argmax()])
+    assert turned > 5 * PROBLEMS
+
+
+def test_a_block_that_lands_and_rises_within_one_step_is_seen_to_land() -> None:
+    """In the step in which it lands it rises at both ends; not seen, it overturned."""
+    scale = 0.5 + 1.5 * 6.0 / 39.0
+    (cell,) = reduced.peak_tilts([2.0], 0.1, el_centro_1940(), [scale], plane=0.3).ravel()
+    # the model in space, by other equations and another method, of what shakes along the plane
+    motion = el_centro_1940().scaled(scale)
+    push = motion.acceleration @ [math.cos(0.3), math.sin(0.3)]
+    along = GroundMotion(np.column_stack([push, 0.0 * push]), motion.time_step)
+    found = reduced.simulate(Case(Cylinder(semidiagonal=2.0, tan_alpha=0.1), along))
+    assert found.outcome == "completed"
+    assert cell == pytest.approx(found.peak_tilt, rel=1e-6)
