@@ -1,4 +1,4 @@
-"""What an engine must do: one small protocol, known to everything else in this folder.
+"""Protocol of an engine: one small interface, known to everything else in this folder.
 
 An engine runs one rigid body on rigid ground at the reference size. It opens a scene, and then advances
 it by a number of steps at a time under given ground accelerations. How it steps (a rollout in C, a loop

@@ -1,4 +1,4 @@
-"""Whether a solution kept what the reduced model assumes: contact, and friction enough."""
+"""Check of a solution against what the reduced model assumes: contact, and friction enough."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the ground and the recess must supply for a solution of the reduced models.
+"""Contact force and restraining moment of a solution of the reduced models.
 
 The force follows from the acceleration of the mass centre; S is at the radius D - b + |contact| of
 the contact azimuth, so its velocity across that azimuth is D phi' - b tau' and the terms that grow

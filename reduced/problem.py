@@ -1,4 +1,4 @@
-"""A problem in the form that the compiled march takes."""
+"""A problem in the form that the compiled time integration takes."""
 
 from __future__ import annotations
 

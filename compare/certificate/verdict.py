@@ -1,4 +1,4 @@
-"""Is it still the same? One word for two fingerprints: same, chaotic or changed. Needs numpy only.
+"""Verdict on two fingerprints, in one word: same, chaotic or changed. Needs numpy only.
 
     python verify.py CERTIFICATE OTHER_CERTIFICATE
 

@@ -1,4 +1,4 @@
-"""What is checked: the reduced models, the suite, and the engines with their settings."""
+"""Subjects of the checks: the reduced models, the suite, and the engines with their settings."""
 
 from __future__ import annotations
 

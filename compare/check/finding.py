@@ -1,4 +1,4 @@
-"""What a check finds: a measured value, its bound, and what is suspect where it is beyond it."""
+"""Findings of the checks: a measured value, its bound, and what is suspect where it is beyond it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a difference between an engine and a reduced model is made of, sample by sample.
+"""Error budget: the parts of a difference between an engine and a reduced model, sample by sample.
 
     engine - reference = (engine - limit) + (limit - own) + (own - reference)
                        =     numerics     +  unexplained  +   model form

@@ -1,4 +1,4 @@
-"""A comparison back from its files, without running anything."""
+"""Comparison read back from its files, without running anything."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who agrees with whom: each motion of a case against every other on the same support."""
+"""Agreement matrix: each motion of a case against every other on the same support."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a comparison found, and its files."""
+"""Result of a comparison, and its files."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which runs a comparison consists of where the user does not say, and what they are held against."""
+"""Default runs of a comparison, and the references that runs are held against."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What becomes of a task, wherever it runs."""
+"""Events of a task, wherever it runs: started, finished, or its process lost."""
 
 from __future__ import annotations
 

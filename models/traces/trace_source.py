@@ -1,4 +1,4 @@
-"""Where the sampled quantities of a trace come from: at hand, or computed when they are first asked for."""
+"""Sources of the sampled quantities of a trace: at hand, or computed when they are first asked for."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What any engine must hold where the rim rolls without loss: invariants that need no other model.
+"""Rules of the contract for a rim that rolls without loss: invariants that need no other model.
 
 The problem is a pier of 6 m released at half its slenderness, which passes within 1.2 s.
 """

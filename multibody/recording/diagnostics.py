@@ -1,4 +1,4 @@
-"""What ended or limits a run, as diagnostics in the time of the user."""
+"""Diagnostics of an engine run, in the time of the user."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What must hold at every step of an engine run, whatever the engine itself says.
+"""Guard of an engine run: conditions that must hold at every step, whatever the engine itself says.
 
 An engine that diverges does not always say so: explicit contact gains energy silently. Each check
 returns the first step that breaks it and why; a run is cut there and its outcome is "failed".

@@ -1,4 +1,4 @@
-r"""Where a ring of inclined walls stands, and how far back it must stand to be touched by nothing.
+r"""Geometry of a ring of inclined walls, and the clearance at which nothing touches it.
 
 symbol    name          unit  meaning
 b, H                    m     base radius, height of the outline; eta = H/b

@@ -1,4 +1,4 @@
-"""What the ways to a time step have in common: runs of one case at several steps."""
+"""Runs of one case at several time steps, and how close two of them are."""
 
 from __future__ import annotations
 

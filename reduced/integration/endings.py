@@ -1,4 +1,4 @@
-"""How motion ends: the cylinder sits down, or it has what it takes to overturn."""
+"""Conditions that end a motion: the cylinder comes to rest, or has what it takes to overturn."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Rows that a march writes as it goes on, and what stood at one moment of it."""
+"""Log of a time integration: rows of its tables, and its state at one moment."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a time integration is given and returns, and its access to the record."""
+"""Input and output of a time integration, and its access to the record."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a figure shows, as data: two renderers draw it, `svg` for documents and `interactive` for pages."""
+"""Figures as data: two renderers draw them, `svg` for documents and `interactive` for pages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the page of an advice is given: its words are in the template advice.md.j2."""
+"""Values for the page of an advice: its words are in the template advice.md.j2."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a check found: in a terminal, on the page of a CI job, and for programs as JSON and JUnit."""
+"""Findings of a check: in a terminal, on the page of a CI job, and for programs as JSON and JUnit."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the page of an ensemble is given: its words are in the template ensemble.md.j2."""
+"""Values for the page of an ensemble: its words are in the template ensemble.md.j2."""
 
 from __future__ import annotations
 

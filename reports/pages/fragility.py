@@ -1,4 +1,4 @@
-"""What the page of a fragility is given: its words are in the template fragility.md.j2."""
+"""Values for the page of a fragility: its words are in the template fragility.md.j2."""
 
 from __future__ import annotations
 

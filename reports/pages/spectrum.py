@@ -1,4 +1,4 @@
-"""What the page of a spectrum is given: its words are in the template spectrum.md.j2."""
+"""Values for the page of a spectrum: its words are in the template spectrum.md.j2."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run may be off where nobody states it: measured on the run itself, by a second one of another step.
+"""Bounds of runs for which nobody states any: measured on the run itself, by a second one of another step.
 
 Every case is held against its model twice. As it is: engines err at uplift, and near passes magnify what they
 err, so the bound is a wide one. It grows with the difference of the two steps and with copies of the model:

@@ -1,4 +1,4 @@
-"""What there is to say of an external trajectory against a model, in numbers and codes."""
+"""Verdict on an external trajectory against a model, in numbers and codes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What was run for one case, and the numbers that it comes to."""
+"""Result of an advice: the runs of one case, and the numbers that they come to."""
 
 from __future__ import annotations
 

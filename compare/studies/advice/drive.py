@@ -1,4 +1,4 @@
-"""Everything that is to be known of one case before its results are used, from one call."""
+"""Advice on one case before its results are used: all of its runs, from one call."""
 
 from __future__ import annotations
 

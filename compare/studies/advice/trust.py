@@ -1,4 +1,4 @@
-"""How far a trace can be trusted: until two methods part, or the same method on data known to a percent."""
+"""Trust in a trace: until two methods diverge, or the same method on data known to a percent."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whether a run is right, how wrong it is, and whether one of its diagnostics explains why.
+"""Verdict on a run: its error, and whether one of its diagnostics explains it.
 
 What a run is held against:
 

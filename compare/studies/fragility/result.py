@@ -1,4 +1,4 @@
-"""What a fragility finds, made from its runs."""
+"""Result of a fragility, made from its runs."""
 
 from __future__ import annotations
 

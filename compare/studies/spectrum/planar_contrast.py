@@ -1,4 +1,4 @@
-"""How unconservative a planar analysis is: where it stands and the cylinder in three dimensions falls."""
+"""Contrast of planar analysis and three dimensions: where one of them overturns and the other stands."""
 
 from __future__ import annotations
 

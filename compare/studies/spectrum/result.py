@@ -1,4 +1,4 @@
-"""What an overturning spectrum holds, and its tables."""
+"""Result of an overturning spectrum, and its tables."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What follows from the points of a trade-off: computed from them, never typed in."""
+"""Conclusions from the points of a trade-off: computed from them, never typed in."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A real recess, a ring of walls with clearance, inclination and friction, against the ideal one."""
+"""Rings, recesses with walls and clearance, of several inclinations and frictions, against the ideal one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a comparison found: sentences on each row of the summary, on budgets and on divergences."""
+"""Findings of a comparison: sentences on each row of the summary, on budgets and on divergences."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where the engine confirms the reduced models, follows them, and leaves them."""
+"""Limits by the engine: where it confirms the reduced models, follows them, and leaves them."""
 
 from __future__ import annotations
 
