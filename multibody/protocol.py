@@ -165,7 +165,7 @@ class Engine(Protocol):
 
     @property
     def facts(self) -> EngineFacts:
-        """What is known of it beforehand; `EngineFacts()` where nothing was measured."""
+        """Facts known of it beforehand; `EngineFacts()` where nothing was measured."""
         ...
 
     def version(self) -> str:

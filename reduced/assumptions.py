@@ -20,7 +20,7 @@ _ROUNDS = 5  # each looks eight times closer, so that a parabola is off by 8^-8 
 
 
 class Demands(NamedTuple):
-    """What a solution asks at n times; standing included, where nothing is asked."""
+    """Demands of a solution at n times; standing included, where nothing is asked."""
 
     normal: Array  # (n,) normal force in weights
     friction: Array  # (n,) horizontal over normal force; inf where the normal force is not positive

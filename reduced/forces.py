@@ -80,7 +80,7 @@ def contact_force(
 def derived_quantities(
     body: Body, states: NDArray[np.float64], ground: NDArray[np.float64], free_twist: bool
 ) -> NDArray[np.float64]:
-    """Return what follows from each state.
+    """Return forces, energy and rolling rate of each state.
 
     Parameters
     ----------

@@ -32,7 +32,7 @@ def _as_given(run: Run) -> Run:
 
 @dataclass(slots=True, kw_only=True)
 class Bench:
-    """What the checks are made on; engine runs are made once and kept for the checks that follow.
+    """Subjects of the checks; engine runs are made once and kept for the checks that follow.
 
     Parameters
     ----------

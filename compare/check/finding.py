@@ -16,7 +16,7 @@ NOT_RUN: Outcome = "not run"
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """What a measured value may be at most.
+    """Upper bound of a measured value.
 
     Parameters
     ----------

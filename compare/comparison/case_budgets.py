@@ -98,11 +98,11 @@ def case_budgets(
 def _landings(
     cases: Sequence[Case], runs: Mapping[str, Run], results: Mapping[Key, Trace], simulate: Simulate
 ) -> dict[Key, Trace]:
-    """Return what an exact engine follows where a model goes through upright: by names of case and model.
+    """Return planar motion with impacts, for models that go through upright: by names of case and model.
 
     Motion in one vertical plane passes upright itself, and there the base lands flat. The recess and
     flat-ground models go on without loss, as the limit of a vanishing spin does. A rigid base takes the
-    angular momentum about its new edge (Housner), on any support, and so do both engines: the difference is
+    angular momentum about its new edge (Housner), on any support, and so do the engines: the difference is
     model form.
     """
     keys, jobs = [], []

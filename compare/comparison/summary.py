@@ -107,7 +107,7 @@ def summary_row(
         Label of the run.
     trial : Trace
     prediction : Prediction
-        When the two have to part.
+        Predicted divergence of the two.
     estimated_error : float, optional
         Error of the run that the prediction rests on [alpha].
     budget : ErrorBudget, optional
@@ -162,7 +162,7 @@ def summary_row(
 
 
 def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:
-    """Who is held against whom, and how both ended."""
+    """Run and reference, and the outcomes of both."""
     return {
         "case": case.name,
         "engine": trial.run.engine or REDUCED,

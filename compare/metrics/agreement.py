@@ -1,7 +1,7 @@
 """Agreement time of two traces.
 
 Each near pass of upright may turn one motion to the left and its neighbour to the right, so two
-traces of one problem part at some time however good both are. What counts is when.
+traces of one problem diverge at some time however good both are. What counts is when.
 """
 
 from __future__ import annotations

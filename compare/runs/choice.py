@@ -254,7 +254,7 @@ def own_model(run: Run) -> Run:
 def references_of(
     case: Case, run: Run, label: str, reference: Run | None = None, *, named: str = ""
 ) -> dict[str, Run]:
-    """Return what a run is held against, by label: `reference`, or what its support asks for.
+    """Return the references of a run, by label: `reference`, or what its support asks for.
 
     The reference is called `named`, by default as it calls itself.
 

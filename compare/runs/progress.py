@@ -12,7 +12,7 @@ from typing import Literal
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Progress:
-    """How far tasks are.
+    """Progress of tasks.
 
     Parameters
     ----------

@@ -11,7 +11,7 @@ R = TypeVar("R")
 
 @dataclass(frozen=True, slots=True)
 class Lost:
-    """What stands in the place of a result where the process of a task died, and its last words."""
+    """A task whose process died, with its last words; it stands in the place of the result."""
 
     why: str
 

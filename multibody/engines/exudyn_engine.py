@@ -93,7 +93,7 @@ class _ExudynStepper:
         return self._warning
 
     def counts(self) -> SceneCounts:
-        """Return what a step solves: the joint, three constraints on the velocity of one point."""
+        """Return the counts of a step: the joint, three constraints on the velocity of one point."""
         return SceneCounts(degrees_of_freedom=6, contacts=0, constraint_rows=3)
 
     def _check_apex(self, rows: Array) -> None:

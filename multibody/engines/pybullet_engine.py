@@ -176,7 +176,7 @@ class _PybulletStepper:
         return ""
 
     def counts(self) -> SceneCounts:
-        """Return what the last step solved: a normal and two directions of friction for each contact."""
+        """Return the counts of the last step: a normal and two directions of friction for each contact."""
         contacts = len(self._bullet.getContactPoints(self._body, physicsClientId=self._client))
         return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
 

@@ -20,7 +20,7 @@ Attempt = Callable[[float, Progress], Trace]
 
 @dataclass(frozen=True, slots=True)
 class Closeness:
-    """How close two traces of one case are.
+    """Closeness of two traces of one case.
 
     Attributes
     ----------
@@ -38,7 +38,7 @@ class Closeness:
 
 
 def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
-    """Return how close two traces are in tilt, by their samples."""
+    """Return the closeness of two traces in tilt, by their samples."""
     count = common_count([coarse, fine])
     distance = np.abs(coarse.tilt[:count] - fine.tilt[:count])
     beyond = np.flatnonzero(distance > _PARTED * alpha)

@@ -86,7 +86,7 @@ def extrapolate(attempt: Attempt, finest: float, alpha: float, progress: Progres
 
 
 def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
-    """Return what three runs, the coarsest first, each at half the step of the one before, tend to."""
+    """Return the limit of three runs, the coarsest first, each at half the step of the one before."""
     finest = runs[-1]
     if finest.outcome == "failed":
         return finest

@@ -65,7 +65,7 @@ def spin_momentum(body: Body, theta: float, phi_rate: float) -> float:
 
 
 class Lift(NamedTuple):
-    """What becomes of a cylinder at rest within a piece of the record."""
+    """Uplift, or none, of a cylinder at rest within a piece of the record."""
 
     stays: bool
     at: float  # time of uplift since the beginning of the piece [s]
@@ -88,7 +88,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
 
     @inlined
     def lift_in(body: Body, rtol: float, time_step: float, piece: Piece, elapsed: float, y: State) -> Lift:
-        """Return how a cylinder at rest leaves the ground after `elapsed` of a piece, if it does.
+        """Return the uplift of a cylinder at rest after `elapsed` of a piece, if it does.
 
         An uplift within a hair of the next sample is taken up there, already above the threshold,
         however short that sample is.

@@ -48,7 +48,7 @@ class Trial(NamedTuple):
 
 
 class Ending(NamedTuple):
-    """Where a step ends: as it was taken, or earlier, where base or side meet the ground."""
+    """The end of a step: as it was taken, or earlier, where base or side meet the ground."""
 
     h: float  # its length [s]
     y: State
@@ -78,7 +78,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
     def turning_point(
         body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, rate_at_end: float
     ) -> tuple[float, float, float]:
-        """Return when, in a step of length `h`, the tilt rate is zero, and tilt and rolling angle there.
+        """Return the time of a zero tilt rate in a step of length `h`, and tilt and rolling angle there.
 
         Newton's method on partial steps. What it leaves is of second order in the tilt.
         """
@@ -97,7 +97,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
     def crossing(
         body: Body, work: NDArray[np.float64], path: Any, y: State, first: float, last: float, level: float
     ) -> tuple[float, State]:
-        """Return when, from `first` to `last`, the tilt reaches `level`, and the state there.
+        """Return the time from `first` to `last` at which the tilt reaches `level`, and the state there.
 
         The tilt sinks to 0 or rises to any other level. Newton's method on partial steps, kept inside
         the bracket by bisection.
@@ -156,7 +156,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
 
     @inlined
     def ending_of(body: Body, work: NDArray[np.float64], y: State, trial: Trial) -> Ending:
-        """Return where a step from `y` ends."""
+        """Return the end of a step from `y`."""
         h, y_new, turn = trial.h, trial.y, trial.turn
         turns = turn.kind != NO_TURN
         # with spin the tilt stays positive; without it the base meets the ground

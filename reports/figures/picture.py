@@ -99,7 +99,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Band:
-    """What lies between two curves over x, each (n,)."""
+    """Area between two curves over x, each (n,)."""
 
     x: Array
     low: Array

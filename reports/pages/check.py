@@ -119,7 +119,7 @@ def as_junit(findings: Sequence[Finding], seconds: float) -> str:
 
 
 def headline(findings: Sequence[Finding], seconds: float) -> str:
-    """Return what it all came to, in one sentence."""
+    """Return the result of all checks, in one sentence."""
     found = Counter(finding.outcome for finding in findings)
     failed, passed = found.pop("FAILED", 0), found.pop("passed", 0)
     rest = f" ({', '.join(f'{count} {outcome}' for outcome, count in found.items())})" if found else ""

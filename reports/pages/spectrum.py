@@ -39,7 +39,7 @@ def stored_page(results: Results) -> Page:
 
 
 def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame]) -> dict[str, object]:
-    """Return what a template says of a spectrum, for its own page and for that of the paper."""
+    """Return the values of the templates of a spectrum, for its own page and for that of the paper."""
     contrast, checked = tables["contrast"], tables["checked"]
     bands, every = contrast.iloc[:-1], contrast.iloc[-1]
     return {

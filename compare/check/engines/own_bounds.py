@@ -157,7 +157,7 @@ def _apart(one: Trace, other: Trace) -> Array:
 
 
 def _copies(bench: Bench, job: Job, model: Trace, trace: Trace, by_step: Array) -> list[Array]:
-    """How far copies of the model go [alpha]: off by as much as the engine at first, and closing as it does.
+    """Distance of copies of the model [alpha]: off by as much as the engine at first, and closing as it does.
 
     A base that opens by less than the contact sinks in stays closed in every engine, at every step: after
     weak shaking a model chatters there, and the strong motion that follows finds it elsewhere.

@@ -70,7 +70,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 
 def _wrong(size: float, lowest: float, start: float, options: dict[str, Any]) -> Iterator[str]:
-    """Yield what single runs say against the lowest intensity that overturns."""
+    """Yield objections of single runs to the lowest intensity that overturns."""
     # within a step of the search nobody says which is the lowest
     below = np.arange(start, lowest - STEP if math.isfinite(lowest) else LEVELS[-1], STEP)
     fell = [level for level in below if _peak(size, level, options) > 1.0]

@@ -68,7 +68,7 @@ def load_model(name: str) -> Model:
 
 
 def outputs_of(result: object) -> Outputs:
-    """Return what a model gave.
+    """Return the output of a model.
 
     Raises
     ------

@@ -31,7 +31,7 @@ OTHER = "other support"  # group of the copies on the other support
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Advice(Shown):
-    """What was run for one case.
+    """Advice on one case.
 
     Attributes
     ----------
@@ -163,7 +163,7 @@ class Advice(Shown):
         return found
 
     def recess(self) -> dict[str, float] | None:
-        """Return what a recess must be built for, by the worst 95th percentiles of groups that stand.
+        """Return the design demands of a recess, by the worst 95th percentiles of groups that stand.
 
         None on flat ground, and where no group stands.
 

@@ -145,7 +145,7 @@ def advise(
 
 
 def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -> dict[str, object] | None:
-    """Return what the vertical component of ground motion changes in the largest tilt, copy by copy.
+    """Return the effect of the vertical component of ground motion on the largest tilt, copy by copy.
 
     Of the record itself or, where it has none, of El Centro 1940 as strong: what it usually changes.
 

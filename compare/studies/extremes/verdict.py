@@ -54,7 +54,7 @@ _EXPLAINS_REDUCED = frozenset({"side"})
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """What is found of one run.
+    """Verdict on one run.
 
     Attributes
     ----------

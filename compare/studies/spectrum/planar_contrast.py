@@ -36,7 +36,7 @@ CONTRAST_COLUMNS: dict[str, str] = {
 
 
 def planar_contrast(spectrum: OverturningSpectrum, edges: Sequence[float] | None = None) -> pd.DataFrame:
-    """Return how 3D and planar runs differ, one row for each band of sizes and a last one for all.
+    """Return the differences of 3D and planar runs, one row for each band of sizes and a last one for all.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def planar_contrast(spectrum: OverturningSpectrum, edges: Sequence[float] | None
 
 
 def edge_difference(spectrum: OverturningSpectrum) -> Array:
-    """Return how much higher the lowest overturning intensity is in 3D than in the worse plane, (n_R,) [-].
+    """Return the lowest overturning intensity in 3D less that in the worse plane, (n_R,) [-].
 
     Negative where the planar analysis is unconservative; infinite where only one of them was found to
     overturn, 0 where none was or the two are no further apart than `search_step`.

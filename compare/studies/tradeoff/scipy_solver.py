@@ -109,7 +109,7 @@ def _departure(case: Case) -> float:
 
 
 def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: float) -> Array:
-    """Return what a problem asks, by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
+    """Return the answer to a problem by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
     step, reference = problem.sample_step, problem.references["recess"].quantities[0]
     times = step * np.arange(math.ceil(rates.start / step), math.floor(rates.end / step) + 2)
     times = times[: int(np.searchsorted(times, rates.end + 1e-9))]

@@ -15,7 +15,7 @@ from .values import GUIDE, build, in_range, one_of, whole
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MujocoSettings:
-    """How MuJoCo steps and what its contact is made of.
+    """Settings of MuJoCo: its integrator and its contact.
 
     Attributes
     ----------
