@@ -53,7 +53,7 @@ class Ending(NamedTuple):
     h: float  # its length [s]
     y: State
     lands: bool  # the base, in planar motion
-    falls: bool  # the side
+    overturns: bool  # the side
     turns: bool  # the turning point lies before this end
 
 
@@ -161,14 +161,14 @@ def make_events(system: System, stepper: Stepper) -> Events:
         turns = turn.kind != NO_TURN
         # with spin the tilt stays positive; without it the base meets the ground
         lands = trial.flat and (y_new[0] <= 0.0 or (turns and turn.tilt <= 0.0))
-        falls = y_new[0] >= HALF_PI
-        if not (lands or falls):
-            return Ending(h, y_new, lands, falls, turns)
+        overturns = y_new[0] >= HALF_PI
+        if not (lands or overturns):
+            return Ending(h, y_new, lands, overturns, turns)
         # a hop within one step lands after its highest point, a dip before its lowest
         hops = lands and turns and turn.tilt > 0.0
         first = turn.at if hops else 0.0
         last = turn.at if lands and turns and not hops else h
-        h, y_new = crossing(body, work, trial.path, y, first, last, HALF_PI if falls else 0.0)
-        return Ending(h, y_new, lands, falls, hops)
+        h, y_new = crossing(body, work, trial.path, y, first, last, HALF_PI if overturns else 0.0)
+        return Ending(h, y_new, lands, overturns, hops)
 
     return Events(tried, ending_of)

@@ -52,7 +52,7 @@ def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataF
         "every": every,
         "worst": bands.iloc[int(bands["missed"].fillna(0.0).argmax())],
         "wrong": bands[bands["missed"] > bands["overcalled"]].to_dict("records"),
-        "falls": any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()),
+        "overturns": any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()),
         "unconservative_from": unconservative_from(spectrum),
         "islands": _islands(tables["islands"]),
         "failed": int(spectrum.failed().sum()),
@@ -95,14 +95,14 @@ def _search(spectrum: OverturningSpectrum, lowest: pd.DataFrame) -> dict[str, ob
     found = space[np.isfinite(space["intensity"])]
     spacing = float(np.diff(spectrum.intensities).max(initial=0.0))
     chance = found[~found["confirmed"].astype(bool)]
-    probed, fell = int(space["probed"].sum()), int(space["overturned_below"].sum())
+    probed, below = int(space["probed"].sum()), int(space["overturned_below"].sum())
     return {
         "start": spectrum.searched_from[SPATIAL],
         "found": len(found),
         "unseen": int((found["intensity"] < found["on_grid"].fillna(math.inf) - spacing).sum()),
         "probed": probed,
-        "below": fell,
-        "below_most": share_interval(fell, probed).high,
+        "below": below,
+        "below_most": share_interval(below, probed).high,
         "chance": len(chance),
         "chance_from": chance["semidiagonal"].min(),
         "chance_to": chance["semidiagonal"].max(),

@@ -58,7 +58,7 @@ def check(bench: Bench) -> Iterator[Finding]:
     told = np.nan_to_num(found.lowest_frame()["on_grid"].to_numpy())
     unlike = [f"{a:g}, not {b:g}" for a, b in zip(told, on_grid, strict=True) if a != b]
     yield none_wrong(
-        "lowest intensities on the grid that are not", unlike, "single runs, 0 where none falls", PART
+        "lowest intensities on the grid that are not", unlike, "single runs, 0 where none overturns", PART
     )
     reason = f"single runs from the uplift up, at each {STEP:g}"
     yield none_wrong("lowest overturning intensities that are not the lowest", wrong, reason, PART)
