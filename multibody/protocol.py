@@ -155,7 +155,7 @@ class Engine(Protocol):
 
     @property
     def supports(self) -> tuple[str, ...]:
-        """Names of the supports that it has: "recess" (ideal recess), "flat" (open ground)."""
+        """Names of its supports: "recess" (ideal recess), "flat" (flat ground), "ring" (walls, clearance)."""
         ...
 
     @property

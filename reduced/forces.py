@@ -10,7 +10,7 @@ symbol unit     meaning                                                         
 F_r    m/s^2    contact force on the cylinder along the contact azimuth, over m (11)
 F_t    m/s^2    the same across it, counter-clockwise                           (11)
 N      m/s^2    the same upwards                                                (11)
-kappa  m^2/s^2  couple of the recess along z_world + z_body, over m
+kappa  m^2/s^2  restraining moment along z_world + z_body, over m
 ====== ======== =============================================================== ========
 """
 
@@ -26,7 +26,7 @@ from .body import Body
 from .equations import energy, flat_rhs
 
 # columns of what `derived_quantities` returns
-ROLLING_RATE, ENERGY, FORCE_X, FORCE_Y, FORCE_Z, COUPLE = range(6)
+ROLLING_RATE, ENERGY, FORCE_X, FORCE_Y, FORCE_Z, MOMENT = range(6)
 
 
 @jit
@@ -96,7 +96,7 @@ def derived_quantities(
     -------
     ndarray, shape (n, 6)
         phi' [rad/s], energy per unit mass [m^2/s^2], contact force in world axes over the weight
-        (3 columns) [-], couple kappa over the weight [m].
+        (3 columns) [-], restraining moment kappa over the weight [m].
     """
     out = np.zeros((len(states), 6))
     for i in range(len(states)):
@@ -111,5 +111,5 @@ def derived_quantities(
         out[i, FORCE_X] = (F_r * cos(phi) - F_t * sin(phi)) / body.g
         out[i, FORCE_Y] = (F_r * sin(phi) + F_t * cos(phi)) / body.g
         out[i, FORCE_Z] = N / body.g
-        out[i, COUPLE] = kappa / body.g
+        out[i, MOMENT] = kappa / body.g
     return out

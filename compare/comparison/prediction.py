@@ -173,8 +173,8 @@ def time_scale(case: Case) -> float:
 
 def _diverges(case: Case, reference: Trace, other: Trace) -> float:
     """Time at which two responses part [s]; the length of the run where they do not."""
-    horizon = agreement_time(make_pair(case.cylinder, reference, other, until=case.length))
-    return horizon.end if horizon.diverged else case.length
+    agreement = agreement_time(make_pair(case.cylinder, reference, other, until=case.length))
+    return agreement.end if agreement.diverged else case.length
 
 
 def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:

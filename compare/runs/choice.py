@@ -23,7 +23,7 @@ from .run_settings import step_settings
 SUPPORTS = ("recess", "flat")
 
 # What an exact engine would follow. A ring holds only what has rolled out as far as its clearance: until the
-# first touch of a wall the cylinder rolls as on open ground, and after it no reduced model knows the walls.
+# first touch of a wall the cylinder rolls as on flat ground, and after it no reduced model knows the walls.
 _OWN_MODELS = {"recess": "recess", "flat": "flat", "ring": "flat"}
 
 
@@ -150,7 +150,7 @@ def require_runnable(case: Case, run: Run) -> None:
 def default_runs(
     engines: Sequence[str] | None = None, supports: Sequence[str] | None = None
 ) -> tuple[Run, ...]:
-    """Return every engine that serves any case with each support, the guided ones first.
+    """Return every engine that serves any case with each support, those in a recess first.
 
     Engines that are named run whatever they can do: with the supports that they have where none is named.
     Where only supports are named, each gets the engines that have it, or all if none has, which will say so.

@@ -30,7 +30,7 @@ class ExudynEngine(Declared):
     """Exudyn: rigid body on Euler parameters, joint of a rolling disc, implicit integration."""
 
     package, settings_type, facts = "exudyn", ExudynSettings, _FACTS  # both rules are of second order
-    supports = ("flat",)  # open ground only: the joint lets the rim roll out
+    supports = ("flat",)  # flat ground only: the joint lets the rim roll out
     uplifts = False  # the joint knows the rim only, not the base
 
     @contextlib.contextmanager

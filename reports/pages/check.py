@@ -57,7 +57,7 @@ def print_layer(console: Console, layer: str, findings: Sequence[Finding]) -> No
             console.print(f"{finding.name}: {finding.note}", style="yellow", highlight=False, markup=False)
 
 
-def page(findings: Sequence[Finding], versions: Mapping[str, str], seconds: float) -> Page:
+def check_page(findings: Sequence[Finding], versions: Mapping[str, str], seconds: float) -> Page:
     """Return the report: what failed first, then every check, layer by layer."""
 
     def rows(chosen: Sequence[Finding]) -> list[Row]:

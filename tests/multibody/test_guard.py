@@ -117,7 +117,7 @@ def test_a_gain_is_held_against_the_energy_of_the_motion() -> None:
 
     def fails(state: Kinematics, gain: float, largest: float = 0.0) -> bool:
         breach = first_breach(
-            state, np.full(n, gain * scale), BODY, 9.81, guided=False, largest=largest * scale
+            state, np.full(n, gain * scale), BODY, 9.81, in_recess=False, largest=largest * scale
         )
         return breach is not None
 
@@ -137,10 +137,10 @@ def test_the_first_breach_counts() -> None:
     steps = Steps(position, upright, np.zeros((n, 3)), np.zeros((n, 3)))
     state = kinematics(steps, steps, BODY, 9.81)
     energy = np.zeros(n)
-    breach = first_breach(state, energy, BODY, 9.81, guided=True)
+    breach = first_breach(state, energy, BODY, 9.81, in_recess=True)
     assert breach is not None
     assert (breach.index, breach.code) == (7, "penetration")
     energy[4] = np.inf
-    breach = first_breach(state, energy, BODY, 9.81, guided=True)
+    breach = first_breach(state, energy, BODY, 9.81, in_recess=True)
     assert breach is not None
     assert (breach.index, breach.code) == (4, "energy_gain")

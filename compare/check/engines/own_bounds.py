@@ -125,7 +125,7 @@ def _held(bench: Bench, job: Job, name: str, model: Trace, trace: Trace, *, clea
     limit = min([model.first(*_LIMITS), trace.first(*_LIMITS), *landings(model)[:1], job.case.length])
     within = (time >= np.nan_to_num(model.uplift_time)) & (time < limit) & (clean | (allowed < AGREEMENT))
     if np.count_nonzero(within) < 2:
-        return not_run(name, part, "traces have to part at once: there is nothing to compare")
+        return not_run(name, part, "the agreement is predicted to end at once: there is nothing to compare")
     until, step = float(time[within][-1]), rms(allowed[within])
     most = (CLEAN if clean else WIDE) * step + LEAST
     grown = "" if clean else " and what as large an error grows to"

@@ -53,7 +53,7 @@ class Advice(Shown):
     lowest : mapping
         Of each series of `scales`.
     prediction : Prediction
-        When reduced model and engine have to part.
+        Predicted agreement time of reduced model and engine.
     verification : Verification or None
     trust : Trust
     form : Contrast or None

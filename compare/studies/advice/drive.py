@@ -199,7 +199,7 @@ def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | N
 def _to_the_fall(case: Case, end: float) -> Case:
     """Return a case that takes until its fall at `end` [s], after what was asked for, over still ground.
 
-    All that is run for it then sees the fall: the engine, the copies, and when two methods part.
+    All that is run for it then sees the fall: the engine, the copies, and when two methods diverge.
     """
     motion = case.motion
     if motion is not None and case.length < motion.duration:

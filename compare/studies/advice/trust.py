@@ -37,7 +37,7 @@ class Trust:
     until : float
         [s] in the time of the run.
     because : {"", "methods", "data"}
-        What ends it: two sound methods part there, or the copies do.
+        What ends it: two sound methods diverge there, or the copies do.
     """
 
     kind: Literal["trace", "peak", "statistics"]

@@ -14,7 +14,7 @@ from rockwobble.compare import findings as unexplained
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
-from ..words.diagnostics import counted, failure, sentences
+from ..words.diagnostics import counted, failure, remarks
 from ..words.sentences import sentence
 from .external import external_sentences, mistakes, scope, within
 
@@ -114,7 +114,7 @@ def finding_sentences(view: CaseView) -> list[str]:
     # of a run that failed its finding says why
     sound = [row for row in rows_of(view.rows) if "failed" not in (row.outcome, row.reference_outcome)]
     runs = [run for run in dict.fromkeys(row.run for row in sound) if view.facts[run]]
-    return [*said, *(sentence(WORDS, "remark", run, sentences(view.facts[run])) for run in runs)]
+    return [*said, *(sentence(WORDS, "remark", run, remarks(view.facts[run])) for run in runs)]
 
 
 def counted_remarks(summary: pd.DataFrame) -> list[str]:
