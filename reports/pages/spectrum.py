@@ -34,13 +34,13 @@ def spectrum_page(
 
 def stored_page(results: Results) -> Page:
     """Return the page of the spectrum that is stored."""
-    tables = {name: results.table(name) for name in ("lowest", "islands", "contrast", "checked")}
+    tables = {name: results.table(name) for name in ("lowest", "islands", "checked")}
     return spectrum_page(spectrum_of(results), tables, results.manifest)
 
 
 def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame]) -> dict[str, object]:
     """Return the values of the templates of a spectrum, for its own page and for that of the paper."""
-    contrast, checked = tables["contrast"], tables["checked"]
+    contrast, checked = planar_contrast(spectrum), tables["checked"]
     bands, every = contrast.iloc[:-1], contrast.iloc[-1]
     return {
         "spectrum": spectrum,
