@@ -90,7 +90,7 @@ def derived_quantities(
     ground : ndarray, shape (n, 3)
         Ground acceleration [m/s^2].
     free_twist : bool
-        Whether the model is the rolling one.
+        Whether the model is that of flat ground.
 
     Returns
     -------

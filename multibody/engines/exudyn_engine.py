@@ -77,7 +77,7 @@ class _ExudynStepper:
         if not self._warning:
             stepped = self._integrate(acceleration)
             rows[: len(stepped)] = stepped
-            self._check_apex(rows)
+            self._check_upright(rows)
         place, turn, velocity, rates = np.split(rows, (3, 7, 10), axis=1)
         quaternion = self._start.quaternion + turn
         # the norm is held up to the tolerance of the iteration
@@ -96,7 +96,7 @@ class _ExudynStepper:
         """Return the counts of a step: the joint, three constraints on the velocity of one point."""
         return SceneCounts(degrees_of_freedom=6, contacts=0, constraint_rows=3)
 
-    def _check_apex(self, rows: Array) -> None:
+    def _check_upright(self, rows: Array) -> None:
         """Give up the rows (n, 14) from the one on that has jumped over upright."""
         leans = np.vstack([self._lean, _leans(self._start.quaternion + rows[:, 3:7])])
         self._lean = leans[-1]

@@ -95,7 +95,7 @@ def test_strong_shaking_overturns(engine: str) -> None:
     assert run.peak_tilt == 0.5 * np.pi
 
 
-def test_passes_too_close_to_the_apex_are_marked(engine: str, time_step: float | None) -> None:
+def test_passes_too_close_to_upright_are_marked(engine: str, time_step: float | None) -> None:
     # a spin of 1e-6 rad/s passes at 1e-7 rad, far less than the tilt that a step crosses
     case = Case(PIER, initial=InitialState(PIER.alpha / 2, rolling_rate=1e-6), duration=2.5)
     near = multibody.simulate(case, engine=engine, time_step=time_step)
