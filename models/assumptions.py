@@ -1,4 +1,4 @@
-"""What a motion asks of ground and recess, and where they could not supply it."""
+"""Demands of a motion on ground and recess, and breaches: where they could not be met."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far engine runs of a suite may be from the reduced models."""
+"""Bounds on the differences between the engine runs of a suite and the reduced models."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How values show themselves: on one line, as a table in a notebook, as a figure."""
+"""Display of values: a repr on one line, a table in a notebook, a figure."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Physics engines hold the cylinder: a free rigid body in contact with rigid ground.
+"""Physics engines: the cylinder as a free rigid body in contact with rigid ground.
 
 `simulate` runs one case in one engine with one support and gives a `Trace`. Nothing here knows the reduced
 models: inertia, kinematics and energy are derived from the pose of a rigid body.

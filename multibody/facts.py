@@ -1,4 +1,4 @@
-"""What is known of an engine beforehand: its price, its error, and what it needs at uplift."""
+"""Facts of an engine, known before a run: computing time, error, and its needs at uplift."""
 
 from __future__ import annotations
 

@@ -84,7 +84,7 @@ def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinema
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rim:
-    """What is wanted of some poses only: where the rim stands, and how it turns.
+    """Place and turning of the rim, wanted at some poses only.
 
     Attributes
     ----------
@@ -102,7 +102,7 @@ class Rim:
 
 
 def rim(poses: Steps, after: Steps, body: Body) -> Rim:
-    """Return where the rim stands at `poses`; arguments as for `kinematics`."""
+    """Return place and turning of the rim at `poses`; arguments as for `kinematics`."""
     wx, wy, wz = mean_spin(poses, after).T
     axis = axis_of(poses.quaternion)
     ax, ay, az = axis.T

@@ -1,4 +1,4 @@
-"""What an engine must do: one small protocol, known to everything else in this folder.
+"""Protocol of an engine: one small interface, known to everything else in this folder.
 
 An engine runs one rigid body on rigid ground at the reference size. It opens a scene, and then advances
 it by a number of steps at a time under given ground accelerations. How it steps (a rollout in C, a loop
@@ -155,7 +155,7 @@ class Engine(Protocol):
 
     @property
     def supports(self) -> tuple[str, ...]:
-        """Names of the supports that it has: "recess" (ideal recess), "flat" (open ground)."""
+        """Names of its supports: "recess" (ideal recess), "flat" (flat ground), "ring" (walls, clearance)."""
         ...
 
     @property
@@ -165,7 +165,7 @@ class Engine(Protocol):
 
     @property
     def facts(self) -> EngineFacts:
-        """What is known of it beforehand; `EngineFacts()` where nothing was measured."""
+        """Facts known of it beforehand; `EngineFacts()` where nothing was measured."""
         ...
 
     def version(self) -> str:

@@ -1,4 +1,4 @@
-"""Whether a solution kept what the reduced model assumes: contact, and friction enough."""
+"""Check of a solution against what the reduced model assumes: contact, and friction enough."""
 
 from __future__ import annotations
 
@@ -20,11 +20,11 @@ _ROUNDS = 5  # each looks eight times closer, so that a parabola is off by 8^-8 
 
 
 class Demands(NamedTuple):
-    """What a solution asks at n times; standing included, where nothing is asked."""
+    """Demands of a solution at n times; standing included, where nothing is asked."""
 
     normal: Array  # (n,) normal force in weights
     friction: Array  # (n,) horizontal over normal force; inf where the normal force is not positive
-    couple: Array  # (n,) of the recess, over the weight [m]
+    moment: Array  # (n,) the restraining one, over the weight [m]
     moving: NDArray[np.bool_]  # (n,)
 
 
@@ -68,7 +68,7 @@ def review(
     (pull, pulled), (need, needed) = largest(_pull), largest(_need)
     (normal, _), (moment, _) = (
         largest(lambda found: found.normal),
-        largest(lambda found: np.abs(found.couple)),
+        largest(lambda found: np.abs(found.moment)),
     )
     if (pull >= 0.0 and not _lost(found).any()) or (need > friction and not slips(found).any()):
         # a breach that is shorter than a part of a step

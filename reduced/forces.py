@@ -1,4 +1,4 @@
-"""What the ground and the recess must supply for a solution of the reduced models.
+"""Contact force and restraining moment of a solution of the reduced models.
 
 The force follows from the acceleration of the mass centre; S is at the radius D - b + |contact| of
 the contact azimuth, so its velocity across that azimuth is D phi' - b tau' and the terms that grow
@@ -10,7 +10,7 @@ symbol unit     meaning                                                         
 F_r    m/s^2    contact force on the cylinder along the contact azimuth, over m (11)
 F_t    m/s^2    the same across it, counter-clockwise                           (11)
 N      m/s^2    the same upwards                                                (11)
-kappa  m^2/s^2  couple of the recess along z_world + z_body, over m
+kappa  m^2/s^2  restraining moment along z_world + z_body, over m
 ====== ======== =============================================================== ========
 """
 
@@ -26,7 +26,7 @@ from .body import Body
 from .equations import energy, flat_rhs
 
 # columns of what `derived_quantities` returns
-ROLLING_RATE, ENERGY, FORCE_X, FORCE_Y, FORCE_Z, COUPLE = range(6)
+ROLLING_RATE, ENERGY, FORCE_X, FORCE_Y, FORCE_Z, MOMENT = range(6)
 
 
 @jit
@@ -80,7 +80,7 @@ def contact_force(
 def derived_quantities(
     body: Body, states: NDArray[np.float64], ground: NDArray[np.float64], free_twist: bool
 ) -> NDArray[np.float64]:
-    """Return what follows from each state.
+    """Return forces, energy and rolling rate of each state.
 
     Parameters
     ----------
@@ -90,13 +90,13 @@ def derived_quantities(
     ground : ndarray, shape (n, 3)
         Ground acceleration [m/s^2].
     free_twist : bool
-        Whether the model is the rolling one.
+        Whether the model is that of flat ground.
 
     Returns
     -------
     ndarray, shape (n, 6)
         phi' [rad/s], energy per unit mass [m^2/s^2], contact force in world axes over the weight
-        (3 columns) [-], couple kappa over the weight [m].
+        (3 columns) [-], restraining moment kappa over the weight [m].
     """
     out = np.zeros((len(states), 6))
     for i in range(len(states)):
@@ -111,5 +111,5 @@ def derived_quantities(
         out[i, FORCE_X] = (F_r * cos(phi) - F_t * sin(phi)) / body.g
         out[i, FORCE_Y] = (F_r * sin(phi) + F_t * cos(phi)) / body.g
         out[i, FORCE_Z] = N / body.g
-        out[i, COUPLE] = kappa / body.g
+        out[i, MOMENT] = kappa / body.g
     return out

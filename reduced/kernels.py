@@ -1,4 +1,4 @@
-"""The compiled entry points: one march for each model of the ladder, and the momentum that a release has."""
+"""The compiled entry points: one time integration for each model, and the momentum of a release."""
 
 from __future__ import annotations
 

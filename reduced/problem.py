@@ -1,4 +1,4 @@
-"""A problem in the form that the compiled march takes."""
+"""A problem in the form that the compiled time integration takes."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ class Plane(NamedTuple):
 
 
 class SetUp(NamedTuple):
-    """What a march is called with."""
+    """Arguments of a time integration."""
 
     march: Callable[..., Any]
     record: NDArray[np.float64]  # (n, 3) [m/s^2]
@@ -58,7 +58,7 @@ class SetUp(NamedTuple):
 
 
 class Shaking(NamedTuple):
-    """What runs from rest under one motion share, whatever the size of the cylinder."""
+    """Arguments that runs from rest under one motion share, whatever the size of the cylinder."""
 
     set_up: SetUp
     later: NDArray[np.float64]  # (n, 2) largest |a| and least az from each sample on [m/s^2]
@@ -108,7 +108,7 @@ class Problem:
         return march, set_up.azimuth
 
     def shaking(self, factor: float) -> Shaking:
-        """Return what a run from rest under ``motion.scaled(factor)`` is called with, whatever the size."""
+        """Return the arguments of a run from rest under ``motion.scaled(factor)``, whatever the size."""
         assert self.motion is not None
         if self.model == "planar" or not is_spatial(self.motion) or not math.isfinite(factor * self._peak):
             scaled = dataclasses.replace(self, motion=self.motion.scaled(factor))

@@ -178,7 +178,7 @@ def _trace(
 
 
 def _facts(problem: Problem, march: March) -> Iterator[Diagnostic]:
-    """What ended the march, and what it leaves undetermined."""
+    """Facts of a run: what ended it, and what it leaves undetermined."""
     if march.status == OVER_BUDGET:
         yield Diagnostic(code="step_budget", time=march.end, size=march.step_count - 1.0)
     elif march.status not in _OUTCOMES:

@@ -62,7 +62,7 @@ class Solution:
             "rolling_rate": found[:, forces.ROLLING_RATE],
             "energy": found[:, forces.ENERGY],
             "contact_force": found[:, forces.FORCE_X : forces.FORCE_Z + 1],
-            "restraining_moment": found[:, forces.COUPLE],
+            "restraining_moment": found[:, forces.MOMENT],
         }
 
     def contact_point(self, moving: NDArray[np.bool_]) -> Array:
@@ -130,7 +130,7 @@ class Solution:
         reached = march.reached
         derived = self._derive(times[:reached], six_columns(march.samples[:reached], azimuth))
         force = derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
-        return Demands(force[:, 2], friction_of(force), derived[:, forces.COUPLE], march.moving[:reached])
+        return Demands(force[:, 2], friction_of(force), derived[:, forces.MOMENT], march.moving[:reached])
 
     def _derive(self, times: Array, states: Array) -> Array:
         problem = self.problem

@@ -1,1 +1,1 @@
-"""What is shown of results: figures, pages, words in a terminal, and the command line that asks for them."""
+"""Reports of results: figures, pages, words in a terminal, and the command line that asks for them."""

@@ -47,7 +47,7 @@ import rockwobble.compare as rc
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Finding
-# of models.suite_file, which would be imported with every run of pytest
+# of models.suites.file, which would be imported with every run of pytest
 ENDING = ".suite.toml"
 _OPTION = "--no-rockwobble-budget"
 _CERTIFICATE = "--rockwobble-certificate"

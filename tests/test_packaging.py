@@ -69,6 +69,11 @@ def test_no_name_of_a_package_hides_its_module() -> None:
         and getattr(modules[name.rpartition(".")[0]], name.rpartition(".")[2]) is not module
     ]
     assert hidden == []
+    for name, module in modules.items():
+        folder, _, own = name.rpartition(".")
+        beside = {other.rpartition(".")[2] for other in modules if other.rpartition(".")[0] == folder} - {own}
+        made = {key for key, each in vars(module).items() if getattr(each, "__module__", "") == name}
+        assert not made & beside, name
 
 
 def test_the_records_are_data_of_the_package() -> None:

@@ -1,4 +1,4 @@
-"""What an installation can do, as claims with their evidence, and a fingerprint to tell it by."""
+"""Certificate of an installation: claims with their evidence, and a fingerprint to tell it by."""
 
 from .certificate import certify, read_certificate, verify
 from .claims import Claim, claims_of

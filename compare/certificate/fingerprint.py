@@ -37,7 +37,7 @@ SIGNALS = ("tilt", "lean_x", "lean_y", "twist", "energy", "force_x", "force_y", 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Method:
-    """What is certified.
+    """The method that is certified.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def fingerprint(method: Method) -> Iterator[Entry]:
 
 
 def repeated(method: Method, old: Sequence[Entry]) -> Iterator[Sample]:
-    """Yield what is needed of the entries to hold them against older ones: the copies are theirs."""
+    """Yield the parts of the entries needed to hold them against older ones: the copies are theirs."""
     for short, one in zip(short_cases(), old, strict=True):
         found = entry(short, method.simulate(short, short.case))
         if one["agreement_time"] is not None and compare_entries(one, found).word != SAME:

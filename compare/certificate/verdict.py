@@ -1,4 +1,4 @@
-"""Is it still the same? One word for two fingerprints: same, chaotic or changed. Needs numpy only.
+"""Verdict on two fingerprints, in one word: same, chaotic or changed. Needs numpy only.
 
     python verify.py CERTIFICATE OTHER_CERTIFICATE
 
@@ -28,7 +28,7 @@ _ONE_PERCENT = 1.63
 
 
 class Sample(TypedDict):
-    """What one case gives: None stands for what is not known."""
+    """Numbers of one case: None stands for what is not known."""
 
     name: str
     claim: str
@@ -60,7 +60,7 @@ class Described(TypedDict):
 
 
 class Certificate(TypedDict):
-    """What a certificate holds."""
+    """Content of a certificate."""
 
     kind: str
     format: int
@@ -207,7 +207,7 @@ def largest_gap(first: np.ndarray, second: np.ndarray) -> float:
 
 
 def read(path: Path) -> Certificate:
-    """Return what a certificate says.
+    """Return the content of a certificate.
 
     Raises
     ------

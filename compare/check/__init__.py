@@ -1,4 +1,4 @@
-"""Whether the reduced model is still the same model, and still agrees with the engines.
+"""Consistency checks: the reduced model against itself as it was, and against the engines.
 
 Layers of checks, tightest first; every check has a measured value, a bound, the reason for the bound,
 and the part that is suspect where it fails. `rockwobble check` runs them.

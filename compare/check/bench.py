@@ -1,4 +1,4 @@
-"""What is checked: the reduced models, the suite, and the engines with their settings."""
+"""Subjects of the checks: the reduced models, the suite, and the engines with their settings."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def _as_given(run: Run) -> Run:
 
 @dataclass(slots=True, kw_only=True)
 class Bench:
-    """What the checks are made on; engine runs are made once and kept for the checks that follow.
+    """Subjects of the checks; engine runs are made once and kept for the checks that follow.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What a check finds: a measured value, its bound, and what is suspect where it is beyond it."""
+"""Findings of the checks: a measured value, its bound, and what is suspect where it is beyond it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ NOT_RUN: Outcome = "not run"
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """What a measured value may be at most.
+    """Upper bound of a measured value.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""What many checks are made on: one pier, releases, and ground motions that are known at every time."""
+"""Problems of many checks: one pier, releases, and ground motions that are known at every time."""
 
 from __future__ import annotations
 

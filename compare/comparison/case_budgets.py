@@ -54,22 +54,22 @@ def case_budgets(
             if run.engine is None or trajectory.outcome == "failed":
                 continue
             found = {
-                model: horizon
+                model: agreement
                 for model in references_of(case, run, label, reference, named=named)
-                if (horizon := _agreement(case, results[case.name, model], trajectory)) is not None
+                if (agreement := _agreement(case, results[case.name, model], trajectory)) is not None
             }
             if not found:
                 continue
-            agreements |= {(case.name, label, model): horizon for model, horizon in found.items()}
-            model, horizon = max(found.items(), key=lambda item: item[1].end)
-            pair = make_pair(case.cylinder, results[case.name, model], trajectory, until=horizon.end)
+            agreements |= {(case.name, label, model): agreement for model, agreement in found.items()}
+            model, agreement = max(found.items(), key=lambda item: item[1].end)
+            pair = make_pair(case.cylinder, results[case.name, model], trajectory, until=agreement.end)
             refined.append(
                 Refined(
                     case=case,
                     run=run,
                     label=label,
                     trajectory=trajectory,
-                    end=horizon.end,
+                    end=agreement.end,
                     difference=pair.tilt_difference[pair.time >= pair.start],
                 )
             )
@@ -88,9 +88,9 @@ def case_budgets(
             results[name, model],
             own(name, label),
             extrapolations[name, label],
-            horizon,
+            agreement,
         )
-        for (name, label, model), horizon in agreements.items()
+        for (name, label, model), agreement in agreements.items()
         if (name, label) in extrapolations
     }
 
@@ -98,11 +98,11 @@ def case_budgets(
 def _landings(
     cases: Sequence[Case], runs: Mapping[str, Run], results: Mapping[Key, Trace], simulate: Simulate
 ) -> dict[Key, Trace]:
-    """Return what an exact engine follows where a model goes through upright: by names of case and model.
+    """Return planar motion with impacts, for models that go through upright: by names of case and model.
 
     Motion in one vertical plane passes upright itself, and there the base lands flat. The recess and
     flat-ground models go on without loss, as the limit of a vanishing spin does. A rigid base takes the
-    angular momentum about its new edge (Housner), on any support, and so do both engines: the difference is
+    angular momentum about its new edge (Housner), on any support, and so do the engines: the difference is
     model form.
     """
     keys, jobs = [], []
@@ -125,5 +125,5 @@ def _landings(
 def _agreement(case: Case, response: Trace, trajectory: Trace) -> Agreement | None:
     if response.outcome == "failed" or not math.isfinite(response.uplift_time):
         return None
-    horizon = agreement_time(make_pair(case.cylinder, response, trajectory, until=case.length))
-    return horizon if horizon.length > 0.0 else None
+    agreement = agreement_time(make_pair(case.cylinder, response, trajectory, until=case.length))
+    return agreement if agreement.length > 0.0 else None

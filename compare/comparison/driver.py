@@ -151,7 +151,7 @@ def _jobs(
     *,
     also: Mapping[str, Run],
 ) -> dict[tuple[str, str], Job]:
-    """Return what has to run, by name of the case and label: references, own models, then the runs."""
+    """Return the jobs to run, by name of the case and label: references, own models, then the runs."""
     jobs: dict[tuple[str, str], Job] = {}
     for case in cases:
         needed = dict(also)

@@ -1,4 +1,4 @@
-"""What a difference between an engine and a reduced model is made of, sample by sample.
+"""Error budget: the parts of a difference between an engine and a reduced model, sample by sample.
 
     engine - reference = (engine - limit) + (limit - own) + (own - reference)
                        =     numerics     +  unexplained  +   model form
@@ -128,7 +128,7 @@ class ErrorBudget(Brief):
 
 
 def error_budget(
-    cylinder: Cylinder, engine: Trace, reference: Trace, own: Trace, limit: Limit, horizon: Agreement
+    cylinder: Cylinder, engine: Trace, reference: Trace, own: Trace, limit: Limit, agreement: Agreement
 ) -> ErrorBudget:
     """Return the budget of `engine` minus `reference` over their agreement.
 
@@ -143,7 +143,7 @@ def error_budget(
         Response of the reduced model of the engine's support; may be the reference itself.
     limit : Limit
         The engine extrapolated in its step.
-    horizon : Agreement
+    agreement : Agreement
         Agreement of engine and reference.
     """
     start = start_of(reference)
@@ -151,7 +151,7 @@ def error_budget(
     count = common_count(times)
     keep = slice(
         int(np.searchsorted(engine.time[:count], start - _SAME_TIME)),
-        int(np.searchsorted(engine.time[:count], horizon.end + _SAME_TIME)),
+        int(np.searchsorted(engine.time[:count], agreement.end + _SAME_TIME)),
     )
     alpha = cylinder.alpha
     measured, asked, explained, extrapolated = (
@@ -164,7 +164,7 @@ def error_budget(
         numerics=measured - extrapolated,
         unexplained=extrapolated - explained,
         limit_error=limit.error[keep] / alpha,
-        covered=start + COVERED * (horizon.end - start),
+        covered=start + COVERED * (agreement.end - start),
         limit=limit,
     )
 

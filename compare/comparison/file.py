@@ -1,4 +1,4 @@
-"""A comparison back from its files, without running anything."""
+"""Comparison read back from its files, without running anything."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ BudgetKey = tuple[str, str, str]
 
 
 class ComparisonFields(TypedDict):
-    """What a comparison is made of: the arguments of `Comparison`."""
+    """Parts of a comparison: the arguments of `Comparison`."""
 
     summary: pd.DataFrame
     cases: Mapping[str, Case]
@@ -40,7 +40,7 @@ class _Motion(TypedDict):
 
 
 class _StoredCase(TypedDict):
-    """What `case_to_plain` gives, but for the motion."""
+    """A case as `case_to_plain` gives it, but for the motion."""
 
     motion: _Motion | None
 
@@ -58,7 +58,7 @@ def plain_fields(
     until: float | None,
     budgets: Mapping[BudgetKey, ErrorBudget],
 ) -> dict[str, object]:
-    """Return what the tables of a comparison do not hold, for JSON."""
+    """Return the fields of a comparison that its tables do not hold, for JSON."""
     return {
         "versions": versions,
         "until": until,
@@ -84,7 +84,7 @@ def _header(case: Case) -> _Motion | None:
 
 
 def load_fields(stored: Results) -> ComparisonFields:
-    """Return what the stored comparison is made of; see `Comparison.load`."""
+    """Return the fields of the stored comparison; see `Comparison.load`."""
     try:
         rest = plain_json.loads(stored.content(ABOUT))
         excitation = dict(iter(stored.table("excitation").groupby("case", sort=False)))

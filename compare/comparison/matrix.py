@@ -1,4 +1,4 @@
-"""Who agrees with whom: each motion of a case against every other on the same support."""
+"""Agreement matrix: each motion of a case against every other on the same support."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ MATRIX_COLUMNS: Mapping[str, tuple[str, str]] = {
 def agreement_matrix(
     cases: Mapping[str, Case], traces: Mapping[tuple[str, str], Trace], *, until: float | None = None
 ) -> pd.DataFrame:
-    """Return how each motion of a case differs from every other on the same support.
+    """Return the differences of each motion of a case from every other on the same support.
 
     Only where two engines or more have run: what one engine differs from its model by is in the summary.
 

@@ -48,7 +48,7 @@ Simulate = Callable[[Case, Run], Trace]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Prediction:
-    """When an agreement has to end.
+    """Predicted end of an agreement.
 
     Parameters
     ----------
@@ -104,7 +104,7 @@ def predict(
     error: float,
     simulate: Simulate,
 ) -> Prediction:
-    """Return when engine and `reference` have to part.
+    """Return the predicted agreement time of engine and `reference`.
 
     Parameters
     ----------
@@ -134,7 +134,7 @@ def predict(
 
 
 def verdict(measured: float, diverged: bool, predicted: float, reason: str) -> str:
-    """Return whether traces diverged when they had to.
+    """Return the verdict on an agreement time and its prediction.
 
     Returns
     -------
@@ -152,7 +152,7 @@ def verdict(measured: float, diverged: bool, predicted: float, reason: str) -> s
 
 
 def landings(response: Trace) -> FloatArray:
-    """Return when a reduced model goes through upright itself (n,) [s], to a sample.
+    """Return the times at which a reduced model goes through upright itself (n,) [s], to a sample.
 
     Its contact then jumps to the other end of the diameter. A fall that follows makes no pass of it.
     """
@@ -173,8 +173,8 @@ def time_scale(case: Case) -> float:
 
 def _diverges(case: Case, reference: Trace, other: Trace) -> float:
     """Time at which two responses part [s]; the length of the run where they do not."""
-    horizon = agreement_time(make_pair(case.cylinder, reference, other, until=case.length))
-    return horizon.end if horizon.diverged else case.length
+    agreement = agreement_time(make_pair(case.cylinder, reference, other, until=case.length))
+    return agreement.end if agreement.diverged else case.length
 
 
 def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:

@@ -1,4 +1,4 @@
-"""The runs of an engine at finer steps, and what they tend to.
+"""Runs of an engine at finer steps, and the limit that they tend to.
 
 A budget needs the engine's limit for a vanishing step. Each run is repeated at half and a quarter of its
 step, and where the limit is still uncertain at an eighth and so on; none longer than its traces agree. A run

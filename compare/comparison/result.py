@@ -1,4 +1,4 @@
-"""What a comparison found, and its files."""
+"""Result of a comparison, and its files."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ class Comparison(Shown):
         write_results(folder, made, self._tables(), files=files, pages=pages)
 
     def manifest(self, command: str = "") -> Manifest:
-        """Return what made the comparison, and its main numbers.
+        """Return the manifest: what made the comparison, and its main numbers.
 
         Parameters
         ----------
@@ -151,7 +151,7 @@ class Comparison(Shown):
         return cls(**load_fields(stored), command=stored.manifest.command)
 
     def matrix(self) -> pd.DataFrame:
-        """Return how each motion differs from every other on its support, where two engines have run.
+        """Return the differences of each motion from every other on its support, where two engines have run.
 
         The columns are those of `rockwobble.compare.comparison.matrix.MATRIX_COLUMNS`.
         """

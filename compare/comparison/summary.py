@@ -107,7 +107,7 @@ def summary_row(
         Label of the run.
     trial : Trace
     prediction : Prediction
-        When the two have to part.
+        Predicted agreement time of the two.
     estimated_error : float, optional
         Error of the run that the prediction rests on [alpha].
     budget : ErrorBudget, optional
@@ -123,9 +123,9 @@ def summary_row(
     whole = make_pair(cylinder, reference, trial, until=case.length)  # a fall after it multiplies differences
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
     broken = "failed" in (trial.outcome, reference.outcome)
-    horizon = agreement_time(whole, broken=broken, allowance=allowance)
+    agreement = agreement_time(whole, broken=broken, allowance=allowance)
     direction = direction_difference(reference, trial)
-    turned_until = min(horizon.end, first_unresolved_pass(trial, start=whole.start))
+    turned_until = min(agreement.end, first_unresolved_pass(trial, start=whole.start))
     row = {
         **_methods(case, name, reference, label, trial),
         "time_step": trial.time_step,
@@ -140,9 +140,9 @@ def summary_row(
         ),
         "uplift_time_difference": trial.uplift_time - reference.uplift_time,
         "uplift_direction_difference": direction,
-        "agreement_time": horizon.length,
-        "diverged": horizon.diverged,
-        "agreed_passes": agreed_passes(reference, horizon),
+        "agreement_time": agreement.length,
+        "diverged": agreement.diverged,
+        "agreed_passes": agreed_passes(reference, agreement),
         "predicted_agreement_time": prediction.length,
         "residual_displacement": trial.residual_displacement / radius,
         "residual_twist": math.degrees(trial.residual_twist),
@@ -151,10 +151,10 @@ def summary_row(
         "time_ratio": trial.wall_time / reference.wall_time if reference.wall_time > 0.0 else math.nan,
         "reference_wall_time": reference.wall_time,
         "contact_resolution": trial.contact_resolution,
-        "closest_pass": closest_pass(reference, horizon) / alpha,
+        "closest_pass": closest_pass(reference, agreement) / alpha,
         "engine_version": trial.version,
         "predicted_by": prediction.reason,
-        "divergence": _divergence(trial, horizon, prediction),
+        "divergence": _divergence(trial, agreement, prediction),
         "estimated_error": estimated_error,
         **no_verdict(),
     }
@@ -162,7 +162,7 @@ def summary_row(
 
 
 def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:
-    """Who is held against whom, and how both ended."""
+    """Run and reference, and the outcomes of both."""
     return {
         "case": case.name,
         "engine": trial.run.engine or REDUCED,
@@ -177,12 +177,12 @@ def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
     }
 
 
-def _divergence(trial: Trace, horizon: Agreement, prediction: Prediction) -> str:
-    found = verdict(horizon.length, horizon.diverged, prediction.length, prediction.reason)
+def _divergence(trial: Trace, agreement: Agreement, prediction: Prediction) -> str:
+    found = verdict(agreement.length, agreement.diverged, prediction.length, prediction.reason)
     # no reduced model knows of walls, so none predicts what they do
     return (
         "after it touched a wall"
-        if found == "earlier" and trial.first("wall_contact") <= horizon.end
+        if found == "earlier" and trial.first("wall_contact") <= agreement.end
         else found
     )
 

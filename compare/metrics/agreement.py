@@ -1,7 +1,7 @@
-"""How long two traces agree.
+"""Agreement time of two traces.
 
 Each near pass of upright may turn one motion to the left and its neighbour to the right, so two
-traces of one problem part at some time however good both are. What counts is when.
+traces of one problem diverge at some time however good both are. What counts is when.
 """
 
 from __future__ import annotations
@@ -54,15 +54,15 @@ def agreement_time(pair: Pair, *, broken: bool = False, allowance: float = 0.0) 
     return Agreement(length=max(0.0, end - pair.start), end=end, diverged=True)
 
 
-def agreed_passes(reference: Trace, horizon: Agreement) -> int:
+def agreed_passes(reference: Trace, agreement: Agreement) -> int:
     """Return how many passes of the reference lie within the agreement."""
     times = np.asarray(reference.passes["time"], dtype=np.float64)
-    return int(np.count_nonzero(times <= horizon.end))
+    return int(np.count_nonzero(times <= agreement.end))
 
 
-def closest_pass(reference: Trace, horizon: Agreement) -> float:
+def closest_pass(reference: Trace, agreement: Agreement) -> float:
     """Return the smallest minimum tilt of the passes within the agreement [rad]; NaN without a pass."""
     minima = np.asarray(reference.passes["minimum_tilt"], dtype=np.float64)[
-        : agreed_passes(reference, horizon)
+        : agreed_passes(reference, agreement)
     ]
     return float(minima.min()) if len(minima) else math.nan

@@ -31,7 +31,7 @@ SIGNIFICANCE = 0.05
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Contrast:
-    """What tells two methods apart.
+    """Contrast of two methods.
 
     The ratio of a member is that of its two peak tilts, an overturned run larger than everything: infinite
     where it overturns by the first method alone, zero where by the second alone. A member that overturns by
@@ -183,7 +183,7 @@ def paired_difference(only: int, only_there: int, count: int) -> Interval:
 
 
 def fewest_to_tell() -> int:
-    """Return how many members must overturn by one method alone, and none by the other, to tell them."""
+    """Return the least count that must overturn by one method alone, and none by the other, to tell them."""
     return math.floor(math.log2(2.0 / SIGNIFICANCE)) + 1
 
 

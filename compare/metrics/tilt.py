@@ -1,4 +1,4 @@
-"""What a peak tilt says, and differences of the tilt."""
+"""Overturning by the peak tilt, and differences of the tilt."""
 
 from __future__ import annotations
 

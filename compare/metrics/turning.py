@@ -17,7 +17,7 @@ def direction_difference(reference: Trace, trial: Trace) -> float:
 
 
 def turn_difference(pair: Pair, *, until: float, direction_difference: float = 0.0) -> float:
-    """Return how far apart the contact points have rolled by the time `until`, whole turns counted.
+    """Return the difference of the angles rolled by the contact points until `until`, whole turns counted.
 
     Rolling angles are unwrapped from uplift on, so their difference counts the turns that one
     motion made more than the other since then. Only the whole turn by which the two started apart

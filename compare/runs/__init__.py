@@ -1,1 +1,1 @@
-"""What is to be run, where it runs, and the finished runs that are kept."""
+"""Runs: their choice, the scheduler that carries them out, and the cache of finished ones."""

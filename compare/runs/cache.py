@@ -167,7 +167,7 @@ class Unfinished:
 
 
 def unfinished(folder: str | Path) -> list[Unfinished]:
-    """Return what in a folder of results has not come to its end."""
+    """Return the results in a folder that have not come to their end."""
     found = []
     for path in sorted(Path(folder).glob(f"{CACHE}/*/{_PLAN}")):
         plan = plain_json.loads(path.read_bytes())

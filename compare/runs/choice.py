@@ -1,4 +1,4 @@
-"""Which runs a comparison consists of where the user does not say, and what they are held against."""
+"""Default runs of a comparison, and the references that runs are held against."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from .run_settings import step_settings
 SUPPORTS = ("recess", "flat")
 
 # What an exact engine would follow. A ring holds only what has rolled out as far as its clearance: until the
-# first touch of a wall the cylinder rolls as on open ground, and after it no reduced model knows the walls.
+# first touch of a wall the cylinder rolls as on flat ground, and after it no reduced model knows the walls.
 _OWN_MODELS = {"recess": "recess", "flat": "flat", "ring": "flat"}
 
 
@@ -150,7 +150,7 @@ def require_runnable(case: Case, run: Run) -> None:
 def default_runs(
     engines: Sequence[str] | None = None, supports: Sequence[str] | None = None
 ) -> tuple[Run, ...]:
-    """Return every engine that serves any case with each support, the guided ones first.
+    """Return every engine that serves any case with each support, those in a recess first.
 
     Engines that are named run whatever they can do: with the supports that they have where none is named.
     Where only supports are named, each gets the engines that have it, or all if none has, which will say so.
@@ -254,7 +254,7 @@ def own_model(run: Run) -> Run:
 def references_of(
     case: Case, run: Run, label: str, reference: Run | None = None, *, named: str = ""
 ) -> dict[str, Run]:
-    """Return what a run is held against, by label: `reference`, or what its support asks for.
+    """Return the references of a run, by label: `reference`, or what its support asks for.
 
     The reference is called `named`, by default as it calls itself.
 

@@ -251,7 +251,7 @@ def job_fingerprint(job: Job) -> str:
 
 
 def case_inputs(case: Case) -> dict[str, object]:
-    """Return what runs of a case depend on, without the names of it and its motion."""
+    """Return the inputs that runs of a case depend on, without the names of it and its motion."""
     motion = case.motion
     return {
         "cylinder": case.cylinder,

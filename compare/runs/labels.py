@@ -1,4 +1,4 @@
-"""What runs are called beside one another: by as much as tells them apart."""
+"""Labels of runs beside one another: as much of each run as tells them apart."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far something long is, for whoever waits for it."""
+"""Progress of tasks and of stages: the share that is done, and the time to go."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from typing import Literal
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Progress:
-    """How far tasks are.
+    """Progress of tasks.
 
     Parameters
     ----------

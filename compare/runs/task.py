@@ -1,4 +1,4 @@
-"""What becomes of a task, wherever it runs."""
+"""Events of a task, wherever it runs: started, finished, or its process lost."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ R = TypeVar("R")
 
 @dataclass(frozen=True, slots=True)
 class Lost:
-    """What stands in the place of a result where the process of a task died, and its last words."""
+    """A task whose process died, with its last words; it stands in the place of the result."""
 
     why: str
 

@@ -159,7 +159,7 @@ def _is_stream(target: Path) -> bool:
 
 
 def _beside(target: Path) -> Path:
-    """Where the content of a file waits until it is whole."""
+    """Path at which the content of a file waits until it is whole."""
     return target.with_name(f".{target.name}.{os.getpid()}{_PART}")
 
 

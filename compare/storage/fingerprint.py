@@ -1,4 +1,4 @@
-"""What a result depends on, as one short name: the same inputs give the same name, in any process."""
+"""Fingerprint of inputs, as one short name: the same inputs give the same name, in any process."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ MANIFEST = "manifest.json"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Manifest:
-    """What results are and what made them.
+    """Record of what results are and what made them.
 
     Attributes
     ----------

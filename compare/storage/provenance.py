@@ -1,4 +1,4 @@
-"""What a result was made with: versions of the packages, and the code itself."""
+"""Provenance of a result: versions of the packages, and digests of the code."""
 
 from __future__ import annotations
 

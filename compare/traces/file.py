@@ -48,7 +48,7 @@ POSITION = ("x", "y", "z")
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Columns:
-    """What a file holds, in SI units and radians.
+    """Columns of a file, in SI units and radians.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a comparison needs of an external trajectory, from its poses."""
+"""Samples, peak, passes and places of an external trajectory, from its poses."""
 
 from __future__ import annotations
 

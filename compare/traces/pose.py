@@ -46,7 +46,7 @@ _TWISTED = math.radians(1.0)
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Poses:
-    """What the file says at n samples; arrays of shape (n,) unless another is given.
+    """Poses of a file at n samples; arrays of shape (n,) unless another is given.
 
     Attributes
     ----------

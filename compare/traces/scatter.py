@@ -1,4 +1,4 @@
-"""How far the samples of an external trajectory scatter about a smooth motion: its noise, from itself."""
+"""Noise of an external trajectory: the scatter of its own samples about a smooth motion."""
 
 from __future__ import annotations
 

@@ -70,7 +70,7 @@ class External:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Measurement(Brief):
-    """What a file of an external trajectory told: the source of its trace.
+    """Quantities that a file of an external trajectory gave: the source of its trace.
 
     The trace is at the sample times of the reduced models. What the file does not tell is NaN: energy,
     contact resolution; the twist without quaternions; rolling angle, contact point and mass centre with the
@@ -103,7 +103,7 @@ class Measurement(Brief):
 
 
 def measurement(trace: Trace) -> Measurement:
-    """Return what the file of an external trajectory told.
+    """Return the quantities that the file of an external trajectory gave.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def measurement(trace: Trace) -> Measurement:
 
 
 def external_motion(trace: Trace) -> Motion:
-    """Return what is compared: the tilt, the azimuth, also where it follows from the path, and the path."""
+    """Return the motion compared: tilt, azimuth, also where it follows from the path, and path."""
     poses = measurement(trace).poses
     known = bool(np.isfinite(trace.rolling_angle).any())
     names = (*(("azimuth",) if known else ()), *poses.told)

@@ -1,4 +1,4 @@
-"""When and where a sampled trajectory uplifts.
+"""Time and direction of the uplift of a sampled trajectory.
 
 Where the ground acceleration rises through the threshold the tilt begins as theta = K t^3/6, so a lean is
 seen only some time after the uplift: after the cube root of 6 theta/K, and at a sample. The cube root of the

@@ -1,4 +1,4 @@
-"""What is wrong with a suite file, in one line: the path of the key, what was given, what is allowed."""
+"""Errors in a suite file, in one line: the path of the key, what was given, what is allowed."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ metres, seconds, m/s^2, radians; where a key says so, degrees or a ratio.
     # Every run is made of every case. Without runs: all installed engines, recess and flat.
     [[runs]]
     engine = ["mujoco", "pybullet"]     # a list makes one run of each
-    support = "recess"                  # "recess" (ideal recess, the default), "flat" (open ground), ...
+    support = "recess"                  # "recess" (ideal recess, the default), "flat" (flat ground), ...
     time_step = 1e-4                    # [s], may be left out
     settings = { iterations = 50 }      # of the engine, may be left out
 

@@ -203,7 +203,7 @@ class RunTable(_Table):
 
 
 class BoundsTable(_Table):
-    """What tests ask of every run: bounds on columns of the summary."""
+    """Bounds on columns of the summary, which tests ask of every run."""
 
     tilt_rms: Positive | None = None
     tilt_rms_relative: Positive | None = None

@@ -1,4 +1,4 @@
-"""What ended a motion or limits what it says."""
+"""Diagnostics of a motion, breaches of the assumptions of its method included."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The trace of a run that left none."""
+"""Empty trace in the place of a run that was lost."""
 
 from __future__ import annotations
 

@@ -150,7 +150,7 @@ class Trace(Limited, Shown):
 
     @property
     def contact_offset(self) -> Array:
-        """How far the contact point (n,) is outside the circle of radius b about O [m]; NaN at rest."""
+        """Distance of the contact point (n,) outwards of the circle of radius b about O [m]; NaN at rest."""
         x, y = self.contact_point.T
         return np.asarray(np.hypot(x, y) - self.case.cylinder.base_radius)
 

@@ -1,4 +1,4 @@
-"""Where the sampled quantities of a trace come from: at hand, or computed when they are first asked for."""
+"""Sources of the sampled quantities of a trace: at hand, or computed when they are first asked for."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 
 
 class Source(Protocol):
-    """Who made a trace: gives what costs something, when it is first asked for."""
+    """The maker of a trace: gives what costs something, when it is first asked for."""
 
     def sampled(self) -> Mapping[str, Array]:
         """Return the sampled quantities that it knows beyond those that are fields, (n,) or (n, 3)."""
@@ -42,7 +42,7 @@ class Known:
         return self.values
 
     def assumptions(self, until: float) -> Assumptions | None:
-        """Return what is known of contact and friction, of the whole motion."""
+        """Return the assumptions of the whole motion, as far as they are known."""
         return self.held
 
 
@@ -55,7 +55,7 @@ def no_passes() -> pd.DataFrame:
 
 
 class HasLate(Protocol):
-    """What a late quantity needs of its trace."""
+    """The part of a trace that its late quantities need."""
 
     @property
     def time(self) -> Array:

@@ -1,4 +1,4 @@
-"""What any engine must hold with any support: what it says of itself, and that it does as it is told."""
+"""Rules of the contract for any support: self-description, refusals, time grid, start, scale."""
 
 from __future__ import annotations
 

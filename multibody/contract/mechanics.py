@@ -1,4 +1,4 @@
-"""What any engine must hold where the rim rolls without loss: invariants that need no other model.
+"""Rules of the contract for a rim that rolls without loss: invariants that need no other model.
 
 The problem is a pier of 6 m released at half its slenderness, which passes within 1.2 s.
 """
@@ -64,7 +64,7 @@ def takes_the_work_of_the_ground(engine: str, support: str) -> None:
 
 
 def keeps_momentum_or_rolls(engine: str, support: str) -> None:
-    """In a recess L = B phi' is conserved and there is no twist; on open ground the rim does not slip."""
+    """In a recess L = B phi' is conserved and there is no twist; on flat ground the rim does not slip."""
     found = run(engine, support)
     if support == "recess":
         momentum = np.array([_inertia(tilt)[0] for tilt in found.tilt]) * found.rolling_rate
@@ -74,7 +74,7 @@ def keeps_momentum_or_rolls(engine: str, support: str) -> None:
 
 
 def wobbles_steadily(engine: str, support: str) -> None:
-    """At the rate that balances gravity, phi'^2 = 2 g (b cos - h sin)/B', the tilt stays, free or guided."""
+    """At the rate that balances gravity, phi'^2 = 2 g (b cos - h sin)/B', the tilt stays, on any support."""
     tilt = PIER.alpha / 2
     b, h = PIER.base_radius, PIER.mass_centre_height
     pull = 2.0 * REFERENCE_GRAVITY * (b * math.cos(tilt) - h * math.sin(tilt))

@@ -1,4 +1,4 @@
-"""What an engine cannot do, said before anything runs."""
+"""Refusal of a support or a case that an engine cannot run, before anything runs."""
 
 from __future__ import annotations
 

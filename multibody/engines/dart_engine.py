@@ -111,7 +111,7 @@ class _DartStepper:
         return "the cylinder is out of reach" if self._lost else ""
 
     def counts(self) -> SceneCounts:
-        """Return what the last step solved: a normal and two directions of friction for each contact."""
+        """Return the counts of the last step: a normal and two directions of friction for each contact."""
         contacts = self._dart.world.getLastCollisionResult().getNumContacts()
         return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
 

@@ -1,4 +1,4 @@
-"""What the engines of this package say of themselves in the same way."""
+"""Members of the protocol that the engines of this package state in the same way."""
 
 from __future__ import annotations
 

@@ -107,7 +107,7 @@ class _DrakeStepper:
         return self._warning
 
     def counts(self) -> SceneCounts:
-        """Return what the last step solved: a normal and two directions of friction for each contact."""
+        """Return the counts of the last step: a normal and two directions of friction for each contact."""
         contacts = self._last.count_contacts()
         return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
 

@@ -30,7 +30,7 @@ class ExudynEngine(Declared):
     """Exudyn: rigid body on Euler parameters, joint of a rolling disc, implicit integration."""
 
     package, settings_type, facts = "exudyn", ExudynSettings, _FACTS  # both rules are of second order
-    supports = ("flat",)  # open ground only: the joint lets the rim roll out
+    supports = ("flat",)  # flat ground only: the joint lets the rim roll out
     uplifts = False  # the joint knows the rim only, not the base
 
     @contextlib.contextmanager
@@ -77,7 +77,7 @@ class _ExudynStepper:
         if not self._warning:
             stepped = self._integrate(acceleration)
             rows[: len(stepped)] = stepped
-            self._check_apex(rows)
+            self._check_upright(rows)
         place, turn, velocity, rates = np.split(rows, (3, 7, 10), axis=1)
         quaternion = self._start.quaternion + turn
         # the norm is held up to the tolerance of the iteration
@@ -93,10 +93,10 @@ class _ExudynStepper:
         return self._warning
 
     def counts(self) -> SceneCounts:
-        """Return what a step solves: the joint, three constraints on the velocity of one point."""
+        """Return the counts of a step: the joint, three constraints on the velocity of one point."""
         return SceneCounts(degrees_of_freedom=6, contacts=0, constraint_rows=3)
 
-    def _check_apex(self, rows: Array) -> None:
+    def _check_upright(self, rows: Array) -> None:
         """Give up the rows (n, 14) from the one on that has jumped over upright."""
         leans = np.vstack([self._lean, _leans(self._start.quaternion + rows[:, 3:7])])
         self._lean = leans[-1]

@@ -168,7 +168,7 @@ class _MujocoStepper:
         mujoco.mj_step(self._model, self._data, nstep=count)
 
     def counts(self) -> SceneCounts:
-        """Return what the last step solved."""
+        """Return the counts of the last step."""
         data = self._data
         return SceneCounts(
             degrees_of_freedom=self._model.nv, contacts=int(data.ncon), constraint_rows=int(data.nefc)

@@ -176,7 +176,7 @@ class _PybulletStepper:
         return ""
 
     def counts(self) -> SceneCounts:
-        """Return what the last step solved: a normal and two directions of friction for each contact."""
+        """Return the counts of the last step: a normal and two directions of friction for each contact."""
         contacts = len(self._bullet.getContactPoints(self._body, physicsClientId=self._client))
         return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
 
@@ -220,8 +220,8 @@ class _PybulletStepper:
             if stiffness and z:
                 # along the vertical plus the axis, proportional to the twist
                 pair = 2.0 * stiffness * atan2(z, w)
-                couple = pair * across_x, pair * across_y, pair * (1.0 - x * x - y * y)
-                torque(body, -1, couple, world, client)
+                moment = pair * across_x, pair * across_y, pair * (1.0 - x * x - y * y)
+                torque(body, -1, moment, world, client)
             ax, ay, az = 2.0 * across_x, 2.0 * across_y, 1.0 - 2.0 * xy
             sine = sqrt(ax * ax + ay * ay)
             if overshoot and sine > _LEANS:

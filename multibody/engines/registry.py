@@ -168,7 +168,7 @@ def find_engine(name: str) -> Engine:
 
 
 def engine_facts(name: str) -> EngineFacts:
-    """Return what is known of the engine called `name`, installed or not.
+    """Return the facts known of the engine called `name`, installed or not.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""What ended or limits a run, as diagnostics in the time of the user."""
+"""Diagnostics of an engine run, in the time of the user."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 def diagnostics(
     recorder: Recorder, passes: pd.DataFrame, resolution: float, unit_time: float
 ) -> Iterator[Diagnostic]:
-    """Yield what a run has to say of itself, its failure first.
+    """Yield the diagnostics of a run, its failure first.
 
     `passes` and `resolution` [rad] are those of the trace, in the time of the user; `unit_time` is one second
     of the scene there [s]. How the side comes down in a fall that is followed beyond the end asked for

@@ -67,7 +67,7 @@ class EnergyWatch:
         self.largest = max(self.largest, float(energy.max()))
 
     def remark(self, until: float) -> tuple[float, float, float]:
-        """Return when the error became worth a remark [s], its largest share, and the bound; NaN, 0 if never.
+        """Return the start of an error worth a remark [s], its largest share, and the bound; NaN, 0 if never.
 
         What happens after `until` [s] does not count.
         """

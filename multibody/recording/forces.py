@@ -1,7 +1,7 @@
 """The contact force, from the velocities of an engine and nothing else.
 
 The mass centre obeys force/m = change of its velocity in a step + ground acceleration + g, exactly for what
-an engine stepped with, whichever engine it is; no sensor needs to be in the scene. A guide is a pure couple
+an engine stepped with, whichever engine it is; no sensor needs to be in the scene. A guide is a pure moment
 and does not show.
 
 A single step says little: MuJoCo's contact is so stiff that a rim leaves the ground for one step now and

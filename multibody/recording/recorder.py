@@ -1,4 +1,4 @@
-"""Follows a run chunk by chunk: samples, turning points, peak, uplift and guard, never all steps at once."""
+"""Recorder of a run, chunk by chunk: samples, turning points, peak, uplift and guard, never all steps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""When a cylinder comes to rest between two motions, from its tilt at every step."""
+"""Rests of a cylinder between two motions, from its tilt at every step."""
 
 from __future__ import annotations
 

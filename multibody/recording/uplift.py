@@ -1,4 +1,4 @@
-"""When and where the base uplifts.
+"""Time and direction of the uplift of the base.
 
 The base uplifts when the ground's reaction reaches its rim. Contact yields, so tilt itself has no sharp
 onset: the eccentricity of the reaction, from the engine's own accelerations, has. It follows the

@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 class StepMeans:
     """Means of a ground acceleration over the steps of an engine, exact for a piecewise linear record.
 
-    Both engines advance as leapfrog does: step n takes the velocity from half a step before the pose n
+    MuJoCo and Bullet advance as leapfrog does: step n takes the velocity from half a step before the pose n
     to half a step after it. The force of that step is therefore the mean from (n - 1/2) h to (n + 1/2) h,
     which keeps the hold of the force second order in h; the mean over the step ahead would shift the
     whole record by h/2. Other integrators hold it elsewhere.

@@ -17,7 +17,7 @@ REFERENCE_TIME_STEP = 1e-4  # [s] at the reference size
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """What one unit of the reference scene is in the units of the user.
+    """Units of the reference scene in the units of the user.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What must hold at every step of an engine run, whatever the engine itself says.
+"""Guard of an engine run: conditions that must hold at every step, whatever the engine itself says.
 
 An engine that diverges does not always say so: explicit contact gains energy silently. Each check
 returns the first step that breaks it and why; a run is cut there and its outcome is "failed".
@@ -70,7 +70,7 @@ def first_breach(
     energy_error: Array,
     body: Body,
     gravity: float,
-    guided: bool,
+    in_recess: bool,
     wall: Wall | None = None,
     largest: float = 0.0,
 ) -> Breach | None:
@@ -89,7 +89,7 @@ def first_breach(
         ]
         if wall is not None:
             rules.append((wall.depth > PENETRATION * body.base_radius, "wall_penetration"))
-        if guided:
+        if in_recess:
             rules.append((np.abs(state.twist) > GUIDE_TWIST, "guide"))
     breaches = [Breach(int(np.argmax(broken)), code) for broken, code in rules if broken.any()]
     return min(breaches, key=lambda breach: breach.index, default=None)

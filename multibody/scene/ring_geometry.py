@@ -1,4 +1,4 @@
-r"""Where a ring of inclined walls stands, and how far back it must stand to be touched by nothing.
+r"""Geometry of a ring of inclined walls, and the clearance at which nothing touches it.
 
 symbol    name          unit  meaning
 b, H                    m     base radius, height of the outline; eta = H/b
@@ -58,7 +58,7 @@ _ROUNDING = 1e-12  # [b] of a tilt that comes back from a quaternion
 
 
 def clearance_needed(cylinder: Cylinder, tilt: float, inclination: float) -> float:
-    """Return how far a ring must stand back so that nothing touches it up to a tilt, in base radii.
+    """Return the clearance of a ring that nothing touches up to a tilt, in base radii.
 
     For walls that are half-spaces, and the motion of the recess model.
 
@@ -120,7 +120,7 @@ def _needed(eta: float, tilt: float, inclination: float) -> float:
 
 
 def rim_overhang(tilt: float) -> tuple[float, float]:
-    """Return how far the rim of the base reaches out of the original circle, and at which height, in b.
+    """Return the overhang of the rim of the base over the original circle, and its height, in b.
 
     That is the clearance of a vertical wall of this height or more, but lower than meets the side of the
     cylinder: at a height w the side reaches out by w tan(tilt).

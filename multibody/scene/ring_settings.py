@@ -1,4 +1,4 @@
-"""Settings of the support "ring": the walls of a real recess, as parameters of a run."""
+"""Settings of the support "ring", a recess with walls and clearance, as parameters of a run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the ways to a time step have in common: runs of one case at several steps."""
+"""Runs of one case at several time steps, and how close two of them are."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from rockwobble.models import Trace
 
-_PARTED = 0.01  # of alpha
+_DIVERGED = 0.01  # of alpha
 _SAME_TIME = 1e-9  # of the length of a run
 
 Progress = Callable[[float], None]
@@ -20,7 +20,7 @@ Attempt = Callable[[float, Progress], Trace]
 
 @dataclass(frozen=True, slots=True)
 class Closeness:
-    """How close two traces of one case are.
+    """Closeness of two traces of one case.
 
     Attributes
     ----------
@@ -29,7 +29,7 @@ class Closeness:
     until : float
         The end of the shorter trace, or the last pass before the divergence [s].
     divergence : float
-        Where they part; infinite if they do not [s].
+        Where they diverge; infinite if they do not [s].
     """
 
     difference: float
@@ -38,10 +38,10 @@ class Closeness:
 
 
 def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
-    """Return how close two traces are in tilt, by their samples."""
+    """Return the closeness of two traces in tilt, by their samples."""
     count = common_count([coarse, fine])
     distance = np.abs(coarse.tilt[:count] - fine.tilt[:count])
-    beyond = np.flatnonzero(distance > _PARTED * alpha)
+    beyond = np.flatnonzero(distance > _DIVERGED * alpha)
     if not len(beyond):
         ends_alike = coarse.outcome == fine.outcome or "overturned" not in (coarse.outcome, fine.outcome)
         end = float(fine.time[count - 1])

@@ -1,11 +1,11 @@
 """time_step="auto": the step is halved until the tilt no longer depends on it.
 
 Runs of successive steps are held against each other, each against the one of twice its step. Two traces
-that near passes of upright tell apart are compared only up to the last pass before they part, for
-beyond it no step is small enough: they part where they differ by 1 % of alpha. The tilt has settled when
+that near passes of upright tell apart are compared only up to the last pass before they diverge, for
+beyond it no step is small enough: they diverge where they differ by 1 % of alpha. The tilt has settled when
 
 * the two agree within the tolerance to the end of the run; or
-* they agree within the tolerance until they part, and a further halving does not put off the divergence.
+* they agree within the tolerance until they diverge, and a further halving does not put that off.
 
 Halving ends without that where it no longer brings the traces closer, which engines know (a smaller step
 is not always better), or at the smallest step. The run that is kept is the last that was an improvement.
@@ -27,7 +27,7 @@ from .attempts import Attempt, Closeness, Progress, closeness, part_of, shares
 AUTO = "auto"
 COARSEST = 4e-4  # [s] at the reference size: four times the default, so that easy cases cost a fourth
 SMALLEST = 6.25e-6  # [s] at the reference size: six halvings; below it rounding and cost grow, not accuracy
-STEP_TOLERANCE = 1e-3  # of alpha; the default, a tenth of the difference at which traces part
+STEP_TOLERANCE = 1e-3  # of alpha; the default, a tenth of the difference at which traces diverge
 _PUT_OFF = 1.05  # a divergence later by less is no gain
 _CLOSER = 0.9  # a difference reduced by less is no gain
 _ORDERS = 0.5, 2.0  # least and largest order that an estimate relies on

@@ -86,7 +86,7 @@ def extrapolate(attempt: Attempt, finest: float, alpha: float, progress: Progres
 
 
 def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
-    """Return what three runs, the coarsest first, each at half the step of the one before, tend to."""
+    """Return the limit of three runs, the coarsest first, each at half the step of the one before."""
     finest = runs[-1]
     if finest.outcome == "failed":
         return finest
@@ -104,7 +104,7 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
     end, left = float(finest.time[good - 1]), float(moved[:good].max()) / (2.0 ** (order + 1) - 1.0)
     facts = [Diagnostic(code="extrapolated", duration=end, size=left / alpha, bound=order)]
     if not whole:
-        why = "no_closer" if good < count else "parted"
+        why = "no_closer" if good < count else "diverged"
         facts.append(Diagnostic(code="not_extrapolated", time=end, detail=why))
     merged = _merged(runs[-2:], order, good)
     return replace(_noted(merged, *facts), error_estimate=left, settled_until=end)

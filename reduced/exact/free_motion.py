@@ -28,7 +28,7 @@ from .planar import quarter_period
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FreeResponse:
-    """What a release leads to on still ground, recess model, undamped.
+    """Free response to a release on still ground, recess model, undamped.
 
     Attributes
     ----------

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from .._compile import borrowed, inlined, jit, once
 from ..body import Body
 from ..trigonometry import sin_cos
-from .endings import HALF_PI, may_overturn, may_sit_down, surely_falls
+from .endings import HALF_PI, may_overturn, may_sit_down, surely_overturns
 from .events import REPEATED, make_events
 from .log import as_table, empty_log, mark_of
 from .march import (
@@ -65,7 +65,7 @@ def spin_momentum(body: Body, theta: float, phi_rate: float) -> float:
 
 
 class Lift(NamedTuple):
-    """What becomes of a cylinder at rest within a piece of the record."""
+    """Uplift, or none, of a cylinder at rest within a piece of the record."""
 
     stays: bool
     at: float  # time of uplift since the beginning of the piece [s]
@@ -88,7 +88,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
 
     @inlined
     def lift_in(body: Body, rtol: float, time_step: float, piece: Piece, elapsed: float, y: State) -> Lift:
-        """Return how a cylinder at rest leaves the ground after `elapsed` of a piece, if it does.
+        """Return the uplift of a cylinder at rest after `elapsed` of a piece, if it does.
 
         An uplift within a hair of the next sample is taken up there, already above the threshold,
         however short that sample is.
@@ -195,7 +195,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     status = STALLED if h_next < _LEAST_STEP and not restart else COMPLETED
                     continue
                 outward = index < len(later) and trial.y[0] > body.alpha and trial.y[1] >= 0.0
-                if outward and surely_falls(body, trial.y[0], later[index, 0], body.g + later[index, 1]):
+                if outward and surely_overturns(body, trial.y[0], later[index, 0], body.g + later[index, 1]):
                     peak, status = HALF_PI, OVERTURNED
                     break
 
@@ -211,7 +211,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     peak = max(peak, turn.tilt)
                     status = DECIDED if deciding and turn.kind == MAXIMUM else COMPLETED
                 y, peak = ending.y, max(peak, ending.y[0])
-                if ending.falls:
+                if ending.overturns:
                     status = OVERTURNED
                 elif ending.lands:
                     log.extrema.append((now, 0.0, y[2], MINIMUM))
@@ -219,7 +219,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     resting = y[1] == 0.0  # no speed is left: it stands, or lifts off again by (25) and (26)
                 if options.record_steps:
                     log.steps.append((now, *y))
-                if options.rest_tilt > 0.0 and not ending.falls:
+                if options.rest_tilt > 0.0 and not ending.overturns:
                     a = ground(piece.a, piece.slope, elapsed)
                     L, S = momenta(y)
                     resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)

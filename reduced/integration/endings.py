@@ -1,4 +1,4 @@
-"""How motion ends: the cylinder sits down, or it has what it takes to overturn."""
+"""Conditions that end a motion: the cylinder comes to rest, or has what it takes to overturn."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def may_overturn(body: Body, theta: float, omega: float, L: float, S: float) -> 
 
 
 @jit
-def surely_falls(body: Body, theta: float, strongest: float, lightest: float) -> bool:
+def surely_overturns(body: Body, theta: float, strongest: float, lightest: float) -> bool:
     """Return whether a tilt above alpha that does not decrease is bound to reach pi/2, without twist.
 
     `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium tilt

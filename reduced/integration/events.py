@@ -51,12 +51,12 @@ class Trial(NamedTuple):
 
 
 class Ending(NamedTuple):
-    """Where a step ends: as it was taken, or earlier, where base or side meet the ground."""
+    """The end of a step: as it was taken, or earlier, where base or side meet the ground."""
 
     h: float  # its length [s]
     y: State
     lands: bool  # the base, in planar motion
-    falls: bool  # the side
+    overturns: bool  # the side
     turns: bool  # the turning point lies before this end
 
 
@@ -82,7 +82,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
     def turning_point(
         body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, rate_at_end: float
     ) -> tuple[float, float, float]:
-        """Return when, in a step of length `h`, the tilt rate is zero, and tilt and rolling angle there.
+        """Return the time of a zero tilt rate in a step of length `h`, and tilt and rolling angle there.
 
         Newton's method on partial steps, kept inside the bracket by bisection: of a rate that bends, a
         tangent may lead elsewhere. What it leaves is of second order in the tilt.
@@ -109,7 +109,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
     def crossing(
         body: Body, work: NDArray[np.float64], path: Any, y: State, first: float, last: float, level: float
     ) -> tuple[float, State]:
-        """Return when, from `first` to `last`, the tilt reaches `level`, and the state there.
+        """Return the time from `first` to `last` at which the tilt reaches `level`, and the state there.
 
         The tilt sinks to 0 or rises to any other level. Newton's method on partial steps, kept inside
         the bracket by bisection.
@@ -203,19 +203,19 @@ def make_events(system: System, stepper: Stepper) -> Events:
 
     @inlined
     def ending_of(body: Body, work: NDArray[np.float64], y: State, trial: Trial) -> Ending:
-        """Return where a step from `y` ends."""
+        """Return the end of a step from `y`."""
         h, y_new, turn = trial.h, trial.y, trial.turn
         turns = turn.kind != NO_TURN
         # with spin the tilt stays positive; without it the base meets the ground
         lands = trial.flat and (y_new[0] <= 0.0 or (turns and turn.tilt <= 0.0))
-        falls = y_new[0] >= HALF_PI
-        if not (lands or falls):
-            return Ending(h, y_new, lands, falls, turns)
+        overturns = y_new[0] >= HALF_PI
+        if not (lands or overturns):
+            return Ending(h, y_new, lands, overturns, turns)
         # a hop within one step lands after its highest point, a dip before its lowest
         hops = lands and turns and turn.tilt > 0.0
         first = turn.at if hops else 0.0
         last = turn.at if lands and turns and not hops else h
-        h, y_new = crossing(body, work, trial.path, y, first, last, HALF_PI if falls else 0.0)
-        return Ending(h, y_new, lands, falls, hops)
+        h, y_new = crossing(body, work, trial.path, y, first, last, HALF_PI if overturns else 0.0)
+        return Ending(h, y_new, lands, overturns, hops)
 
     return Events(tried, ending_of)

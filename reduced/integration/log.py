@@ -1,4 +1,4 @@
-"""Rows that a march writes as it goes on, and what stood at one moment of it."""
+"""Log of a time integration: rows of its tables, and its state at one moment."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ class Log(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """What stood when the duration was over and the march went on to see whether the cylinder overturns."""
+    """State at the end of the duration, where the march goes on to see whether the cylinder overturns."""
 
     y: State
     peak: float
@@ -43,7 +43,7 @@ def empty_log(y: State) -> Log:
 
 @jit
 def mark_of(y: State, peak: float, log: Log) -> Mark:
-    """Return what stands now."""
+    """Return the present state."""
     return Mark(y, peak, (len(log.extrema), len(log.rests), len(log.steps)))
 
 

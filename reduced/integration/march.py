@@ -1,4 +1,4 @@
-"""What a time integration is given and returns, and its access to the record."""
+"""Input and output of a time integration, and its access to the record."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MAXIMUM, MINIMUM = 1.0, -1.0
 
 
 class Options(NamedTuple):
-    """What steers a march."""
+    """Options of a time integration."""
 
     rtol: float  # tolerance of one step, relative
     rest_tilt: float  # tilt of the rest rule over alpha; 0 leaves the rule out
@@ -28,7 +28,7 @@ class Options(NamedTuple):
 
 
 class March(NamedTuple):
-    """What a march returns; `size` is the number of variables of the model."""
+    """Output of a time integration; `size` is the number of variables of the model."""
 
     status: int
     end: float  # time reached [s]; later than the duration only where it overturns after it

@@ -66,7 +66,7 @@ _KEPT_FOR = 32.0  # steps for which sine and cosine are taken over: rounding add
 
 
 class Origin(NamedTuple):
-    """What every order of a series needs from its start: coefficients of order 0, ground and scales."""
+    """Start of a series, needed by every order: coefficients of order 0, ground and scales."""
 
     s: float
     v: float

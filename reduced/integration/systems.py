@@ -42,7 +42,7 @@ class System(NamedTuple):
 def scales(
     body: Body, rtol: float, tilt: float, rate: float, spin_rate: float, flat: bool
 ) -> tuple[float, float]:
-    """Return what the errors of tilt and of tilt rate are divided by: both inverses over the tolerance.
+    """Return the scales of the errors of tilt and of tilt rate: both inverses over the tolerance.
 
     Near upright the motion is that of a point at the polar distance theta, with one speed in all
     directions (`spin_rate` is its part across): the tilt is held to itself, and the rates to that

@@ -1,4 +1,4 @@
-"""When and how the cylinder leaves the ground.
+"""Uplift: the time at which the cylinder leaves the ground, and the first motion after it.
 
 The cylinder stands until f = |a| - (g + az) tan(alpha) reaches zero (25), and lifts off towards the
 inertia force (26). There theta = 0 is a singular point of the polar coordinates with a regular

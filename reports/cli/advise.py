@@ -23,8 +23,7 @@ _NO_ENGINE = "none"
 Engine = Annotated[
     str | None,
     options.method(
-        "mujoco, pybullet or exudyn, whose one run verifies the prediction; none leaves it out. "
-        "Default: mujoco."
+        f"{options.ENGINES}, whose one run verifies the prediction; none leaves it out. Default: mujoco."
     ),
 ]
 Support = Annotated[

@@ -169,7 +169,7 @@ def _runs(
 
 
 def _source(synthetic: float | None, far_field: float | None, perturbation: float) -> str:
-    """Return what the members are."""
+    """Return the source of the members, in words."""
     if far_field is not None:
         return f"far-field pairs of FEMA P-695, with peaks of {far_field:g} g tan alpha"
     if synthetic is not None:

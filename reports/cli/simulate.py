@@ -83,13 +83,13 @@ def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model:
 
 
 def _run(job: rc.Job) -> rw.Trace:
-    from ..pages.words.diagnostics import sentences
+    from ..pages.words.diagnostics import remarks
 
     with user_input(), shown_progress() as tell:
         # in a process of its own, so that Ctrl-C also stops an engine in the middle of a long call
         trace = rc.simulate_all([job], workers=2, progress=tell)[0]
     if not len(trace.time):
-        complain(f"{job.label} left no result: {sentences(trace.facts)}")
+        complain(f"{job.label} left no result: {remarks(trace.facts)}")
         raise typer.Exit(FAILED)
     return trace
 
@@ -97,9 +97,9 @@ def _run(job: rc.Job) -> rw.Trace:
 def _print_result(trace: rw.Trace, label: str) -> None:
     from rich.text import Text
 
-    from ..pages.words.diagnostics import sentences
+    from ..pages.words.diagnostics import remarks
 
-    said = sentences(trace.diagnostics)
+    said = remarks(trace.diagnostics)
     heading = f"\n[bold]{label}[/]: {trace.outcome}.", Text(f"{said}." if said else "")
     print_facts(heading, _facts(trace))
 

@@ -127,7 +127,7 @@ def spectrum(
         every = tables["contrast"].iloc[-1]
         headline = {
             "cells": int(every["cells"]),
-            "share that overturns in 3D": float(every["falls"]),
+            "share that overturns in 3D": float(every["overturned"]),
             "share that overturns in 3D and in neither plane": float(every["missed"]),
             "share that overturns in a plane and not in 3D": float(every["overcalled"]),
         }

@@ -1,4 +1,4 @@
-"""What the difference of one engine run is made of, in lines for a terminal."""
+"""Error budget of one engine run, in lines for a terminal."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far something long is, on standard error: a bar in a terminal, lines elsewhere."""
+"""Progress on standard error: a bar in a terminal, lines elsewhere."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ GROUPS = {
     "velocity": "other records, same peak velocity",
 }
 SHORT = {"copies": "copies", "acceleration": "same acceleration", "velocity": "same velocity"}
-_STANDS, _FALLS = 1.2, 1.3  # [alpha] where tilts are cut, and where overturned runs are drawn
+_STANDS, _SIDE = 1.2, 1.3  # [alpha] where tilts are cut, and where overturned runs are drawn
 _SCALES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
 
 
@@ -114,7 +114,7 @@ def _scales(facts: Mapping[str, Any], scales: pd.DataFrame) -> Panel:
         if not len(rows):
             continue
         peaks = rows["peak_tilt"].to_numpy(float)
-        tilt = np.where(overturned(peaks), _FALLS, np.minimum(peaks / facts["alpha"], _STANDS))
+        tilt = np.where(overturned(peaks), _SIDE, np.minimum(peaks / facts["alpha"], _STANDS))
         style = model_style(facts["model"]) if name == SPATIAL else planes[name]
         marked = Style(colour=style.colour, dash=style.dash, symbol="circle")
         layers.append(
@@ -133,7 +133,7 @@ def _scales(facts: Mapping[str, Any], scales: pd.DataFrame) -> Panel:
             ticks=[(tick, f"{tick:g}") for tick in _SCALES],
         ),
         y=Axis(
-            label="largest tilt / α", unit="-", low=-0.02, high=1.4, ticks=[*levels, (_FALLS, "overturns")]
+            label="largest tilt / α", unit="-", low=-0.02, high=1.4, ticks=[*levels, (_SIDE, "overturns")]
         ),
         layers=layers,
         title="Other scales of this shaking",

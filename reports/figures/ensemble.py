@@ -167,7 +167,7 @@ def ratio_span(logarithms: Array) -> tuple[float, float]:
 
 
 def ratio_ticks(low: float, high: float) -> list[float]:
-    """Return where an axis of ratios has its numbers."""
+    """Return the ticks of an axis of ratios."""
     if high / low > 4.0:
         found = [tick for tick in _DECADES if low <= tick <= high]
         return found if len(found) <= _MOST_TICKS else [t for t in found if math.log10(t).is_integer()]

@@ -1,4 +1,4 @@
-"""What a figure shows, as data: two renderers draw it, `svg` for documents and `interactive` for pages."""
+"""Figures as data: two renderers draw them, `svg` for documents and `interactive` for pages."""
 
 from __future__ import annotations
 
@@ -99,7 +99,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Band:
-    """What lies between two curves over x, each (n,)."""
+    """Area between two curves over x, each (n,)."""
 
     x: Array
     low: Array

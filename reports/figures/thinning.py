@@ -1,4 +1,4 @@
-"""Fewer points for a picture, and the same picture."""
+"""Thinning of curves: fewer points for a picture, and the same picture."""
 
 from __future__ import annotations
 

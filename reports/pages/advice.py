@@ -1,4 +1,4 @@
-"""What the page of an advice is given: its words are in the template advice.md.j2."""
+"""Values for the page of an advice: its words are in the template advice.md.j2."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def stored_page(results: Results) -> Page:
 
 
 def advice_values(facts: Mapping[str, Any]) -> dict[str, Any]:
-    """Return what the template says of an advice, from `Advice.facts`."""
+    """Return the values of the template of an advice, from `Advice.facts`."""
     b, h, alpha = facts["b"], facts["h"], facts["alpha"]
 
     def moved(tilt: float) -> dict[str, float]:

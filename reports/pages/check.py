@@ -1,4 +1,4 @@
-"""What a check found: in a terminal, on the page of a CI job, and for programs as JSON and JUnit."""
+"""Findings of a check: in a terminal, on the page of a CI job, and for programs as JSON and JUnit."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ def print_layer(console: Console, layer: str, findings: Sequence[Finding]) -> No
             console.print(f"{finding.name}: {finding.note}", style="yellow", highlight=False, markup=False)
 
 
-def page(findings: Sequence[Finding], versions: Mapping[str, str], seconds: float) -> Page:
+def check_page(findings: Sequence[Finding], versions: Mapping[str, str], seconds: float) -> Page:
     """Return the report: what failed first, then every check, layer by layer."""
 
     def rows(chosen: Sequence[Finding]) -> list[Row]:
@@ -119,7 +119,7 @@ def as_junit(findings: Sequence[Finding], seconds: float) -> str:
 
 
 def headline(findings: Sequence[Finding], seconds: float) -> str:
-    """Return what it all came to, in one sentence."""
+    """Return the result of all checks, in one sentence."""
     found = Counter(finding.outcome for finding in findings)
     failed, passed = found.pop("FAILED", 0), found.pop("passed", 0)
     rest = f" ({', '.join(f'{count} {outcome}' for outcome, count in found.items())})" if found else ""

@@ -1,4 +1,4 @@
-"""What the page of an ensemble is given: its words are in the template ensemble.md.j2."""
+"""Values for the page of an ensemble: its words are in the template ensemble.md.j2."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ def stored_page(results: Results) -> Page:
 
 
 def ensemble_values(found: Ensemble) -> dict[str, object]:
-    """Return what the template says of an ensemble."""
+    """Return the values of the template of an ensemble."""
     contrasts, methods = found.contrasts, found.methods.to_dict("records")
     rows = contrasts.to_dict("records")
     main = main_pairs(found)

@@ -65,7 +65,7 @@ def stored_page(results: Results) -> Page:
 
 
 def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:
-    """How many runs of each method have each verdict, and the largest error of those that are fine."""
+    """Count of the runs of each method with each verdict, and the largest error of those that are fine."""
     rows: list[dict[str, object]] = []
     for method, own in runs.groupby("method", sort=False):
         counts = {name: int((own["verdict"] == name).sum()) for name in WORDS}

@@ -1,4 +1,4 @@
-"""What the page of a fragility is given: its words are in the template fragility.md.j2."""
+"""Values for the page of a fragility: its words are in the template fragility.md.j2."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def count_files(found: Fragility) -> dict[str, bytes]:
 
 
 def fragility_values(found: Fragility) -> dict[str, object]:
-    """Return what the template says of a fragility."""
+    """Return the values of the template of a fragility."""
     measure = MEASURES[str(found.about["measure"])]
     cylinders = found.about["cylinders"]
     whole = ALL if len(cylinders) > 1 else next(iter(cylinders))

@@ -1,4 +1,4 @@
-"""What can be drawn again from a folder of results: each kind, and what draws its pages."""
+"""Registry of the pages that can be drawn again from a folder of results: what draws each kind."""
 
 from __future__ import annotations
 

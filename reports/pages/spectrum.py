@@ -1,4 +1,4 @@
-"""What the page of a spectrum is given: its words are in the template spectrum.md.j2."""
+"""Values for the page of a spectrum: its words are in the template spectrum.md.j2."""
 
 from __future__ import annotations
 
@@ -34,13 +34,13 @@ def spectrum_page(
 
 def stored_page(results: Results) -> Page:
     """Return the page of the spectrum that is stored."""
-    tables = {name: results.table(name) for name in ("lowest", "islands", "contrast", "checked")}
+    tables = {name: results.table(name) for name in ("lowest", "islands", "checked")}
     return spectrum_page(spectrum_of(results), tables, results.manifest)
 
 
 def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame]) -> dict[str, object]:
-    """Return what a template says of a spectrum, for its own page and for that of the paper."""
-    contrast, checked = tables["contrast"], tables["checked"]
+    """Return the values of the templates of a spectrum, for its own page and for that of the paper."""
+    contrast, checked = planar_contrast(spectrum), tables["checked"]
     bands, every = contrast.iloc[:-1], contrast.iloc[-1]
     return {
         "spectrum": spectrum,
@@ -52,7 +52,7 @@ def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataF
         "every": every,
         "worst": bands.iloc[int(bands["missed"].fillna(0.0).argmax())],
         "wrong": bands[bands["missed"] > bands["overcalled"]].to_dict("records"),
-        "falls": any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()),
+        "overturns": any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()),
         "unconservative_from": unconservative_from(spectrum),
         "islands": _islands(tables["islands"]),
         "failed": int(spectrum.failed().sum()),
@@ -95,14 +95,14 @@ def _search(spectrum: OverturningSpectrum, lowest: pd.DataFrame) -> dict[str, ob
     found = space[np.isfinite(space["intensity"])]
     spacing = float(np.diff(spectrum.intensities).max(initial=0.0))
     chance = found[~found["confirmed"].astype(bool)]
-    probed, fell = int(space["probed"].sum()), int(space["overturned_below"].sum())
+    probed, below = int(space["probed"].sum()), int(space["overturned_below"].sum())
     return {
         "start": spectrum.searched_from[SPATIAL],
         "found": len(found),
         "unseen": int((found["intensity"] < found["on_grid"].fillna(math.inf) - spacing).sum()),
         "probed": probed,
-        "below": fell,
-        "below_most": share_interval(fell, probed).high,
+        "below": below,
+        "below_most": share_interval(below, probed).high,
         "chance": len(chance),
         "chance_from": chance["semidiagonal"].min(),
         "chance_to": chance["semidiagonal"].max(),

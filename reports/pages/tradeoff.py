@@ -68,7 +68,7 @@ def _ways(cheapest: pd.DataFrame) -> pd.DataFrame:
 
 
 def _within_chance(found: Tradeoff) -> list[dict[str, object]]:
-    """How many points of the engines are nearer to their reference than another ensemble, by support."""
+    """Count the points of engines that are nearer to their reference than another ensemble, by support."""
     points = found.points[(found.points["problem"] == "peaks") & ~found.points["family"].isin(_NOT_ENGINES)]
     rows: list[dict[str, object]] = []
     for row in found.problems[found.problems["chance"].notna()].to_dict("records"):

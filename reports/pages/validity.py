@@ -96,7 +96,7 @@ def _summary(table: pd.DataFrame) -> list[dict[str, object]]:
 
 
 def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
-    """What each ring does over its slendernesses and turns, the worst named by its number."""
+    """Results of each ring over its slendernesses and turns, the worst named by its number."""
     rows: list[dict[str, object]] = []
     walls = ["support", "clearance", "inclination", "friction"]
     for key, own in table.groupby(walls, sort=False, dropna=False):

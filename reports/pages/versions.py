@@ -1,4 +1,4 @@
-"""How rolling contact moves between releases of an engine, as a page."""
+"""Page on rolling contact in the releases of an engine, and how it moves between them."""
 
 from __future__ import annotations
 

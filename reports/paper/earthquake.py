@@ -36,7 +36,7 @@ _PLAINLY = 1.25
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Part:
-    """How the contact point moves in a part of the record.
+    """Motion of the contact point in a part of the record.
 
     Attributes
     ----------
@@ -110,7 +110,7 @@ def strong_end(motion: GroundMotion) -> float:
 
 
 def parts(trace: Trace, end: float) -> tuple[Part, Part]:
-    """Return how the contact point moves before and after `end` [s]."""
+    """Return the motion of the contact point before and after `end` [s]."""
     time, turn = (trace.passes[name].to_numpy() for name in ("time", "angle_of_turn"))
     half = half_turn_times(trace)
     energy = np.interp(time, trace.time, trace.energy)

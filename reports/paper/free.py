@@ -56,7 +56,7 @@ def _release(spin: float) -> InitialState:
 
 
 def drawn_samples(trace: Trace, points: int = _POINTS) -> pd.DataFrame:
-    """Return what a figure shows of a motion: its extremes, and as many samples as can be seen."""
+    """Return the samples of a motion for a figure: its extremes, and as many samples as can be seen."""
     keep = kept_samples(trace.tilt, trace.tilt_rate, trace.rolling_rate, points=points)
     names = ("time", "tilt", "tilt_rate", "rolling_angle", "rolling_rate")
     table = pd.DataFrame({name: getattr(trace, name)[keep] for name in names})
@@ -129,5 +129,5 @@ def _place(modes: Mapping[str, Trace]) -> Statement:
 
 
 def displacement(tilt: float) -> float:
-    """Return how far the centre of the base is from its place, over b: 1 - cos(theta), equation (10)."""
+    """Return the distance of the centre of the base from its place, over b: 1 - cos(theta), equation (10)."""
     return 2.0 * math.sin(0.5 * tilt) ** 2

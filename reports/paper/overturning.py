@@ -32,7 +32,7 @@ _EVERY = 0.95  # share of the sizes that may pass for all of them: single ones a
 
 
 def problem(grid: int = GRID) -> dict[str, Any]:
-    """Return what `overturning_spectrum` is asked: `grid` sizes and as many intensities."""
+    """Return the arguments of `overturning_spectrum`: `grid` sizes and as many intensities."""
     return {
         "tan_alpha": TAN_ALPHA,
         "motion": el_centro_1940(),

@@ -1,4 +1,4 @@
-"""What the paper says, held against numbers: a name in the template, the numbers, and the verdict."""
+"""Statements of the paper held against numbers: a name in the template, the numbers, and the verdict."""
 
 from __future__ import annotations
 

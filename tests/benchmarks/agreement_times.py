@@ -75,10 +75,10 @@ def agreement_times(
     -------
     DataFrame
         case, support, reference, outcome (of the engine), uplift [s], length [s, of the motion from
-        uplift], horizon [s from uplift], diverged, rms (of the tilt difference up to the horizon) [alpha],
+        uplift], agreement_time [s from uplift], diverged, rms (of the tilt difference up to then) [alpha],
         resolution (smallest tilt of a pass that the engine resolves) [rad], close_pass [s from uplift] and
         close_tilt [rad] (the first pass of the engine's own model below it; NaN without one), passes
-        (those before the horizon), closest (smallest tilt of them) [rad], predicted [s] and reason (what
+        (those within the agreement), closest (smallest tilt of them) [rad], predicted [s] and reason (what
         has to end the agreement, and when), agreed ("in time", "later", "earlier" or "never, as
         predicted"), and force: see `force_error`.
     """
@@ -109,7 +109,7 @@ def _row(case: Case, model: str, trial: Trace, own: Trace, reference: Trace) -> 
         same = trial.outcome == reference.outcome
         return row | {"outcome": trial.outcome, "agreed": "both rest" if same else "only one uplifts"}
     pair = make_pair(case.cylinder, reference, trial)
-    horizon = agreement_time(pair, broken=trial.outcome == "failed")
+    agreement = agreement_time(pair, broken=trial.outcome == "failed")
     prediction = predict(
         case,
         reference=reference,
@@ -121,14 +121,14 @@ def _row(case: Case, model: str, trial: Trace, own: Trace, reference: Trace) -> 
     times = own.passes["time"].to_numpy(float)
     minima = own.passes["minimum_tilt"].to_numpy(float)
     close = np.flatnonzero(minima < trial.contact_resolution)
-    before = minima[times <= horizon.end]
-    within = (pair.time >= start) & (pair.time <= horizon.end)
+    before = minima[times <= agreement.end]
+    within = (pair.time >= start) & (pair.time <= agreement.end)
     return row | {
         "outcome": trial.outcome,
         "uplift": start,
         "length": pair.end - start,
-        "horizon": horizon.end - start,
-        "diverged": horizon.diverged,
+        "agreement_time": agreement.end - start,
+        "diverged": agreement.diverged,
         "rms": float(np.sqrt(np.mean(pair.tilt_difference[within] ** 2))),
         "resolution": trial.contact_resolution,
         "close_pass": float(times[close[0]]) - start if len(close) else math.nan,
@@ -137,7 +137,7 @@ def _row(case: Case, model: str, trial: Trace, own: Trace, reference: Trace) -> 
         "closest": float(before.min()) if len(before) else math.nan,
         "predicted": prediction.length,
         "reason": prediction.reason,
-        "agreed": verdict(horizon.end - start, horizon.diverged, prediction.length, prediction.reason),
+        "agreed": verdict(agreement.end - start, agreement.diverged, prediction.length, prediction.reason),
         "force": force_error(case, reference, trial, _same_until(pair)),
     }
 
@@ -173,7 +173,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = options_of("agreement_times", "Until when MuJoCo follows its reduced model, and what ends it.")
     options.parse_args(arguments)
     formats = {
-        "case": "", "support": "", "reference": "", "length": ".2f", "horizon": ".2f", "rms": ".1e",
+        "case": "", "support": "", "reference": "", "length": ".2f", "agreement_time": ".2f", "rms": ".1e",
         "passes": ".0f", "closest": ".1e", "resolution": ".1e", "close_pass": ".2f", "close_tilt": ".1e",
         "predicted": ".2f", "reason": "", "agreed": "", "force": ".1e",
     }  # fmt: skip
@@ -181,7 +181,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         agreement_times(progress=tell),
         "MuJoCo and its reduced models, El Centro 1940 from rest",
         formats,
-        "times in s from uplift, tilts of passes in rad, rms up to the horizon in alpha; close pass: the "
+        "times in s from uplift, tilts of passes in rad, rms within the agreement in alpha; close pass: the "
         "first of the engine's own model below the contact resolution; force: largest difference of the "
         "contact force between passes over the force, until the tilts differ by 0.1 % of alpha",
     )

@@ -9,8 +9,8 @@
    against exact quadrature (recess) and against the flat-ground model; Exudyn, which has no recess, as well.
 3. The first table's release at 0.5 alpha for cylinders of 1 cm, 6 m and 100 m.
 
-With 2.5e-5 s both engines stay within 5.3e-5 alpha of their models in all releases, at the default step
-within 1e-4 but for tan(alpha) 3 from 0.8 alpha on open ground, 2.1e-4; of first order. The angle of turn at
+With 2.5e-5 s MuJoCo and Bullet stay within 5.3e-5 alpha of their models in all releases, at the default step
+within 1e-4 but for tan(alpha) 3 from 0.8 alpha on flat ground, 2.1e-4; of first order. The angle of turn at
 the default step is 5e-4 deg off in MuJoCo, 6e-4 in Bullet and 2e-5 in Exudyn; sizes make no difference.
 """
 

@@ -1,4 +1,4 @@
-"""Print what a real recess costs against clearance, inclination, facets and friction of its ring of walls.
+"""Print what a ring costs against clearance, inclination, facets and friction of its ring of walls.
 
 The engine in an ideal recess and on flat ground stands above the rings: what they differ by from their models
 is the error of the engine.
@@ -99,7 +99,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     parser = options_of(
         "ring_losses",
-        "What a real recess costs, against clearance, inclination, facets and friction. "
+        "What a ring costs, against clearance, inclination, facets and friction. "
         "Example: --turns 1 --tan-alpha 1",
     )
     parser.add_argument(

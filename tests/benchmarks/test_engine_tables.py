@@ -43,15 +43,15 @@ def test_a_release_that_flies_is_said() -> None:
     assert convergence.loses_contact(Case(PIER, initial=RELEASE, duration=0.2, name="slow")) == ""
 
 
-def test_a_horizon_row() -> None:
+def test_a_row_of_agreement_times() -> None:
     time = np.arange(0.0, 1.0, 0.01)
     push = np.column_stack([3.0 * np.sin(8.0 * time), 2.0 * np.cos(7.0 * time)])
     table = agreement_times.agreement_times([Case(PIER, GroundMotion(push, 0.01), name="push")], workers=1)
     assert list(table["reference"]) == ["recess", "flat", "recess"]
-    guided = table.iloc[0]
-    assert not guided["diverged"]
-    assert guided["horizon"] == pytest.approx(guided["length"])
-    assert guided["agreed"] == "never, as predicted"
+    recess = table.iloc[0]
+    assert not recess["diverged"]
+    assert recess["agreement_time"] == pytest.approx(recess["length"])
+    assert recess["agreed"] == "never, as predicted"
 
 
 def test_variants_differ_from_the_default_in_one_setting() -> None:

@@ -9,7 +9,7 @@ from rockwobble.compare.comparison.prediction import close_pass
 from rockwobble.compare.metrics.agreement import agreed_passes, agreement_time, closest_pass
 from rockwobble.compare.traces.pair import make_pair
 
-SAMPLE = 0.01  # a horizon is known to one sample
+SAMPLE = 0.01  # an agreement time is known to one sample
 
 
 @pytest.fixture
@@ -24,19 +24,19 @@ def growing(cylinder, make_trace):
 
 
 def test_horizon_counts_from_uplift_to_one_per_cent_of_alpha(cylinder, growing):
-    horizon = agreement_time(make_pair(cylinder, *growing))
-    assert horizon.diverged
+    agreement = agreement_time(make_pair(cylinder, *growing))
+    assert agreement.diverged
     # 1e-6 exp(t) = 1e-2 at t = ln 1e4
-    assert math.log(1e4) < horizon.length <= math.log(1e4) + SAMPLE
-    assert horizon.end == pytest.approx(horizon.length + 2.0)
+    assert math.log(1e4) < agreement.length <= math.log(1e4) + SAMPLE
+    assert agreement.end == pytest.approx(agreement.length + 2.0)
 
 
 def test_passes_within_the_horizon_are_agreed(cylinder, growing):
     reference, _ = growing
-    horizon = agreement_time(make_pair(cylinder, *growing))
-    assert horizon.end == pytest.approx(11.22)
-    assert agreed_passes(reference, horizon) == 2
-    assert closest_pass(reference, horizon) == 2e-5
+    agreement = agreement_time(make_pair(cylinder, *growing))
+    assert agreement.end == pytest.approx(11.22)
+    assert agreed_passes(reference, agreement) == 2
+    assert closest_pass(reference, agreement) == 2e-5
 
 
 def test_traces_that_never_part_agree_for_the_length_of_the_run(cylinder, make_trace):
@@ -45,33 +45,33 @@ def test_traces_that_never_part_agree_for_the_length_of_the_run(cylinder, make_t
     pair = make_pair(
         cylinder, make_trace(time, tilt, uplift_time=2.0), make_trace(time, tilt + 0.00999 * cylinder.alpha)
     )
-    horizon = agreement_time(pair)
-    assert (horizon.length, horizon.end, horizon.diverged) == (10.0, 10.0, False)
+    agreement = agreement_time(pair)
+    assert (agreement.length, agreement.end, agreement.diverged) == (10.0, 10.0, False)
 
 
 def test_agreement_ends_with_a_trace_that_breaks_off(cylinder, make_trace):
     time = np.arange(1001) * SAMPLE
     tilt = np.full_like(time, 0.3 * cylinder.alpha)
     pair = make_pair(cylinder, make_trace(time, tilt, uplift_time=2.0), make_trace(time[:601], tilt[:601]))
-    horizon = agreement_time(pair, broken=True)
-    assert (horizon.length, horizon.end, horizon.diverged) == (4.0, 6.0, True)
+    agreement = agreement_time(pair, broken=True)
+    assert (agreement.length, agreement.end, agreement.diverged) == (4.0, 6.0, True)
 
 
-def test_a_parting_before_uplift_leaves_no_agreement(cylinder, make_trace):
+def test_a_divergence_before_uplift_leaves_no_agreement(cylinder, make_trace):
     time = np.arange(1001) * SAMPLE
     reference = make_trace(time, np.zeros_like(time), uplift_time=5.0)
     trial = make_trace(time, np.where(time > 1.0, 0.1, 0.0))
-    horizon = agreement_time(make_pair(cylinder, reference, trial))
-    assert (horizon.length, horizon.diverged) == (0.0, True)
+    agreement = agreement_time(make_pair(cylinder, reference, trial))
+    assert (agreement.length, agreement.diverged) == (0.0, True)
 
 
 @pytest.mark.parametrize(("resolution", "expected"), [(1e-7, 40.0), (1e-5, 28.0), (5e-5, 8.5), (1e-2, 3.0)])
-def test_a_external_trajectory_is_foretold_by_its_first_unresolved_pass(growing, resolution, expected):
+def test_an_external_trajectory_is_predicted_by_its_first_unresolved_pass(growing, resolution, expected):
     prediction = close_pass(growing[0], resolution, 40.0)
     assert prediction.length == pytest.approx(expected)
     assert prediction.reason == ("" if expected == 40.0 else "pass")
 
 
-def test_a_reference_without_passes_predicts_no_parting(make_trace):
+def test_a_reference_without_passes_predicts_no_divergence(make_trace):
     time = np.arange(11) * SAMPLE
     assert close_pass(make_trace(time, np.full_like(time, 0.1)), 1e-3, 0.1).length == 0.1

@@ -55,7 +55,7 @@ def test_accelerations_of_newton_and_euler_leave_no_residual() -> None:
     force = np.array([motion.force], dtype=float)
     curves = one(float(motion.theta), float(motion.phi))
     kappa = lagrange.restraining(SHAPE, *arguments, curves, force)[0]
-    assert kappa == pytest.approx(float(motion.couple), rel=ROUNDING)
+    assert kappa == pytest.approx(float(motion.moment), rel=ROUNDING)
 
 
 def test_a_restraining_moment_that_is_off_by_a_millionth_is_found() -> None:

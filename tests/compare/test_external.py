@@ -58,7 +58,7 @@ def quaternions(trace) -> pd.DataFrame:
 
 
 @pytest.fixture(scope="module")
-def guided():
+def in_recess():
     return {
         name: multibody.simulate(
             Case(PIER, case.motion, initial=case.initial, duration=case.duration), time_step=0.0005
@@ -68,7 +68,7 @@ def guided():
 
 
 def rows(case, path, **given):
-    """Rows of the engine, run again as in `guided`, and of the file."""
+    """Rows of the engine, run again as in `in_recess`, and of the file."""
     found = compare(
         case,
         runs=[Run("mujoco", "recess", 5e-4)],
@@ -80,8 +80,8 @@ def rows(case, path, **given):
 
 
 @pytest.mark.parametrize("name", CASES)
-def test_a_trajectory_that_goes_out_and_comes_back_has_the_same_metrics(guided, save, name):
-    engine, external = rows(CASES[name], save(angles(guided[name])))
+def test_a_trajectory_that_goes_out_and_comes_back_has_the_same_metrics(in_recess, save, name):
+    engine, external = rows(CASES[name], save(angles(in_recess[name])))
     assert external["support"] == "external"
     # an engine that turns softly at the first passes of a shaken cylinder is no mistake of a file
     assert (external["differs_in"], external["likely_mistake"]) == ("", "")
@@ -95,8 +95,8 @@ def test_a_trajectory_that_goes_out_and_comes_back_has_the_same_metrics(guided, 
     assert math.isnan(external["energy_loss"])
 
 
-def test_quaternions_and_positions_bring_twist_and_place_back(guided, save):
-    engine, external = rows(SHAKEN, save(quaternions(guided["shaken"])))
+def test_quaternions_and_positions_bring_twist_and_place_back(in_recess, save):
+    engine, external = rows(SHAKEN, save(quaternions(in_recess["shaken"])))
     assert external["tilt_rms"] == pytest.approx(engine["tilt_rms"], abs=ROUNDING)
     for column in ("residual_twist", "residual_displacement", "contact_rms"):
         assert engine[column] != 0.0
@@ -104,18 +104,18 @@ def test_quaternions_and_positions_bring_twist_and_place_back(guided, save):
     assert not math.isnan(external["contact_rms"])
 
 
-def test_uplift_is_found_from_the_samples(guided, save):
-    trajectory = read_trajectory(save(angles(guided["shaken"])), SHAKEN)
+def test_uplift_is_found_from_the_samples(in_recess, save):
+    trajectory = read_trajectory(save(angles(in_recess["shaken"])), SHAKEN)
     # one sample: what the cube root leaves of an uplift that is not a pure ramp
-    assert trajectory.uplift_time == pytest.approx(guided["shaken"].uplift_time, abs=0.01)
+    assert trajectory.uplift_time == pytest.approx(in_recess["shaken"].uplift_time, abs=0.01)
     # the direction turns by its own rate in the time to the first sample that leans
-    assert trajectory.uplift_direction == pytest.approx(guided["shaken"].uplift_direction, abs=0.05)
+    assert trajectory.uplift_direction == pytest.approx(in_recess["shaken"].uplift_direction, abs=0.05)
     assert np.isnan(trajectory.rolling_angle[trajectory.time < trajectory.uplift_time]).all()
-    assert read_trajectory(save(angles(guided["release"])), RELEASE).uplift_time == 0.0
+    assert read_trajectory(save(angles(in_recess["release"])), RELEASE).uplift_time == 0.0
 
 
-def test_passes_and_whole_turns_are_those_of_the_engine(guided, save):
-    own, back = guided["shaken"].passes, read_trajectory(save(angles(guided["shaken"])), SHAKEN).passes
+def test_passes_and_whole_turns_are_those_of_the_engine(in_recess, save):
+    own, back = in_recess["shaken"].passes, read_trajectory(save(angles(in_recess["shaken"])), SHAKEN).passes
     own = own[own["time"] > 2.0]  # the first dips by 3e-6 rad, less than what counts as noise
     assert len(back) == len(own) >= 2
     assert back["time"].to_numpy() == pytest.approx(own["time"].to_numpy(), abs=1e-3)  # a tenth of a sample
@@ -164,24 +164,24 @@ CHANGES = {
 
 
 @pytest.mark.parametrize("change", CHANGES)
-def test_what_is_wrong_with_a_trajectory_shows(guided, save, change):
+def test_what_is_wrong_with_a_trajectory_shows(in_recess, save, change):
     wrong, given, column, least = CHANGES[change]
-    table = wrong(angles(guided["shaken"]))
+    table = wrong(angles(in_recess["shaken"]))
     engine, external = rows(SHAKEN, save(table), **given)
     assert abs(external[column]) > abs(engine[column]) + least
 
 
-def test_a_time_offset_takes_back_a_late_clock(guided, save):
-    table = angles(guided["shaken"])
+def test_a_time_offset_takes_back_a_late_clock(in_recess, save):
+    table = angles(in_recess["shaken"])
     late = table.assign(**{"time [s]": table["time [s]"] + 3.0})
     with pytest.raises(ValueError, match=r"table\.csv, line 2: the trajectory begins 3 s after the start"):
         read_trajectory(save(late), SHAKEN)
     trajectory = read_trajectory(External(path=save(late), time_offset=-3.0), SHAKEN)
-    assert trajectory.tilt == pytest.approx(guided["shaken"].tilt, abs=1e-7)  # times rounded by the shift
+    assert trajectory.tilt == pytest.approx(in_recess["shaken"].tilt, abs=1e-7)  # times rounded by the shift
 
 
-def test_noise_of_a_measurement_is_no_uplift(guided, save):
-    table = angles(guided["shaken"])
+def test_noise_of_a_measurement_is_no_uplift(in_recess, save):
+    table = angles(in_recess["shaken"])
     generator = np.random.default_rng(1)
     noisy = table.assign(**{"tilt [deg]": table["tilt [deg]"] + generator.uniform(0.0, 0.01, len(table))})
     noisy["azimuth [deg]"] = noisy["azimuth [deg]"].fillna(0.0)
@@ -190,7 +190,7 @@ def test_noise_of_a_measurement_is_no_uplift(guided, save):
     for noise in (None, math.radians(0.02)):  # by its own scatter, and as it is told
         quiet = read_trajectory(External(path=path, noise=noise), SHAKEN)
         # a ramp to 0.02 deg
-        assert quiet.uplift_time == pytest.approx(guided["shaken"].uplift_time, abs=0.15)
+        assert quiet.uplift_time == pytest.approx(in_recess["shaken"].uplift_time, abs=0.15)
 
 
 def test_a_fall_ends_the_trajectory(save):
@@ -223,17 +223,17 @@ def test_a_fall_that_outlasts_the_run_is_followed_to_the_ground(save, tilt, outc
         assert trajectory.peak_tilt == pytest.approx(largest, abs=3e-6)
 
 
-def test_a_trajectory_alone_is_held_against_the_model(guided, save, tmp_path):
+def test_a_trajectory_alone_is_held_against_the_model(in_recess, save, tmp_path):
     found = compare(
-        RELEASE, runs=[], external=[save(angles(guided["release"]))], workers=1, out=tmp_path / "out"
+        RELEASE, runs=[], external=[save(angles(in_recess["release"]))], workers=1, out=tmp_path / "out"
     )
     assert found.summary[["run", "reference"]].to_numpy().tolist() == [["table", "recess model"]]
     kept = pd.read_parquet(tmp_path / "out" / "traces.parquet")
     assert set(kept["run"]) == {"recess model", "table"}
 
 
-def test_labels_and_cases_must_be_clear(guided, save):
-    path = save(angles(guided["release"]))
+def test_labels_and_cases_must_be_clear(in_recess, save):
+    path = save(angles(in_recess["release"]))
     with pytest.raises(ValueError, match="each run must have its own label, got 'table' twice"):
         compare(RELEASE, runs=[], external=[path, path])
     with pytest.raises(ValueError, match="each run must have its own label, got 'recess model' twice"):

@@ -264,7 +264,7 @@ def test_the_columns_of_the_summary_say_the_verdict(save):
     assert float(row["likely_mistake_value"]) == pytest.approx(10.0, abs=0.1)
 
 
-def test_noise_is_no_parting(save):
+def test_noise_is_no_divergence(save):
     path = save(samples("pier wobbles", "angles", noise=NOISE))
     (row,) = compare(CASES["pier wobbles"], runs=[], external=[path], workers=1).summary.to_dict("records")
     assert not row["diverged"]

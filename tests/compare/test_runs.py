@@ -31,7 +31,7 @@ def case(cylinder):
     return Case(cylinder, duration=1.0, name="still")
 
 
-def test_default_runs_are_every_installed_engine_guided_and_free():
+def test_default_runs_are_every_installed_engine_in_the_recess_and_on_flat_ground():
     first, second = standard_engines()
     if second not in installed_engines():
         pytest.skip(f"{second} is not installed")
@@ -105,7 +105,7 @@ def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeyp
         pytest.skip("exudyn is not installed")
     assert "exudyn" not in {run.engine for run in default_runs()}
     assert reserved_engines()["exudyn"] == "exudyn has no recess support and no uplift"
-    # named, it runs on open ground; a support that is named stays, and is refused
+    # named, it runs on flat ground; a support that is named stays, and is refused
     assert default_runs(engines=("exudyn",)) == (Run("exudyn", "flat"),)
     (recess,) = default_runs(engines=("exudyn",), supports=("recess",))
     with pytest.raises(ValueError, match="support must be flat in exudyn, got 'recess'"):

@@ -146,7 +146,7 @@ def drawn() -> OverturningSpectrum:
 
 
 @pytest.mark.parametrize("series", SERIES)
-def test_cells_agree_with_tighter_single_runs_unless_a_twin_differs_as_much(drawn, series):
+def test_cells_agree_with_tighter_single_runs_unless_a_perturbed_copy_differs_as_much(drawn, series):
     checked = check_cells(drawn, 12, series=[series])
     assert len(checked) == 12
     assert (checked["agrees"] | checked["sensitive"]).all(), checked.to_string()

@@ -23,7 +23,7 @@ LEVELS = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
 
 
 def made_up(space: list[str], x: list[str], y: list[str]) -> OverturningSpectrum:
-    """Make a spectrum of rows of letters, a row for each size: X falls, o tilts, O tilts more, ? failed."""
+    """Make a spectrum of rows of letters, a row for each size: X overturned, o tilts, O more, ? failed."""
     tilts = {"X": FALL, "o": 0.01, "O": 0.02, ".": 0.0, "?": math.nan}
     peaks = {
         name: np.array([[tilts[letter] for letter in row] for row in rows])
@@ -79,8 +79,8 @@ def test_shares_count_cells_and_leave_out_failed_ones():
     first, second, every = (row for _, row in contrast.iterrows())
     assert (first["smallest"], first["largest"]) == (1.0, 1.0)
     assert (second["smallest"], second["largest"]) == (2.0, 3.0)
-    assert first["falls"] == 3 / 4
-    assert first["planar_falls"] == 2 / 4
+    assert first["overturned"] == 3 / 4
+    assert first["planar_overturned"] == 2 / 4
     assert first["missed"] == 1 / 4
     assert first["overcalled"] == 0.0
     # the failed cell would have been missed as well

@@ -143,8 +143,8 @@ def test_cases_with_engines_and_models(tmp_path):
         Case(PIER, initial=InitialState(tilt * PIER.alpha, rolling_rate=0.5), duration=0.5, name=f"{tilt:g}")
         for tilt in (0.3, 0.5)
     ]
-    guided = Run("mujoco", "recess", 1e-3)
-    table = sweep(CaseSweep(cases, [Run(None, "recess"), guided]), out=tmp_path, workers=1)
+    in_recess = Run("mujoco", "recess", 1e-3)
+    table = sweep(CaseSweep(cases, [Run(None, "recess"), in_recess]), out=tmp_path, workers=1)
     assert table[["case", "run"]].to_numpy().tolist() == [
         ["0.3", "recess model"],
         ["0.5", "recess model"],
@@ -152,7 +152,7 @@ def test_cases_with_engines_and_models(tmp_path):
         ["0.5", "mujoco recess"],
     ]
     assert table.peak_tilt_over_alpha.tolist() == pytest.approx([0.3, 0.5, 0.3, 0.5], rel=1e-3)
-    again = sweep(Suite(cases, [guided]), workers=1)
+    again = sweep(Suite(cases, [in_recess]), workers=1)
     pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
 
 

@@ -229,7 +229,7 @@ def solve_forced() -> Callable[..., Solution]:
 
 
 def released_response(cylinder: Cylinder, motion: GroundMotion, initial: InitialState, time: Array) -> Array:
-    """Tilt on open ground from a release under a motion of two components, at the given times."""
+    """Tilt on flat ground from a release under a motion of two components, at the given times."""
     model = _constants(cylinder, rolls_out=True)
     samples = np.arange(len(motion.acceleration)) * motion.time_step
     state = np.array([initial.tilt, initial.tilt_rate, initial.rolling_angle, 0.0, 0.0, 0.0])

@@ -125,7 +125,7 @@ def test_halving_ends_at_the_smallest_step() -> None:
     assert (step_fact(run).code, step_fact(run).detail) == ("unsettled", "still_changes")
 
 
-def test_a_parting_that_stays_is_where_agreement_ends() -> None:
+def test_a_divergence_that_stays_is_where_agreement_ends() -> None:
     def tilt(step: float) -> Any:
         side = 1.0 if round(np.log2(COARSEST / step)) % 2 else -1.0
         return 0.1 + np.where(np.arange(200) < 120, 1e-5 * step / COARSEST, 0.05 * side)

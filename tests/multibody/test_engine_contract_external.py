@@ -15,7 +15,7 @@ from rockwobble.multibody.contract import interface, mechanics, sweep
 from rockwobble.multibody.engines.registry import find_engine
 from rockwobble.multibody.testing import ContractCheck, check_engine, leaves_no_trace
 
-# MuJoCo on open ground under another name, and with one fault each
+# MuJoCo on flat ground under another name, and with one fault each
 SOURCE = """
 import contextlib, dataclasses, random
 import numpy as np

@@ -139,7 +139,7 @@ def test_the_estimate_is_the_term_that_is_left() -> None:
     assert found.error_estimate == pytest.approx(error, rel=1e-6)
 
 
-def test_beyond_a_parting_it_is_the_finest_run() -> None:
+def test_beyond_a_divergence_it_is_the_finest_run() -> None:
     side = {4.0: 1.0, 2.0: -1.0, 1.0: 1.0}
     late = np.arange(100) >= 60
 
@@ -153,7 +153,7 @@ def test_beyond_a_parting_it_is_the_finest_run() -> None:
     np.testing.assert_allclose(found.tilt[:56], 0.1, atol=1e-15)
     np.testing.assert_array_equal(found.tilt[56:], runs[-1].tilt[56:])
     codes = [(fact.code, fact.detail) for fact in found.facts]
-    assert codes == [("extrapolated", ""), ("not_extrapolated", "parted")]
+    assert codes == [("extrapolated", ""), ("not_extrapolated", "diverged")]
     assert found.facts[1].time == 0.55
 
 

@@ -176,7 +176,7 @@ def test_the_ground_keeps_still_after_the_last_sample(engine: str) -> None:
 
 
 def test_the_twist_of_a_whole_earthquake_does_not_jump(engine: str) -> None:
-    # on open ground it goes beyond a turn; a quaternion tells it up to two, and Bullet changes its sign
+    # on flat ground it goes beyond a turn; a quaternion tells it up to two, and Bullet changes its sign
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
     for step in (1e-3, 8e-4, 6e-4, 4e-4):  # in a run that long it is chance how far it goes
         run = multibody.simulate(case, engine=engine, support="flat", time_step=step)

@@ -39,7 +39,7 @@ def test_free_response_follows_the_model_of_its_support(
     assert np.abs(run.tilt - exact.tilt).max() < budget * cylinder.alpha
     # the rolling angle magnifies a difference of tilt near upright by 20
     assert np.abs(run.rolling_angle - exact.rolling_angle).max() < 20 * budget
-    # the recess holds the twist but for what its stiffness gives, 5e-6 rad; open ground lets it grow
+    # the recess holds the twist but for what its stiffness gives, 5e-6 rad; flat ground lets it grow
     assert np.abs(run.twist - exact.twist).max() < 20 * budget + 6e-6
     assert (np.abs(run.twist).max() > 2e-3) == (support == "flat")
     # a kinetic energy of 0.5 m^2/s^2 for the pier; the creep of the rim takes or gives 1e-6 of it

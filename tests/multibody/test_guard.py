@@ -95,7 +95,7 @@ def test_strong_shaking_overturns(engine: str) -> None:
     assert run.peak_tilt == 0.5 * np.pi
 
 
-def test_passes_too_close_to_the_apex_are_marked(engine: str, time_step: float | None) -> None:
+def test_passes_too_close_to_upright_are_marked(engine: str, time_step: float | None) -> None:
     # a spin of 1e-6 rad/s passes at 1e-7 rad, far less than the tilt that a step crosses
     case = Case(PIER, initial=InitialState(PIER.alpha / 2, rolling_rate=1e-6), duration=2.5)
     near = multibody.simulate(case, engine=engine, time_step=time_step)
@@ -117,7 +117,7 @@ def test_a_gain_is_held_against_the_energy_of_the_motion() -> None:
 
     def fails(state: Kinematics, gain: float, largest: float = 0.0) -> bool:
         breach = first_breach(
-            state, np.full(n, gain * scale), BODY, 9.81, guided=False, largest=largest * scale
+            state, np.full(n, gain * scale), BODY, 9.81, in_recess=False, largest=largest * scale
         )
         return breach is not None
 
@@ -137,10 +137,10 @@ def test_the_first_breach_counts() -> None:
     steps = Steps(position, upright, np.zeros((n, 3)), np.zeros((n, 3)))
     state = kinematics(steps, steps, BODY, 9.81)
     energy = np.zeros(n)
-    breach = first_breach(state, energy, BODY, 9.81, guided=True)
+    breach = first_breach(state, energy, BODY, 9.81, in_recess=True)
     assert breach is not None
     assert (breach.index, breach.code) == (7, "penetration")
     energy[4] = np.inf
-    breach = first_breach(state, energy, BODY, 9.81, guided=True)
+    breach = first_breach(state, energy, BODY, 9.81, in_recess=True)
     assert breach is not None
     assert (breach.index, breach.code) == (4, "energy_gain")

@@ -8,7 +8,7 @@ import pytest
 from rockwobble.multibody.recording.passes import TurningPoint, passes_between, turning_points
 
 
-def test_a_straight_way_past_the_apex_is_exact_at_any_step() -> None:
+def test_a_straight_way_past_upright_is_exact_at_any_step() -> None:
     # the axis goes past at distance d: four steps, none of them near the closest point
     distance, speed = 1e-5, 0.1
     time = np.arange(4) * 1e-3

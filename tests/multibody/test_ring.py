@@ -143,7 +143,7 @@ def test_a_standing_cylinder_touches_no_wall_that_stands_back() -> None:
 
 
 def test_walls_stop_a_cylinder_that_slides() -> None:
-    # 0.05 g on friction of 0.01, for half a second: 5 cm on open ground
+    # 0.05 g on friction of 0.01, for half a second: 5 cm on flat ground
     push = GroundMotion(np.tile([-0.05 * 9.81, 0.0], (51, 1)), 0.01)
     free = multibody.simulate(Case(SQUAT, push, friction=0.01, duration=0.5), support="flat")
     held = multibody.simulate(
@@ -208,10 +208,10 @@ def test_sinking_into_a_wall_is_a_breach() -> None:
     state = kinematics(poses, poses, body, 9.81)
     depth = np.array([0.0, 0.0, 0.5, 1.5, 2.0]) * PENETRATION * body.base_radius
     wall = Wall(depth > 0.0, np.zeros(5), depth)
-    breach = first_breach(state, np.zeros(5), body, 9.81, guided=False, wall=wall)
+    breach = first_breach(state, np.zeros(5), body, 9.81, in_recess=False, wall=wall)
     assert breach is not None
     assert (breach.index, breach.code) == (3, "wall_penetration")
-    assert first_breach(state, np.zeros(5), body, 9.81, guided=False) is None
+    assert first_breach(state, np.zeros(5), body, 9.81, in_recess=False) is None
 
 
 def test_a_wall_that_pushes_the_cylinder_down_is_no_joint() -> None:

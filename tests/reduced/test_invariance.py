@@ -13,13 +13,13 @@ EL_CENTRO = el_centro_1940()
 MODELS = ["recess", "flat"]
 
 
-def twin_difference(model, until):
+def copy_difference(model, until):
     """Largest difference that one rounding of the record makes, in alpha: what sensitivity does."""
     plain = reduced.simulate(Case(PIER, EL_CENTRO, duration=until), **reduced.MODELS[model])
-    twin = reduced.simulate(
+    copy = reduced.simulate(
         Case(PIER, EL_CENTRO.scaled(1.0 + 2e-16), duration=until), **reduced.MODELS[model]
     )
-    return np.abs(plain.tilt - twin.tilt).max() / PIER.alpha
+    return np.abs(plain.tilt - copy.tilt).max() / PIER.alpha
 
 
 @pytest.mark.parametrize("model", MODELS)
@@ -74,7 +74,7 @@ def test_other_changes_of_scale_and_frame_cost_no_more_than_rounding(model, chan
     tilt = other.tilt[skip : skip + len(plain.tilt) - 1]
     # Rounding enters at every step; ten times what one rounding of the record makes, or one part in
     # 1e10 where that is less. (The step control amplifies nothing: it decides alike.)
-    allowed = max(10.0 * twin_difference(model, until), 1e-8)
+    allowed = max(10.0 * copy_difference(model, until), 1e-8)
     assert np.abs(tilt - plain.tilt[:-1]).max() <= allowed * PIER.alpha
 
 
@@ -83,14 +83,14 @@ def test_other_changes_of_scale_and_frame_cost_no_more_than_rounding(model, chan
 def test_motion_of_one_component_stays_planar_at_any_azimuth(model, azimuth):
     one = GroundMotion(EL_CENTRO.acceleration * [1.5, 0.0], EL_CENTRO.time_step)
     planar = reduced.simulate(Case(PIER, one), plane=0.0)
-    twin = reduced.simulate(Case(PIER, one.scaled(1.0 + 2.0 ** (-52))), plane=0.0)
+    copy = reduced.simulate(Case(PIER, one.scaled(1.0 + 2.0 ** (-52))), plane=0.0)
     turned = reduced.simulate(Case(PIER, one.rotated(azimuth)), **reduced.MODELS[model])
     moving = turned.tilt > 0.0
     off = np.sin(turned.rolling_angle[moving] - azimuth)
     assert np.abs(off).max() <= 1e-14
     assert not turned.twist.any()
     # the component along the plane is rounded at every sample, ten times what one rounding makes
-    rounding = np.abs(twin.tilt - planar.tilt).max()
+    rounding = np.abs(copy.tilt - planar.tilt).max()
     assert np.abs(turned.tilt - planar.tilt).max() <= max(10.0 * rounding, 1e-10 * PIER.alpha)
 
 

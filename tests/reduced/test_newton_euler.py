@@ -127,7 +127,7 @@ class Scales(NamedTuple):
 
     theta: Any  # theta''
     force: Any
-    couple: Any  # and S'
+    moment: Any  # and S'
     Lambda: Any  # Lambda'
 
 
@@ -139,7 +139,7 @@ def scales_of(given: Sample, state: State) -> Scales:
     return Scales(
         theta=force * size / given.body.A,
         force=force,
-        couple=size * (push + size * theta * swing * roll),
+        moment=size * (push + size * theta * swing * roll),
         Lambda=size * (push * theta + size * swing * twist),
     )
 
@@ -162,8 +162,8 @@ def test_recess(seed: int) -> None:
         found = contact_force(
             body, given.theta, given.omega, given.phi, given.Lambda, 0.0, *given.ground, False
         )
-        expected = (*polar(motion.force, given.phi), motion.couple)
-        assert_close(found, expected, (scale.force, scale.force, scale.force, scale.couple))
+        expected = (*polar(motion.force, given.phi), motion.moment)
+        assert_close(found, expected, (scale.force, scale.force, scale.force, scale.moment))
 
 
 @pytest.mark.parametrize("seed", range(100, 140))
@@ -173,7 +173,7 @@ def test_rolling(seed: int) -> None:
     with mp.workdps(DIGITS):
         state = state_of(given)
         motion = newton_euler(body, state, vector(*given.ground), recess=False)
-        assert motion.couple == 0
+        assert motion.moment == 0
         Lambda_rate, S_rate = momenta_rates(body, state, motion)
         tau_rate = state.phi_rate + state.psi_rate
         scale = scales_of(given, state)
@@ -187,7 +187,7 @@ def test_rolling(seed: int) -> None:
                 abs(state.phi_rate),
                 scale.Lambda,
                 abs(tau_rate),
-                scale.couple,
+                scale.moment,
             ),
         )
         found = contact_force(
@@ -196,7 +196,7 @@ def test_rolling(seed: int) -> None:
         assert_close(
             found,
             (*polar(motion.force, given.phi), mp.mpf(0)),
-            (scale.force, scale.force, scale.force, scale.couple),
+            (scale.force, scale.force, scale.force, scale.moment),
         )
 
 
@@ -242,8 +242,8 @@ def test_force_in_world_axes_over_the_weight(seed: int, free_twist: bool) -> Non
         weight, scale = mp.mpf(given.body.g), scales_of(given, state)
         assert_close(
             tuple(found[0, 2:]),
-            tuple(component / weight for component in (*motion.force, motion.couple)),
-            tuple(size / weight for size in (scale.force, scale.force, scale.force, scale.couple)),
+            tuple(component / weight for component in (*motion.force, motion.moment)),
+            tuple(size / weight for size in (scale.force, scale.force, scale.force, scale.moment)),
         )
         assert_close((found[0, 0],), (state.phi_rate,), (abs(state.phi_rate),))
         # a body that stands goes with the ground

@@ -1,7 +1,7 @@
 """An independent reference: the rigid body in space by Newton and Euler, in vectors.
 
 Nothing is shared with the package but the constants of the body. The body touches the ground at the
-lowest point of its rim, which does not slip; what follows for force, couple of the recess and the
+lowest point of its rim, which does not slip; what follows for force, moment of the recess and the
 accelerations of the Euler angles is the solution of one linear system, in as many digits as the
 caller sets with mpmath.
 """
@@ -34,7 +34,7 @@ class Motion(NamedTuple):
     phi: Any
     psi: Any
     force: Vector  # (3,) of the ground on the body, world axes
-    couple: Any  # of the recess along z_world + z_body
+    moment: Any  # of the recess along z_world + z_body
 
 
 def vector(*components: Any) -> Vector:
@@ -42,7 +42,7 @@ def vector(*components: Any) -> Vector:
 
 
 def newton_euler(body: Body, state: State, ground: Vector, recess: bool) -> Motion:
-    """Solve for the accelerations, the contact force and the couple of the recess."""
+    """Solve for the accelerations, the contact force and the moment of the recess."""
     e_z, e_tilt, axis, radius = frame(state)
     frame_rate = (
         state.phi_rate * e_z + state.theta_rate * e_tilt
@@ -56,11 +56,11 @@ def newton_euler(body: Body, state: State, ground: Vector, recess: bool) -> Moti
     spin_rate = np.cross(frame_rate, state.theta_rate * e_tilt + state.psi_rate * axis)
     columns = (e_tilt, e_z, axis)
 
-    # unknowns theta'', phi'', psi'', three components of the force, couple
+    # unknowns theta'', phi'', psi'', three components of the force, moment
     matrix, right = mp.zeros(7, 7), mp.zeros(7, 1)
     # Newton: force = ground + gravity + d(spin x arm)/dt, the mass centre turning about the contact point
     known_force = ground + body.g * e_z + np.cross(spin_rate, arm) + np.cross(spin, arm_rate)
-    # Euler about the mass centre: -arm x force + couple (e_z + axis) = d(inertia spin)/dt
+    # Euler about the mass centre: -arm x force + moment (e_z + axis) = d(inertia spin)/dt
     known_moment = inertia @ spin_rate + np.cross(spin, inertia @ spin)
     for i in range(3):
         for k, column in enumerate(columns):
@@ -74,7 +74,7 @@ def newton_euler(body: Body, state: State, ground: Vector, recess: bool) -> Moti
         right[i], right[3 + i] = known_force[i], known_moment[i]
     if recess:  # psi'' = -phi''
         matrix[6, 1] = matrix[6, 2] = 1
-    else:  # open ground: no couple
+    else:  # flat ground: no moment
         matrix[6, 6] = 1
     solution = mp.lu_solve(matrix, right)
     return Motion(solution[0], solution[1], solution[2], vector(*solution[3:6]), solution[6])

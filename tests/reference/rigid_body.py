@@ -2,7 +2,7 @@
 
 The state is that of a rigid body in space, its axis and its angular velocity, and the equations are those of
 Newton and Euler in vectors. The base touches the ground at the lowest point of its rim, which does not slip;
-in the recess a couple along z_world + z_body keeps the angular velocity across that direction. Pair of order
+in the recess a moment along z_world + z_body keeps the angular velocity across that direction. Pair of order
 8 of Dormand and Prince. Rules of the contract: uplift at f >= 0 towards the inertia force, rest threshold,
 still ground after the record, on which it is decided whether a run in motion overturns.
 """

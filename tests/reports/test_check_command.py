@@ -16,7 +16,7 @@ from rockwobble.compare.check import FAILED, NOT_RUN, PASSED, layers
 from rockwobble.compare.check.finding import Bound, Finding, at_most, not_run
 from rockwobble.compare.storage.files import replace_files
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.check import as_junit, headline, page
+from rockwobble.reports.pages.check import as_junit, check_page, headline
 
 FAST = ["--only", "conserved", "--only", "residual"]
 
@@ -138,7 +138,7 @@ def test_junit_is_xml_whatever_an_engine_says() -> None:
 
 
 def test_markdown_has_what_is_wrong_first() -> None:
-    text = page([GOOD, BAD, LEFT], {"numpy": "2"}, 3.0).markdown()
+    text = check_page([GOOD, BAD, LEFT], {"numpy": "2"}, 3.0).markdown()
     lines = text.splitlines()
     assert lines[2] == "1 of 3 checks FAILED (1 not run), in 3 s."
     assert lines[6] == "| contact of x | El ∣ Centro | 0.5 alpha | 0.1 | why |"

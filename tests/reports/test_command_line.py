@@ -295,6 +295,13 @@ def test_help_gives_an_example(command, capsys):
     assert f"Example: rockwobble {command} --" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize("command", ["compare", "simulate", "advise"])
+def test_help_names_every_engine(command, capsys):
+    assert call(command, "--help") == 0
+    said = capsys.readouterr().out
+    assert [name for name in engine_packages() if name not in said] == []
+
+
 def test_no_command_prints_the_help(capsys):
     assert call() == 0
     assert "compare" in capsys.readouterr().out

@@ -16,7 +16,7 @@ from rockwobble.reports.pages.comparison.findings import (
     headline,
     reason,
 )
-from rockwobble.reports.pages.words.diagnostics import counted, failure, sentence, sentences
+from rockwobble.reports.pages.words.diagnostics import counted, failure, remarks, sentence
 from rockwobble.reports.pages.words.sentences import small
 
 LENGTH = 50.0
@@ -182,8 +182,8 @@ WORDS = {
         {"duration": 3.0, "size": 1e-6, "bound": 2.0},
     ),
     "not_extrapolated": (
-        "it is not extrapolated from 2 s on, but the run at the finest time step: the runs part there",
-        {"detail": "parted"},
+        "it is not extrapolated from 2 s on, but the run at the finest time step: the runs diverge there",
+        {"detail": "diverged"},
     ),
     "missed_pass": ("2 near passes fell between two samples, first at 2 s", {"size": 2}),
     "note": ("positions are in mm", {"detail": "positions are in mm"}),
@@ -201,7 +201,7 @@ def test_each_code_has_words_with_its_numbers(code):
 
 def test_words_are_joined_counted_and_told_from_failures():
     slipped, gained = Diagnostic(code="slip", time=1.0), Diagnostic(code="energy_gain", time=2.0)
-    assert sentences([slipped, slipped]) == "contact slipped from 1 s on; contact slipped from 1 s on"
+    assert remarks([slipped, slipped]) == "contact slipped from 1 s on; contact slipped from 1 s on"
     assert failure([slipped, gained]) == "the engine gained energy that nothing supplied at 2 s"
     assert counted([["slip", "slip"], ["slip", "lift_off"], ["energy_gain"], [""]]) == [
         "2 slipped",

@@ -71,7 +71,7 @@ def test_engines_that_follow_the_models_pass(suite) -> None:
 
 
 def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite, in_this_process) -> None:
-    # open ground moves by another model, which shows on a squat cylinder at once
+    # flat ground moves by another model, which shows on a squat cylinder at once
     pytester = suite(bounded('tilt_rms = 1e-5\nagreement_time = 0.8\nreference = "recess"'))
     result = pytester.runpytest("-k", "alpha and not 0.2", "-W", "error")
     result.assert_outcomes(passed=1, failed=1)

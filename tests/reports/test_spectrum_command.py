@@ -13,7 +13,6 @@ from rich.console import Console
 
 from rockwobble import reduced
 from rockwobble.compare.storage.manifest import Manifest, read_results
-from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast
 from rockwobble.compare.studies.spectrum.result import KIND, OverturningSpectrum, safe_islands, spectrum_of
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, SERIES, SPATIAL
 from rockwobble.compare.studies.spectrum.study import overturning_spectrum
@@ -125,7 +124,8 @@ def spectrum() -> OverturningSpectrum:
 def said(found: OverturningSpectrum, checked: pd.DataFrame | None = None, **columns: object) -> str:
     """Return the words of the page of a spectrum; `columns` stand in the table of the lowest."""
     lowest = found.lowest_frame().assign(**({"confirmed": True} | columns))
-    tables = {"lowest": lowest, "islands": safe_islands(found), "contrast": planar_contrast(found)}
+    # the contrast is made from the cells: columns of earlier versions had other names
+    tables = {"lowest": lowest, "islands": safe_islands(found)}
     tables["checked"] = pd.DataFrame({"agrees": [True], "sensitive": [False]}) if checked is None else checked
     manifest = Manifest(kind=KIND, command="rockwobble spectrum", versions={"numpy": "2"})
     console = Console(file=io.StringIO(), width=100_000)

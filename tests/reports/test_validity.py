@@ -64,7 +64,7 @@ def test_the_headline_says_what_the_records_show(found: Validity) -> None:
     document = changed(found, "records", same)
     assert "**In an ideal recess the engine has the model's peak tilt: over 40 records" in document
     assert (
-        "In a real recess, a ring of walls, nine records in ten are within"
+        "In a ring (a recess with walls and clearance) nine records in ten are within"
         in document.split("What this shows")[0]
     )
     off = same.assign(peak=same["peak"].where(same["method"] != "recess", 1.2 * same["peak"]))

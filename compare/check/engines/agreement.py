@@ -28,7 +28,7 @@ from ..finding import Bound, Finding, at_most, not_run
 from . import own_bounds
 
 # RMS of the tilt difference [alpha] at a step of 1e-4 s (R = 6 m), from release: 2e-6 tan^2(alpha) was
-# measured with both engines on the slender, and from rest 6e-5 to 1.4e-4, which near passes magnify
+# measured with MuJoCo and PyBullet on the slender, and from rest 6e-5 to 1.4e-4, which near passes magnify
 RELEASED, RELEASED_LEAST = 1e-5, 1e-7
 FROM_REST = 5e-4
 ENDS = Bound(0.0, "the run must reach its end", "alpha")
@@ -85,17 +85,17 @@ def _as_measured_once(job: Job, name: str, model: Trace, trace: Trace, predictio
     case, run = job.case, job.run
     until = min(case.length, trace.first("wall_contact"))
     pair = make_pair(case.cylinder, model, trace, until=until)
-    # what near passes have magnified says nothing: half of the way to where the traces have to part
+    # what near passes have magnified says nothing: to half of the predicted agreement time
     end = min(pair.end, pair.start + 0.5 * prediction.length) if prediction.reason else pair.end
     part = f"{run.engine} ({run.support}), its contact and step, or the reduced model"
     if not any(math.isfinite(each.uplift_time) for each in (model, trace)):
         return not_run(name, part, "neither uplifts: there is nothing to compare")
     if end <= pair.start:
-        return not_run(name, part, "traces have to part at once: there is nothing to compare")
+        return not_run(name, part, "the agreement is predicted to end at once: there is nothing to compare")
     apart = tilt_rms(make_pair(case.cylinder, model, trace, until=end))
-    horizon = agreement_time(pair)
-    words = verdict(horizon.length, horizon.diverged, prediction.length, prediction.reason)
-    note = f"to {end:.3g} s" + (f"; they part {words}" if horizon.diverged else "")
+    agreement = agreement_time(pair)
+    words = verdict(agreement.length, agreement.diverged, prediction.length, prediction.reason)
+    note = f"to {end:.3g} s" + (f"; they diverge {words}" if agreement.diverged else "")
     bound = Bound(
         tilt_bound(case, trace.time_step), "error of contact at this step, first order in it", "alpha"
     )

@@ -1,4 +1,4 @@
-"""What a run may be off where nobody states it: measured on the run itself, by a second one of another step.
+"""Bounds of runs for which nobody states any: measured on the run itself, by a second one of another step.
 
 Every case is held against its model twice. As it is: engines err at uplift, and near passes magnify what they
 err, so the bound is a wide one. It grows with the difference of the two steps and with copies of the model:
@@ -125,7 +125,7 @@ def _held(bench: Bench, job: Job, name: str, model: Trace, trace: Trace, *, clea
     limit = min([model.first(*_LIMITS), trace.first(*_LIMITS), *landings(model)[:1], job.case.length])
     within = (time >= np.nan_to_num(model.uplift_time)) & (time < limit) & (clean | (allowed < AGREEMENT))
     if np.count_nonzero(within) < 2:
-        return not_run(name, part, "traces have to part at once: there is nothing to compare")
+        return not_run(name, part, "the agreement is predicted to end at once: there is nothing to compare")
     until, step = float(time[within][-1]), rms(allowed[within])
     most = (CLEAN if clean else WIDE) * step + LEAST
     grown = "" if clean else " and what as large an error grows to"
@@ -157,7 +157,7 @@ def _apart(one: Trace, other: Trace) -> Array:
 
 
 def _copies(bench: Bench, job: Job, model: Trace, trace: Trace, by_step: Array) -> list[Array]:
-    """How far copies of the model go [alpha]: off by as much as the engine at first, and closing as it does.
+    """Distance of copies of the model [alpha]: off by as much as the engine at first, and closing as it does.
 
     A base that opens by less than the contact sinks in stays closed in every engine, at every step: after
     weak shaking a model chatters there, and the strong motion that follows finds it elsewhere.

@@ -1,4 +1,4 @@
-"""Who is to blame where an engine and a model differ by more than they may: another engine decides."""
+"""Suspect part where an engine and a model differ by more than they may: another engine decides."""
 
 from __future__ import annotations
 

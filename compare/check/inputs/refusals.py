@@ -41,7 +41,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 
 def _accepted(makers: Makers) -> list[str]:
-    """Return what was made, or refused without the word that its name begins with."""
+    """Return the values that were made, or refused without the word that its name begins with."""
     wrong = []
     for name, make in makers.items():
         try:

@@ -145,15 +145,15 @@ def _agreement() -> dict[str, float]:
     def parts(off: Array | float) -> Agreement:
         return agreement_time(_pair(reference, made(TIME, reference.tilt + off * ALPHA)))
 
-    up, horizon, same, early = parts(0.01 * ramp), parts(-0.01 * ramp), parts(0.0099), parts(0.02)
+    up, agreement, same, early = parts(0.01 * ramp), parts(-0.01 * ramp), parts(0.0099), parts(0.02)
     cut = _pair(reference, made(TIME[:501], reference.tilt[:501]))
     broken = agreement_time(cut, broken=True)
     return {
-        "a ramp upwards": 0.0 if up == horizon and horizon.diverged else math.nan,
-        "end of the agreement": horizon.end - TIME[601],
-        "length from the uplift": horizon.length - 5.01,
-        "passes within it": agreed_passes(reference, horizon) - 3.0,
-        "closest of them": closest_pass(reference, horizon) - 0.01,
+        "a ramp upwards": 0.0 if up == agreement and agreement.diverged else math.nan,
+        "end of the agreement": agreement.end - TIME[601],
+        "length from the uplift": agreement.length - 5.01,
+        "passes within it": agreed_passes(reference, agreement) - 3.0,
+        "closest of them": closest_pass(reference, agreement) - 0.01,
         "a difference just below 1 %": same.end - 10.0 + float(same.diverged),
         "end of a trace that failed": broken.length - 4.0 + (1.0 - float(broken.diverged)),
         "a difference from the start": early.length,

@@ -58,7 +58,7 @@ def check(bench: Bench) -> Iterator[Finding]:
     told = np.nan_to_num(found.lowest_frame()["on_grid"].to_numpy())
     unlike = [f"{a:g}, not {b:g}" for a, b in zip(told, on_grid, strict=True) if a != b]
     yield none_wrong(
-        "lowest intensities on the grid that are not", unlike, "single runs, 0 where none falls", PART
+        "lowest intensities on the grid that are not", unlike, "single runs, 0 where none overturns", PART
     )
     reason = f"single runs from the uplift up, at each {STEP:g}"
     yield none_wrong("lowest overturning intensities that are not the lowest", wrong, reason, PART)
@@ -70,7 +70,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 
 def _wrong(size: float, lowest: float, start: float, options: dict[str, Any]) -> Iterator[str]:
-    """Yield what single runs say against the lowest intensity that overturns."""
+    """Yield objections of single runs to the lowest intensity that overturns."""
     # within a step of the search nobody says which is the lowest
     below = np.arange(start, lowest - STEP if math.isfinite(lowest) else LEVELS[-1], STEP)
     fell = [level for level in below if _peak(size, level, options) > 1.0]

@@ -146,7 +146,7 @@ def residuals(
     curves: tuple[Array, Array],
     ground: Array,
 ) -> tuple[Array, Array]:
-    """Return what a motion leaves of Lagrange's equations (12) for tilt and rolling angle (n,) [m^2/s^2].
+    """Return the residuals of Lagrange's equations (12) for tilt and rolling angle (n,) [m^2/s^2].
 
     `place`, `rates` and `curves` are tilt and rolling angle (n,), their rates and their second derivatives;
     `ground` (n, 3) is the acceleration of the ground.

@@ -73,7 +73,7 @@ NEVER = {
 
 
 def check_model(model: Model, *, support: str = "recess", tolerance: float = TOLERANCE) -> Iterator[Finding]:
-    """Yield what the checks find; one that cannot run says why.
+    """Yield the findings of the checks; one that cannot run says why.
 
     Parameters
     ----------

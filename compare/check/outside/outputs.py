@@ -1,4 +1,4 @@
-"""What a model of somebody else gives, and how it is called.
+"""Call of a model of somebody else, and its output.
 
 A model is any callable `model(case, support)` that takes a `rockwobble.Case` and "recess" or "flat", and
 returns a mapping, a table or an object with
@@ -68,7 +68,7 @@ def load_model(name: str) -> Model:
 
 
 def outputs_of(result: object) -> Outputs:
-    """Return what a model gave.
+    """Return the output of a model.
 
     Raises
     ------

@@ -22,7 +22,7 @@ _LEVEL = 1e-3  # of alpha
 def check_trajectory(
     given: Outputs, case: Case, *, support: str = "recess", tolerance: float = TOLERANCE
 ) -> Iterator[Finding]:
-    """Yield what the checks find on one motion; what one motion cannot tell is listed.
+    """Yield the findings of the checks on one motion; what one motion cannot tell is listed.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Difference of an external trajectory and a model: in tilt, azimuth and path, from when, and how large.
 
-Two good traces of one problem part at some time (`rockwobble.compare.metrics.agreement`), and near upright
+Two good traces of one problem diverge at some time (`rockwobble.compare.metrics.agreement`), and near upright
 no azimuth means anything. So azimuth and path are compared while the tilts agree, and the azimuth
 where both lean by more than a share of the largest tilt there.
 """
@@ -21,8 +21,8 @@ from ...traces.motion import Motion, on_samples_of
 
 Mask = NDArray[np.bool_]
 
-# of the length of the agreement, where the tilts part: towards its end the azimuths part already
-_BEFORE_PARTING = 0.8
+# of the length of the agreement, where the tilts diverge: towards its end the azimuths do already
+_BEFORE_DIVERGENCE = 0.8
 # of the azimuth, weighted by the tilt [rad]
 AZIMUTH = math.radians(3.0)
 # of the path, over b, besides what that makes of it: R times 1 % of alpha is about as much
@@ -112,7 +112,7 @@ def difference(reference: Motion, motion: Motion, *, cylinder: Cylinder, start: 
         )
     start = max(start, float(model.time[0]))
     tilt, end = _tilt(model, trial, cylinder.alpha)
-    covered = start + _BEFORE_PARTING * (end - start) if tilt.differs else end
+    covered = start + _BEFORE_DIVERGENCE * (end - start) if tilt.differs else end
     # to the sample: rounding must not take the last one away
     within, agreed = model.time <= covered + 1e-9, model.time <= end + 1e-9
     return Difference(

@@ -67,7 +67,7 @@ class Mistake:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Frame:
-    """What brings a trajectory into the axes of the model: y reversed if mirrored, then a turn.
+    """Change of a trajectory into the axes of the model: y reversed if mirrored, then a turn.
 
     The angle is counter-clockwise, in (-pi, pi] [rad].
     """

@@ -1,4 +1,4 @@
-"""What is wrong with the path of the mass centre: its axes, the sense of z, its unit, its origin."""
+"""Mistakes in the path of the mass centre: its axes, the sense of z, its unit, its origin."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What there is to say of an external trajectory against a model, in numbers and codes."""
+"""Verdict on an external trajectory against a model, in numbers and codes."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ class Verdict:
         if self.explanation is not None and self.mistakes:
             own |= _columns_of("alternative_mistake", self.explanation.alternatives)
             left = self.explanation.left
-            # as of the agreement horizon: the length of the run where they never part
+            # as of the agreement time: the length of the run where they never diverge
             own["differs_without_mistake"] = "; ".join(left.differs_in)
             own["agreement_without_mistake"] = left.length if left.tilt.differs else left.end
         if azimuth is not None:

@@ -1,1 +1,1 @@
-"""What to make of one case: how it ends, which of its results to trust, and what the support must supply."""
+"""Advice on one case: how it ends, which of its results to trust, and what the support must supply."""

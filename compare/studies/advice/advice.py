@@ -1,4 +1,4 @@
-"""What was run for one case, and the numbers that it comes to."""
+"""Result of an advice: the runs of one case, and the numbers that they come to."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ OTHER = "other support"  # group of the copies on the other support
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class Advice(Shown):
-    """What was run for one case.
+    """Advice on one case.
 
     Attributes
     ----------
@@ -53,7 +53,7 @@ class Advice(Shown):
     lowest : mapping
         Of each series of `scales`.
     prediction : Prediction
-        When reduced model and engine have to part.
+        Predicted agreement time of reduced model and engine.
     verification : Verification or None
     trust : Trust
     form : Contrast or None
@@ -163,7 +163,7 @@ class Advice(Shown):
         return found
 
     def recess(self) -> dict[str, float] | None:
-        """Return what a recess must be built for, by the worst 95th percentiles of groups that stand.
+        """Return the design demands of a recess, by the worst 95th percentiles of groups that stand.
 
         None on flat ground, and where no group stands.
 

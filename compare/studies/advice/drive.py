@@ -1,4 +1,4 @@
-"""Everything that is to be known of one case before its results are used, from one call."""
+"""Advice on one case before its results are used: all of its runs, from one call."""
 
 from __future__ import annotations
 
@@ -145,7 +145,7 @@ def advise(
 
 
 def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -> dict[str, object] | None:
-    """Return what the vertical component of ground motion changes in the largest tilt, copy by copy.
+    """Return the effect of the vertical component of ground motion on the largest tilt, copy by copy.
 
     Of the record itself or, where it has none, of El Centro 1940 as strong: what it usually changes.
 
@@ -199,7 +199,7 @@ def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | N
 def _to_the_fall(case: Case, end: float) -> Case:
     """Return a case that takes until its fall at `end` [s], after what was asked for, over still ground.
 
-    All that is run for it then sees the fall: the engine, the copies, and when two methods part.
+    All that is run for it then sees the fall: the engine, the copies, and when two methods diverge.
     """
     motion = case.motion
     if motion is not None and case.length < motion.duration:

@@ -36,7 +36,7 @@ CRITERIA: Mapping[str, tuple[str, str, str]] = {
         "it is lost for longer: the models do not know flight",
     ),
     "trace": (
-        "the largest tilt comes before two methods, or copies 1 % off, part",
+        "the largest tilt comes before two methods, or copies 1 % off, diverge",
         "it comes after: only statistics can be trusted",
         "never: statistics remain",
     ),
@@ -46,9 +46,9 @@ CRITERIA: Mapping[str, tuple[str, str, str]] = {
         "never: the percentiles say it",
     ),
     "engine": (
-        "it parts from the model when predicted, or later, and comes to the same end",
+        "it diverges from the model when predicted, or later, and comes to the same end",
         "it comes to another end, or failed",
-        "it parts earlier than half of what is predicted: neither may be trusted",
+        "it diverges earlier than half of what is predicted: neither may be trusted",
     ),
 }
 

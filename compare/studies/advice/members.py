@@ -36,7 +36,7 @@ def fall_of(trace: Trace) -> float:
 
 
 def demands_of(trace: Trace) -> dict[str, float]:
-    """Return what a run asks of ground and recess, by its samples, until it last passes alpha if it falls.
+    """Return the demands of a run on ground and recess, until it last passes alpha if it overturns.
 
     Returns
     -------

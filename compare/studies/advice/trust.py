@@ -1,4 +1,4 @@
-"""How far a trace can be trusted: until two methods part, or the same method on data known to a percent."""
+"""Trust in a trace: until two methods diverge, or the same method on data known to a percent."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ _STEP = 1e-4  # [s] the default step of the engines at 6 m and 9.81 m/s^2, for a
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Trust:
-    """How far a trace can be trusted.
+    """Time until which a trace can be trusted, and the reason.
 
     Attributes
     ----------
@@ -37,7 +37,7 @@ class Trust:
     until : float
         [s] in the time of the run.
     because : {"", "methods", "data"}
-        What ends it: two sound methods part there, or the copies do.
+        What ends it: two sound methods diverge there, or the copies do.
     """
 
     kind: Literal["trace", "peak", "statistics"]
@@ -78,7 +78,7 @@ class Verification:
 
 
 def trust_of(methods_until: float, data_until: float, peak_time: float, end: float) -> Trust:
-    """Return how far a trace can be trusted.
+    """Return the time until which a trace can be trusted, and what ends it.
 
     Parameters
     ----------
@@ -105,13 +105,13 @@ def band_of(case: Case, traces: Sequence[Trace]) -> pd.DataFrame:
 
 
 def spread_from(band: pd.DataFrame, peak: float) -> float:
-    """Return when the copies are spread over half of the peak tilt [s]; inf where they never are."""
+    """Return the time at which copies are spread over half of the peak tilt [s]; inf where they never are."""
     wide = np.flatnonzero(band["high"] - band["low"] > LOST * min(peak, 1.0))
     return float(band["time"].iloc[wide[0]]) if len(wide) else math.inf
 
 
 def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
-    """When an engine at its default step would have to part, from the reduced models alone."""
+    """Predicted divergence of an engine at its default step, from the reduced models alone."""
     if trace.outcome == "failed" or not math.isfinite(trace.uplift_time):
         return Prediction(length=case.length, reason="")
     step = _STEP * time_scale(case)

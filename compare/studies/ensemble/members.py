@@ -1,4 +1,4 @@
-"""What the members of an ensemble are: one problem many times over, each a little or altogether different."""
+"""Members of an ensemble: one problem many times over, each a little or altogether different."""
 
 from __future__ import annotations
 

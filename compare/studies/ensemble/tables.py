@@ -44,7 +44,7 @@ class Pairs:
         return log_ratios(self.peaks, self.against, self.overturned, self.against_overturned)
 
     def contrast(self) -> Contrast | None:
-        """Return what tells the methods apart; None where fewer than two members ran by both."""
+        """Return the contrast of the methods; None where fewer than two members ran by both."""
         if np.count_nonzero(~self.failed) < 2:
             return None
         return contrast(self.peaks, self.against, self.overturned, self.against_overturned)

@@ -1,1 +1,1 @@
-"""What breaks first: every extreme by every method, each verdict with what backs it."""
+"""Extremes: every extreme by every method, each verdict with what backs it."""

@@ -1,4 +1,4 @@
-"""Every extreme by every method: one row each."""
+"""Scan of every extreme by every method: one row each."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def methods() -> tuple[Run, ...]:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Extremes(Shown):
-    """What a scan found.
+    """Verdicts of a scan of the extremes.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""Whether a run is right, how wrong it is, and whether one of its diagnostics explains why.
+"""Verdict on a run: its error, and whether one of its diagnostics explains it.
 
 What a run is held against:
 
@@ -54,7 +54,7 @@ _EXPLAINS_REDUCED = frozenset({"side"})
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """What is found of one run.
+    """Verdict on one run.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a fragility consists of: cylinders, motions at levels or as they are, and methods."""
+"""Plan of a fragility: cylinders, motions at levels or as they are, and methods."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a fragility finds, made from its runs."""
+"""Result of a fragility, made from its runs."""
 
 from __future__ import annotations
 
@@ -95,7 +95,7 @@ class Fragility(Shown):
 
 
 def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, about: Mapping[str, Any]) -> Fragility:
-    """Return what runs say, of the plan that `about` states."""
+    """Return the fragility by the runs of the plan that `about` states."""
     if (runs["outcome"] == "failed").all():
         raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")
     blocks = blocks_of(runs, points, about["limits"], str(about["measure"]))
@@ -121,7 +121,7 @@ def stored_fragility(results: Results) -> Fragility:
 
 
 def manifest_of(found: Fragility, command: str = "") -> Manifest:
-    """Return what made a fragility, with its medians and the contrasts of overturning as headline."""
+    """Return the manifest of a fragility, with its medians and the contrasts of overturning as headline."""
     fits = found.fits[found.fits["limit"] == OVERTURNED]
     headline = {
         f"{row['cylinder']}, {row['method']}, median": row["median"] for row in fits.to_dict("records")

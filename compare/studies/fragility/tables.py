@@ -149,7 +149,7 @@ def _differences(pair: Sequence[Curves]) -> Array:
 
 
 def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, Any]:
-    """Return what tells two curves apart.
+    """Return the contrast of two curves.
 
     Parameters
     ----------

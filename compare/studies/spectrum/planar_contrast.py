@@ -1,4 +1,4 @@
-"""How unconservative a planar analysis is: where it stands and the cylinder in three dimensions falls."""
+"""Contrast of planar analysis and three dimensions: where one of them overturns and the other stands."""
 
 from __future__ import annotations
 
@@ -22,21 +22,21 @@ CONTRAST_COLUMNS: dict[str, str] = {
     "smallest": "smallest size of the band [m]",
     "largest": "largest size of the band [m]",
     "cells": "cells of the band, those with a failed run left out",
-    "falls": "share of cells in which the 3D model overturns",
-    "planar_falls": "share in which at least one planar run overturns",
+    "overturned": "share of cells in which the 3D model overturns",
+    "planar_overturned": "share in which at least one planar run overturns",
     "missed": "share in which the 3D model overturns and neither planar run does",
     "overcalled": "share in which at least one planar run overturns and the 3D model does not",
     "larger_tilt": "share in which the 3D model tilts more than both planar runs",
     "lower_edge": "share of sizes whose lowest found to overturn is lower in 3D than in both planes",
     "higher_edge": "share of sizes whose lowest found to overturn is higher in 3D than in a plane",
-    "lowest": "median of the lowest overturning intensity found in 3D [g tan alpha], inf: most do not fall",
+    "lowest": "median of the lowest overturning intensity found in 3D [g tan alpha], inf: most stand",
     "planar_x_lowest": "the same of the planar east-west runs",
     "planar_y_lowest": "the same of the planar north-south runs",
 }
 
 
 def planar_contrast(spectrum: OverturningSpectrum, edges: Sequence[float] | None = None) -> pd.DataFrame:
-    """Return how 3D and planar runs differ, one row for each band of sizes and a last one for all.
+    """Return the differences of 3D and planar runs, one row for each band of sizes and a last one for all.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def planar_contrast(spectrum: OverturningSpectrum, edges: Sequence[float] | None
 
 
 def edge_difference(spectrum: OverturningSpectrum) -> Array:
-    """Return how much higher the lowest overturning intensity is in 3D than in the worse plane, (n_R,) [-].
+    """Return the lowest overturning intensity in 3D less that in the worse plane, (n_R,) [-].
 
     Negative where the planar analysis is unconservative; infinite where only one of them was found to
     overturn, 0 where none was or the two are no further apart than `search_step`.
@@ -109,8 +109,8 @@ def _row(spectrum: OverturningSpectrum, group: NDArray[np.intp]) -> dict[str, ob
         "smallest": float(spectrum.semidiagonals[group[0]]),
         "largest": float(spectrum.semidiagonals[group[-1]]),
         "cells": int(known.sum()),
-        "falls": _share(space),
-        "planar_falls": _share(planar),
+        "overturned": _share(space),
+        "planar_overturned": _share(planar),
         "missed": _share(space & ~planar),
         "overcalled": _share(planar & ~space),
         "larger_tilt": _share(tilt > np.maximum(tilt_x, tilt_y)),

@@ -1,4 +1,4 @@
-"""What an overturning spectrum holds, and its tables."""
+"""Result of an overturning spectrum, and its tables."""
 
 from __future__ import annotations
 
@@ -112,7 +112,7 @@ class OverturningSpectrum(Shown):
         return np.asarray(np.isnan(tilts).any(axis=0), dtype=np.bool_)
 
     def facts(self) -> dict[str, object]:
-        """Return what the tables do not hold, for a manifest."""
+        """Return the facts that the tables do not hold, for a manifest."""
         motion = {"name": self.motion.name, "time_step": self.motion.time_step}
         return {name: getattr(self, name) for name in _FACTS} | {"motion": motion}
 

@@ -148,7 +148,7 @@ def run_searches(
 def in_threads(
     function: Callable[..., T], *arguments: Iterable[object], workers: int | None = None
 ) -> Iterator[T]:
-    """Yield what a compiled function gives for each of its arguments, in order; an exception ends all."""
+    """Yield the values of a compiled function for each of its arguments, in order; an exception ends all."""
     with ThreadPoolExecutor(workers) as pool:
         try:
             yield from pool.map(function, *arguments)

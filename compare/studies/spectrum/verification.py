@@ -29,7 +29,7 @@ def check_cells(
     *,
     series: Sequence[str] = SERIES,
 ) -> pd.DataFrame:
-    """Run randomly chosen cells again as single runs, each beside a twin whose record differs by a hair.
+    """Run randomly chosen cells again as single runs, each beside a copy with a record stronger by a hair.
 
     Parameters
     ----------
@@ -43,8 +43,8 @@ def check_cells(
     -------
     DataFrame
         One row for each cell: series, semidiagonal [m], intensity [-], peak_tilt of the grid,
-        single_peak_tilt and twin_peak_tilt [rad], agrees (to 2 % of the peak tilt), and sensitive (single
-        run and twin do not agree either).
+        single_peak_tilt and copy_peak_tilt [rad], agrees (to 2 % of the peak tilt), and sensitive (single
+        run and copy do not agree either).
 
     Raises
     ------
@@ -60,7 +60,7 @@ def check_cells(
     for which, i, j in zip(*np.unravel_index(np.sort(chosen), shape), strict=True):
         name = series[which]
         peak = float(spectrum.peak_tilt[name][i, j])
-        single, twin = (
+        single, copy = (
             _single(spectrum, name, i, float(spectrum.scales[j]) * factor) for factor in (1.0, 1.0 + NUDGE)
         )
         rows.append(
@@ -70,9 +70,9 @@ def check_cells(
                 "intensity": float(spectrum.intensities[j]),
                 "peak_tilt": peak,
                 "single_peak_tilt": single,
-                "twin_peak_tilt": twin,
+                "copy_peak_tilt": copy,
                 "agrees": _agree(peak, single),
-                "sensitive": not _agree(twin, single),
+                "sensitive": not _agree(copy, single),
             }
         )
     return pd.DataFrame(rows)

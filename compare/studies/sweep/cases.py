@@ -42,7 +42,7 @@ class CaseChunk:
 
     @property
     def name(self) -> str:
-        """What it is, for whoever waits."""
+        """Description of the chunk, for whoever waits."""
         more = f" and {self.rows - 1} more" if self.rows > 1 else ""
         return f"{self.jobs[0].name}{more}"
 
@@ -111,7 +111,7 @@ class CaseSweep(Brief):
 
     @property
     def kind(self) -> str:
-        """What this is, for people."""
+        """Kind of the sweep, for people."""
         return "cases and runs"
 
     def chunks(self, size: int | None = None) -> Iterator[CaseChunk]:

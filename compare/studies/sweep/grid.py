@@ -44,7 +44,7 @@ class GridChunk:
 
     @property
     def name(self) -> str:
-        """What it is, for whoever waits."""
+        """Description of the chunk, for whoever waits."""
         where = f"tan alpha {self.tan_alpha:g}, R from {self.semidiagonals[0]:g} m, scale from"
         return f"{self.label}, {self.model}, {where} {self.scales[0]:g}"
 
@@ -157,7 +157,7 @@ class Grid(Brief):
 
     @property
     def kind(self) -> str:
-        """What this is, for people."""
+        """Kind of the sweep, for people."""
         return "grid of reduced runs"
 
     def chunks(self, size: int | None = None) -> Iterator[GridChunk]:

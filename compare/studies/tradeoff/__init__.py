@@ -1,1 +1,1 @@
-"""What accuracy costs: error against computing time of the reduced models, other solvers and the engines."""
+"""Trade-off of speed and accuracy of the reduced models, other solvers and the engines."""

@@ -1,4 +1,4 @@
-"""What follows from the points of a trade-off: computed from them, never typed in."""
+"""Conclusions from the points of a trade-off: computed from them, never typed in."""
 
 from __future__ import annotations
 
@@ -49,7 +49,7 @@ def costs(points: pd.DataFrame) -> pd.DataFrame:
 
 
 def plateaus(points: pd.DataFrame) -> pd.DataFrame:
-    """Return how the error of each line of an engine goes with its time step; lines of three points or more.
+    """Return the course of the error of each line of an engine with its step; lines of three points or more.
 
     Returns
     -------
@@ -86,7 +86,7 @@ def plateaus(points: pd.DataFrame) -> pd.DataFrame:
 
 
 def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
-    """Return what the rest rule saves and costs: problem, line, value, speed_up, error, error_without.
+    """Return the savings and the cost of the rest rule: problem, line, value, speed_up, error, error_without.
 
     Each line is held against the one with next to no rule at the same tolerance.
     """

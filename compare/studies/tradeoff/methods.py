@@ -29,7 +29,7 @@ _SUPPORTS = ("recess", "flat", "ring")
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Answer:
-    """What a method says of one case: the quantity, empty where it failed, and codes or its refusal."""
+    """Answer of a method to one case: the quantity, empty where it failed, and codes or its refusal."""
 
     quantity: Array
     said: str = ""

@@ -165,7 +165,7 @@ def peaks(*, quick: bool = False) -> Problem:
 
 
 def sampling_distance(problem: Problem, support: str) -> float:
-    """Return how far apart two ensembles as large as this one are by chance: median of a bootstrap [alpha].
+    """Return the distance of two ensembles as large as this one by chance: median of a bootstrap [alpha].
 
     No method needs to be better than that, because another earthquake changes more.
     """

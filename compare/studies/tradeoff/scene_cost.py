@@ -1,4 +1,4 @@
-"""What each part of an engine's scene costs: degrees of freedom, contacts, constraint rows, time of a step.
+"""Cost of each part of an engine's scene: degrees of freedom, contacts, constraint rows, time of a step.
 
 Every scene is opened anew in each round and all are timed in turn, round after round, so that a change of
 the machine's speed meets them alike; the ratio to the cheapest scene of the same engine is taken inside

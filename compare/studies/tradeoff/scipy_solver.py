@@ -109,7 +109,7 @@ def _departure(case: Case) -> float:
 
 
 def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: float) -> Array:
-    """Return what a problem asks, by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
+    """Return the answer to a problem by one of `SOLVERS`; nothing where it gave up or jumped over upright."""
     step, reference = problem.sample_step, problem.references["recess"].quantities[0]
     times = step * np.arange(math.ceil(rates.start / step), math.floor(rates.end / step) + 2)
     times = times[: int(np.searchsorted(times, rates.end + 1e-9))]
@@ -118,10 +118,10 @@ def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: fl
     def turns_back(t: float, y: Array) -> float:
         return float(y[1])
 
-    def falls(t: float, y: Array) -> float:
+    def overturns(t: float, y: Array) -> float:
         return float(y[0]) - 0.5 * math.pi
 
-    turns_back.direction, falls.terminal = -1.0, True  # type: ignore[attr-defined]
+    turns_back.direction, overturns.terminal = -1.0, True  # type: ignore[attr-defined]
     with np.errstate(all="ignore"):
         run = solve_ivp(
             rates.function,
@@ -129,7 +129,7 @@ def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: fl
             rates.state,
             name,
             t_eval=np.minimum(times, rates.end) if sampled else None,
-            events=None if sampled else (turns_back, falls),
+            events=None if sampled else (turns_back, overturns),
             rtol=rtol,
             atol=rtol * TOLERANCE_SCALE,
         )

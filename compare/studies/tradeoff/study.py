@@ -33,7 +33,7 @@ _COSTS = {"turn": 1.0, "shaken": 4.0, "peaks": 3.0, "scenes": 0.5}
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Tradeoff(Shown):
-    """What was measured.
+    """Measurements of a trade-off.
 
     Attributes
     ----------

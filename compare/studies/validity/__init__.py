@@ -1,1 +1,1 @@
-"""Where the two-degree-of-freedom model may be trusted: measured maps, and limits drawn from them."""
+"""Validity of the two-degree-of-freedom model: measured maps, and limits drawn from them."""

@@ -1,4 +1,4 @@
-"""Contact that gives: energy lost per pass, and what that does to the peak tilt."""
+"""Soft contact: energy lost per pass, and what that does to the peak tilt."""
 
 from __future__ import annotations
 

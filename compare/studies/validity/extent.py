@@ -1,4 +1,4 @@
-"""How far and how finely the limits are mapped: a quick look, and the full report."""
+"""Extent and resolution of the maps of the limits: a quick look, and the full report."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ def next_maximum(trace: Trace) -> tuple[float, float]:
 
 
 def needs_of(case: Case) -> Assumptions:
-    """Return what the recess model needs of ground and recess in a case."""
+    """Return the needs of the recess model of ground and recess in a case."""
     needs = reduced.simulate(case, rtol=_RTOL).assumptions
     assert needs is not None
     return needs

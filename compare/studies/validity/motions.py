@@ -51,7 +51,7 @@ def record_names(members: int) -> list[str]:
 
 
 def source_of(names: Iterable[str]) -> str:
-    """Return what the motions of an ensemble are, in words."""
+    """Return the source of the motions of an ensemble, in words."""
     kinds = {name.rsplit(" ", 1)[0] for name in names}
     return (
         "FEMA P-695 far-field records"

@@ -1,4 +1,4 @@
-"""A real recess, a ring of walls with clearance, inclination and friction, against the ideal one."""
+"""Rings, recesses with walls and clearance, of several inclinations and frictions, against the ideal one."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def has_room(case: Case, run: Run) -> bool:
 
 
 def losses(trace: Trace) -> Row:
-    """Return what a run in a recess of any kind cost.
+    """Return the losses of a run in a recess of any kind.
 
     outcome; first_contact with a wall (inf where there is none) and contact_time [s]; passes; loss of energy
     over the largest reached; rolled_out and at_end, distance from O of the place on which the cylinder would

@@ -33,7 +33,7 @@ _ENDS = {"least": "least median", "largest": "largest median", "05": "5 %", "95"
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Validity(Shown):
-    """What was measured.
+    """Measurements of the limits.
 
     Attributes
     ----------
@@ -118,7 +118,7 @@ def measure_task(task: Task) -> pd.DataFrame:
 
 
 def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent, command: str = "") -> Validity:
-    """Return what has just been measured here, with what made it."""
+    """Return the result of what was measured here, with what made it."""
     numbers = limits_of(tables)["records"]
     headline = {
         f"peak {where} over that of the model, {what}": numbers[f"{name}_{end}"]

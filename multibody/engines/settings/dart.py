@@ -11,7 +11,7 @@ from .values import GUIDE, build, in_range, whole
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DartSettings:
-    """What DART leaves to choose: hard contact has neither stiffness nor damping.
+    """Settings of DART: hard contact has neither stiffness nor damping.
 
     Attributes
     ----------

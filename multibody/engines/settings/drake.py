@@ -11,7 +11,7 @@ from .values import GUIDE, build, in_range, one_of
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class DrakeSettings:
-    """How Drake solves contact, in discrete time.
+    """Settings of Drake: contact in discrete time.
 
     Attributes
     ----------

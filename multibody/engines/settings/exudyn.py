@@ -15,7 +15,7 @@ from .values import build, in_range, one_of, whole
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ExudynSettings:
-    """How Exudyn integrates; an ideal rim leaves nothing else to set.
+    """Settings of Exudyn: its integrator; an ideal rim leaves nothing else to set.
 
     Attributes
     ----------

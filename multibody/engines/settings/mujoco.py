@@ -15,7 +15,7 @@ from .values import GUIDE, build, in_range, one_of, whole
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MujocoSettings:
-    """How MuJoCo steps and what its contact is made of.
+    """Settings of MuJoCo: its integrator and its contact.
 
     Attributes
     ----------
@@ -39,7 +39,7 @@ class MujocoSettings:
         Share of the slip velocity that one step removes, at most 2. The rim's material point moves on
         while it rolls, and friction, which has no memory, lets it creep by (1/friction_damping - 1/2) h
         times its acceleration. At 1.8 that is a ninth of what it is at 1 (the engine's default), and still
-        first order in h: from tan alpha 0.2 to 3 a released guided cylinder errs by 5e-6 alpha instead of
+        first order in h: from tan alpha 0.2 to 3 a release in the recess errs by 5e-6 alpha instead of
         1.3e-4. A cylinder that slides hops: friction of this kind lifts it, the more the stiffer it is.
     guide_stiffness : float
         Of each half of the guide, over the axial inertia [1/s^2]. (0.2/h)^2/4: the twist stays below 1e-6
@@ -48,10 +48,10 @@ class MujocoSettings:
         (0.05/h)^2/4, 1.6e-4 and 3.6e-4 at (0.1/h)^2/4, and 1.2e-4 and 3.0e-4 here: as small as with the
         first at half the step, which is twice the cost.
     integrator : str
-        Euler. At the cost of its step of 1e-4 s the error under El Centro (guided, relative RMS) is 2.0e-4
+        Euler. At the cost of its step of 1e-4 s the error under El Centro (recess, relative RMS) is 2.0e-4
         by Euler, 2.5e-4 by implicitfast, 2.3e-4 by implicit, 3.0e-4 by RK4, whose step takes 3.2 times as
         long, and 3.9e-3 by "discrete"; that of a release 5e-6, 3e-5, 4e-5, 5e-4 and 0.5 alpha: "discrete"
-        damps the guide, and is sound on open ground. `python tests/benchmarks engine_settings` prints
+        damps the guide, and is sound on flat ground. `python tests/benchmarks engine_settings` prints
         them all.
     cone : str
         The elliptic cone is Coulomb's; the friction damping above exists for it only.

@@ -11,7 +11,7 @@ from .values import GUIDE, build, in_range, whole
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PybulletSettings:
-    """How Bullet solves contact; its step and its cone leave no choice.
+    """Settings of Bullet: its contact solver; its step and its cone leave no choice.
 
     Attributes
     ----------

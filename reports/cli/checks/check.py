@@ -181,7 +181,7 @@ def _write(
 ) -> None:
     from rockwobble.compare.storage.provenance import package_versions
 
-    from ...pages.check import as_json, as_junit, headline, page
+    from ...pages.check import as_json, as_junit, check_page, headline
 
     print(f"\n{headline(findings, seconds)}")
     versions = package_versions()
@@ -192,6 +192,6 @@ def _write(
     if markdown is not None:
         try:  # the summary of a CI job may hold pages of other steps
             with markdown.open("a", encoding="utf-8") as file:
-                file.write(page(findings, versions, seconds).markdown())
+                file.write(check_page(findings, versions, seconds).markdown())
         except OSError as error:
             raise ValueError(f"{markdown} cannot be written: {error.strerror or error}") from None

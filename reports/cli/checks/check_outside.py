@@ -55,7 +55,7 @@ def require_used(
 def outside_findings(
     model: str | None, trajectory: Path | None, suite: str, support: str, tolerance: float
 ) -> list[Finding]:
-    """Return what the checks find, a check that cannot run included.
+    """Return the findings of the checks, a check that cannot run included.
 
     Raises
     ------

@@ -122,7 +122,7 @@ def _available() -> float:
 
 
 def _limit_of_group() -> float:
-    """What is left to the control group of a container."""
+    """Memory left to the control group of a container."""
     group = Path("/sys/fs/cgroup")
     try:
         most = float((group / "memory.max").read_text())

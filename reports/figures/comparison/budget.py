@@ -1,4 +1,4 @@
-"""What differences are made of: shares of all parts, and the parts against time."""
+"""Error budgets as pictures: shares of all parts, and the parts against time."""
 
 from __future__ import annotations
 

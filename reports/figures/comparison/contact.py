@@ -1,4 +1,4 @@
-"""Where the rim touches: its azimuth, how far it leaves the original circle, and its turn in each pass."""
+"""Contact point as a picture: its azimuth, its way off the original circle, and its turn in each pass."""
 
 from __future__ import annotations
 

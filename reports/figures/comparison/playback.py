@@ -19,7 +19,7 @@ _TRANSLUCENT, _SOLID = 0.35, 1.0
 
 
 def playback(view: CaseView) -> dict[str, Any] | None:
-    """Return what `playback.js` plays: the runs of a case and the reduced models beside them.
+    """Return the data that `playback.js` plays: the runs of a case and the reduced models beside them.
 
     A pose is stated by tilt, rolling angle, twist and contact point, not by a matrix: so the page can
     magnify the tilt and keep the cylinder on its rim. Nothing is to be played where nothing moves.

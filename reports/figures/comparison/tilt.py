@@ -18,7 +18,7 @@ from .view import CaseView, case_views
 SMALLEST = 1e-7
 # the difference is drawn as its largest value within this time, about one swing [s]
 WINDOW = 1.0
-_FALLS = 1.5  # [alpha] where tilts are cut if one goes farther
+_CUT = 1.5  # [alpha] where tilts are cut if one goes farther
 _HEIGHT = 2.3  # [inch]
 _WHERE = {
     "recess": "in an ideal recess",
@@ -70,8 +70,8 @@ def _tilts(view: CaseView, runs: Sequence[str], support: str) -> Panel:
         for label in shown
     ]
     # a fall would leave nothing to be seen of the rest
-    falls = any(float(np.nanmax(line.y, initial=0.0)) > _FALLS for line in layers)
-    y = replace(TILT, high=_FALLS if falls else None)
+    cut = any(float(np.nanmax(line.y, initial=0.0)) > _CUT for line in layers)
+    y = replace(TILT, high=_CUT if cut else None)
     return Panel(x=TIME, y=y, layers=layers, title=_WHERE[support], height=_HEIGHT)
 
 

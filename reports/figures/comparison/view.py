@@ -54,7 +54,7 @@ class CaseView:
         return tuple(dict.fromkeys(trace.run.support for trace in self.runs.values()))
 
     def partner(self, label: str) -> str:
-        """Return what a run is drawn with: the model of its support, or else its first reference."""
+        """Return the partner of a run in figures: the model of its support, or else its first reference."""
         own = str(own_model(self.runs[label].run))
         return own if own in self.references else next(iter(self.references), label)
 
@@ -66,7 +66,7 @@ class CaseView:
                 yield row, traces[row.reference], traces[row.run]
 
     def divergence(self, row: Any) -> float:
-        """Return when a run diverges from its reference, in the time of the run [s]; inf if never."""
+        """Return the divergence of a run from its reference, in the time of the run [s]; inf if never."""
         return start_of(self.traces[row.reference]) + row.agreement_time if row.diverged else math.inf
 
 

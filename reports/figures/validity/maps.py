@@ -144,12 +144,12 @@ def _free(name: str, what: str, table: pd.DataFrame) -> Picture:
         (x, x_ticks), (y, y_ticks) = (names(sorted(own[axis].unique())) for axis in ("spin", "release"))
         grid = own.pivot(index="release", columns="spin", values="off")  # noqa: PD010 - one row a cell here, too
         values = grid.to_numpy(dtype=np.float64)
-        falls = Gap(name="overturns on flat ground", colour=GREY, cells=np.isnan(values))
+        overturned = Gap(name="overturns on flat ground", colour=GREY, cells=np.isnan(values))
         panels.append(
             Panel(
                 x=Axis(label="rolling rate / that of steady wobble", unit="-", ticks=x_ticks),
                 y=Axis(label="release / α", unit="-", ticks=y_ticks),
-                layers=[Heat(x=x, y=y, values=values, gaps=[falls])],
+                layers=[Heat(x=x, y=y, values=values, gaps=[overturned])],
                 title=f"tan α = {tan_alpha:g}",
             )
         )

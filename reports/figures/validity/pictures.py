@@ -205,7 +205,7 @@ def _rings(table: pd.DataFrame) -> Picture:
     shaken, touched = plain[plain["motion"] != FREE], plain[plain["contact_time"] > 0.0]
     return Picture(
         name="rings",
-        title="A real recess against the ideal one",
+        title="A ring against the ideal recess",
         caption="Rings whose walls lean by α, under El Centro at 1.5 g tan α and in free response; bars: "
         "over the azimuths by which the problem is turned. Energy: where the walls are touched.",
         panels=[

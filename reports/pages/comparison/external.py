@@ -1,4 +1,4 @@
-"""What a comparison found of an external trajectory: numbers for a table, and sentences made from codes."""
+"""Findings on an external trajectory: numbers for a table, and sentences made from codes."""
 
 from __future__ import annotations
 

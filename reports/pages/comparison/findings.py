@@ -1,4 +1,4 @@
-"""What a comparison found: sentences on each row of the summary, on budgets and on divergences."""
+"""Findings of a comparison: sentences on each row of the summary, on budgets and on divergences."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rockwobble.compare import findings as unexplained
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
-from ..words.diagnostics import counted, failure, sentences
+from ..words.diagnostics import counted, failure, remarks
 from ..words.sentences import sentence
 from .external import external_sentences, mistakes, scope, within
 
@@ -24,7 +24,7 @@ _LISTED = 10
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Finding:
-    """What is to be said of one row of the summary.
+    """Finding on one row of the summary.
 
     Attributes
     ----------
@@ -62,7 +62,7 @@ class Finding:
 
 
 def findings(view: CaseView) -> Iterator[Finding]:
-    """Yield what is to be said of each row of a case."""
+    """Yield the finding on each row of a case."""
     traces, length = view.traces, view.case.length
     for row in rows_of(view.rows):
         lost = [
@@ -114,7 +114,7 @@ def finding_sentences(view: CaseView) -> list[str]:
     # of a run that failed its finding says why
     sound = [row for row in rows_of(view.rows) if "failed" not in (row.outcome, row.reference_outcome)]
     runs = [run for run in dict.fromkeys(row.run for row in sound) if view.facts[run]]
-    return [*said, *(sentence(WORDS, "remark", run, sentences(view.facts[run])) for run in runs)]
+    return [*said, *(sentence(WORDS, "remark", run, remarks(view.facts[run])) for run in runs)]
 
 
 def counted_remarks(summary: pd.DataFrame) -> list[str]:
@@ -126,7 +126,7 @@ def counted_remarks(summary: pd.DataFrame) -> list[str]:
 
 
 def headline(rows: pd.DataFrame, length: float) -> str:
-    """Return what stands above the rows of a case: how long runs of each support follow their own model."""
+    """Return the headline above the rows of a case: how long runs of each support follow their own model."""
     rows = own_rows(rows[rows["outcome"] != "failed"])
     parts, diverged = [], False
     for support in rows["support"].unique():
@@ -145,7 +145,7 @@ def headline(rows: pd.DataFrame, length: float) -> str:
 
 
 def _group(rows: pd.DataFrame, length: float) -> dict[str, object]:
-    """What a headline says of the runs of one support, held against their own model."""
+    """Headline on the runs of one support, held against their own model."""
     first = next(iter(rows_of(rows)))
     external = first.support == EXTERNAL
     names = rows["engine"].where(rows["engine"] != "reduced", rows["run"].map(lambda run: f"the {run}"))
@@ -188,7 +188,7 @@ def budget_sentences(summary: pd.DataFrame) -> list[str]:
 
 
 def divergence_sentences(summary: pd.DataFrame) -> list[str]:
-    """Return whether traces diverged when they had to, those that did so too early by name.
+    """Return whether traces diverged as predicted, those that did so too early by name.
 
     Of external trajectories nobody can predict that: the prediction rests on the errors of an engine.
     """

@@ -50,7 +50,7 @@ def comparison_files(comparison: Comparison, command: str = "") -> dict[str, byt
 
 
 def stored_page(results: Results) -> dict[str, bytes]:
-    """Return what a person opens of a comparison that is stored."""
+    """Return the pages of a comparison that is stored."""
     return comparison_files(Comparison.load(results.folder))
 
 
@@ -121,7 +121,7 @@ def _case(view: CaseView) -> dict[str, object]:
 
 
 def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
-    """Yield what is drawn of a case; of many cases what every one has to show."""
+    """Yield the pictures of a case; of many cases what every one has to show."""
     yield tilt_picture(view, f"tilt-{place}" if place else "figure")
     if not many:
         yield orbit_picture(view, f"orbits-{place}")

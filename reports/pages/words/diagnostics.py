@@ -19,7 +19,7 @@ _UNSETTLED = {
 # why runs at successive steps tell no limit
 _NOT_EXTRAPOLATED = {
     "fails": "a run at a coarser step fails",
-    "parted": "the runs part there",
+    "diverged": "the runs diverge there",
     "no_closer": "the runs do not come closer to one another",
 }
 _WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
@@ -109,14 +109,14 @@ def sentence(fact: Diagnostic) -> str:
     return f"{fact.meaning}{_at(fact)}" + (f": {fact.detail}" if fact.detail else "")
 
 
-def sentences(facts: Iterable[Diagnostic]) -> str:
+def remarks(facts: Iterable[Diagnostic]) -> str:
     """Return diagnostics in words, separated by semicolons."""
     return "; ".join(map(sentence, facts))
 
 
 def failure(facts: Iterable[Diagnostic]) -> str:
     """Return why a run failed, in words."""
-    return sentences(fact for fact in facts if fact.code in FAILURES) or "it failed"
+    return remarks(fact for fact in facts if fact.code in FAILURES) or "it failed"
 
 
 def counted(codes: Iterable[Iterable[str]]) -> list[str]:

@@ -15,7 +15,7 @@ _SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def sentence(template: str, macro: str, *values: object) -> str:
-    """Return what a macro of a template of words says, on one line, as plain text."""
+    """Return the words of a macro of a template, on one line, as plain text."""
     said = str(getattr(_environment(html=False).get_template(template).module, macro)(*values))
     # spaces that do not break stay
     return re.sub(r"[ \n]+", " ", said).strip()

@@ -29,7 +29,7 @@ _SHARE = 0.9
 
 
 def contrasts(tables: Tables) -> pd.DataFrame:
-    """Return how each method differs from another at each point, member by member.
+    """Return the contrasts of the methods with one another at each point, member by member.
 
     Returns
     -------
@@ -54,7 +54,7 @@ def ratios(runs: pd.DataFrame, method: str, against: str) -> Array:
 
 
 def records(tables: Tables) -> Numbers:
-    """Return what holds of each method over the points.
+    """Return the range over the points of the contrasts of each method.
 
     NAME_least and NAME_largest, of the median ratio to the recess model; NAME_05 and NAME_95, what 5 % and
     95 % of the records do not exceed, median over the points, of two middle ones the outer; NAME_within and
@@ -135,7 +135,7 @@ def cells(tables: Tables) -> pd.DataFrame:
 
 
 def single_peaks(tables: Tables) -> Numbers:
-    """Return how far flat ground and a perturbed copy move the peak of one record, over all cells."""
+    """Return the change of the peak of one record by flat ground and a perturbed copy, over all cells."""
     table = cells(tables)
     return {
         "cells": float(len(table)),
@@ -148,7 +148,7 @@ def single_peaks(tables: Tables) -> Numbers:
 
 
 def vertical(tables: Tables) -> Numbers:
-    """Return how far the vertical component of El Centro moves the peak, beside a record 1 % stronger."""
+    """Return the change of the peak by the vertical component of El Centro, beside a record 1 % stronger."""
     table = tables["peaks"]
     table = table[table["vertical"].notna()]
     tan_alpha, recess = column(table, "tan_alpha"), column(table, "recess")

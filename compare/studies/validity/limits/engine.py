@@ -1,4 +1,4 @@
-"""Where the engine confirms the reduced models, follows them, and leaves them."""
+"""Limits by the engine: where it confirms the reduced models, follows them, and leaves them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _CONTRADICTS = 1e-3
 
 
 def free_response(tables: Tables) -> Numbers:
-    """Return how far recess and flat ground differ in a pass, and at how many releases an engine decides."""
+    """Return the difference of recess and flat ground in a pass, and the releases that an engine decides."""
     table = tables["free_response"]
     tan_alpha, turn, flat = (column(table, name) for name in ("tan_alpha", "turn", "flat_turn"))
     turns = np.abs(flat / turn - 1.0)
@@ -59,7 +59,7 @@ def _decided(table: pd.DataFrame) -> tuple[float, float, float]:
 
 
 def traces(tables: Tables) -> Numbers:
-    """Return for how long [s] engine and model agree, and how often they part earlier than predicted."""
+    """Return agreement times [s] of engine and model, and the count that diverge earlier than predicted."""
     table = tables["following"]
     numbers: Numbers = {"duration": largest(column(table, "duration")), "comparisons": float(len(table))}
     for name, support, reference in (
@@ -83,7 +83,7 @@ def traces(tables: Tables) -> Numbers:
 
 
 def rings(tables: Tables) -> Numbers:
-    """Return what a ring changes: peaks as ratios, place [b], twist [rad], and energy where it is touched."""
+    """Return the effects of a ring: peaks as ratios, place [b], twist [rad], energy where it is touched."""
     table = tables["rings"]
     ring, shaken = table["support"] == "ring", table["motion"] != FREE
     touched = table[ring & (table["contact_time"] > 0.0)]
