@@ -42,7 +42,7 @@ def row(**values):
             "predicted_by": "pass",
             "contact_resolution": 2e-5,
             "closest_pass": 3e-3,
-            "likely_mistake": "",
+            "likely_mistake": (),
         }
         | values
     )

@@ -16,7 +16,7 @@ from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 from ...figures.comparison.view import CaseView, own_rows, rows_of
 from ..words.diagnostics import counted, failure, sentences
 from ..words.sentences import sentence
-from .external import external_sentences, mistakes, scope, within
+from .external import external_sentences, scope, within
 
 WORDS = "comparison/findings.md.j2"
 _LISTED = 10
@@ -93,7 +93,7 @@ def reason(row: Any, length: float, *, touched: bool = False) -> str:
         return "support"
     if row.support == "ring" and row.reference_support != "ring" and (against_recess or touched):
         return "walls"
-    if row.support == EXTERNAL and mistakes(row):
+    if row.support == EXTERNAL and row.likely_mistake:
         return "mistake"
     predicted = row.predicted_agreement_time
     by_pass = row.predicted_by == "pass" and row.support != EXTERNAL and predicted < length
@@ -135,9 +135,8 @@ def headline(rows: pd.DataFrame, length: float) -> str:
         single = support == EXTERNAL
         groups = [[index] for index in of_support.index] if single else [list(of_support.index)]
         parts += [sentence(WORDS, "followed", _group(of_support.loc[group], length)) for group in groups]
-        explained = [single and bool(mistakes(row)) for row in rows_of(of_support)]
         diverged = diverged or any(
-            row.diverged and not known for row, known in zip(rows_of(of_support), explained, strict=True)
+            row.diverged and not (single and row.likely_mistake) for row in rows_of(of_support)
         )
     if not parts:
         return "No run could be compared."
