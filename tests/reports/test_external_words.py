@@ -25,6 +25,7 @@ def row(**values):
         "engine": "table",
         "support": "external",
         "reference": "recess model",
+        "reference_engine": "reduced",
         "reference_support": "recess",
         "case": "El Centro",
         "predicted_by": "",
@@ -70,6 +71,12 @@ def test_what_agrees_is_said_to_agree():
     words = said(row())
     assert "The azimuth differs by 0.2 deg (rms while the tilts agree), which is agreement." in words
     assert "mistake" not in words
+
+
+def test_a_trajectory_that_is_called_a_model_is_none():
+    assert "recess model stays within 1 % of alpha of the recess model" in said(row(run="recess model"))
+    against = said(row(reference="clay model", reference_engine="clay model"))
+    assert "within 1 % of alpha of clay model for" in against
 
 
 def test_what_was_not_compared_is_said():

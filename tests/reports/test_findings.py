@@ -30,6 +30,7 @@ def row(**values):
             "engine": "mujoco",
             "support": "recess",
             "reference": "recess model",
+            "reference_engine": "reduced",
             "reference_support": "recess",
             "outcome": "completed",
             "reference_outcome": "completed",

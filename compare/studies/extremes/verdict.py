@@ -30,7 +30,7 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.models import Case, Diagnostic, Run, Trace
-from rockwobble.models.diagnostic import FAILURES
+from rockwobble.models.diagnostic import FAILURES, joined
 from rockwobble.multibody.engines.registry import engine_facts
 
 from ...comparison.prediction import time_scale
@@ -63,13 +63,13 @@ class Verdict:
     error : float
         Largest, as far as the reference holds [alpha], or relative of an angle of turn; NaN if not known.
     reference : str
-        What it was held against; several are joined by a comma, the worst alone where it is not fine.
+        What it was held against, codes of the module; the worst alone where it is not fine.
     until : float
         When the reference ceases to hold [s]; infinite if it does not.
     begins : float
         When the tilt is off by more than `FINE` [s]; infinite if it never is.
     limit : str
-        Code of the diagnostic that explains it.
+        Codes of the diagnostics that explain it.
     refusal : str
         The line of a refusal.
     """
@@ -139,11 +139,11 @@ def _reduced(condition: Condition, run: Run, trace: Trace) -> Verdict:
             limit=limit,
         )
     assert trace.assumptions is not None
-    limit = ", ".join(fact.code for fact in trace.assumptions.breaches)
+    limit = joined(fact.code for fact in trace.assumptions.breaches)
     return Verdict(
         verdict="flagged" if limit else "fine",
         error=errors[worst],
-        reference=", ".join(errors),
+        reference=joined(errors),
         limit=limit,
     )
 
@@ -190,7 +190,7 @@ def _tighter(run: Run, rtol: float) -> Run:
 
 def _failed(trace: Trace) -> Verdict:
     codes = [fact.code for fact in trace.facts if fact.code in FAILURES]
-    return Verdict(verdict="caught" if codes else "silent", limit=", ".join(codes))
+    return Verdict(verdict="caught" if codes else "silent", limit=joined(codes))
 
 
 def _explanation(facts: Iterable[Diagnostic], kinds: frozenset[str], begins: float) -> str:

@@ -20,6 +20,7 @@ from .scipy_solver import SOLVERS, Rates, SolverName, solve, start_of
 # of the recess model as it comes: every computing time is told as a multiple of its own
 BASE_TOLERANCE = 1e-8
 BASE_LINE = "recess model"
+REST_PANEL = "rest threshold"
 _TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
 # what a held contact time constant is: that of the default settings at a step of 1e-3 s [s]
 _HELD = 2e-3
@@ -79,12 +80,12 @@ def _reduced(problem: Problem, quick: bool) -> Iterator[Method]:
     tolerances = sorted({*(_TOLERANCES[1::2] if quick else _TOLERANCES), BASE_TOLERANCE}, reverse=True)
     lines = [("methods", Run(None, "recess")), ("methods", Run(None, "flat"))]
     if problem.name != "turn":  # on still ground nothing comes to rest
-        lines += [("rest threshold", Run(None, "recess", rest_tilt=at)) for at in (FINE_REST_TILT, 1e-5, 0.1)]
+        lines += [(REST_PANEL, Run(None, "recess", rest_tilt=at)) for at in (FINE_REST_TILT, 1e-5, 0.1)]
     for panel, run in lines:
         rest_tilt = run.settings.get("rest_tilt", reduced.REST_TILT)
         for rtol in tolerances:
             yield Method(
-                line=str(run) if panel == "methods" else f"rest threshold {rest_tilt:g}",
+                line=str(run) if panel == "methods" else rest_line(rest_tilt),
                 family="reduced",
                 support=run.support,
                 panel=panel,
@@ -92,6 +93,11 @@ def _reduced(problem: Problem, quick: bool) -> Iterator[Method]:
                 value=rtol,
                 solve=partial(_by_model, problem, run.support, rtol, rest_tilt),
             )
+
+
+def rest_line(rest_tilt: float) -> str:
+    """Return the line of the recess model with a rest threshold of its own."""
+    return f"rest threshold {rest_tilt:g}"
 
 
 def _by_model(problem: Problem, support: str, rtol: float, rest_tilt: float, case: Case) -> Answer:

@@ -11,11 +11,13 @@ import pandas as pd
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
+from rockwobble.compare.runs.labels import REDUCED
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
+from rockwobble.models.diagnostic import parted
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
 from ..words.diagnostics import counted, failure, sentences
-from ..words.sentences import sentence
+from ..words.sentences import sentence, the
 from .external import external_sentences, scope, within
 
 WORDS = "comparison/findings.md.j2"
@@ -121,7 +123,7 @@ def counted_remarks(summary: pd.DataFrame) -> list[str]:
     """Return one sentence on how many runs of many cases have which diagnostic; none if no run has any."""
     runs = summary[(summary["outcome"] != "failed") & (summary["reference_outcome"] != "failed")]
     runs = runs.drop_duplicates(["case", "run"])
-    counts = counted(str(codes).split(", ") for codes in runs["diagnostics"])
+    counts = counted(map(parted, runs["diagnostics"]))
     return [sentence(WORDS, "remarks", counts)] if counts else []
 
 
@@ -147,11 +149,12 @@ def _group(rows: pd.DataFrame, length: float) -> dict[str, object]:
     """What a headline says of the runs of one support, held against their own model."""
     first = next(iter(rows_of(rows)))
     external = first.support == EXTERNAL
-    names = rows["engine"].where(rows["engine"] != "reduced", rows["run"].map(lambda run: f"the {run}"))
+    names = {the(row.run, REDUCED) if row.engine == REDUCED else row.engine: None for row in rows_of(rows)}
+    references = {the(row.reference, row.reference_engine): None for row in rows_of(rows)}
     return {
         "support": str(first.support),
-        "names": list(names.unique()),
-        "references": list(rows["reference"].unique()),
+        "names": list(names),
+        "references": list(references),
         "rows": len(rows),
         "bound": within(first) if external else "1 % of alpha",
         "diverged": bool(rows["diverged"].any()),
