@@ -11,8 +11,10 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.diagnostic import joined
 from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
 
+from ...runs.choice import require_runnable
 from ...runs.execution import simulate_run
 from .problem import FINE_REST_TILT, Array, Problem
 from .scipy_solver import SOLVERS, Rates, SolverName, solve, start_of
@@ -191,11 +193,12 @@ def _line(
 
 def _by_engine(problem: Problem, run: Run, case: Case) -> Answer:
     try:
-        return _answer(problem, simulate_run(case, run, sample_step=problem.sample_step))
+        require_runnable(case, run)
     except ValueError as refusal:
         return Answer(quantity=np.empty(0), said=str(refusal))
+    return _answer(problem, simulate_run(case, run, sample_step=problem.sample_step))
 
 
 def _answer(problem: Problem, trace: Trace) -> Answer:
-    said = ", ".join(fact.code for fact in trace.facts)
-    return Answer(quantity=np.empty(0) if trace.outcome == "failed" else problem.quantity(trace), said=said)
+    quantity = np.empty(0) if trace.outcome == "failed" else problem.quantity(trace)
+    return Answer(quantity=quantity, said=joined(fact.code for fact in trace.facts))

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ..inputs import options
 
@@ -63,7 +64,6 @@ def outside_findings(
     ValueError
         If both are given, one cannot be read, or the suite has more than one case.
     """
-    from rockwobble.compare import read_trajectory
     from rockwobble.compare.check.outside import check_model, check_trajectory, load_model
 
     if model is not None and trajectory is not None:
@@ -74,7 +74,7 @@ def outside_findings(
     cases = rw.read_suite(suite).cases
     if len(cases) != 1:
         raise ValueError(f"--trajectory needs a --suite with one case, got {len(cases)} in {suite}")
-    given = read_trajectory(trajectory, cases[0])
+    given = rc.read_trajectory(trajectory, cases[0])
     return list(check_trajectory(given, support=support, tolerance=tolerance))
 
 
