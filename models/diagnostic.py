@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
@@ -41,6 +41,29 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
     }
 )
 FAILURES = frozenset(list(CODES)[:9])
+_SEPARATOR = ", "
+
+
+def joined(codes: Iterable[str]) -> str:
+    """Return codes, each once, as a cell of a table.
+
+    Examples
+    --------
+    >>> joined(["slip", "energy", "slip"])
+    'slip, energy'
+    """
+    return _SEPARATOR.join(dict.fromkeys(codes))
+
+
+def parted(cell: str) -> list[str]:
+    """Return the codes in a cell of a table.
+
+    Examples
+    --------
+    >>> parted("slip, energy"), parted("")
+    (['slip', 'energy'], [])
+    """
+    return cell.split(_SEPARATOR) if cell else []
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

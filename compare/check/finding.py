@@ -86,9 +86,14 @@ def at_most(name: str, value: float, bound: Bound, part: str, note: str = "") ->
     )
 
 
+def worst_place(errors: Mapping[str, float]) -> str:
+    """Return where the largest of several errors is, one that is no number before all others."""
+    return max(errors, key=lambda key: abs(errors[key]) if math.isfinite(errors[key]) else math.inf)
+
+
 def worst_of(name: str, errors: Mapping[str, float], bound: Bound, part: str, note: str = "") -> Finding:
     """Return the finding on the largest of several errors, and say which; one that is no number fails."""
-    place = max(errors, key=lambda key: abs(errors[key]) if math.isfinite(errors[key]) else math.inf)
+    place = worst_place(errors)
     notes = [f"worst of {len(errors)}: {place}", *([note] if note else [])]
     return at_most(name, abs(errors[place]), bound, part, "; ".join(notes))
 

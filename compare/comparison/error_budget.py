@@ -154,9 +154,8 @@ def error_budget(
         int(np.searchsorted(engine.time[:count], agreement.end + _SAME_TIME)),
     )
     alpha = cylinder.alpha
-    measured, asked, explained, extrapolated = (
-        trace.tilt[keep] / alpha for trace in (engine, reference, own, limit)
-    )
+    tilts = (engine.tilt, reference.tilt, own.tilt, limit.tilt)
+    measured, asked, explained, extrapolated = (tilt[keep] / alpha for tilt in tilts)
     return ErrorBudget(
         time=engine.time[keep],
         whole=measured - asked,

@@ -13,6 +13,7 @@ from rockwobble.models.traces.trace_file import case_from_plain, case_to_plain
 
 from ..storage.manifest import Results
 from .error_budget import ErrorBudget, Limit
+from .external.verdict import lists_of_file
 
 ABOUT = "comparison.json"
 _SEPARATOR = "\n"  # in no name of a case or a run: these are single lines
@@ -92,7 +93,7 @@ def load_fields(stored: Results) -> ComparisonFields:
         traces = _traces(rest["traces"], stored.table("traces"), cases)
         samples = stored.table("budget") if rest["budgets"] else pd.DataFrame()
         return ComparisonFields(
-            summary=stored.table("summary"),
+            summary=lists_of_file(stored.table("summary")),
             cases=cases,
             traces=traces,
             versions=rest["versions"],

@@ -18,6 +18,7 @@ from ..runs.execution import case_inputs
 from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Manifest, made_now, read_results, write_results
 from .error_budget import ErrorBudget
+from .external.verdict import lists_in_words
 from .file import ABOUT, load_fields, plain_fields
 from .matrix import agreement_matrix
 
@@ -31,7 +32,8 @@ class Comparison(Shown):
     Parameters
     ----------
     summary : DataFrame
-        One row for each run and reference; the columns are those of `SUMMARY_COLUMNS`.
+        One row for each run and reference; the columns are those of `SUMMARY_COLUMNS`. What differs of an
+        external trajectory, and the likely mistakes in it, are tuples.
     cases : dict
         Case of each name.
     traces : dict
@@ -93,7 +95,7 @@ class Comparison(Shown):
         """
         whole = plain_fields(self.cases, self.traces, self.versions, self.until, self.budgets)
         files = {
-            "summary.csv": self.summary.to_csv(index=False).encode(),
+            "summary.csv": lists_in_words(self.summary).to_csv(index=False).encode(),
             ABOUT: (plain_json.dumps(whole, indent=1) + "\n").encode(),
         }
         if len(matrix := self.matrix()):

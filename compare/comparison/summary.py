@@ -8,20 +8,20 @@ from collections.abc import Mapping
 import numpy as np
 
 from rockwobble.models import Case, Trace
+from rockwobble.models.diagnostic import joined
 
 from ..metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
 from ..metrics.contact import contact_rms
 from ..metrics.energy import energy_loss
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
 from ..metrics.turning import direction_difference, first_unresolved_pass, turn_difference
+from ..runs.labels import REDUCED
 from ..traces.pair import make_pair
 from ..traces.trajectory import measurement
 from .error_budget import BUDGET_COLUMNS, ErrorBudget
 from .external.difference import allowance as noise_allowance
 from .external.verdict import VERDICT_COLUMNS, Row, judge, no_verdict
 from .prediction import Prediction, close_pass, verdict
-
-REDUCED = "reduced"  # the engine of a reduced model, in tables
 
 # name: (unit, meaning); the order is that of the table
 SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
@@ -171,7 +171,7 @@ def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
         "reference_support": reference.run.support,
         "outcome": trial.outcome,
         "reference_outcome": reference.outcome,
-        "diagnostics": ", ".join(dict.fromkeys(fact.code for fact in trial.facts)),
+        "diagnostics": joined(fact.code for fact in trial.facts),
         "run": label,
         "reference": name,
     }

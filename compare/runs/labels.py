@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 from rockwobble.models import Run
 
+REDUCED = "reduced"  # the engine of a reduced model, in tables
+
 
 def labels_beside_references(runs: Sequence[Run], reference: Run | None) -> tuple[tuple[str, ...], str]:
     """Return a label for each run and that of the reference, all different and none that of another model.

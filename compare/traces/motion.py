@@ -37,7 +37,7 @@ class Motion:
     time: Array
     tilt: Array
     lean: Complex | None
-    path: Array | None
+    path: Array | None = None
     noise: float = 0.0
     path_noise: float = 0.0
 
@@ -69,15 +69,18 @@ def motion_of(
     trace: Trace, told: tuple[str, ...] = ("azimuth", "path"), *, noise: float = 0.0, path_noise: float = 0.0
 ) -> Motion:
     """Return the motion of a trace, as far as it is `told`."""
-    lean = np.sin(trace.tilt) * np.exp(1j * np.nan_to_num(trace.rolling_angle))
-    return Motion(
-        time=trace.time,
-        tilt=trace.tilt,
-        lean=lean if "azimuth" in told else None,
+    return replace(
+        motion_at(trace.time, trace.tilt, trace.rolling_angle if "azimuth" in told else None),
         path=trace.centre_of_mass if "path" in told else None,
         noise=noise,
         path_noise=path_noise,
     )
+
+
+def motion_at(time: Array, tilt: Array, azimuth: Array | None) -> Motion:
+    """Return the motion of tilts and azimuths (n,) [rad], NaN at rest; the azimuth may be unknown."""
+    lean = None if azimuth is None else np.sin(tilt) * np.exp(1j * np.nan_to_num(azimuth))
+    return Motion(time=time, tilt=tilt, lean=lean)
 
 
 def on_samples_of(reference: Motion, motion: Motion) -> tuple[Motion, Motion]:

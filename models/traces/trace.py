@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import numpy as np
 
 from ..case import Case, Run
-from ..diagnostic import Diagnostic
+from ..diagnostic import Diagnostic, joined
 from ..shown import Shown
 from . import trace_file
 from .limited import Limited
@@ -268,7 +268,7 @@ class Trace(Limited, Shown):
             "passes": str(len(self.passes)),
         }
         if self.facts:
-            found["diagnostics"] = ", ".join(fact.code for fact in self.facts)
+            found["diagnostics"] = joined(fact.code for fact in self.facts)
         return found
 
     _said = summary

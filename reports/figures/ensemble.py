@@ -57,7 +57,8 @@ def _distributions(found: Ensemble) -> Panel:
     standing = found.members.loc[found.members["outcome"] != "overturned", "peak_tilt"]
     largest = float(standing.max(skipna=True)) if standing.notna().any() else 0.0
     end = 1.05 * largest or 1.0
-    styles = label_styles(list(found.methods["method"]))
+    labels = found.methods["method"]
+    styles = label_styles(list(labels), list(labels[found.methods["own_model"] == ""]))
     layers: list[Line] = []
     for method, style in styles.items():
         runs = found.members[found.members["method"] == method]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
 # M. Okabe and K. Ito, Color Universal Design, 2008; without black (the reference) and the pale yellow
@@ -54,10 +54,17 @@ def run_styles(labels: Sequence[str]) -> dict[str, Style]:
     }
 
 
-def label_styles(labels: Sequence[str]) -> dict[str, Style]:
-    """Return the style of each label: that of the model where it names one, else that of a run."""
-    runs = run_styles([label for label in labels if not label.endswith(" model")])
-    return {label: runs[label] if label in runs else model_style(label) for label in labels}
+def label_styles(labels: Sequence[str], models: Collection[str] = ()) -> dict[str, Style]:
+    """Return the style of each label: that of the model where it is one of the `models`, else that of a run.
+
+    Of models of one style the first has it, and the others are drawn as runs.
+    """
+    of_models: dict[Style, str] = {}
+    for label in filter(models.__contains__, labels):
+        of_models.setdefault(model_style(label), label)
+    styles = {label: style for style, label in of_models.items()}
+    runs = run_styles([label for label in labels if label not in styles])
+    return {label: (styles | runs)[label] for label in labels}
 
 
 def mark_styles(labels: Sequence[str], *, lines: bool = True) -> dict[str, Style]:

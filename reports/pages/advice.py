@@ -9,13 +9,13 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.compare.studies.advice.grades import CRITERIA
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y
 from rockwobble.compare.studies.spectrum.verification import CHECK_RTOL, NUDGE
 from rockwobble.models.diagnostic import CODES
 
 from ..figures.advice import GROUPS, SHORT, advice_pictures
 from .page import Page
+from .words.criteria import CRITERIA
 
 # the largest tilt in a ring over that of the recess model: least and largest median over 22 records, and what
 # one record of twenty exceeds; `records` of published/validity/limits.parquet

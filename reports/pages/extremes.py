@@ -9,7 +9,7 @@ import pandas as pd
 from rockwobble.compare.storage.manifest import Results
 from rockwobble.compare.studies.extremes.study import Extremes, stored_extremes
 from rockwobble.compare.studies.extremes.verdict import FINE
-from rockwobble.models.diagnostic import CODES
+from rockwobble.models.diagnostic import CODES, parted
 
 from .page import Page
 
@@ -48,9 +48,7 @@ def extremes_page(found: Extremes) -> Page:
                 "method": row["method"],
                 "verdict": WORDS[row["verdict"]],
                 "error": row["error"],
-                "reference": ", ".join(
-                    _REFERENCES[each] for each in str(row["reference"]).split(", ") if each
-                ),
+                "reference": ", ".join(_REFERENCES[each] for each in parted(row["reference"])),
             }
             for row in runs.to_dict("records")
         ],
@@ -88,7 +86,7 @@ def _not_fine(runs: pd.DataFrame) -> list[dict[str, object]]:
                 "error": alike["error"].max(),
                 # never is a dash
                 **{name: alike[name].replace(math.inf, math.nan).min() for name in ("begins", "until")},
-                "limit": refusal or "; ".join(CODES[code][1] for code in str(limit).split(", ") if code),
+                "limit": refusal or "; ".join(CODES[code][1] for code in parted(str(limit))),
             }
         )
     return rows

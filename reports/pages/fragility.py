@@ -58,7 +58,7 @@ def fragility_values(found: Fragility) -> dict[str, object]:
     return {
         "facts": found.about,
         "measure": measure,
-        "measures": list(MEASURES.values()),
+        "measures": MEASURES,
         "cylinders": [{"name": name, **body} for name, body in cylinders.items()],
         "answers": {
             question: [row for row in rows if row["cylinder"] == whole] for question, rows in answers.items()

@@ -75,6 +75,7 @@ def test_a_number_that_moved_fails_and_is_shown(monkeypatch: pytest.MonkeyPatch)
     failed = [f for f in kept_numbers.check(Bench(reduced=reduced, suite=SUITE)) if f.failed]
     assert [f.name for f in failed] == ["recess, El Centro doubled"]
     assert "tilt at 5 s" in failed[0].note
+    assert failed[0].note.endswith(f", the baseline is {values[kept_numbers.GROUP][name]!r}")
     assert failed[0].part == "the recess model gives other numbers than it did"
 
 

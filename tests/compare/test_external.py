@@ -84,7 +84,7 @@ def test_a_trajectory_that_goes_out_and_comes_back_has_the_same_metrics(in_reces
     engine, external = rows(CASES[name], save(angles(in_recess[name])))
     assert external["support"] == "external"
     # an engine that turns softly at the first passes of a shaken cylinder is no mistake of a file
-    assert (external["differs_in"], external["likely_mistake"]) == ("", "")
+    assert (external["differs_in"], external["likely_mistake"]) == ((), ())
     for column in ("tilt_rms", "tilt_rms_relative"):
         assert external[column] == pytest.approx(engine[column], abs=ROUNDING)
     # a parabola through samples 0.01 s apart instead of through the engine's steps: (p dt)^4 of the tilt

@@ -65,6 +65,35 @@ def test_what_goes_wrong_is_refused_caught_or_flagged(
     assert math.isnan(found.error) == (wanted not in ("fine", "flagged"))
 
 
+def test_every_refusal_is_one_line_before_anything_runs(monkeypatch: pytest.MonkeyPatch) -> None:
+    def none(*_: object, **__: object) -> Trace:
+        raise ZeroDivisionError("it runs")
+
+    monkeypatch.setattr(verdict, "simulate_run", none)
+    refused = []
+    for condition in conditions():
+        for run in (PLANAR, RECESS, ENGINE, RING):
+            try:
+                found = judge(condition, run)
+            except ZeroDivisionError:
+                continue
+            if found.verdict == "refused":
+                refused.append((condition.extreme, condition.value, str(run)))
+                assert found.refusal.splitlines() == [found.refusal]
+    spins = [("spin", f"{rate} rad/s", "planar model") for rate in ("1e-09", "0.001", "3", "10", "1000")]
+    steps = [("time step", "100 times the default", str(run)) for run in (ENGINE, RING)]
+    assert refused == spins + steps
+
+
+def test_an_error_in_the_middle_of_a_run_is_no_refusal(monkeypatch: pytest.MonkeyPatch) -> None:
+    def broken(*_: object, **__: object) -> Trace:
+        raise ValueError("operands could not be broadcast together")
+
+    monkeypatch.setattr(verdict, "simulate_run", broken)
+    with pytest.raises(ValueError, match="broadcast"):
+        judge(at("size", "R = 0.001 m"), RECESS)
+
+
 def test_a_ring_is_held_against_itself_at_half_the_step(monkeypatch: pytest.MonkeyPatch) -> None:
     steps = []
 
@@ -90,7 +119,11 @@ def test_a_ring_is_held_against_itself_at_half_the_step(monkeypatch: pytest.Monk
         ((Diagnostic(code="slip", time=0.1),), "silent"),  # it begins later than the error
         ((Diagnostic(code="settled", time=0.0),), "silent"),  # it explains no error
         ((Diagnostic(code="solver", size=3.0),), "silent"),  # it has no time
-        ((Diagnostic(code="energy", time=0.05), Diagnostic(code="wall_contact", time=0.0)), "flagged"),
+        (
+            (Diagnostic(code="wall_contact", time=0.0),),
+            "silent",
+        ),  # its reference meets the wall, too
+        ((Diagnostic(code="energy", time=0.05), Diagnostic(code="slip", time=0.0)), "flagged"),
     ],
 )
 def test_only_a_diagnostic_that_explains_an_error_and_is_no_later_flags_it(

@@ -16,7 +16,14 @@ from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.tradeoff import problem as problems
 from rockwobble.compare.studies.tradeoff import study
 from rockwobble.compare.studies.tradeoff.conclusions import costs, engine_factors, plateaus, rest_tilt_price
-from rockwobble.compare.studies.tradeoff.methods import BASE_LINE, BASE_TOLERANCE, Method, methods_for
+from rockwobble.compare.studies.tradeoff.methods import (
+    BASE_LINE,
+    BASE_TOLERANCE,
+    REST_PANEL,
+    Method,
+    methods_for,
+    rest_line,
+)
 from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, Problem
 
 # a release at a tolerance of 1e-8 turns by 1.5e-7 deg too much or too little
@@ -121,12 +128,14 @@ def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
 
 
 def points(
-    line: str, family: str, rows: list[tuple[float, float, float]], knob: str = "time step"
+    line: str,
+    family: str,
+    rows: list[tuple[float, float, float]],
+    knob: str = "time step",
+    panel: str = "methods",
 ) -> pd.DataFrame:
     found = pd.DataFrame(rows, columns=["value", "ratio", "error"])
-    return found.assign(
-        problem="turn", support="recess", panel="methods", family=family, line=line, knob=knob
-    )
+    return found.assign(problem="turn", support="recess", panel=panel, family=family, line=line, knob=knob)
 
 
 def test_the_cheapest_holds_its_error_at_the_next_finer_setting() -> None:
@@ -163,9 +172,11 @@ def test_a_plateau_is_flat_and_an_error_that_falls_or_grows_is_none(
 
 
 def test_the_price_of_the_rest_rule_is_told_at_equal_tolerance() -> None:
-    none = points(f"rest threshold {FINE_REST_TILT:g}", "reduced", [(1e-6, 2.0, 1e-7)], "tolerance")
+    none = points(rest_line(FINE_REST_TILT), "reduced", [(1e-6, 2.0, 1e-7)], "tolerance", REST_PANEL)
     usual = points(BASE_LINE, "reduced", [(1e-6, 1.0, 0.2), (1e-4, 1.0, 0.2)], "tolerance")
-    price = rest_tilt_price(pd.concat([none, usual]))
-    assert price[["value", "speed_up", "error", "error_without"]].to_numpy().tolist() == [
-        [1e-6, 2.0, 0.2, 1e-7]
+    coarse = points("a tenth", "reduced", [(1e-6, 0.5, 0.4)], "tolerance", REST_PANEL)
+    price = rest_tilt_price(pd.concat([none, usual, coarse]))
+    assert price[["line", "value", "speed_up", "error", "error_without"]].to_numpy().tolist() == [
+        [BASE_LINE, 1e-6, 2.0, 0.2, 1e-7],
+        ["a tenth", 1e-6, 4.0, 0.4, 1e-7],
     ]

@@ -25,6 +25,7 @@ def row(**values):
         "engine": "table",
         "support": "external",
         "reference": "recess model",
+        "reference_engine": "reduced",
         "reference_support": "recess",
         "case": "El Centro",
         "predicted_by": "",
@@ -72,9 +73,15 @@ def test_what_agrees_is_said_to_agree():
     assert "mistake" not in words
 
 
+def test_a_trajectory_that_is_called_a_model_is_none():
+    assert "recess model stays within 1 % of alpha of the recess model" in said(row(run="recess model"))
+    against = said(row(reference="clay model", reference_engine="clay model"))
+    assert "within 1 % of alpha of clay model for" in against
+
+
 def test_what_was_not_compared_is_said():
     alone = row(
-        not_compared="azimuth: not given; path: too little motion", azimuth_rms=math.nan, path_rms=math.nan
+        not_compared=("azimuth", "path"), not_given=("azimuth",), azimuth_rms=math.nan, path_rms=math.nan
     )
     assert scope(alone) == ", in tilt (not compared: azimuth and path)"
     assert external_sentences(alone) == (
@@ -83,12 +90,13 @@ def test_what_was_not_compared_is_said():
 
 
 WRONG = {
-    "differs_in": "azimuth; path",
+    "differs_in": ("azimuth", "path"),
     "azimuth_rms": 10.0,
     "azimuth_differs_from": 2.8,
     "path_differs_from": 5.96,
-    "likely_mistake": "axes: turned",
-    "likely_mistake_value": "10",
+    "likely_mistake": ("turned",),
+    "likely_mistake_in": ("axes",),
+    "likely_mistake_value": (10.0,),
     "agreement_without_mistake": 8.0,
 }
 
@@ -101,10 +109,10 @@ def test_a_mistake_stands_in_the_headline_and_what_is_left_without_it():
     words = said(row(**WRONG))
     assert "The azimuth differs by 10.0 deg (rms while the tilts agree), from 2.80 s on." in words
     assert words.endswith("Without it, the tilt follows the model for 8.0 s.")
-    left = external_sentences(row(**WRONG, differs_without_mistake="tilt; path"))
+    left = external_sentences(row(**WRONG, differs_without_mistake=("tilt", "path")))
     assert left.endswith("Without it, the tilt follows the model for 8.0 s, but it differs in tilt and path.")
     other = external_sentences(
-        row(**WRONG, alternative_mistake="azimuth: mirrored", alternative_mistake_value="25")
+        row(**WRONG, alternative_mistake=("mirrored",), alternative_mistake_value=(25.0,))
     )
     assert other.endswith(
         "Or, which here is the same: its azimuth is mirrored in the line at 25.0 deg, so that it rolls the "
@@ -113,32 +121,41 @@ def test_a_mistake_stands_in_the_headline_and_what_is_left_without_it():
 
 
 def test_a_difference_that_no_mistake_explains_is_said_to_be_none():
-    words = external_sentences(row(differs_in="azimuth", azimuth_differs_from=3.0))
+    words = external_sentences(row(differs_in=("azimuth",), azimuth_differs_from=3.0))
     assert words.endswith("No mistake of axes, units, clock or origin explains that.")
 
 
 @pytest.mark.parametrize(
-    ("mistake", "value", "words"),
+    ("part", "code", "value", "words"),
     [
-        ("time: time_offset", "-0.3", "its clock is 0.300 s late: an offset of -0.300 s takes that back"),
-        ("time: time_offset", "0.3", "its clock is 0.300 s early: an offset of 0.300 s takes that back"),
-        ("azimuth: angle_unit", "57.2958", "its azimuth is in degrees, read as radians"),
-        ("tilt and azimuth: angle_unit", "0.0174533", "its tilt and azimuth are in radians, read as degrees"),
-        ("path: length_unit", "1000", "x, y and z are in mm, read as m"),
-        ("path: z_reversed", "", "z points down"),
-        ("path: origin", "5.88", "x, y and z are counted from a point 5.88 m from the original base centre"),
-        ("axes: axes_exchanged", "", "its axes are mirrored: x and y are exchanged, or azimuths are counted"),
-        ("azimuth: turned_back", "", "its azimuth is turned by 180 deg"),
-        ("path: y_reversed", "", "its path is mirrored: y has the other sign"),
+        ("time", "time_offset", -0.3, "its clock is 0.300 s late: an offset of -0.300 s takes that back"),
+        ("time", "time_offset", 0.3, "its clock is 0.300 s early: an offset of 0.300 s takes that back"),
+        ("azimuth", "angle_unit", 57.2958, "its azimuth is in degrees, read as radians"),
+        ("tilt and azimuth", "angle_unit", 0.0174533, "its tilt and azimuth are in radians, read as degrees"),
+        ("path", "length_unit", 1000.0, "x, y and z are in mm, read as m"),
+        ("path", "z_reversed", math.nan, "z points down"),
+        ("path", "origin", 5.88, "x, y and z are counted from a point 5.88 m from the original base centre"),
+        (
+            "axes",
+            "axes_exchanged",
+            math.nan,
+            "its axes are mirrored: x and y are exchanged, or azimuths are counted",
+        ),
+        ("azimuth", "turned_back", math.nan, "its azimuth is turned by 180 deg"),
+        ("path", "y_reversed", math.nan, "its path is mirrored: y has the other sign"),
     ],
 )
-def test_each_code_has_its_words(mistake, value, words):
-    (said,) = mistakes(row(likely_mistake=mistake, likely_mistake_value=value))
+def test_each_code_has_its_words(part, code, value, words):
+    (said,) = mistakes(row(likely_mistake=(code,), likely_mistake_in=(part,), likely_mistake_value=(value,)))
     assert said.startswith(words)
 
 
 def test_two_mistakes_keep_their_own_values():
-    both = row(likely_mistake="axes: x_reversed; path: length_unit", likely_mistake_value="; 100")
+    both = row(
+        likely_mistake=("x_reversed", "length_unit"),
+        likely_mistake_in=("axes", "path"),
+        likely_mistake_value=(math.nan, 100.0),
+    )
     assert mistakes(both) == [
         "its axes are mirrored: x has the other sign",
         "x, y and z are in cm, read as m",
@@ -153,7 +170,7 @@ def test_the_uplift_carries_its_uncertainty():
     apart = row(
         uplift_time_uncertainty=0.012,
         uplift_direction_uncertainty=0.1,
-        differs_in="uplift_direction",
+        differs_in=("uplift_direction",),
     )
     assert "and 29 deg from its direction, where they tell ± 6 deg." in external_sentences(apart)
 

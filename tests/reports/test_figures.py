@@ -11,7 +11,7 @@ from rockwobble.models import Case, Cylinder, InitialState
 from rockwobble.reduced import simulate
 from rockwobble.reports.figures.heat import Gap, Heat, Shades, contour, names
 from rockwobble.reports.figures.interactive import figures, plots
-from rockwobble.reports.figures.palette import Style, label_styles
+from rockwobble.reports.figures.palette import ORDER, Style, label_styles
 from rockwobble.reports.figures.picture import (
     TIME,
     Axis,
@@ -174,3 +174,11 @@ def test_trace_draws_itself():
     assert tilt.lines[0].get_ydata()[0] == pytest.approx(0.5)
     # the contact point keeps to the original circle
     assert np.hypot(*path.lines[1].get_data()) == pytest.approx(1.0)
+
+
+def test_only_a_model_is_drawn_as_one_whatever_a_run_is_called() -> None:
+    labels = ["recess model", "clay model", "recess model rtol=1e-06", "planar model plane=0.3"]
+    styles = label_styles(labels, [label for label in labels if label != "clay model"])
+    assert styles["recess model"] == Style(colour="#000000", dash="solid")
+    assert styles["clay model"].colour in ORDER
+    assert len(set(styles.values())) == len(labels)

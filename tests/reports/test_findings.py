@@ -30,6 +30,7 @@ def row(**values):
             "engine": "mujoco",
             "support": "recess",
             "reference": "recess model",
+            "reference_engine": "reduced",
             "reference_support": "recess",
             "outcome": "completed",
             "reference_outcome": "completed",
@@ -42,7 +43,7 @@ def row(**values):
             "predicted_by": "pass",
             "contact_resolution": 2e-5,
             "closest_pass": 3e-3,
-            "likely_mistake": "",
+            "likely_mistake": (),
         }
         | values
     )

@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from rockwobble.compare.certificate.verdict import CHANGED
 from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests, read_results
+from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.advice import RING
 from rockwobble.reports.pages.page import Page
@@ -55,6 +57,13 @@ def test_its_words_are_what_its_tables_say_today(folder: Path, kind: str) -> Non
     words = page.markdown()
     assert r"\*" not in words  # emphasis that would be read as asterisks
     assert (folder / f"{page.name}.md").read_text(encoding="utf-8") == words
+
+
+@pytest.mark.parametrize("path", sorted(PUBLISHED.rglob("*.parquet")), ids=name_of)
+def test_its_diagnostics_are_codes(path: Path) -> None:
+    table = pd.read_parquet(path)
+    for cell in table.get("diagnostics", []):
+        assert set(parted(cell)) <= set(CODES)
 
 
 def test_what_an_advice_says_of_a_ring_is_in_the_published_limits() -> None:

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 
 from rockwobble.models import Bounds, Case, Run, Trace
 
+from ...comparison.external.verdict import numbers_of
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale, verdict
 from ...comparison.summary import SUMMARY_COLUMNS, summary_row
 from ...metrics.agreement import agreement_time
@@ -130,7 +131,7 @@ def _stated(
     part = f"{job.run.engine} ({job.run.support}) or the {model.run}"
     for column, most in bounds.given().items():
         unit, meaning = SUMMARY_COLUMNS[column]
-        value = abs(float(row[column]))
+        value = abs(numbers_of(row)[column])
         if column == "agreement_time":
             # the shorter the worse: what is missing may be nothing
             missing = max(0.0, most - value) if row["diverged"] else 0.0

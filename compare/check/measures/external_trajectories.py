@@ -15,6 +15,7 @@ import numpy as np
 
 from rockwobble.models import Trace
 
+from ...comparison.external.verdict import numbers_of
 from ...comparison.summary import SUMMARY_COLUMNS, external_row
 from ...traces.trajectory import External, read_trajectory
 from ..bench import Array, Bench, largest
@@ -74,7 +75,8 @@ def _row(trial: Trace, time: Array) -> dict[str, float]:
     found = external_row(CASE, "made", reference, "file", trial)
     known = {"tilt_rms": 0.0, "peak_tilt_difference": 0.0, "diverged": 0.0, "agreement_time": LENGTH}
     known |= {"uplift_time_difference": 0.0, "uplift_direction_difference": 0.0}
-    errors = {name: float(found[name]) - value for name, value in known.items()}
+    numbers = numbers_of(found)
+    errors = {name: numbers[name] - value for name, value in known.items()}
     return {**errors, "columns": float(len({*SUMMARY_COLUMNS} ^ {*found}))}
 
 

@@ -14,6 +14,7 @@ import numpy as np
 
 from rockwobble.models import Case, Diagnostic, GroundMotion, Trace
 
+from ...comparison.external.verdict import numbers_of
 from ...comparison.prediction import Prediction
 from ...comparison.summary import SUMMARY_COLUMNS, lost_row, summary_row
 from ...metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
@@ -199,9 +200,9 @@ def _row() -> dict[str, float]:
         twist=np.full(len(TIME), -7.0),
         contact_resolution=1e-4,
     )
-    found = summary_row(
-        case, "recess model", reference, "made", trial, prediction=Prediction(length=8.0, reason="pass")
-    )
+    expectation = Prediction(length=8.0, reason="pass")
+    row = summary_row(case, "recess model", reference, "made", trial, prediction=expectation)
+    found = numbers_of(row)
     expected: Mapping[str, float] = {
         "peak_tilt": 0.6,
         "reference_peak_tilt": 0.7,
@@ -219,7 +220,7 @@ def _row() -> dict[str, float]:
         "predicted_agreement_time": 8.0,
         "contact_resolution": 1e-4,
     }
-    return {name: float(found[name]) - value for name, value in expected.items()}
+    return {name: found[name] - value for name, value in expected.items()}
 
 
 def _early_rows() -> dict[str, float]:
@@ -228,9 +229,10 @@ def _early_rows() -> dict[str, float]:
     reference = made(TIME, np.full(len(TIME), 0.4 * ALPHA), wall_time=0.5)
     lost = lost_row(case, "recess model", reference, "made", made(TIME[:1], LEAN[:1], outcome="failed"))
     known = {"diverged": 1.0, "agreement_time": 0.0, "agreed_passes": 0.0, "reference_peak_tilt": 0.4}
-    off = {f"lost: {name}": float(lost[name]) - value for name, value in known.items()}
+    found = numbers_of(lost)
+    off = {f"lost: {name}": found[name] - value for name, value in known.items()}
     off["lost: columns"] = float(len({*SUMMARY_COLUMNS} ^ {*lost}))
-    off |= {f"lost: {name}": _none(float(lost[name])) for name in ("peak_tilt", "tilt_rms", "wall_time")}
+    off |= {f"lost: {name}": _none(found[name]) for name in ("peak_tilt", "tilt_rms", "wall_time")}
     for when, said in ((1.0, "after it touched a wall"), (4.0, "earlier")):
         touch = Diagnostic(code="wall_contact", time=when, duration=0.1, size=1.0)
         tilt = reference.tilt + 0.1 * ALPHA * (TIME > 2.0)

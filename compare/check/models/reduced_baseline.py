@@ -12,7 +12,7 @@ from rockwobble.models import Case, Cylinder, el_centro_1940
 
 from ..baseline_file import read_baseline
 from ..bench import Bench
-from ..finding import Bound, Finding, worst_of
+from ..finding import Bound, Finding, worst_of, worst_place
 from ..problems import MODELS, PIER, released
 
 FILE, GROUP = "reduced", "reduced models"
@@ -24,24 +24,28 @@ SAME = Bound(1e-9, "rtol 1e-12, magnified by passes near upright", "alpha, s or 
 def check(bench: Bench) -> Iterator[Finding]:
     """Yield the findings of this part, one for each run."""
     kept = read_baseline(FILE).values.get(GROUP, {})
-    groups: dict[str, dict[str, float]] = {}
-    for name, value in measure(bench).items():
-        run, what = name.split(": ", 1)
-        groups.setdefault(run, {})[what] = value
-    for run, values in groups.items():
-        apart = {what: value - kept.get(f"{run}: {what}", math.nan) for what, value in values.items()}
-        part = f"the {run.split(',')[0]} model gives other numbers than it did"
-        finding = worst_of(run, apart, SAME, part)
+    for model, run, values in _measured(bench):
+        before = {what: kept.get(_key(run, what), math.nan) for what in values}
+        apart = {what: value - before[what] for what, value in values.items()}
+        finding = worst_of(run, apart, SAME, f"the {model} model gives other numbers than it did")
         if finding.failed:
-            worst = finding.note.split(": ", 1)[1]
-            was = f"; {values[worst]!r}, the baseline is {kept.get(f'{run}: {worst}')!r}"
+            worst = worst_place(apart)
+            was = f"; {values[worst]!r}, the baseline is {before[worst]!r}"
             finding = dataclasses.replace(finding, note=finding.note + was)
         yield finding
 
 
 def measure(bench: Bench) -> dict[str, float]:
     """Return the numbers that are kept: tilts at some instants, peaks, uplifts, passes."""
-    found: dict[str, float] = {}
+    return {_key(run, what): value for _, run, values in _measured(bench) for what, value in values.items()}
+
+
+def _key(run: str, what: str) -> str:
+    return f"{run}: {what}"
+
+
+def _measured(bench: Bench) -> Iterator[tuple[str, str, dict[str, float]]]:
+    """Yield model, run and numbers of each run."""
     for model, case, instants in _runs():
         trace = bench.solve(case, model, rtol=RTOL, sample_step=0.5)
         alpha = case.cylinder.alpha
@@ -55,8 +59,7 @@ def measure(bench: Bench) -> dict[str, float]:
         elif len(trace.passes):
             values["first pass [s]"] = trace.passes["time"].iloc[0]
             values["first angle of turn [rad]"] = trace.passes["angle_of_turn"].iloc[0]
-        found |= {f"{model}, {case.name}: {what}": float(value) for what, value in values.items()}
-    return found
+        yield model, f"{model}, {case.name}", {what: float(value) for what, value in values.items()}
 
 
 def _runs() -> Iterator[tuple[str, Case, tuple[float, ...]]]:

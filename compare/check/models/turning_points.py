@@ -12,13 +12,16 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rockwobble.models import Case, InitialState, Trace
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
 
 from ..bench import Array, Bench, largest
 from ..finding import Bound, Finding, at_most
-from ..problems import PIER, THRESHOLD, polyline
+from ..problems import MODELS, PIER, THRESHOLD, polyline
 
 _SAMPLE = 0.002  # [s] 1/400 of 1/p, and 1/20 of the shortest pass
+# under a threshold of the same acceleration, large enough to stand most noise of that strength
+_LARGE = Cylinder(semidiagonal=15.0, tan_alpha=PIER.tan_alpha)
+_NOISE = ((2, 0.1), (13, 0.05), (23, 0.05))  # seed, and spacing of the samples [s]
 _REACH = 3  # samples on either side of the lowest or highest one
 # 4e-10 s, 1e-12 and 2e-8 rad were measured: what the polynomial leaves of the fastest pass
 VERTEX = "vertex of the polynomial through samples 0.002 s apart"
@@ -28,6 +31,8 @@ COLUMNS = {
     "angles": Bound(1e-6, VERTEX, "rad"),
 }
 PEAK = Bound(1e-10, "the highest turning point of the samples", "rad")
+LISTED = Bound(0.0, "every change of direction of the samples is a turning point")
+HIGHEST = Bound(0.0, "no sample is higher than the peak", "alpha")
 PASSES = Bound(1e-6, "minima between two maxima, and the turn from one to the other", "s, rad")
 SHAKEN = polyline(
     [0.0, 0.5, 1.0, 1.5, 2.0],
@@ -48,6 +53,23 @@ def check(bench: Bench) -> Iterator[Finding]:
         ("released upwards, flat ground", "flat", Case(PIER, initial=up, duration=8.0)),
     ):
         yield from _one(name, bench.solve(case, model, sample_step=_SAMPLE, rtol=1e-11, rest_tilt=0.0))
+    for model in MODELS:
+        yield from _rough(bench, model)
+
+
+def _rough(bench: Bench, model: str) -> Iterator[Finding]:
+    """Noise whose samples are so far apart that tilts turn twice in a step, which begins and ends alike."""
+    unlisted, above = 0, 0.0
+    for seed, step in _NOISE:
+        noise = THRESHOLD * np.random.default_rng(seed).normal(size=(round(10.0 / step), 2))
+        found = bench.solve(Case(_LARGE, GroundMotion(noise, step)), model, sample_step=_SAMPLE)
+        turns = _turns(found)
+        times = found.extrema[:, 0]
+        unlisted += sum(np.abs(times - at).min(initial=math.inf) > _SAMPLE for at in turns[:, 0])
+        above = max(above, float(found.tilt.max() - found.peak_tilt) / _LARGE.alpha)
+    part = "turning points: two of them in one step"
+    yield at_most(f"turning points that are not found, noise, {model}", unlisted, LISTED, part)
+    yield at_most(f"peak of the continuous motion, noise, {model}", above, HIGHEST, part)
 
 
 def _one(name: str, found: Trace) -> Iterator[Finding]:

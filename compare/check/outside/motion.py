@@ -5,15 +5,13 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .outputs import Outputs
+from ...traces.motion import Motion
 
-Array = NDArray[np.float64]
 _REACH = 3  # samples on each side of a maximum
 
 
-def first_maximum(given: Outputs) -> tuple[float, float, float]:
+def first_maximum(given: Motion) -> tuple[float, float, float]:
     """Return time [s], tilt and azimuth [rad] of the first tilt maximum after the start; NaN without one."""
     tilt = given.tilt
     inner = np.flatnonzero((tilt[1:-1] > tilt[:-2]) & (tilt[1:-1] >= tilt[2:])) + 1
@@ -28,25 +26,17 @@ def first_maximum(given: Outputs) -> tuple[float, float, float]:
     roots = np.roots(np.polyder(fit))
     best = float(min(roots[np.abs(roots.imag) < 1e-9].real, key=abs, default=0.0))
     azimuth = math.nan
-    if given.azimuth is not None:
-        turned = np.unwrap(given.azimuth[near])
+    if given.lean is not None:
+        turned = np.unwrap(np.angle(given.lean))[near]
         azimuth = float(np.polyval(np.polyfit(time, turned, 2 * _REACH), best))
     return float(given.time[i]) + best * unit, float(np.polyval(fit, best)), azimuth
 
 
-def lean(given: Outputs) -> Array:
-    """Return sin(tilt) times the direction of the lean, (n, 2); the tilt alone where it is not told."""
-    if given.azimuth is None:
-        return np.column_stack([np.sin(given.tilt), np.zeros_like(given.tilt)])
-    azimuth = np.nan_to_num(given.azimuth)
-    direction = np.column_stack([np.cos(azimuth), np.sin(azimuth)])
-    return np.asarray(np.sin(given.tilt)[:, None] * direction, dtype=np.float64)
-
-
-def apart(one: Outputs, other: Outputs, alpha: float, end: float, *, stretch: float = 1.0) -> float:
+def apart(one: Motion, other: Motion, alpha: float, end: float, *, stretch: float = 1.0) -> float:
     """Return the root mean square difference of the leans up to `end` [s], over sin(alpha).
 
-    The second is read at `stretch` times the time of the first.
+    The second is read at `stretch` times the time of the first. Where either does not tell the azimuth, their
+    leans are sin(tilt) alone.
     """
     from scipy.interpolate import CubicSpline
 
@@ -54,13 +44,15 @@ def apart(one: Outputs, other: Outputs, alpha: float, end: float, *, stretch: fl
     at = one.time[within]
     if len(at) < 2 * _REACH:
         return math.inf
-    wanted = CubicSpline(other.time, lean(other))(stretch * at)
-    difference = np.hypot(*(lean(one)[within] - wanted).T)
+    ours, theirs = one.lean, other.lean
+    if ours is None or theirs is None:
+        ours, theirs = np.sin(one.tilt), np.sin(other.tilt)
+    difference = np.abs(ours[within] - CubicSpline(other.time, theirs)(stretch * at))
     mean = np.trapezoid(difference**2, at) / (at[-1] - at[0])
     return math.sqrt(float(mean)) / math.sin(alpha)
 
 
-def rises(given: Outputs, level: float) -> float:
+def rises(given: Motion, level: float) -> float:
     """Return when the tilt first exceeds a level [s]; its cube root is linear in between. NaN if never."""
     beyond = np.flatnonzero(given.tilt > level)
     if not len(beyond) or not beyond[0]:
@@ -69,11 +61,3 @@ def rises(given: Outputs, level: float) -> float:
     low, high = np.cbrt(np.maximum(given.tilt[i - 1 : i + 1], 0.0))
     share = float((np.cbrt(level) - low) / (high - low))
     return float(given.time[i - 1] + (given.time[i] - given.time[i - 1]) * share)
-
-
-def turned(given: Outputs, angle: float, *, mirrored: bool = False) -> Outputs:
-    """Return the motion mirrored in x and then turned by an angle [rad] about the vertical."""
-    if given.azimuth is None:
-        return given
-    azimuth = (-given.azimuth if mirrored else given.azimuth) + angle
-    return Outputs(time=given.time, tilt=given.tilt, azimuth=azimuth, energy=given.energy)

@@ -20,7 +20,6 @@ from __future__ import annotations
 import importlib
 import sys
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -28,20 +27,10 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case
 
-from ...traces.file import QUATERNION, read_columns
+from ...traces.motion import Motion, motion_at
 
 Array = NDArray[np.float64]
 Model = Callable[[Case, str], object]
-
-
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Outputs:
-    """One motion, (n,) each; None where it is not told."""
-
-    time: Array
-    tilt: Array
-    azimuth: Array | None = None
-    energy: Array | None = None
 
 
 def load_model(name: str) -> Model:
@@ -67,8 +56,8 @@ def load_model(name: str) -> Model:
     return model
 
 
-def outputs_of(result: object) -> Outputs:
-    """Return the output of a model.
+def outputs_of(result: object) -> tuple[Motion, Array | None]:
+    """Return the motion that a model gave, and its energy if it is told.
 
     Raises
     ------
@@ -90,32 +79,12 @@ def outputs_of(result: object) -> Outputs:
     for name, column in columns.items():
         if len(column) != len(columns["time"]):
             raise ValueError(f"{name} must be as long as time, {len(columns['time'])}, got {len(column)}")
-    # an energy that is nowhere known is not told
+    # what is nowhere known is not told
     told = {name: column for name, column in columns.items() if np.isfinite(column).any()}
-    return Outputs(**told)
+    return motion_at(told["time"], told["tilt"], told.get("azimuth")), told.get("energy")
 
 
 def _taken(result: object, key: str) -> object:
     if isinstance(result, Mapping):
         return result.get(key)
     return getattr(result, key, None)
-
-
-def read_outputs(path: Path) -> Outputs:
-    """Read the file of a trajectory, with tilt and azimuth or with quaternions.
-
-    Raises
-    ------
-    ValueError
-        If the file cannot be read, or has neither.
-    """
-    given = read_columns(path, None)
-    time = given.complete("time")
-    if set(QUATERNION) <= set(given.values):
-        w, x, y, z = (given.complete(name) for name in QUATERNION)
-        east, north, up = 2.0 * (x * z + w * y), 2.0 * (y * z - w * x), w * w - x * x - y * y + z * z
-        tilt, azimuth = np.arctan2(np.hypot(east, north), up), np.arctan2(north, east)
-        return Outputs(time=time, tilt=tilt, azimuth=azimuth)
-    if "tilt" not in given.values:
-        raise ValueError(f"{path.name} must have tilt, or qw, qx, qy and qz")
-    return Outputs(time=time, tilt=given.complete("tilt"), azimuth=given.values.get("azimuth"))

@@ -136,7 +136,7 @@ class Advice(Shown):
 
     @property
     def grades(self) -> dict[str, Grade]:
-        """Grade of each topic that there is something to say about; the criteria are in `grades.CRITERIA`."""
+        """Grade of each topic that there is something to say about; the criteria are in `grades`."""
         if self.trace.outcome == "failed":
             return {"trace": "bad"}
         if not self.moves:

@@ -11,6 +11,7 @@ from typing import ClassVar
 import pandas as pd
 
 from rockwobble.models import Case, Run, Suite, Trace
+from rockwobble.models.diagnostic import joined
 from rockwobble.models.shown import Shown
 
 from ...runs.choice import default_runs, own_model, require_runnable
@@ -184,7 +185,7 @@ def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
             "method": job.label,
             "peak_tilt": result.peak_tilt / job.case.cylinder.alpha,
             "outcome": result.outcome,
-            "diagnostics": " ".join(fact.code for fact in result.facts),
+            "diagnostics": joined(fact.code for fact in result.facts),
             "wall_time": result.wall_time,
         }
         for job, result in zip(jobs, results, strict=True)

@@ -14,7 +14,7 @@ The verdicts are
 * flagged: it is more, or the model leaves its assumptions, and a diagnostic says so: one of a kind that
   explains the error, and that begins no later than the error does;
 * no reference: what it is held against has ceased to hold before the error begins;
-* refused: a ValueError of one line before anything runs;
+* refused: bad input, of which `require_runnable` says so before anything runs;
 * caught: the run ended as failed, with a diagnostic;
 * silent: wrong, and nothing explains it. There must be none;
 * n/a: the method has nothing of the kind.
@@ -29,12 +29,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.models import Diagnostic, Run, Trace
-from rockwobble.models.diagnostic import FAILURES
+from rockwobble.models import Case, Diagnostic, Run, Trace
+from rockwobble.models.diagnostic import FAILURES, joined
 from rockwobble.multibody.engines.registry import engine_facts
 
 from ...comparison.prediction import time_scale
-from ...runs.choice import own_model
+from ...runs.choice import own_model, require_runnable
 from ...runs.execution import simulate_run
 from ...traces.pair import make_pair
 from .conditions import Condition, without_spin
@@ -44,11 +44,11 @@ FINE = 0.01  # of alpha, or of the angle of turn: what ends an agreement everywh
 _ENERGY = 1e-5
 _TIGHT, _REFERENCE = 1e-12, 1e-10  # tolerances
 _STEP = 1e-4  # [s] the default at 6 m
-# what makes an engine leave its reference; a reduced model errs only where the side of a pass is undetermined
+# what makes an engine leave its reference: no wall, which the ring at half the step meets as well; a reduced
+# model errs only where the side of a pass is undetermined
 _EXPLAINS = frozenset(
-    {"slip", "lift_off", "tension", "friction_needed", "wall_contact", "energy", "unresolved_pass",
-     "undecided"}
-)  # fmt: skip
+    {"slip", "lift_off", "tension", "friction_needed", "energy", "unresolved_pass", "undecided"}
+)
 _EXPLAINS_REDUCED = frozenset({"side"})
 
 
@@ -63,13 +63,13 @@ class Verdict:
     error : float
         Largest, as far as the reference holds [alpha], or relative of an angle of turn; NaN if not known.
     reference : str
-        What it was held against; several are joined by a comma, the worst alone where it is not fine.
+        What it was held against, codes of the module; the worst alone where it is not fine.
     until : float
         When the reference ceases to hold [s]; infinite if it does not.
     begins : float
         When the tilt is off by more than `FINE` [s]; infinite if it never is.
     limit : str
-        Code of the diagnostic that explains it.
+        Codes of the diagnostics that explain it.
     refusal : str
         The line of a refusal.
     """
@@ -89,20 +89,34 @@ def judge(condition: Condition, run: Run) -> Verdict:
         return Verdict(verdict="n/a")
     if math.isfinite(condition.contact) and not _contact_time(run):
         return Verdict(verdict="n/a")
+    case, run = _asked(condition, run)
     try:
-        return _reduced(condition, run) if run.engine is None else _engine(condition, run)
+        require_runnable(case, run)
     except ValueError as refusal:
-        line = str(refusal)
-        return Verdict(verdict="refused" if line and "\n" not in line else "silent", refusal=line)
-
-
-def _reduced(condition: Condition, run: Run) -> Verdict:
-    case = condition.case
-    if "plane" in run.settings and condition.extreme != "spin":
-        case = without_spin(case)
+        return Verdict(verdict="refused", refusal=str(refusal))
     trace = simulate_run(case, run, sample_step=condition.sample_step)
     if trace.outcome == "failed":
         return _failed(trace)
+    return (_reduced if run.engine is None else _engine)(condition, run, trace)
+
+
+def _asked(condition: Condition, run: Run) -> tuple[Case, Run]:
+    """The case and the run that a condition asks of a method."""
+    case = condition.case
+    if run.engine is None:
+        return without_spin(case) if "plane" in run.settings and condition.extreme != "spin" else case, run
+    step = _step(condition)
+    settings = {} if math.isnan(condition.contact) else {_contact_time(run): condition.contact * step}
+    plain = condition.time_step == 1.0 and not settings
+    return case, Run(run.engine, run.support, None if plain else step, **settings)
+
+
+def _step(condition: Condition) -> float:
+    return _STEP * condition.time_step * time_scale(condition.case)
+
+
+def _reduced(condition: Condition, run: Run, trace: Trace) -> Verdict:
+    case = trace.case
     tight = simulate_run(case, _tighter(run, _TIGHT), sample_step=condition.sample_step)
     error, begins = (math.inf, 0.0) if tight.outcome == "failed" else _tilt_error(tight, trace)
     errors = {"tight": error}
@@ -125,26 +139,19 @@ def _reduced(condition: Condition, run: Run) -> Verdict:
             limit=limit,
         )
     assert trace.assumptions is not None
-    limit = ", ".join(fact.code for fact in trace.assumptions.breaches)
+    limit = joined(fact.code for fact in trace.assumptions.breaches)
     return Verdict(
         verdict="flagged" if limit else "fine",
         error=errors[worst],
-        reference=", ".join(errors),
+        reference=joined(errors),
         limit=limit,
     )
 
 
-def _engine(condition: Condition, run: Run) -> Verdict:
+def _engine(condition: Condition, run: Run, trace: Trace) -> Verdict:
     case = condition.case
-    step = _STEP * condition.time_step * time_scale(case)
-    settings = {} if math.isnan(condition.contact) else {_contact_time(run): condition.contact * step}
-    plain = condition.time_step == 1.0 and not settings
-    run = Run(run.engine, run.support, None if plain else step, **settings)
-    trace = simulate_run(case, run, sample_step=condition.sample_step)
-    if trace.outcome == "failed":
-        return _failed(trace)
     if run.support == "ring":
-        name, other = "half_step", Run(run.engine, run.support, 0.5 * step, **settings)
+        name, other = "half_step", Run(run.engine, run.support, 0.5 * _step(condition), **run.settings)
     else:
         name, other = "model", _tighter(own_model(run), _REFERENCE)
     reference = simulate_run(case, other, sample_step=condition.sample_step)
@@ -183,7 +190,7 @@ def _tighter(run: Run, rtol: float) -> Run:
 
 def _failed(trace: Trace) -> Verdict:
     codes = [fact.code for fact in trace.facts if fact.code in FAILURES]
-    return Verdict(verdict="caught" if codes else "silent", limit=", ".join(codes))
+    return Verdict(verdict="caught" if codes else "silent", limit=joined(codes))
 
 
 def _explanation(facts: Iterable[Diagnostic], kinds: frozenset[str], begins: float) -> str:

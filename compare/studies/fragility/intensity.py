@@ -34,49 +34,19 @@ class Measure:
         With its symbols, for axes and tables.
     unit : str
         "-" for a number.
-    meaning : str
-        Its definition in one sentence.
     """
 
     title: str
     unit: str
-    meaning: str
 
 
 MEASURES: Mapping[str, Measure] = {
-    "peak_acceleration": Measure(
-        title="peak acceleration / g tan α",
-        unit="-",
-        meaning="Largest resultant acceleration over g tan α: 1 just uplifts the cylinder.",
-    ),
-    "peak_velocity": Measure(
-        title="p × peak velocity / g tan α",
-        unit="-",
-        meaning="Largest resultant velocity times the frequency parameter p = sqrt(m g R/A) of rocking, "
-        "over g tan α.",
-    ),
-    "pga": Measure(
-        title="PGA",
-        unit="g",
-        meaning="Geometric mean of the largest accelerations of the two components.",
-    ),
-    "pgv": Measure(
-        title="PGV",
-        unit="m/s",
-        meaning="Geometric mean of the largest velocities of the two components.",
-    ),
-    "sa": Measure(
-        title="Sa",
-        unit="g",
-        meaning="Largest resultant of the pseudo-accelerations of the two components at a period, "
-        "5 % damped.",
-    ),
-    "sa_mean": Measure(
-        title="Sa, geometric mean",
-        unit="g",
-        meaning="Geometric mean of the largest pseudo-accelerations of the two components at a period, "
-        "5 % damped.",
-    ),
+    "peak_acceleration": Measure(title="peak acceleration / g tan α", unit="-"),
+    "peak_velocity": Measure(title="p × peak velocity / g tan α", unit="-"),
+    "pga": Measure(title="PGA", unit="g"),
+    "pgv": Measure(title="PGV", unit="m/s"),
+    "sa": Measure(title="Sa", unit="g"),
+    "sa_mean": Measure(title="Sa, geometric mean", unit="g"),
 }
 
 

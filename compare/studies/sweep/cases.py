@@ -7,13 +7,14 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.diagnostic import joined
 from rockwobble.models.shown import Brief
 from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
 from ...runs.choice import require_runnable
 from ...runs.execution import Job, job_fingerprint, makers_of, run_job
-from ...runs.labels import run_labels
+from ...runs.labels import REDUCED, run_labels
 from ...storage.fingerprint import fingerprint
 
 # An engine's run takes seconds, a reduced one milliseconds.
@@ -139,7 +140,7 @@ def _row(job: Job, trace: Trace) -> dict[str, object]:
     return {
         "case": job.case.name,
         "run": job.label,
-        "engine": job.run.engine or "reduced",
+        "engine": job.run.engine or REDUCED,
         "support": job.run.support,
         "time_step": trace.time_step,
         "semidiagonal": cylinder.semidiagonal,
@@ -148,7 +149,7 @@ def _row(job: Job, trace: Trace) -> dict[str, object]:
         "peak_tilt_over_alpha": float(trace.peak_tilt) / cylinder.alpha,
         **{name: float(getattr(trace, name)) for name in _RESULTS},
         "outcome": trace.outcome,
-        "diagnostics": " ".join(fact.code for fact in trace.facts),
+        "diagnostics": joined(fact.code for fact in trace.facts),
         "version": trace.version,
         "end": float(trace.time[-1]),
         "passes": len(passes),

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pandas as pd
 
-from .methods import BASE_LINE
+from .methods import BASE_LINE, REST_PANEL, rest_line
 from .problem import FINE_REST_TILT
 
 # in the unit of each problem: errors that are asked for
@@ -91,10 +91,10 @@ def rest_tilt_price(points: pd.DataFrame) -> pd.DataFrame:
     Each line is held against the one with next to no rule at the same tolerance.
     """
     reduced = points[(points["family"] == "reduced") & (points["support"] == "recess")]
-    none = reduced["line"] == f"rest threshold {FINE_REST_TILT:g}"
-    kept = [BASE_LINE, *(line for line in reduced["line"].unique() if line.startswith("rest threshold"))]
+    none = reduced["line"] == rest_line(FINE_REST_TILT)
+    kept = (reduced["line"] == BASE_LINE) | (reduced["panel"] == REST_PANEL)
     columns = ["problem", "line", "value", "ratio", "error"]
-    pairs = reduced.loc[~none & reduced["line"].isin(kept), columns].merge(
+    pairs = reduced.loc[~none & kept, columns].merge(
         reduced.loc[none, columns[:1] + columns[2:]], on=["problem", "value"], suffixes=("", "_without")
     )
     pairs["speed_up"] = pairs["ratio_without"] / pairs["ratio"]

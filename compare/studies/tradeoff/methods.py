@@ -11,8 +11,10 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.models import Case, Run, Trace
+from rockwobble.models.diagnostic import joined
 from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
 
+from ...runs.choice import require_runnable
 from ...runs.execution import simulate_run
 from .problem import FINE_REST_TILT, Array, Problem
 from .scipy_solver import SOLVERS, Rates, SolverName, solve, start_of
@@ -20,6 +22,7 @@ from .scipy_solver import SOLVERS, Rates, SolverName, solve, start_of
 # of the recess model as it comes: every computing time is told as a multiple of its own
 BASE_TOLERANCE = 1e-8
 BASE_LINE = "recess model"
+REST_PANEL = "rest threshold"
 _TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
 # what a held contact time constant is: that of the default settings at a step of 1e-3 s [s]
 _HELD = 2e-3
@@ -79,12 +82,12 @@ def _reduced(problem: Problem, quick: bool) -> Iterator[Method]:
     tolerances = sorted({*(_TOLERANCES[1::2] if quick else _TOLERANCES), BASE_TOLERANCE}, reverse=True)
     lines = [("methods", Run(None, "recess")), ("methods", Run(None, "flat"))]
     if problem.name != "turn":  # on still ground nothing comes to rest
-        lines += [("rest threshold", Run(None, "recess", rest_tilt=at)) for at in (FINE_REST_TILT, 1e-5, 0.1)]
+        lines += [(REST_PANEL, Run(None, "recess", rest_tilt=at)) for at in (FINE_REST_TILT, 1e-5, 0.1)]
     for panel, run in lines:
         rest_tilt = run.settings.get("rest_tilt", reduced.REST_TILT)
         for rtol in tolerances:
             yield Method(
-                line=str(run) if panel == "methods" else f"rest threshold {rest_tilt:g}",
+                line=str(run) if panel == "methods" else rest_line(rest_tilt),
                 family="reduced",
                 support=run.support,
                 panel=panel,
@@ -92,6 +95,11 @@ def _reduced(problem: Problem, quick: bool) -> Iterator[Method]:
                 value=rtol,
                 solve=partial(_by_model, problem, run.support, rtol, rest_tilt),
             )
+
+
+def rest_line(rest_tilt: float) -> str:
+    """Return the line of the recess model with a rest threshold of its own."""
+    return f"rest threshold {rest_tilt:g}"
 
 
 def _by_model(problem: Problem, support: str, rtol: float, rest_tilt: float, case: Case) -> Answer:
@@ -185,11 +193,12 @@ def _line(
 
 def _by_engine(problem: Problem, run: Run, case: Case) -> Answer:
     try:
-        return _answer(problem, simulate_run(case, run, sample_step=problem.sample_step))
+        require_runnable(case, run)
     except ValueError as refusal:
         return Answer(quantity=np.empty(0), said=str(refusal))
+    return _answer(problem, simulate_run(case, run, sample_step=problem.sample_step))
 
 
 def _answer(problem: Problem, trace: Trace) -> Answer:
-    said = ", ".join(fact.code for fact in trace.facts)
-    return Answer(quantity=np.empty(0) if trace.outcome == "failed" else problem.quantity(trace), said=said)
+    quantity = np.empty(0) if trace.outcome == "failed" else problem.quantity(trace)
+    return Answer(quantity=quantity, said=joined(fact.code for fact in trace.facts))

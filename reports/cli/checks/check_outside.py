@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import rockwobble as rw
+import rockwobble.compare as rc
 
 from ..inputs import options
 
@@ -21,7 +22,8 @@ Model = Annotated[
     ),
 ]
 Trajectory = Annotated[
-    Path | None, _outside("Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite.")
+    Path | None,
+    _outside("Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."),
 ]
 Support = Annotated[str | None, _outside("What it models: recess or flat. Default: recess.")]
 Tolerance = Annotated[float | None, _outside("How exact it claims to be. Default: 0.001.")]
@@ -62,7 +64,7 @@ def outside_findings(
     ValueError
         If both are given, one cannot be read, or the suite has more than one case.
     """
-    from rockwobble.compare.check.outside import check_model, check_trajectory, load_model, read_outputs
+    from rockwobble.compare.check.outside import check_model, check_trajectory, load_model
 
     if model is not None and trajectory is not None:
         raise ValueError("--model and --trajectory exclude each other, got both")
@@ -72,8 +74,8 @@ def outside_findings(
     cases = rw.read_suite(suite).cases
     if len(cases) != 1:
         raise ValueError(f"--trajectory needs a --suite with one case, got {len(cases)} in {suite}")
-    given = read_outputs(trajectory)
-    return list(check_trajectory(given, cases[0], support=support, tolerance=tolerance))
+    given = rc.read_trajectory(trajectory, cases[0])
+    return list(check_trajectory(given, support=support, tolerance=tolerance))
 
 
 def print_outside(findings: list[Finding]) -> None:

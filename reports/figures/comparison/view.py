@@ -99,7 +99,9 @@ def case_views(comparison: Comparison) -> list[CaseView]:
                 references=references,
                 facts={label: trace.facts for label, trace in whole.items()},
                 rows=rows,
-                styles=label_styles(list(traces)),
+                styles=label_styles(
+                    list(traces), [label for label, trace in traces.items() if trace.run.engine is None]
+                ),
                 budgets={
                     (run, reference): budget
                     for (of, run, reference), budget in comparison.budgets.items()

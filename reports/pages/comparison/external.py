@@ -23,32 +23,29 @@ def told(row: Any) -> dict[str, object]:
     -------
     dict
         row, of the summary; differs and left, parts that differ, and that still do without the mistake;
-        agrees and wrong, what does and does not besides the tilt; missing, parts that were not compared, and
-        why; mistakes and alternatives, likely mistakes in words, and what explains the azimuth just as well.
+        agrees and wrong, what does and does not besides the tilt; mistakes and alternatives, in words: what
+        is likely, and what explains the azimuth just as well.
     """
-    differs = _split(row.differs_in)
+    differs = row.differs_in
     known = [part for part in ("azimuth", "path") if math.isfinite(getattr(row, f"{part}_rms"))]
     return {
         "row": row,
         "differs": differs,
-        "left": _split(row.differs_without_mistake),
+        "left": row.differs_without_mistake,
         "agrees": [part for part in known if part not in differs],
         "wrong": [part for part in differs if part != "tilt"],
-        "missing": [each.split(": ", 1) for each in _split(row.not_compared)],
         "mistakes": mistakes(row),
-        "alternatives": mistakes(row, "alternative_mistake"),
+        "alternatives": [
+            sentence(WORDS, "mistake", "azimuth", *other)
+            for other in zip(row.alternative_mistake, row.alternative_mistake_value, strict=True)
+        ],
     }
 
 
-def mistakes(row: Any, column: str = "likely_mistake") -> list[str]:
+def mistakes(row: Any) -> list[str]:
     """Return each mistake that explains the differences of a row, in words."""
-    if not (codes := _split(getattr(row, column))):
-        return []
-    values = str(getattr(row, f"{column}_value")).split("; ")
-    return [
-        sentence(WORDS, "mistake", *code.split(": ", 1), float(value) if value else math.nan)
-        for code, value in zip(codes, values, strict=True)
-    ]
+    found = zip(row.likely_mistake_in, row.likely_mistake, row.likely_mistake_value, strict=True)
+    return [sentence(WORDS, "mistake", *mistake) for mistake in found]
 
 
 def within(row: Any) -> str:
@@ -78,8 +75,12 @@ def external_rows(summary: pd.DataFrame) -> list[Row]:
                 min(row.uplift_direction_uncertainty, math.pi),
                 row.uplift_direction_uncertainty,
             ),
-            "differs_in": row.differs_in or None,
-            "likely_mistake": row.likely_mistake or None,
+            "differs_in": "; ".join(row.differs_in) or None,
+            "likely_mistake": "; ".join(
+                f"{part}: {code}"
+                for part, code in zip(row.likely_mistake_in, row.likely_mistake, strict=True)
+            )
+            or None,
         }
         for row in rows_of(summary[summary["support"] == EXTERNAL])
     ]
@@ -87,7 +88,3 @@ def external_rows(summary: pd.DataFrame) -> list[Row]:
 
 def _degrees(angle: float, uncertainty: float) -> float | None:
     return math.degrees(angle) if math.isfinite(uncertainty) else None
-
-
-def _split(codes: str) -> list[str]:
-    return [part for part in str(codes).split("; ") if part]

@@ -11,12 +11,14 @@ import pandas as pd
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
+from rockwobble.compare.runs.labels import REDUCED
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
+from rockwobble.models.diagnostic import parted
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
 from ..words.diagnostics import counted, failure, remarks
-from ..words.sentences import sentence
-from .external import external_sentences, mistakes, scope, within
+from ..words.sentences import sentence, the
+from .external import external_sentences, scope, within
 
 WORDS = "comparison/findings.md.j2"
 _LISTED = 10
@@ -93,7 +95,7 @@ def reason(row: Any, length: float, *, touched: bool = False) -> str:
         return "support"
     if row.support == "ring" and row.reference_support != "ring" and (against_recess or touched):
         return "walls"
-    if row.support == EXTERNAL and mistakes(row):
+    if row.support == EXTERNAL and row.likely_mistake:
         return "mistake"
     predicted = row.predicted_agreement_time
     by_pass = row.predicted_by == "pass" and row.support != EXTERNAL and predicted < length
@@ -121,7 +123,7 @@ def counted_remarks(summary: pd.DataFrame) -> list[str]:
     """Return one sentence on how many runs of many cases have which diagnostic; none if no run has any."""
     runs = summary[(summary["outcome"] != "failed") & (summary["reference_outcome"] != "failed")]
     runs = runs.drop_duplicates(["case", "run"])
-    counts = counted(str(codes).split(", ") for codes in runs["diagnostics"])
+    counts = counted(map(parted, runs["diagnostics"]))
     return [sentence(WORDS, "remarks", counts)] if counts else []
 
 
@@ -135,9 +137,8 @@ def headline(rows: pd.DataFrame, length: float) -> str:
         single = support == EXTERNAL
         groups = [[index] for index in of_support.index] if single else [list(of_support.index)]
         parts += [sentence(WORDS, "followed", _group(of_support.loc[group], length)) for group in groups]
-        explained = [single and bool(mistakes(row)) for row in rows_of(of_support)]
         diverged = diverged or any(
-            row.diverged and not known for row, known in zip(rows_of(of_support), explained, strict=True)
+            row.diverged and not (single and row.likely_mistake) for row in rows_of(of_support)
         )
     if not parts:
         return "No run could be compared."
@@ -148,11 +149,12 @@ def _group(rows: pd.DataFrame, length: float) -> dict[str, object]:
     """Headline on the runs of one support, held against their own model."""
     first = next(iter(rows_of(rows)))
     external = first.support == EXTERNAL
-    names = rows["engine"].where(rows["engine"] != "reduced", rows["run"].map(lambda run: f"the {run}"))
+    names = {the(row.run, REDUCED) if row.engine == REDUCED else row.engine: None for row in rows_of(rows)}
+    references = {the(row.reference, row.reference_engine): None for row in rows_of(rows)}
     return {
         "support": str(first.support),
-        "names": list(names.unique()),
-        "references": list(rows["reference"].unique()),
+        "names": list(names),
+        "references": list(references),
         "rows": len(rows),
         "bound": within(first) if external else "1 % of alpha",
         "diverged": bool(rows["diverged"].any()),

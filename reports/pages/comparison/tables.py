@@ -9,6 +9,7 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.compare import SUMMARY_COLUMNS
+from rockwobble.compare.comparison.external.verdict import lists_in_words
 from rockwobble.models import Run
 
 from ...figures.comparison.view import own_rows, rows_of
@@ -36,7 +37,7 @@ def _peak(value: float, outcome: str) -> float | str:
 
 def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
     """Return a line for each column of the summary, and the columns of that table: one for each row."""
-    found = list(rows_of(rows))
+    found = list(rows_of(lists_in_words(rows)))
     lines: list[Row] = [
         {
             "all": "All numbers",

@@ -8,6 +8,8 @@ from collections.abc import Sequence
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from rockwobble.compare.runs.labels import REDUCED
+
 if TYPE_CHECKING:
     import jinja2
 
@@ -45,9 +47,9 @@ def listed(words: Sequence[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
 
 
-def the(label: str) -> str:
-    """Return the label of a run or a model as a sentence names it."""
-    return f"the {label}" if label.endswith("model") else label
+def the(label: str, engine: str) -> str:
+    """Return the label of a run of an engine, or of a reduced model, as a sentence names it."""
+    return f"the {label}" if engine == REDUCED else label
 
 
 # what templates know besides what jinja2 does
