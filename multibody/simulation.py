@@ -21,7 +21,7 @@ from .recording.diagnostics import diagnostics
 from .recording.passes import passes_between, true_swings
 from .recording.recorder import COLUMNS, Recorder
 from .scene.excitation import StepMeans
-from .scene.froude import REFERENCE_TIME_STEP, Scale, froude_scale
+from .scene.froude import Scale, default_step, froude_scale
 from .scene.guard import check_time_step
 from .scene_of_case import make_scene
 from .stepping import Progress, run_steps
@@ -133,8 +133,9 @@ def _simulate(
     started = clock.perf_counter()
     backend = find_engine(engine)
     require_able(backend, engine, case, run.support)
-    scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
-    step = REFERENCE_TIME_STEP * scale.time if time_step is None else _positive("time_step", time_step)
+    size = case.cylinder.semidiagonal, case.gravity
+    scale = froude_scale(*size)
+    step = default_step(*size) if time_step is None else _positive("time_step", time_step)
     check_time_step(step, scale.time)
     scene = make_scene(case, run.support, step, scale)
     resolved = backend.settings(settings, scene)

@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.simulation import STEP_SETTINGS
 from rockwobble.multibody.time_step.extrapolated import EXTRAPOLATED
 
 from ..runs.execution import SAMPLE_STEP, Job
+from ..runs.run_settings import at_step
 from ..traces.pair import is_release, start_of
 from .error_budget import COVERED, WORTH_EXPLAINING, Limit, common_count, extrapolated
 
@@ -110,12 +110,9 @@ def finer_case(refined: Refined) -> Case:
 
 
 def _job(refined: Refined, level: int) -> Job:
-    run = refined.run
-    step = refined.trajectory.time_step * 0.5**level
-    settings = {name: value for name, value in run.settings.items() if name not in STEP_SETTINGS}
     return Job(
         case=finer_case(refined),
-        run=Run(run.engine, run.support, step, **settings),
+        run=at_step(refined.run, refined.trajectory.time_step * 0.5**level),
         label=f"{refined.label}, step/{2**level}",
     )
 

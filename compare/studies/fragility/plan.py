@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.scene.froude import default_step
 
 from ...runs.choice import require_runnable
 from .intensity import intensity, measures_of, require_measure
@@ -145,8 +145,8 @@ class Plan:
     def _stepped(self, run: Run, cylinder: Cylinder) -> Run:
         if run.engine is None or run.time_step is not None or self.step_factor == 1.0:
             return run
-        step = REFERENCE_TIME_STEP * froude_scale(cylinder.semidiagonal, self.gravity).time
-        return Run(run.engine, run.support, self.step_factor * step, **run.settings)
+        step = self.step_factor * default_step(cylinder.semidiagonal, self.gravity)
+        return Run(run.engine, run.support, step, **run.settings)
 
 
 def default_levels(
