@@ -90,7 +90,8 @@ class ErrorBudget(Brief):
         Uncertainty of the extrapolation, by which numerics and unexplained may be off.
     covered : float
         End of the stretch that the RMS values cover, 80 % of the agreement [s].
-    limit : Limit
+    steps, order : tuple of float, float
+        Of the `Limit` that the numerics rest on.
     """
 
     time: Array
@@ -100,7 +101,8 @@ class ErrorBudget(Brief):
     unexplained: Array
     limit_error: Array
     covered: float
-    limit: Limit
+    steps: tuple[float, ...]
+    order: float
 
     def rms(self, part: str) -> float:
         """Return the RMS of one part until 80 % of the agreement [alpha]; NaN without a sample."""
@@ -117,8 +119,8 @@ class ErrorBudget(Brief):
             "unexplained_rms": unexplained,
             "unexplained_share": unexplained / whole if whole > 0.0 else math.nan,
             "limit_error": self.rms("limit_error"),
-            "step_order": self.limit.order,
-            "finest_step": self.limit.steps[-1],
+            "step_order": self.order,
+            "finest_step": self.steps[-1],
         }
 
     def to_frame(self) -> pd.DataFrame:
@@ -165,7 +167,8 @@ def error_budget(
         unexplained=extrapolated - explained,
         limit_error=limit.error[keep] / alpha,
         covered=start + COVERED * (horizon.end - start),
-        limit=limit,
+        steps=limit.steps,
+        order=limit.order,
     )
 
 
