@@ -38,12 +38,13 @@ def extremes(
     with interruptible(out):
         with user_input():
             rc.require_writable(out)
-        from rockwobble.compare.studies.extremes.study import KIND, measure_extremes
+        from rockwobble.compare.studies.extremes.study import KIND, manifest_of, measure_extremes
 
         from ..pages.extremes import extremes_page
 
         with user_input(), shown_progress() as tell:
-            found = measure_extremes(out, quick=quick, workers=workers, progress=tell, command=command_line())
-        show_and_write(out, extremes_page(found), found.made, {KIND: found.table})
+            found = measure_extremes(out, quick=quick, workers=workers, progress=tell)
+        manifest = manifest_of(found, command_line())
+        show_and_write(out, extremes_page(found, manifest), manifest, {KIND: found.table})
     if (found.table["verdict"] == "silent").any():
         raise typer.Exit(FAILED)

@@ -45,12 +45,14 @@ def validity(
                 raise ValueError(f"--workers must be at least 1, got {workers}")
             rc.require_writable(out)
         from rockwobble.compare.studies.validity.extent import FULL, QUICK
-        from rockwobble.compare.studies.validity.study import measure_all, validity_of
+        from rockwobble.compare.studies.validity.study import manifest_of, measure_all, validity_of
 
         from ..pages.validity import limits_table, validity_page
 
         extent = QUICK if quick else FULL
         with user_input(), shown_progress("tasks") as tell:
             tables = measure_all(extent, out, workers=workers, progress=tell)
-        found = validity_of(tables, extent, command_line())
-        show_and_write(out, validity_page(found), found.made, {**tables, "limits": limits_table(found)})
+        found = validity_of(tables, extent)
+        manifest = manifest_of(found, extent, command_line())
+        tables = {**tables, "limits": limits_table(found)}
+        show_and_write(out, validity_page(found, manifest), manifest, tables)
