@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, GroundMotion, p695_far_field
+from rockwobble.models.number_checks import require_positive
 
 from ...traces.pair import is_release
 
@@ -113,7 +114,8 @@ def synthetic_motions(count: int, *, peak: float, seed: int, duration: float = 2
     [4.0, 4.0, 4.0]
     """
     _require_count(count)
-    _require_positive(peak=peak, duration=duration)
+    require_positive("peak", peak, "m/s^2")
+    require_positive("duration", duration, "s")
     size = round(duration / _TIME_STEP) + 1
     noise = np.random.default_rng(seed).standard_normal((count, size, 2))
     frequency = 2.0 * math.pi * np.fft.rfftfreq(2 * size, _TIME_STEP)
@@ -148,7 +150,7 @@ def far_field_motions(*, peak: float) -> list[GroundMotion]:
     ValueError
         If the number is out of range, or the records of the extra `records` are not installed.
     """
-    _require_positive(peak=peak)
+    require_positive("peak", peak, "m/s^2")
     motions = (p695_far_field(pair) for pair in range(1, FAR_FIELD_PAIRS + 1))
     return [motion.scaled(peak / motion.peak) for motion in motions]
 
@@ -193,9 +195,3 @@ def with_motions(case: Case, motions: list[GroundMotion]) -> list[Case]:
 def _require_count(count: int) -> None:
     if count < 2:
         raise ValueError(f"an ensemble has at least 2 members, got {count!r}")
-
-
-def _require_positive(**numbers: float) -> None:
-    for name, value in numbers.items():
-        if not (math.isfinite(value) and value > 0.0):
-            raise ValueError(f"{name} must be positive and finite, got {value!r}")

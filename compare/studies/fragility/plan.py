@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
+from rockwobble.models.number_checks import require_positive
 from rockwobble.multibody.scene.froude import default_step
 
 from ...runs.choice import require_runnable
@@ -81,8 +82,7 @@ class Plan:
         for label, values in (("levels", self.levels), ("scales", self.scales)):
             if values is not None:
                 _require_increasing(label, values)
-        if not (math.isfinite(self.step_factor) and self.step_factor > 0.0):
-            raise ValueError(f"step_factor must be positive and finite, got {self.step_factor!r}")
+        require_positive("step_factor", self.step_factor)
         if self.step_factor != 1.0 and not any(map(_has_default_step, self.methods)):
             raise ValueError(
                 f"step_factor is for engines at their default time step, got {self.step_factor!r}"
