@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, GroundMotion, p695_far_field
 from rockwobble.models.number_checks import require_positive
+from rockwobble.models.records import p695
 
 from ...traces.pair import is_release
 
@@ -18,8 +19,6 @@ _GROUND_FREQUENCY, _GROUND_DAMPING = 5.0 * math.pi, 0.6
 # a second, high-pass filter (R. W. Clough, J. Penzien) takes what a ground cannot do: drift away
 _CORNER_FREQUENCY, _CORNER_DAMPING = 0.5 * math.pi, 0.6
 _TIME_STEP = 0.01
-# of the far-field set: FEMA P-695, table A-4A
-FAR_FIELD_PAIRS = 22
 # of the duration: rise and strong part of the envelope, followed by an exponential decay
 _RISE, _STRONG, _DECAY = 0.15, 0.4, 4.0
 
@@ -151,8 +150,18 @@ def far_field_motions(*, peak: float) -> list[GroundMotion]:
         If the number is out of range, or the records of the extra `records` are not installed.
     """
     require_positive("peak", peak, "m/s^2")
-    motions = (p695_far_field(pair) for pair in range(1, FAR_FIELD_PAIRS + 1))
-    return [motion.scaled(peak / motion.peak) for motion in motions]
+    return [motion.scaled(peak / motion.peak) for motion in recorded_far_field()]
+
+
+def recorded_far_field() -> list[GroundMotion]:
+    """Return the 22 far-field pairs of FEMA P-695 as they were recorded.
+
+    Raises
+    ------
+    ValueError
+        If the records of the extra `records` are not installed.
+    """
+    return [p695_far_field(pair) for pair in range(1, p695.PAIRS + 1)]
 
 
 def _transfer(frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
