@@ -25,6 +25,7 @@ from rockwobble.models.shown import Brief
 from rockwobble.multibody.time_step.extrapolated import to_zero_step
 
 from ..metrics.agreement import Agreement
+from ..metrics.tilt import rms
 from ..traces.pair import start_of
 
 Array = NDArray[np.float64]
@@ -106,8 +107,7 @@ class ErrorBudget(Brief):
 
     def rms(self, part: str) -> float:
         """Return the RMS of one part until 80 % of the agreement [alpha]; NaN without a sample."""
-        values = getattr(self, part)[self.time <= self.covered + _SAME_TIME]
-        return float(np.sqrt(np.mean(np.square(values)))) if len(values) else math.nan
+        return rms(getattr(self, part)[self.time <= self.covered + _SAME_TIME])
 
     def columns(self) -> dict[str, float]:
         """Return the columns of the summary."""
@@ -219,7 +219,7 @@ def _order(tilts: Sequence[Array]) -> float:
     if len(tilts) < 3:
         return math.nan
     coarse, middle, fine = tilts[-3:]
-    first, second = (float(np.sqrt(np.mean(np.square(d)))) for d in (coarse - middle, middle - fine))
+    first, second = rms(coarse - middle), rms(middle - fine)
     return math.log2(first / second) if first > 0.0 and second > 0.0 else math.nan
 
 

@@ -19,6 +19,7 @@ from rockwobble.models import Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.time_step.extrapolated import EXTRAPOLATED
 
+from ..metrics.tilt import rms
 from ..runs.execution import SAMPLE_STEP, Job
 from ..runs.run_settings import at_step
 from ..traces.pair import is_release, start_of
@@ -137,10 +138,6 @@ def _is_uncertain(refined: Refined, traces: Sequence[Trace]) -> bool:
     # the stretch that the budget covers, from the uplift on: before it there is nothing to err in
     start = start_of(refined.trajectory)
     covered = (limit.time >= start) & (limit.time <= start + COVERED * (refined.end - start))
-    error = _rms(limit.error[covered]) / refined.case.cylinder.alpha
-    whole = _rms(refined.difference[: math.ceil(COVERED * len(refined.difference))])
+    error = rms(limit.error[covered]) / refined.case.cylinder.alpha
+    whole = rms(refined.difference[: math.ceil(COVERED * len(refined.difference))])
     return whole > WORTH_EXPLAINING and error > _UNCERTAIN * whole
-
-
-def _rms(values: NDArray[np.float64]) -> float:
-    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0

@@ -12,9 +12,10 @@ from collections.abc import Iterator
 
 from rockwobble.models import Run
 
+from ...metrics.tilt import rms
 from ...runs.execution import Job
 from ...runs.run_settings import at_step
-from ..bench import Bench, engines_here, not_here, rms, why
+from ..bench import Bench, engines_here, not_here, why
 from ..finding import Bound, Finding, at_most
 from ..problems import released
 
