@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -56,7 +56,6 @@ def measure_all(
     extent: Extent,
     folder: str | Path,
     *,
-    parts: Sequence[Part] = PARTS,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
 ) -> dict[str, pd.DataFrame]:
@@ -68,7 +67,6 @@ def measure_all(
     folder : str or Path
         Keeps each finished task, named by a hash of its inputs, the versions and the code: a second call,
         after whatever ended the first, repeats none that is there.
-    parts : sequence of Part, optional
     workers : int, optional
         Processes; 1 measures in this one. Default: one for each processor.
     progress : callable, optional
@@ -81,7 +79,7 @@ def measure_all(
     RuntimeError
         If a process ended in a task; what was finished is kept.
     """
-    tasks: list[Task] = [(part.name, dict(inputs)) for part in parts for inputs in part.tasks(extent)]
+    tasks: list[Task] = [(part.name, dict(inputs)) for part in PARTS for inputs in part.tasks(extent)]
     with open_table_cache(folder, KIND, name=task_name) as cache:
         found = run_tasks(
             measure_task,
@@ -104,7 +102,7 @@ def measure_all(
     ]
     return {
         part.name: pd.concat([table for name, table in kept if name == part.name], ignore_index=True)
-        for part in parts
+        for part in PARTS
     }
 
 
