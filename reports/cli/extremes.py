@@ -18,11 +18,10 @@ Quick = Annotated[
     bool,
     typer.Option("--quick", help="Only the two ends of each extreme: some two minutes on two idle cores."),
 ]
-Workers = Annotated[int | None, typer.Option(min=1, help="Processes. Default: one for each processor.")]
 
 
 def extremes(
-    quick: Quick = False, workers: Workers = None, out: options.Out = Path("rockwobble-extremes")
+    quick: Quick = False, workers: options.Workers = None, out: options.Out = Path("rockwobble-extremes")
 ) -> None:
     """Take one thing at a time to its extreme: is the answer right, and if not, does the run say so.
 

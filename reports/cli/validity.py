@@ -17,14 +17,11 @@ from .inputs import options
 Quick = Annotated[
     bool, typer.Option("--quick", help="Coarse maps and few runs: some two minutes on two cores.")
 ]
-Workers = Annotated[
-    int | None, typer.Option(help="Processes that measure side by side. Default: one for each processor.")
-]
 
 
 def validity(
     quick: Quick = False,
-    workers: Workers = None,
+    workers: options.Workers = None,
     out: options.Out = Path("rockwobble-validity"),
 ) -> None:
     """Report the limits of the reduced model: what must hold, what error to expect, where it matters.
@@ -41,8 +38,6 @@ def validity(
     """
     with interruptible(out):
         with user_input():
-            if workers is not None and workers < 1:
-                raise ValueError(f"--workers must be at least 1, got {workers}")
             rc.require_writable(out)
         from rockwobble.compare.studies.validity.extent import FULL, QUICK
         from rockwobble.compare.studies.validity.study import manifest_of, measure_all, validity_of

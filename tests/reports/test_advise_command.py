@@ -207,7 +207,7 @@ def test_planar_analysis_is_called_unconservative_only_where_the_interval_says_s
     [
         (["--friction", "-1"], "friction must not be negative"),
         (["--copies", "5"], "--copies must be from 20 to 10000, got 5"),
-        (["--seed", "-1"], "--seed must not be negative"),
+        (["--seed", "-1"], "'--seed': must be at least 0, got -1"),
         (["--engine", "none", "--time-step", "1e-4"], "--time-step belongs to an engine"),
         (["--engine", "none", "--support", "glued"], "--support must be one of recess, flat, ring"),
         (["--engine", "abacus"], "abacus"),

@@ -16,7 +16,7 @@ from rockwobble.compare.studies.validity import study
 from rockwobble.compare.studies.validity.limits import limits_of
 from rockwobble.compare.studies.validity.records import RECESS
 from rockwobble.compare.studies.validity.study import KIND, Validity, manifest_of, stored_validity
-from rockwobble.reports.cli.main import app
+from rockwobble.reports.cli.main import app, main
 from rockwobble.reports.pages import page as page_module
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.validity import limits_table, validity_page
@@ -115,17 +115,21 @@ def test_the_command_stores_what_its_pages_are_drawn_from(
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        (["--workers", "0"], "--workers must be at least 1, got 0"),
+        (["--workers", "0"], "'--workers': must be at least 1, got 0"),
         (["--out", "{file}"], "the output folder must be a folder"),
     ],
 )
-def test_bad_input_is_one_line(tmp_path: Path, options: list[str], says: str) -> None:
+def test_bad_input_is_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], says: str
+) -> None:
     file = tmp_path / "file"
     file.touch()
     given = [option.format(file=file) for option in options]
     out = [] if "--out" in given else ["--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(app, ["validity", "--quick", *given, *out])
-    assert done.exit_code == 2
-    assert says in done.stderr
-    assert done.stderr.count("\n") == 1
+    with pytest.raises(SystemExit) as ended:
+        main(["validity", "--quick", *given, *out])
+    assert ended.value.code == 2
+    error = capsys.readouterr().err
+    assert says in error
+    assert error.count("\n") == 1
     assert not (tmp_path / "out").exists()
