@@ -51,7 +51,7 @@ Scheduler = Annotated[
     str | None,
     options.work(
         "Dask scheduler that has the work done, such as tcp://10.0.0.1:8786: started by dask scheduler, "
-        "and on each machine dask worker tcp://10.0.0.1:8786. Needs pip install 'dask[distributed]'."
+        "and on each machine dask worker tcp://10.0.0.1:8786. Needs the extra distributed."
     ),
 ]
 ChunkSize = Annotated[
