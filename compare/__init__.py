@@ -11,40 +11,52 @@ import sys
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
-if TYPE_CHECKING:
-    from .comparison.driver import compare
-    from .comparison.error_budget import LARGEST_SHARE, WORTH_EXPLAINING, ErrorBudget, findings
-    from .comparison.result import Comparison, describe_case
-    from .comparison.summary import SUMMARY_COLUMNS
-    from .metrics.agreement import AGREEMENT
-    from .metrics.contact import TILTED
-    from .metrics.tilt import relative_rms
-    from .runs.choice import (
-        default_runs,
-        installed_engines,
-        missing_engines,
-        own_model,
-        require_runnable,
-        reserved_engines,
-        runs_here,
-    )
-    from .runs.execution import Job, simulate, simulate_all
-    from .runs.progress import Progress
-    from .runs.run_settings import with_settings
-    from .runs.scheduler import run_tasks
-    from .storage.files import replace_files
-    from .storage.manifest import require_writable
-    from .studies.ensemble.members import far_field_motions, perturbed_starts, synthetic_motions, with_motions
-    from .studies.ensemble.study import Ensemble, ensemble
-    from .studies.fragility.intensity import MEASURES
-    from .studies.fragility.limits import LIMITS
-    from .studies.fragility.result import Fragility
-    from .studies.fragility.study import fragility
-    from .studies.sweep.cases import CaseSweep
-    from .studies.sweep.grid import Grid
-    from .studies.sweep.study import SweepIncompleteError, read_sweep, sweep
-    from .traces.pair import Pair, make_pair
-    from .traces.trajectory import External, read_trajectory
+if TYPE_CHECKING:  # under its own name again: that is how a type checker knows a name for a public one
+    from .comparison.driver import compare as compare
+    from .comparison.error_budget import LARGEST_SHARE as LARGEST_SHARE
+    from .comparison.error_budget import WORTH_EXPLAINING as WORTH_EXPLAINING
+    from .comparison.error_budget import ErrorBudget as ErrorBudget
+    from .comparison.error_budget import findings as findings
+    from .comparison.result import Comparison as Comparison
+    from .comparison.result import describe_case as describe_case
+    from .comparison.summary import SUMMARY_COLUMNS as SUMMARY_COLUMNS
+    from .metrics.agreement import AGREEMENT as AGREEMENT
+    from .metrics.contact import TILTED as TILTED
+    from .metrics.tilt import relative_rms as relative_rms
+    from .runs.choice import default_runs as default_runs
+    from .runs.choice import installed_engines as installed_engines
+    from .runs.choice import missing_engines as missing_engines
+    from .runs.choice import own_model as own_model
+    from .runs.choice import require_runnable as require_runnable
+    from .runs.choice import reserved_engines as reserved_engines
+    from .runs.choice import runs_here as runs_here
+    from .runs.execution import Job as Job
+    from .runs.execution import simulate as simulate
+    from .runs.execution import simulate_all as simulate_all
+    from .runs.progress import Progress as Progress
+    from .runs.run_settings import with_settings as with_settings
+    from .runs.scheduler import run_tasks as run_tasks
+    from .storage.files import replace_files as replace_files
+    from .storage.manifest import require_writable as require_writable
+    from .studies.ensemble.members import far_field_motions as far_field_motions
+    from .studies.ensemble.members import perturbed_starts as perturbed_starts
+    from .studies.ensemble.members import synthetic_motions as synthetic_motions
+    from .studies.ensemble.members import with_motions as with_motions
+    from .studies.ensemble.study import Ensemble as Ensemble
+    from .studies.ensemble.study import ensemble as ensemble
+    from .studies.fragility.intensity import MEASURES as MEASURES
+    from .studies.fragility.limits import LIMITS as LIMITS
+    from .studies.fragility.result import Fragility as Fragility
+    from .studies.fragility.study import fragility as fragility
+    from .studies.sweep.cases import CaseSweep as CaseSweep
+    from .studies.sweep.grid import Grid as Grid
+    from .studies.sweep.study import SweepIncompleteError as SweepIncompleteError
+    from .studies.sweep.study import read_sweep as read_sweep
+    from .studies.sweep.study import sweep as sweep
+    from .traces.pair import Pair as Pair
+    from .traces.pair import make_pair as make_pair
+    from .traces.trajectory import External as External
+    from .traces.trajectory import read_trajectory as read_trajectory
 
 _MODULES = {
     "comparison.driver": ("compare",),
@@ -86,53 +98,7 @@ _MODULES = {
     "traces.pair": ("Pair", "make_pair"),
     "traces.trajectory": ("External", "read_trajectory"),
 }
-__all__ = [
-    "AGREEMENT",
-    "LARGEST_SHARE",
-    "LIMITS",
-    "MEASURES",
-    "SUMMARY_COLUMNS",
-    "TILTED",
-    "WORTH_EXPLAINING",
-    "CaseSweep",
-    "Comparison",
-    "Ensemble",
-    "ErrorBudget",
-    "External",
-    "Fragility",
-    "Grid",
-    "Job",
-    "Pair",
-    "Progress",
-    "SweepIncompleteError",
-    "compare",
-    "default_runs",
-    "describe_case",
-    "ensemble",
-    "far_field_motions",
-    "findings",
-    "fragility",
-    "installed_engines",
-    "make_pair",
-    "missing_engines",
-    "own_model",
-    "perturbed_starts",
-    "read_sweep",
-    "read_trajectory",
-    "relative_rms",
-    "replace_files",
-    "require_runnable",
-    "require_writable",
-    "reserved_engines",
-    "run_tasks",
-    "runs_here",
-    "simulate",
-    "simulate_all",
-    "sweep",
-    "synthetic_motions",
-    "with_motions",
-    "with_settings",
-]
+__all__ = sorted(name for names in _MODULES.values() for name in names)
 
 
 class _Callable(ModuleType):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from ._validation import require_positive
+from .number_checks import require_positive
 
 REFERENCES = ("own", "recess", "flat")
 

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal
 
-from ._validation import require_finite, require_positive
 from .bounds import Bounds
 from .cylinder import Cylinder
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
+from .number_checks import require_finite, require_positive
 from .shown import Brief
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ._validation import require_positive
+from .number_checks import require_positive
 from .shown import Brief
 
 _UNITS = {

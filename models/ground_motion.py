@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._validation import require_finite, require_positive
+from .number_checks import require_finite, require_positive
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from ._validation import require_finite
+from .number_checks import require_finite
 from .shown import Brief
 
 _UNITS = {"tilt": "rad", "tilt_rate": "rad/s", "rolling_angle": "rad", "rolling_rate": "rad/s"}

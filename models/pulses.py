@@ -6,8 +6,8 @@ import math
 
 import numpy as np
 
-from ._validation import require_finite, require_positive
 from .ground_motion import GroundMotion
+from .number_checks import require_finite, require_positive
 
 # name: periods that it lasts; the rest is still ground
 _LENGTHS = {"one-sine": 1.0, "one-cosine": 1.0, "half-sine": 0.5}

@@ -12,7 +12,7 @@ from .body import scaled_body
 from .engines.ability import require_able
 from .engines.registry import find_engine
 from .protocol import Engine, Scene
-from .scene.froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, Scale, froude_scale
+from .scene.froude import REFERENCE_GRAVITY, Scale, default_step, froude_scale
 from .start import starting_state
 
 
@@ -70,6 +70,6 @@ def open_scene(
 def _stated(case: Case, engine: str, support: str, time_step: float | None) -> tuple[Engine, Scene]:
     backend = find_engine(engine)
     require_able(backend, engine, case, support)
-    scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
-    step = REFERENCE_TIME_STEP * scale.time if time_step is None else time_step
-    return backend, make_scene(case, support, step, scale)
+    size = case.cylinder.semidiagonal, case.gravity
+    step = default_step(*size) if time_step is None else time_step
+    return backend, make_scene(case, support, step, froude_scale(*size))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, InitialState, Run, Trace
 from rockwobble.models.case import TimeStep
+from rockwobble.models.number_checks import require_positive
 from rockwobble.models.traces.trace_source import Known
 
 from .engines.ability import require_able
@@ -21,7 +22,7 @@ from .recording.diagnostics import diagnostics
 from .recording.passes import passes_between, true_swings
 from .recording.recorder import COLUMNS, Recorder
 from .scene.excitation import StepMeans
-from .scene.froude import REFERENCE_TIME_STEP, Scale, froude_scale
+from .scene.froude import Scale, default_step, froude_scale
 from .scene.guard import check_time_step
 from .scene_of_case import make_scene
 from .stepping import Progress, run_steps
@@ -106,10 +107,11 @@ def simulate(
         return _simulate(case, run, engine, step, sample_step, tell, settings)
 
     if time_step == AUTO:
-        tolerance = _positive("step_tolerance", settings.pop("step_tolerance", STEP_TOLERANCE), "of alpha")
+        given = settings.pop("step_tolerance", STEP_TOLERANCE)
+        tolerance = require_positive("step_tolerance", given, "of alpha")
         return find_step(attempt, unit_time, case.cylinder.alpha, tolerance, progress)
     if time_step == EXTRAPOLATED:
-        finest = _positive("finest_step", settings.pop("finest_step", FINEST * unit_time))
+        finest = require_positive("finest_step", settings.pop("finest_step", FINEST * unit_time), "s")
         require_finest(finest, unit_time)
         return extrapolate(attempt, finest, case.cylinder.alpha, progress)
     for name, way in STEP_SETTINGS.items():
@@ -133,12 +135,13 @@ def _simulate(
     started = clock.perf_counter()
     backend = find_engine(engine)
     require_able(backend, engine, case, run.support)
-    scale = froude_scale(case.cylinder.semidiagonal, case.gravity)
-    step = REFERENCE_TIME_STEP * scale.time if time_step is None else _positive("time_step", time_step)
+    size = case.cylinder.semidiagonal, case.gravity
+    scale = froude_scale(*size)
+    step = default_step(*size) if time_step is None else require_positive("time_step", time_step, "s")
     check_time_step(step, scale.time)
     scene = make_scene(case, run.support, step, scale)
     resolved = backend.settings(settings, scene)
-    samples = _sample_times(case.length, _positive("sample_step", sample_step)) / scale.time
+    samples = _sample_times(case.length, require_positive("sample_step", sample_step, "s")) / scale.time
     release = InitialState(0.0) if case.initial is None else case.initial
     recorder = Recorder(scene, samples, release.rolling_angle, release.tilt_rate == 0.0)
     means = StepMeans(case.motion, scale, scene.time_step)
@@ -264,10 +267,3 @@ def _sample_times(end: float, sample_step: float) -> Array:
     """Multiples of the sample step, and the exact end."""
     times: Array = sample_step * np.arange(math.floor(end / sample_step + 1e-9) + 1, dtype=float)
     return times if math.isclose(times[-1], end, rel_tol=1e-9) else np.append(times, end)
-
-
-def _positive(name: str, value: float, unit: str = "s") -> float:
-    number = float(value)
-    if not (math.isfinite(number) and number > 0.0):
-        raise ValueError(f"{name} must be positive [{unit}], got {value!r}")
-    return number

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Diagnostic, Run, Trace
+from rockwobble.models.number_checks import require_positive
 
 from . import kernels
 from ._compile import in_memory, on_disk
@@ -82,8 +83,7 @@ def simulate(
     problem = make_problem(
         case, support=support, plane=plane, restitution=restitution, rtol=rtol, rest_tilt=rest_tilt
     )
-    if not (math.isfinite(sample_step) and sample_step > 0.0):
-        raise ValueError(f"sample_step must be positive and finite [s], got {sample_step!r}")
+    require_positive("sample_step", sample_step, "s")
     make_ready("planar" if problem.is_planar() else problem.model)
     times = sample_times(problem.duration, sample_step)
     started = time.perf_counter()

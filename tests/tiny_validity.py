@@ -99,4 +99,4 @@ def kept_engine_runs(base: Path) -> Iterator[None]:
 @cache
 def tiny_validity(base: Path) -> Validity:
     """Return the study."""
-    return validity_of(tiny_tables(base), TINY, "rockwobble validity")
+    return validity_of(tiny_tables(base), TINY)

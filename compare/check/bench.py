@@ -104,11 +104,6 @@ def why(trace: Trace) -> str:
     return "; ".join(f"{fact.meaning} {fact.detail}".strip() for fact in trace.facts)
 
 
-def rms(values: Array) -> float:
-    """Return the root mean square of values (n,)."""
-    return float(np.sqrt(np.mean(np.square(values))))
-
-
 def largest(values: Array) -> float:
     """Return the largest size of values of any shape; NaN of none."""
     return float(np.abs(values).max()) if np.size(values) else math.nan

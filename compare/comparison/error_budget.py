@@ -25,6 +25,7 @@ from rockwobble.models.shown import Brief
 from rockwobble.multibody.time_step.extrapolated import to_zero_step
 
 from ..metrics.agreement import Agreement
+from ..metrics.tilt import rms
 from ..traces.pair import start_of
 
 Array = NDArray[np.float64]
@@ -90,7 +91,8 @@ class ErrorBudget(Brief):
         Uncertainty of the extrapolation, by which numerics and unexplained may be off.
     covered : float
         End of the stretch that the RMS values cover, 80 % of the agreement [s].
-    limit : Limit
+    steps, order : tuple of float, float
+        Of the `Limit` that the numerics rest on.
     """
 
     time: Array
@@ -100,12 +102,12 @@ class ErrorBudget(Brief):
     unexplained: Array
     limit_error: Array
     covered: float
-    limit: Limit
+    steps: tuple[float, ...]
+    order: float
 
     def rms(self, part: str) -> float:
         """Return the RMS of one part until 80 % of the agreement [alpha]; NaN without a sample."""
-        values = getattr(self, part)[self.time <= self.covered + _SAME_TIME]
-        return float(np.sqrt(np.mean(np.square(values)))) if len(values) else math.nan
+        return rms(getattr(self, part)[self.time <= self.covered + _SAME_TIME])
 
     def columns(self) -> dict[str, float]:
         """Return the columns of the summary."""
@@ -117,8 +119,8 @@ class ErrorBudget(Brief):
             "unexplained_rms": unexplained,
             "unexplained_share": unexplained / whole if whole > 0.0 else math.nan,
             "limit_error": self.rms("limit_error"),
-            "step_order": self.limit.order,
-            "finest_step": self.limit.steps[-1],
+            "step_order": self.order,
+            "finest_step": self.steps[-1],
         }
 
     def to_frame(self) -> pd.DataFrame:
@@ -164,7 +166,8 @@ def error_budget(
         unexplained=extrapolated - explained,
         limit_error=limit.error[keep] / alpha,
         covered=start + COVERED * (agreement.end - start),
-        limit=limit,
+        steps=limit.steps,
+        order=limit.order,
     )
 
 
@@ -215,7 +218,7 @@ def _order(tilts: Sequence[Array]) -> float:
     if len(tilts) < 3:
         return math.nan
     coarse, middle, fine = tilts[-3:]
-    first, second = (float(np.sqrt(np.mean(np.square(d)))) for d in (coarse - middle, middle - fine))
+    first, second = rms(coarse - middle), rms(middle - fine)
     return math.log2(first / second) if first > 0.0 and second > 0.0 else math.nan
 
 

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TypedDict
 
-import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.traces.trace_file import case_from_plain, case_to_plain
 
 from ..storage.manifest import Results
-from .error_budget import ErrorBudget, Limit
+from .error_budget import ErrorBudget
 from .external.verdict import lists_of_file
 
 ABOUT = "comparison.json"
@@ -66,11 +65,7 @@ def plain_fields(
         "cases": {name: case_to_plain(case) | {"motion": _header(case)} for name, case in cases.items()},
         "traces": {_SEPARATOR.join(key): trace.to_plain() for key, trace in traces.items()},
         "budgets": {
-            _SEPARATOR.join(key): {
-                "covered": budget.covered,
-                "steps": budget.limit.steps,
-                "order": budget.limit.order,
-            }
+            _SEPARATOR.join(key): {"covered": budget.covered, "steps": budget.steps, "order": budget.order}
             for key, budget in budgets.items()
         },
     }
@@ -98,7 +93,7 @@ def load_fields(stored: Results) -> ComparisonFields:
             traces=traces,
             versions=rest["versions"],
             until=rest["until"],
-            budgets=_budgets(rest["budgets"], samples, traces),
+            budgets=_budgets(rest["budgets"], samples),
         )
     except (ValueError, KeyError) as error:
         why = str(error).partition("\n")[0]
@@ -127,25 +122,13 @@ def _traces(
     return traces
 
 
-def _budgets(
-    given: Mapping[str, _StoredBudget], samples: pd.DataFrame, traces: Mapping[Key, Trace]
-) -> dict[BudgetKey, ErrorBudget]:
-    """Return the budgets; the limit of each covers what the budget does, and no more."""
+def _budgets(given: Mapping[str, _StoredBudget], samples: pd.DataFrame) -> dict[BudgetKey, ErrorBudget]:
     budgets = {}
     for joined, rest in given.items():
         case, label, model = joined.split(_SEPARATOR)
         chosen = (samples["case"] == case) & (samples["run"] == label) & (samples["reference"] == model)
         table = {name: column.to_numpy() for name, column in samples[chosen].items()}
         arrays = {name: table[name] for name in ErrorBudget.__dataclass_fields__ if name in table}
-        engine = traces[case, label]
-        alpha = engine.case.cylinder.alpha
-        tilt = engine.tilt[np.isin(engine.time, arrays["time"])] - alpha * arrays["numerics"]
-        limit = Limit(
-            time=arrays["time"],
-            tilt=tilt,
-            error=alpha * arrays["limit_error"],
-            steps=tuple(rest["steps"]),
-            order=rest["order"],
-        )
-        budgets[case, label, model] = ErrorBudget(**arrays, covered=rest["covered"], limit=limit)
+        steps, order = tuple(rest["steps"]), rest["order"]
+        budgets[case, label, model] = ErrorBudget(**arrays, covered=rest["covered"], steps=steps, order=order)
     return budgets

@@ -27,6 +27,7 @@ from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 
 from ..metrics.agreement import agreement_time
+from ..metrics.tilt import rms
 from ..traces.pair import FloatArray, is_release, make_pair, start_of
 from .error_budget import ErrorBudget
 
@@ -163,7 +164,7 @@ def landings(response: Trace) -> FloatArray:
 def early_rms(case: Case, time: FloatArray, difference: FloatArray, start: float) -> float:
     """Return the RMS of a difference in the first second after `start`, scaled with the cylinder's time."""
     first = (time >= start) & (time <= start + FIRST_STRETCH * time_scale(case))
-    return float(np.sqrt(np.mean(np.square(difference[first])))) if first.any() else 0.0
+    return rms(difference[first]) if first.any() else 0.0
 
 
 def time_scale(case: Case) -> float:

@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.simulation import STEP_SETTINGS
 from rockwobble.multibody.time_step.extrapolated import EXTRAPOLATED
 
+from ..metrics.tilt import rms
 from ..runs.execution import SAMPLE_STEP, Job
+from ..runs.run_settings import at_step
 from ..traces.pair import is_release, start_of
 from .error_budget import COVERED, WORTH_EXPLAINING, Limit, common_count, extrapolated
 
@@ -110,12 +111,9 @@ def finer_case(refined: Refined) -> Case:
 
 
 def _job(refined: Refined, level: int) -> Job:
-    run = refined.run
-    step = refined.trajectory.time_step * 0.5**level
-    settings = {name: value for name, value in run.settings.items() if name not in STEP_SETTINGS}
     return Job(
         case=finer_case(refined),
-        run=Run(run.engine, run.support, step, **settings),
+        run=at_step(refined.run, refined.trajectory.time_step * 0.5**level),
         label=f"{refined.label}, step/{2**level}",
     )
 
@@ -140,10 +138,6 @@ def _is_uncertain(refined: Refined, traces: Sequence[Trace]) -> bool:
     # the stretch that the budget covers, from the uplift on: before it there is nothing to err in
     start = start_of(refined.trajectory)
     covered = (limit.time >= start) & (limit.time <= start + COVERED * (refined.end - start))
-    error = _rms(limit.error[covered]) / refined.case.cylinder.alpha
-    whole = _rms(refined.difference[: math.ceil(COVERED * len(refined.difference))])
+    error = rms(limit.error[covered]) / refined.case.cylinder.alpha
+    whole = rms(refined.difference[: math.ceil(COVERED * len(refined.difference))])
     return whole > WORTH_EXPLAINING and error > _UNCERTAIN * whole
-
-
-def _rms(values: NDArray[np.float64]) -> float:
-    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else 0.0

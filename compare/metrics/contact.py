@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from ..traces.pair import Pair
+from .tilt import rms
 
 # share of the reference peak below which a contact point is too poorly defined to compare
 TILTED = 0.05
@@ -26,6 +25,4 @@ def contact_rms(pair: Pair) -> float:
     least = TILTED * float(pair.reference_tilt.max())
     distance = np.linalg.norm(pair.contact_point - pair.reference_contact_point, axis=1)
     counts = (pair.tilt > least) & (pair.reference_tilt > least) & np.isfinite(distance)
-    if not counts.any():
-        return math.nan
-    return float(np.sqrt(np.mean(np.square(distance[counts])))) / pair.cylinder.base_radius
+    return rms(distance[counts]) / pair.cylinder.base_radius

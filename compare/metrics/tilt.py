@@ -20,14 +20,19 @@ def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
     return np.asarray(peak_tilts, dtype=np.float64) >= 0.5 * math.pi
 
 
+def rms(values: NDArray[np.float64]) -> float:
+    """Return the root mean square of values (n,); NaN of none."""
+    return float(np.sqrt(np.mean(np.square(values)))) if len(values) else math.nan
+
+
 def tilt_rms(pair: Pair) -> float:
     """Root mean square of the tilt difference over all samples, in units of alpha."""
-    return float(np.sqrt(np.mean(np.square(pair.tilt_difference))))
+    return rms(pair.tilt_difference)
 
 
 def tilt_rms_relative(pair: Pair) -> float:
     """RMS(difference)/RMS(tilt of the reference); NaN where the reference never tilts."""
-    scale = float(np.sqrt(np.mean(np.square(pair.reference_tilt)))) / pair.cylinder.alpha
+    scale = rms(pair.reference_tilt) / pair.cylinder.alpha
     return tilt_rms(pair) / scale if scale > 0.0 else math.nan
 
 

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Generic, TypeVar
 
 from rockwobble.models import plain_json
+from rockwobble.models.traces.parquet_file import pack, read
 
 from ..storage.files import remove_leftovers, sole_writer, write_whole
-from ..storage.parquet_file import pack, read
 
 if TYPE_CHECKING:
     import pandas as pd

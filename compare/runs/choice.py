@@ -13,12 +13,11 @@ from rockwobble.multibody.engines.registry import (
     stand_in,
     standard_engines,
 )
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.scene.froude import default_step, froude_scale
 from rockwobble.multibody.scene.guard import check_time_step
 from rockwobble.multibody.scene_of_case import resolved_settings
-from rockwobble.multibody.simulation import STEP_SETTINGS
 
-from .run_settings import step_settings
+from .run_settings import at_step, step_settings
 
 SUPPORTS = ("recess", "flat")
 
@@ -279,6 +278,5 @@ def references_of(
 def _finer(case: Case, run: Run) -> Run:
     step = run.time_step
     if not isinstance(step, float):
-        step = REFERENCE_TIME_STEP * froude_scale(case.cylinder.semidiagonal, case.gravity).time
-    settings = {name: value for name, value in run.settings.items() if name not in STEP_SETTINGS}
-    return Run(run.engine, run.support, 0.5 * step, **settings)
+        step = default_step(case.cylinder.semidiagonal, case.gravity)
+    return at_step(run, 0.5 * step)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,12 +15,12 @@ from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
 from rockwobble.models.shown import Brief
 from rockwobble.models.traces.lost_trace import lost_trace
+from rockwobble.models.traces.parquet_file import pack, read
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 from rockwobble.multibody.time_step.extrapolated import FINEST
 
 from ..storage.fingerprint import fingerprint
-from ..storage.parquet_file import pack, read
 from ..storage.provenance import engine_makers, reduced_makers
 from .cache import Cache, open_cache
 from .progress import ProgressCallback
@@ -218,9 +218,7 @@ def open_trace_cache(
 
     def unpacked(job: Job, content: bytes) -> Trace:
         table, about = read(content)
-        facts = about["trace"]
-        assert isinstance(facts, Mapping)
-        return dataclasses.replace(Trace.from_plain(facts, table, job.case), run=job.run)
+        return dataclasses.replace(Trace.from_plain(about["trace"], table, job.case), run=job.run)
 
     return open_cache(folder, kind, name=job_fingerprint, pack=packed, unpack=unpacked)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from rockwobble.models import Case, InitialState, Run
+from rockwobble.models.case import TimeStep
 from rockwobble.multibody.scene_of_case import resolved_settings
 from rockwobble.multibody.simulation import STEP_SETTINGS
 
@@ -52,6 +53,28 @@ def with_settings(case: Case, runs: Sequence[Run], settings: Mapping[str, object
         )
         for run, names in zip(runs, known, strict=True)
     )
+
+
+def at_step(run: Run, step: TimeStep) -> Run:
+    """Return the run at another time step, without the settings of the way to its own.
+
+    Parameters
+    ----------
+    run : Run
+    step : float or str or None
+        In seconds, or a way to a step, whose settings stay.
+
+    Returns
+    -------
+    Run
+
+    Examples
+    --------
+    >>> at_step(Run("mujoco", "recess", "extrapolated", finest_step=1e-4, iterations=50), 2e-4)
+    Run('mujoco', 'recess', time_step=0.0002, iterations=50)
+    """
+    kept = {name: value for name, value in run.settings.items() if STEP_SETTINGS.get(name, step) == step}
+    return Run(run.engine, run.support, step, **kept)
 
 
 def _setting_names(case: Case, run: Run) -> tuple[str, ...]:

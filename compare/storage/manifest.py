@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockwobble.models import plain_json
+from rockwobble.models.traces.parquet_file import pack
 
 from .files import replace_files, require_folder, write_whole
-from .parquet_file import pack
 from .provenance import code_digests, commit, package_versions, processor
 
 if TYPE_CHECKING:

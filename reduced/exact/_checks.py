@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Cylinder
+from rockwobble.models.number_checks import require_positive
 
 from ..body import Body, body_of
 
 
 def body_under(cylinder: Cylinder, gravity: float) -> Body:
     """Return the constants of `cylinder`, or raise ValueError unless gravity is positive and finite."""
-    if not (math.isfinite(gravity) and gravity > 0.0):
-        raise ValueError(f"gravity must be positive and finite [m/s^2], got {gravity!r}")
-    return body_of(cylinder, float(gravity))
+    return body_of(cylinder, require_positive("gravity", gravity, "m/s^2"))
 
 
 def require_tilts(tilt: ArrayLike, alpha: float) -> NDArray[np.float64]:

@@ -156,7 +156,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
             y_at, k_at = partial(body, work, path, at)
             rate, slope = sign * y_at[1], sign * k_at[1]
             if rate < 0.0:
-                return at
+                return float(at)
             if slope < 0.0:
                 low, rate_low, slope_low = at, rate, slope
             else:

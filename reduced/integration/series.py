@@ -65,4 +65,4 @@ def partial(body: Body, c: NDArray[np.float64], path: Path, time: float) -> Any:
 def acceleration(c: NDArray[np.float64], path: Path) -> float:
     """Return the second derivative of the tilt at the start of the step [rad/s^2]."""
     unit, _ = path
-    return c[RATE + 1] / unit
+    return float(c[RATE + 1] / unit)

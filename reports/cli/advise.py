@@ -33,7 +33,6 @@ Support = Annotated[
     ),
 ]
 Copies = Annotated[int, options.method("Number of perturbed copies.")]
-Seed = Annotated[int, options.method("Of the perturbed copies.")]
 
 
 @states_problem
@@ -44,7 +43,7 @@ def advise(
     support: Support = "recess",
     time_step: options.TimeStep = None,
     copies: Copies = 100,
-    seed: Seed = 1,
+    seed: options.Seed = 1,
     out: options.Out = Path("rockwobble-advise"),
 ) -> None:
     """Say how one case ends, how far its results can be trusted, and what its support must supply.
@@ -64,7 +63,7 @@ def advise(
             friction = case.friction if "friction" in given_options(context) else None
             run = _run(case, engine, support, time_step)
             require_feasible([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
-            _require_numbers(copies, seed)
+            _require_count(copies)
             rc.require_writable(out)
         from rockwobble.compare.runs.execution import Job, job_fingerprint
         from rockwobble.compare.storage.fingerprint import fingerprint
@@ -120,10 +119,8 @@ def _run(case: rw.Case, engine: str | None, support: str, time_step: float | Non
     return run
 
 
-def _require_numbers(copies: int, seed: int) -> None:
+def _require_count(copies: int) -> None:
     from rockwobble.compare.studies.advice.drive import FEWEST, MOST
 
     if not FEWEST <= copies <= MOST:
         raise ValueError(f"--copies must be from {FEWEST} to {MOST}, got {copies}")
-    if seed < 0:
-        raise ValueError(f"--seed must not be negative, got {seed}")

@@ -44,7 +44,6 @@ FarField = Annotated[
         "to a peak of so many times g tan alpha.",
     ),
 ]
-Seed = Annotated[int, typer.Option(help="Of everything random.")]
 
 
 @states_problem
@@ -56,7 +55,7 @@ def ensemble(
     perturbation: Perturbation = 0.01,
     synthetic: Synthetic = None,
     p695: FarField = None,
-    seed: Seed = 0,
+    seed: options.Seed = 0,
     engine: options.Engines = None,
     support: options.Supports = None,
     time_step: options.TimeStep = None,
@@ -77,8 +76,6 @@ def ensemble(
         with user_input():
             rc.require_writable(out)
             refuse_options_of_engines(context, engine)
-            if seed < 0:
-                raise ValueError(f"--seed must not be negative, got {seed}")
             stated: rw.Case | rw.Suite | list[rw.Case]
             if suite is not None:
                 refuse(context, _MEMBERS, f"does not go with a suite, got {suite}: its cases are the members")

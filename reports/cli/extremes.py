@@ -18,11 +18,10 @@ Quick = Annotated[
     bool,
     typer.Option("--quick", help="Only the two ends of each extreme: some two minutes on two idle cores."),
 ]
-Workers = Annotated[int | None, typer.Option(min=1, help="Processes. Default: one for each processor.")]
 
 
 def extremes(
-    quick: Quick = False, workers: Workers = None, out: options.Out = Path("rockwobble-extremes")
+    quick: Quick = False, workers: options.Workers = None, out: options.Out = Path("rockwobble-extremes")
 ) -> None:
     """Take one thing at a time to its extreme: is the answer right, and if not, does the run say so.
 
@@ -38,12 +37,13 @@ def extremes(
     with interruptible(out):
         with user_input():
             rc.require_writable(out)
-        from rockwobble.compare.studies.extremes.study import KIND, measure_extremes
+        from rockwobble.compare.studies.extremes.study import KIND, manifest_of, measure_extremes
 
         from ..pages.extremes import extremes_page
 
         with user_input(), shown_progress() as tell:
-            found = measure_extremes(out, quick=quick, workers=workers, progress=tell, command=command_line())
-        show_and_write(out, extremes_page(found), found.made, {KIND: found.table})
+            found = measure_extremes(out, quick=quick, workers=workers, progress=tell)
+        manifest = manifest_of(found, command_line())
+        show_and_write(out, extremes_page(found, manifest), manifest, {KIND: found.table})
     if (found.table["verdict"] == "silent").any():
         raise typer.Exit(FAILED)

@@ -14,10 +14,13 @@ from ..console.results import show_and_write
 from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 
-# three sizes make bands to compare, and a map
-_LEAST_GRID, _MOST_GRID = 3, 1000
-
-Grid = Annotated[int, typer.Option(help="Sizes, and intensities, of the maps of figure 6.")]
+Grid = Annotated[
+    int,
+    typer.Option(
+        help="Sizes, and intensities, of the maps of figure 6.",
+        callback=options.whole(3, 1000),  # three sizes make bands to compare, and a map
+    ),
+]
 
 
 def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-figures")) -> None:
@@ -30,8 +33,6 @@ def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-figures")) -> 
     """
     with interruptible():
         with user_input():
-            if not _LEAST_GRID <= grid <= _MOST_GRID:
-                raise ValueError(f"--grid must be from {_LEAST_GRID} to {_MOST_GRID}, got {grid}")
             rc.require_writable(out)
         from ..paper.page import compute, paper_page
 

@@ -19,7 +19,7 @@ from .inputs.grid import values_of
 from .inputs.method_values import settings
 from .inputs.problem import refuse
 from .inputs.several import DEFAULT_COUNT, cylinders_of, methods_of, motions_of
-from .sweep import Scheduler, Workers
+from .sweep import Scheduler
 
 _motions, _intensity, _statistics = map(options.panel, ("Ground motions", "Intensity", "Statistics"))
 
@@ -39,7 +39,10 @@ Records = Annotated[
     ),
 ]
 Synthetic = Annotated[
-    int | None, _motions(f"So many made-up motions. Default, without records: {DEFAULT_COUNT}.")
+    int | None,
+    _motions(
+        f"So many made-up motions. Default, without records: {DEFAULT_COUNT}.", callback=options.whole(2)
+    ),
 ]
 MeasureName = Annotated[
     str,
@@ -95,8 +98,7 @@ Limits = Annotated[
     ),
 ]
 Margin = Annotated[float, _statistics("Within which two medians count as equivalent.")]
-Resamples = Annotated[int, _statistics("Of the motions, for intervals.", min=2)]
-Seed = Annotated[int, _statistics("Of everything random.")]
+Resamples = Annotated[int, _statistics("Of the motions, for intervals.", callback=options.whole(2))]
 
 
 def fragility(
@@ -124,8 +126,8 @@ def fragility(
     limit: Limits = None,
     margin: Margin = 0.1,
     resamples: Resamples = 1000,
-    seed: Seed = 0,
-    workers: Workers = None,
+    seed: options.Seed = 0,
+    workers: options.Workers = None,
     scheduler: Scheduler = None,
     out: options.Out = Path("rockwobble-fragility"),
 ) -> None:
@@ -147,10 +149,6 @@ def fragility(
     with interruptible(out):
         with user_input():
             rc.require_writable(out)
-            if seed < 0:
-                raise ValueError(f"--seed must not be negative, got {seed}")
-            if synthetic is not None and synthetic < 2:
-                raise ValueError(f"--synthetic must be at least 2 motions, got {synthetic}")
             if cylinder:
                 refuse(
                     context, {"semidiagonal", "tan_alpha"}, "does not go with --cylinder, which states both"

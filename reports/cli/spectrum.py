@@ -26,10 +26,10 @@ _FINEST = 1e-5
 
 Smallest = Annotated[float, _grid("Smallest semidiagonal R, in m.")]
 Largest = Annotated[float, _grid("Largest semidiagonal R, in m.")]
-Sizes = Annotated[int, _grid("Number of sizes.")]
+Sizes = Annotated[int, _grid("Number of sizes.", callback=options.whole(2, _MOST_POINTS))]
 Weakest = Annotated[float, _grid("Lowest peak of the horizontal resultant, in g tan alpha.")]
 Strongest = Annotated[float, _grid("Highest peak of the resultant, in g tan alpha.")]
-Intensities = Annotated[int, _grid("Number of intensities.")]
+Intensities = Annotated[int, _grid("Number of intensities.", callback=options.whole(2, _MOST_POINTS))]
 SearchStep = Annotated[
     float,
     options.method("Finest step of the search for the lowest intensity that overturns, in g tan alpha."),
@@ -78,8 +78,8 @@ def spectrum(
 
             from .inputs.problem import Problem
 
-            levels = _axis("weakest", weakest, "strongest", strongest, "intensities", intensities)
-            radii = _axis("smallest", smallest, "largest", largest, "sizes", sizes)
+            levels = _axis("weakest", weakest, "strongest", strongest, intensities)
+            radii = _axis("smallest", smallest, "largest", largest, sizes)
             case = Problem(
                 semidiagonal=largest,
                 tan_alpha=tan_alpha,
@@ -137,11 +137,9 @@ def spectrum(
         show_and_write(out, spectrum_page(found, tables, manifest), manifest, tables)
 
 
-def _axis(first: str, low: float, last: str, high: float, number: str, count: int) -> NDArray[np.float64]:
+def _axis(first: str, low: float, last: str, high: float, count: int) -> NDArray[np.float64]:
     import numpy as np
 
     if not (0.0 < low < math.inf and low < high < math.inf):
         raise ValueError(f"--{first} and --{last} must be positive and increasing, got {low:g} and {high:g}")
-    if not 2 <= count <= _MOST_POINTS:
-        raise ValueError(f"--{number} must be from 2 to {_MOST_POINTS}, got {count}")
     return np.linspace(low, high, count)

@@ -20,7 +20,6 @@ from .inputs.problem import refuse
 from .results.show import show
 
 _grid = options.panel("Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT")
-_work = options.panel("Work")
 # what states a grid: the file of a suite states its own
 _STATED = {
     *("semidiagonal", "tan_alpha", "scale", "record_x", "record_y", "record_z", "units", "gravity"),
@@ -48,15 +47,17 @@ RecordsX = Annotated[
 ]
 RecordsY = Annotated[list[Path] | None, _grid("North-south component of each.")]
 RecordsZ = Annotated[list[Path] | None, _grid("Vertical component of each, or of none.")]
-Workers = Annotated[int | None, _work("Processes on this machine. Default: one a core.", min=1)]
 Scheduler = Annotated[
     str | None,
-    _work(
+    options.work(
         "Dask scheduler that has the work done, such as tcp://10.0.0.1:8786: started by dask scheduler, "
-        "and on each machine dask worker tcp://10.0.0.1:8786. Needs pip install 'dask[distributed]'."
+        "and on each machine dask worker tcp://10.0.0.1:8786. Needs the extra distributed."
     ),
 ]
-ChunkSize = Annotated[int | None, _work("Runs in a chunk. Default: about a second of work.", min=1)]
+ChunkSize = Annotated[
+    int | None,
+    options.work("Runs in a chunk. Default: about a second of work.", callback=options.whole(1)),
+]
 
 
 def sweep(
@@ -73,7 +74,7 @@ def sweep(
     model: Models = None,
     plane: options.Plane = None,
     restitution: options.Restitution = None,
-    workers: Workers = None,
+    workers: options.Workers = None,
     scheduler: Scheduler = None,
     chunk: ChunkSize = None,
     out: options.Out = Path("rockwobble-sweep"),

@@ -34,11 +34,12 @@ def tradeoff(quick: Quick = False, out: options.Out = Path("rockwobble-tradeoff"
     with interruptible():
         with user_input():
             rc.require_writable(out)
-        from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
+        from rockwobble.compare.studies.tradeoff.study import manifest_of, measure_tradeoff
 
         from ..pages.tradeoff import tradeoff_page
 
         with shown_progress("rounds") as tell:
-            found = measure_tradeoff(quick=quick, progress=tell, command=command_line())
+            found = measure_tradeoff(quick=quick, progress=tell)
         tables = {"points": found.points, "problems": found.problems, "scenes": found.scenes}
-        show_and_write(out, tradeoff_page(found), found.made, tables)
+        manifest = manifest_of(found, command_line())
+        show_and_write(out, tradeoff_page(found, manifest), manifest, tables)

@@ -17,14 +17,11 @@ from .inputs import options
 Quick = Annotated[
     bool, typer.Option("--quick", help="Coarse maps and few runs: some two minutes on two cores.")
 ]
-Workers = Annotated[
-    int | None, typer.Option(help="Processes that measure side by side. Default: one for each processor.")
-]
 
 
 def validity(
     quick: Quick = False,
-    workers: Workers = None,
+    workers: options.Workers = None,
     out: options.Out = Path("rockwobble-validity"),
 ) -> None:
     """Report the limits of the reduced model: what must hold, what error to expect, where it matters.
@@ -41,16 +38,16 @@ def validity(
     """
     with interruptible(out):
         with user_input():
-            if workers is not None and workers < 1:
-                raise ValueError(f"--workers must be at least 1, got {workers}")
             rc.require_writable(out)
         from rockwobble.compare.studies.validity.extent import FULL, QUICK
-        from rockwobble.compare.studies.validity.study import measure_all, validity_of
+        from rockwobble.compare.studies.validity.study import manifest_of, measure_all, validity_of
 
         from ..pages.validity import limits_table, validity_page
 
         extent = QUICK if quick else FULL
         with user_input(), shown_progress("tasks") as tell:
             tables = measure_all(extent, out, workers=workers, progress=tell)
-        found = validity_of(tables, extent, command_line())
-        show_and_write(out, validity_page(found), found.made, {**tables, "limits": limits_table(found)})
+        found = validity_of(tables, extent)
+        manifest = manifest_of(found, extent, command_line())
+        tables = {**tables, "limits": limits_table(found)}
+        show_and_write(out, validity_page(found, manifest), manifest, tables)

@@ -31,8 +31,8 @@ def budget_of_run(case: rw.Case, run: rw.Run, reference: rw.Run) -> list[str]:
         f"  {'whole':12} {budget.rms('whole'):8.1e}  engine minus the {reference}",
     ]
     lines += [f"  {name:12} {rms[part]:8.1e}  {meaning}" for part, (name, meaning) in _PARTS.items()]
-    steps = ", ".join(f"{step:g}" for step in budget.limit.steps)
-    order = "" if math.isnan(budget.limit.order) else f"; measured order {budget.limit.order:.1f}"
+    steps = ", ".join(f"{step:g}" for step in budget.steps)
+    order = "" if math.isnan(budget.order) else f"; measured order {budget.order:.1f}"
     lines.append(f"  known to {budget.rms('limit_error'):.1e}, from time steps of {steps} s{order}")
     row = comparison.summary[comparison.summary["reference"] == str(reference)].iloc[0]
     if row["diverged"]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -96,11 +96,8 @@ def _ratios(found: Ensemble, rows: list[dict[str, Any]]) -> Panel:
     both = [pairs(found.members, row["method"], row["against"]) for row in rows]
     logarithms = [each.log_ratios() for each in both]
     low, high = ratio_span(np.concatenate(logarithms))
-    layers: list[Line | Rule | Text] = [
-        Rule(at=1.0 / (1.0 + MARGIN), until=1.0 + MARGIN, axis="x", colour=SHADED),
-        Rule(at=1.0, axis="x"),
-    ]
-    ticks = []
+    layers: list[Line | Rule | Text] = [*margin_rules(MARGIN)]
+    names = []
     for place, (row, each, logs) in enumerate(zip(rows, both, logarithms, strict=True)):
         has = ~np.isnan(logs)
         ratios, members = np.exp(logs[has]), each.members[has]
@@ -121,21 +118,28 @@ def _ratios(found: Ensemble, rows: list[dict[str, Any]]) -> Panel:
         if low <= row["ratio"] <= high:
             at = np.array([row["ratio"]]), np.array([place + 0.2])
             layers.append(Line(x=at[0], y=at[1], name="median", style=_MEDIAN))
-        ticks.append((float(place), f"{row['method']}\n/ {row['against']}, n = {has.sum()}"))
-    return Panel(
-        x=Axis(
-            label="ratio of peaks",
-            unit="-",
-            log=True,
-            low=low,
-            high=high,
-            ticks=[(tick, f"{tick:g}") for tick in ratio_ticks(low, high)],
-        ),
-        y=Axis(label="", unit="", low=-0.6, high=len(rows) - 0.4, ticks=ticks, reverse=True),
-        layers=layers,
-        title="Ratio of the peaks of each member",
-        height=_LINE * len(rows) + 1.4,
-    )
+        names.append(f"{row['method']}\n/ {row['against']}, n = {has.sum()}")
+    x, y = ratio_axes("ratio of peaks", low, high, ratio_ticks(low, high), names)
+    title = "Ratio of the peaks of each member"
+    return Panel(x=x, y=y, layers=layers, title=title, height=_LINE * len(rows) + 1.4)
+
+
+def margin_rules(margin: float) -> list[Rule]:
+    """Return a line at a ratio of 1, on the strip of the margin around it."""
+    return [
+        Rule(at=1.0 / (1.0 + margin), until=1.0 + margin, axis="x", colour=SHADED),
+        Rule(at=1.0, axis="x"),
+    ]
+
+
+def ratio_axes(
+    label: str, low: float, high: float, ticks: Sequence[float], names: Sequence[str]
+) -> tuple[Axis, Axis]:
+    """Return the axis of ratios, and one with the names below each other."""
+    shown = [(tick, f"{tick:g}") for tick in ticks if low <= tick <= high]
+    lines = [(float(place), name) for place, name in enumerate(names)]
+    x = Axis(label=label, unit="-", log=True, low=low, high=high, ticks=shown)
+    return x, Axis(label="", unit="", low=-0.6, high=len(names) - 0.4, ticks=lines, reverse=True)
 
 
 def _bar(

@@ -15,7 +15,8 @@ from rockwobble.compare.studies.fragility.limits import OVERTURNED
 from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL
 
-from .palette import DARK, GREY, ORDER, SHADED, Style, pale
+from .ensemble import margin_rules, ratio_axes
+from .palette import DARK, GREY, ORDER, Style, pale
 from .picture import Axis, Band, Line, Panel, Picture, Rule
 
 # of a panel: the support, and what it is called
@@ -57,6 +58,8 @@ def _ratios(found: Fragility) -> Picture | None:
     known = [abs(math.log(end)) for end in ends if 0.0 < end < math.inf]
     reach = min(1.15 * max([*known, 2.0 * math.log1p(margin)]), math.log(4.0))
     low, high = math.exp(-reach), math.exp(reach)
+    names = [f"{method}\n/ {against}" for method, against in pairs]
+    x_axis, y_axis = ratio_axes("median over median", low, high, _RATIOS, names)
     panels = []
     for cylinder in cylinders:
         own = {
@@ -64,10 +67,7 @@ def _ratios(found: Fragility) -> Picture | None:
             for row in rows
             if cylinder is None or row["cylinder"] == cylinder
         }
-        layers: list[Line | Rule] = [
-            Rule(at=1.0 / (1.0 + margin), until=1.0 + margin, axis="x", colour=SHADED),
-            Rule(at=1.0, axis="x"),
-        ]
+        layers: list[Line | Rule] = [*margin_rules(margin)]
         for place, pair in enumerate(pairs):
             if pair not in own:
                 continue
@@ -80,29 +80,8 @@ def _ratios(found: Fragility) -> Picture | None:
                     Line(x=np.array([row["ratio"]]), y=y[:1], name="ratio of the medians", style=_MEDIAN)
                 )
         title = {None: "", ALL: "Mean of all cylinders"}.get(cylinder, str(cylinder))
-        panels.append(
-            Panel(
-                x=Axis(
-                    label="median over median",
-                    unit="-",
-                    log=True,
-                    low=low,
-                    high=high,
-                    ticks=[(tick, f"{tick:g}") for tick in _RATIOS if low <= tick <= high],
-                ),
-                y=Axis(
-                    label="",
-                    unit="",
-                    low=-0.6,
-                    high=len(pairs) - 0.4,
-                    ticks=[(float(i), f"{a}\n/ {b}") for i, (a, b) in enumerate(pairs)],
-                    reverse=True,
-                ),
-                layers=layers,
-                title=title,
-                height=_LINE * len(pairs) + 1.0,
-            )
-        )
+        height = _LINE * len(pairs) + 1.0
+        panels.append(Panel(x=x_axis, y=y_axis, layers=layers, title=title, height=height))
     return Picture(
         name="fragility-ratios",
         title="Median overturning intensity of each method over that of another",

@@ -6,7 +6,7 @@ import math
 
 import pandas as pd
 
-from rockwobble.compare.storage.manifest import Results
+from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.extremes.study import Extremes, stored_extremes
 from rockwobble.compare.studies.extremes.verdict import FINE
 from rockwobble.models.diagnostic import CODES, parted
@@ -31,7 +31,7 @@ _REFERENCES = {
 }
 
 
-def extremes_page(found: Extremes) -> Page:
+def extremes_page(found: Extremes, manifest: Manifest) -> Page:
     """Return the report."""
     runs = found.table[found.table["verdict"] != "n/a"]
     counts = {name: int((runs["verdict"] == name).sum()) for name in WORDS}
@@ -52,14 +52,14 @@ def extremes_page(found: Extremes) -> Page:
             }
             for row in runs.to_dict("records")
         ],
-        "about": found.made,
+        "about": manifest,
     }
     return Page(name="extremes", template="extremes", values=values)
 
 
 def stored_page(results: Results) -> Page:
     """Return the report on what is stored."""
-    return extremes_page(stored_extremes(results))
+    return extremes_page(stored_extremes(results), results.manifest)
 
 
 def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:

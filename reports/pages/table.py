@@ -144,10 +144,8 @@ class Table:
     def _html_row(self, cells: Sequence[str]) -> str:
         found = []
         for place, (column, cell) in enumerate(zip(self.columns, cells, strict=True)):
-            mark = f' class="tag {_slug(cell)}"' if column.form == "tag" else _class(column)
-            kind = "th" if place == 0 else "td"
-            label = "" if self.folded else f' data-label="{html.escape(column.heading)}"'
-            scope = ' scope="row"' if place == 0 else label
+            mark = ' class="tag"' if column.form == "tag" else _class(column)
+            kind, scope = ("th", ' scope="row"') if place == 0 else ("td", "")
             found.append(f"<{kind}{scope}{mark}>{html.escape(cell)}</{kind}>")
         return f"<tr>{''.join(found)}</tr>"
 
@@ -193,7 +191,3 @@ def _class(column: Column) -> str:
 def _scrolled(heads: str, body: str) -> str:
     table = f"<table><thead><tr>{heads}</tr></thead>{body}</table>"
     return f'<div class="scroll" tabindex="0">{table}</div>'
-
-
-def _slug(text: str) -> str:
-    return re.sub(r"\W+", "-", text.lower()).strip("-")

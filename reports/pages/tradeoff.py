@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pandas as pd
 
-from rockwobble.compare.storage.manifest import Results
+from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.tradeoff.conclusions import costs, engine_factors, plateaus, rest_tilt_price
 from rockwobble.compare.studies.tradeoff.study import ROUNDS, Tradeoff, stored_tradeoff
 
@@ -15,7 +15,7 @@ from .table import NONE, number
 _NOT_ENGINES = ("reduced", "scipy")
 
 
-def tradeoff_page(found: Tradeoff) -> Page:
+def tradeoff_page(found: Tradeoff, manifest: Manifest) -> Page:
     """Return the report."""
     points, cheapest = found.points, costs(found.points)
     scipy = cheapest.loc[cheapest["family"] == "scipy", "ratio"]
@@ -34,7 +34,7 @@ def tradeoff_page(found: Tradeoff) -> Page:
         "failed": _rows(points[points["error"].isna()]),
         "rounds": ROUNDS,
         "load": found.load,
-        "about": found.made,
+        "about": manifest,
     }
     drawn = pictures(found)
     values["drawn"] = [picture.name for picture in drawn]
@@ -43,7 +43,7 @@ def tradeoff_page(found: Tradeoff) -> Page:
 
 def stored_page(results: Results) -> Page:
     """Return the report on what is stored."""
-    return tradeoff_page(stored_tradeoff(results))
+    return tradeoff_page(stored_tradeoff(results), results.manifest)
 
 
 def _rows(table: pd.DataFrame) -> list[dict[str, object]]:

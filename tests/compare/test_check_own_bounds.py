@@ -146,6 +146,17 @@ def test_twice_the_step_or_half_of_it() -> None:
         assert (other.run.time_step, given) == (other_one, factor)
 
 
+@pytest.mark.parametrize(
+    ("way", "settings"),
+    [("extrapolated", {"finest_step": 1e-4}), ("auto", {"step_tolerance": 1e-3})],
+)
+def test_a_run_of_several_steps_has_one_beside_it(way: str, settings: dict[str, float]) -> None:
+    run = Run("mujoco", "recess", way, iterations=50, **settings)
+    job = Job(case=SHORT, run=run)
+    other, _ = own_bounds.other_step(job, made(np.zeros(2), np.zeros(2), time_step=math.nan))
+    assert other.run == Run("mujoco", "recess", 2e-4, iterations=50)
+
+
 SECOND = standard_engines()[1]  # PyBullet, or what takes its place where that has no wheel
 TIME = 0.01 * np.arange(101)
 RAMP = TIME * PIER.alpha

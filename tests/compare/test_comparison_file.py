@@ -8,8 +8,8 @@ import pytest
 
 from rockwobble.compare import Comparison, compare
 from rockwobble.compare.storage.manifest import read_results
-from rockwobble.compare.storage.parquet_file import read_about
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
+from rockwobble.models.traces.parquet_file import read_about
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2, height=11.0)
 SHAKE = GroundMotion(
@@ -71,6 +71,7 @@ def test_budgets_are_the_same(saved):
     for budget, loaded in zip(first.values(), again.values(), strict=True):
         pd.testing.assert_frame_equal(budget.to_frame(), loaded.to_frame(), check_exact=True)
         assert budget.columns() == pytest.approx(loaded.columns(), rel=0.0, abs=0.0, nan_ok=True)
+        assert loaded.steps == budget.steps
 
 
 def test_saving_what_was_loaded_writes_the_same_files(saved, tmp_path):

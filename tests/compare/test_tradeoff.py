@@ -114,7 +114,7 @@ def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
     for each in ("methods", "scene_cost"):  # what is installed beyond these is timed in the same way
         monkeypatch.setattr(f"rockwobble.compare.studies.tradeoff.{each}.own_engines", engines_here)
     told: list[Progress] = []
-    found = study.measure_tradeoff(quick=True, progress=told.append, command="rockwobble tradeoff")
+    found = study.measure_tradeoff(quick=True, progress=told.append)
     assert (told[-1].state, told[-1].done, told[-1].share) == ("finished", told[-1].total, 1.0)
     base = found.points[(found.points["line"] == BASE_LINE) & (found.points["value"] == BASE_TOLERANCE)]
     assert base[["ratio", "ratio_low", "ratio_high"]].to_numpy().tolist() == [[1.0, 1.0, 1.0]]
@@ -124,7 +124,7 @@ def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
     # an engine takes a step of some microseconds, the model a few for the whole release
     low, high = engine_factors(found.points)
     assert 2.0 < low < high
-    assert found.made.headline["engine over recess model, least"] == low
+    assert study.manifest_of(found).headline["engine over recess model, least"] == low
 
 
 def points(

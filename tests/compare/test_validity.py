@@ -15,6 +15,7 @@ from tiny_validity import TINY, kept_engine_runs, tiny_tables, tiny_validity
 
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.progress import Progress
+from rockwobble.compare.studies.validity import study
 from rockwobble.compare.studies.validity.extent import FULL, LARGEST_PEAK, QUICK
 from rockwobble.compare.studies.validity.limits import LIMITS, limits_of
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts, vertical
@@ -204,19 +205,22 @@ def test_soft_contact_is_told_by_its_damping_and_failures_are_counted(tables: Ta
     assert (numbers["held_up_to"], numbers["left_from"], numbers["failed"]) == (0.002, 0.0098, 1.0)
 
 
-def test_an_ended_run_goes_on_where_it_was_and_finds_the_same(tables: Tables, tmp_path: Path) -> None:
+def test_an_ended_run_goes_on_where_it_was_and_finds_the_same(
+    tables: Tables, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(study, "PARTS", FAST)
 
     def stop(event: Progress) -> None:
         if event.state == "finished" and event.done == 3:
             raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        measure_all(TINY, tmp_path / "ended", parts=FAST, workers=1, progress=stop)
+        measure_all(TINY, tmp_path / "ended", workers=1, progress=stop)
     told: list[Progress] = []
-    found = measure_all(TINY, tmp_path / "ended", parts=FAST, workers=1, progress=told.append)
+    found = measure_all(TINY, tmp_path / "ended", workers=1, progress=told.append)
     assert told[0].found == 3
     told.clear()
-    again = measure_all(TINY, tmp_path / "ended", parts=FAST, workers=1, progress=told.append)
+    again = measure_all(TINY, tmp_path / "ended", workers=1, progress=told.append)
     assert not told  # nothing ran
     for part in FAST:
         csv = tables[part.name].to_csv()

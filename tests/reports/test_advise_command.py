@@ -11,9 +11,10 @@ import numpy as np
 import pytest
 
 from rockwobble.compare.storage.manifest import read_results
-from rockwobble.compare.studies.advice import members, scales
+from rockwobble.compare.studies.advice import scales
 from rockwobble.compare.studies.advice.advice import KIND
 from rockwobble.models import el_centro_1940
+from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import page
 from rockwobble.reports.pages.advice import advice_page, advice_values
@@ -37,7 +38,7 @@ def few_runs() -> Iterator[None]:
     """Hold planar analysis against 3D at two intensities, of six records: more of them tell no more."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(scales, "PLANAR_SCALES", (1.0, 2.0))
-        patch.setattr(members, "FAR_FIELD_PAIRS", 6)
+        patch.setattr(p695, "PAIRS", 6)
         yield
 
 
@@ -206,7 +207,7 @@ def test_planar_analysis_is_called_unconservative_only_where_the_interval_says_s
     [
         (["--friction", "-1"], "friction must not be negative"),
         (["--copies", "5"], "--copies must be from 20 to 10000, got 5"),
-        (["--seed", "-1"], "--seed must not be negative"),
+        (["--seed", "-1"], "'--seed': must be at least 0, got -1"),
         (["--engine", "none", "--time-step", "1e-4"], "--time-step belongs to an engine"),
         (["--engine", "none", "--support", "glued"], "--support must be one of recess, flat, ring"),
         (["--engine", "abacus"], "abacus"),

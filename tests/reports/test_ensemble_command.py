@@ -206,7 +206,7 @@ def test_a_suite_keeps_its_runs_beside_options(tmp_path, monkeypatch):
         (["quick", "--time-step", "1e-4"], "--time-step belongs to engines, got it with --engine none"),
         (["--engine", "mujoco"], "'--engine': none stands alone, got mujoco and none"),
         (["--engine", "all"], "all is for compare; name each engine here, or none"),
-        (["--seed", "-1"], "--seed must not be negative, got -1"),
+        (["--seed", "-1"], "'--seed': must be at least 0, got -1"),
         (["--members", "1"], "at least 2 members"),
         (["--perturbation", "1"], "perturbation must be above 0 and at most 0.1"),
     ],

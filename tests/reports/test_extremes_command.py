@@ -11,12 +11,12 @@ import pytest
 from showing import shows_itself
 from typer.testing import CliRunner
 
-from rockwobble.compare.storage.manifest import made_now
 from rockwobble.compare.studies.extremes import study as scan
-from rockwobble.compare.studies.extremes.study import KIND, Extremes, measure_extremes
+from rockwobble.compare.studies.extremes.study import Extremes, manifest_of, measure_extremes
 from rockwobble.compare.studies.extremes.verdict import Verdict
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.extremes import extremes_page
+from rockwobble.reports.pages.page import Page
 
 
 def given(worst: Verdict) -> Extremes:
@@ -30,7 +30,11 @@ def given(worst: Verdict) -> Extremes:
     table = pd.DataFrame(
         [dict(zip(names, row[:3], strict=True)) | dataclasses.asdict(row[3]) for row in rows]
     )
-    return Extremes(table=table, made=made_now(KIND, command="rockwobble extremes"))
+    return Extremes(table=table)
+
+
+def page_of(worst: Verdict) -> Page:
+    return extremes_page(given(worst), manifest_of(given(worst)))
 
 
 FLAGGED = Verdict(verdict="flagged", error=0.3, reference="model", begins=0.5, limit="slip")
@@ -56,13 +60,13 @@ def test_the_exit_code_tells_whether_anything_is_silently_wrong(
 
 
 def test_what_is_not_fine_is_one_line_for_what_the_same_thing_limits() -> None:
-    document = extremes_page(given(FLAGGED)).markdown()
+    document = page_of(FLAGGED).markdown()
     section = document.split("## What is not fine")[1].split("##")[0]
     rows = [row for row in section.splitlines() if row.startswith("| spin")]
     assert len(rows) == 1
     assert "mujoco flat, mujoco recess" in rows[0]
     assert "contact slipped" in rows[0]
-    refused = extremes_page(given(Verdict(verdict="refused", refusal="<b>must</b> be *less*")))
+    refused = page_of(Verdict(verdict="refused", refusal="<b>must</b> be *less*"))
     assert "&lt;b&gt;must&lt;/b&gt;" in refused.html()
     assert "<b>must" not in refused.html()
 
@@ -76,7 +80,7 @@ def test_a_second_scan_repeats_nothing(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(scan, "judge", None)
     again = measure_extremes(tmp_path, workers=1)
     pd.testing.assert_frame_equal(first.table, again.table)
-    assert again.made.headline == {"fine": 4}
+    assert manifest_of(again).headline == {"fine": 4}
 
 
 def test_bad_input_is_one_line(tmp_path: Path) -> None:

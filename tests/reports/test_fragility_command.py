@@ -257,8 +257,10 @@ def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsy
         (["--levels", "2", "--cloud", "1"], "got both"),
         (["--limit", "tilt"], "a limit must be one of uplift"),
         (["--measure", "pgd"], "an intensity must be one of"),
-        (["--synthetic", "1"], "--synthetic must be at least 2 motions, got 1"),
-        (["--seed", "-1"], "--seed must not be negative, got -1"),
+        (["--synthetic", "1"], "'--synthetic': must be at least 2, got 1"),
+        (["--workers", "0"], "'--workers': must be at least 1, got 0"),
+        (["--resamples", "1"], "'--resamples': must be at least 2, got 1"),
+        (["--seed", "-1"], "'--seed': must be at least 0, got -1"),
         (["--cylinder", "a=6,0.2", "--tan-alpha", "0.3"], "--tan-alpha does not go with --cylinder"),
         (["--step-factor", "2"], "--step-factor belongs to engines"),
         (

@@ -86,7 +86,7 @@ def test_page_needs_nothing_else_and_a_name_is_no_markup(page):
     text = page.html()
     assert "<title>rockwobble: Report of CHI_TCU *&lt;b&gt;*</title>" in text
     assert '<h2 id="largest-peaks">' in text
-    assert '<td data-label="verdict" class="tag not-fine">not fine</td>' in text
+    assert '<td class="tag">not fine</td>' in text
     assert "<video></video>" in text
     assert "<code>rockwobble compare --scale 2_3</code>" in text
     assert 'id="tilt-0"' in text

@@ -98,5 +98,5 @@ def test_bad_input_is_one_line(tmp_path, capsys):
     with pytest.raises(SystemExit) as ended:
         main(["figures", "--grid", "2", "--out", str(tmp_path / "out")])
     assert ended.value.code == 2
-    assert "--grid must be from 3 to 1000, got 2" in capsys.readouterr().err
+    assert "'--grid': must be from 3 to 1000, got 2" in capsys.readouterr().err
     assert not (tmp_path / "out").exists()

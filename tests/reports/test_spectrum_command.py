@@ -85,8 +85,8 @@ def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--sizes", "1"], "--sizes must be from 2 to 2000, got 1"),
-        (["--intensities", "9999"], "--intensities must be from 2 to 2000, got 9999"),
+        (["--sizes", "1"], "'--sizes': must be from 2 to 2000, got 1"),
+        (["--intensities", "9999"], "'--intensities': must be from 2 to 2000, got 9999"),
         (["--smallest", "3", "--largest", "2"], "must be positive and increasing, got 3 and 2"),
         (["--smallest", "-1"], "must be positive and increasing, got -1 and 30"),
         (["--weakest", "nan"], "must be positive and increasing, got nan and 12"),

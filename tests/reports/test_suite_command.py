@@ -158,6 +158,15 @@ def test_options_choose_among_the_runs_of_a_suite(write_suite, options, expected
         assert dict(run.settings) == ({"iterations": 7} if run.engine == "mujoco" else {})
 
 
+def test_a_time_step_replaces_the_way_to_one_and_its_settings(write_suite):
+    way = 'time_step = "extrapolated"\nsettings = { iterations = 7, finest_step = 1e-4 }\n'
+    suite = write_suite(f'[[runs]]\nengine = "mujoco"\n{way}' + SUITE[SUITE.index("[[cases]]") :])
+    (given,) = chosen_runs(suite, None, None, 2e-4)
+    assert (given.time_step, dict(given.settings)) == (2e-4, {"iterations": 7})
+    (same,) = chosen_runs(suite, None, None, "extrapolated")
+    assert dict(same.settings) == {"iterations": 7, "finest_step": 1e-4}
+
+
 @pytest.fixture
 def write_suite(tmp_path: Path):
     def write(text: str):

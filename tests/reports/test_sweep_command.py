@@ -29,6 +29,8 @@ def call(*arguments: str) -> int:
         (["quick", "--units", "g"], "--units does not go with a suite, got quick"),
         (["quick", "--semidiagonal", "3"], "--semidiagonal does not go with a suite, got quick"),
         (["--plane", "1"], "--plane belongs to planar motion, give --model planar and no other"),
+        (["--workers", "0"], "'--workers': must be at least 1, got 0"),
+        (["--chunk", "0"], "'--chunk': must be at least 1, got 0"),
         (["--gravity", "-1"], "--gravity must be positive and finite"),
         (["--semidiagonal", "1:9:99999", "--scale", "1:9:99999"], "the results take some 3e+03 GB of the"),
     ],

@@ -10,9 +10,9 @@ import pytest
 from showing import shows_itself
 from typer.testing import CliRunner
 
-from rockwobble.compare.storage.manifest import made_now, read_results, write_results
+from rockwobble.compare.storage.manifest import read_results, write_results
 from rockwobble.compare.studies.tradeoff import study
-from rockwobble.compare.studies.tradeoff.study import KIND, Tradeoff, stored_tradeoff
+from rockwobble.compare.studies.tradeoff.study import KIND, Tradeoff, manifest_of, stored_tradeoff
 from rockwobble.reports.cli.main import app
 from rockwobble.reports.pages.tradeoff import tradeoff_page
 
@@ -45,7 +45,6 @@ def found() -> Tradeoff:
             ]
         ),
         load=(0.1, 1.2),
-        made=made_now(KIND, command="rockwobble tradeoff", about={"load": [0.1, 1.2]}),
     )
 
 
@@ -80,9 +79,8 @@ def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
 def test_other_stored_numbers_have_other_conclusions(found: Tradeoff, tmp_path: Path) -> None:
     points = found.points.copy()
     points.loc[points["family"] == "mujoco", "ratio"] *= 2.0
-    write_results(
-        tmp_path, found.made, {"points": points, "problems": found.problems, "scenes": found.scenes}
-    )
+    tables = {"points": points, "problems": found.problems, "scenes": found.scenes}
+    write_results(tmp_path, manifest_of(found, "rockwobble tradeoff"), tables)
     assert CliRunner().invoke(app, ["report", str(tmp_path)]).exit_code == 0
     for name in ("tradeoff.html", "tradeoff.md"):
         assert "an engine takes 2,800 to 4,200 times" in (tmp_path / name).read_text()
@@ -90,7 +88,7 @@ def test_other_stored_numbers_have_other_conclusions(found: Tradeoff, tmp_path: 
 
 
 def test_variants_stand_beside_what_they_vary_on_shared_axes(found: Tradeoff) -> None:
-    (picture,) = tradeoff_page(found).pictures
+    (picture,) = tradeoff_page(found, manifest_of(found)).pictures
     methods, scipy = picture.panels
     assert methods.entries() == ["recess model", "mujoco recess"]
     assert scipy.entries() == ["recess model", "LSODA, Python"]

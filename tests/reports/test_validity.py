@@ -8,15 +8,15 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from tiny_validity import tiny_validity
+from tiny_validity import TINY, tiny_validity
 from typer.testing import CliRunner
 
 from rockwobble.compare.storage.manifest import read_results, write_results
 from rockwobble.compare.studies.validity import study
 from rockwobble.compare.studies.validity.limits import limits_of
 from rockwobble.compare.studies.validity.records import RECESS
-from rockwobble.compare.studies.validity.study import KIND, Validity, stored_validity
-from rockwobble.reports.cli.main import app
+from rockwobble.compare.studies.validity.study import KIND, Validity, manifest_of, stored_validity
+from rockwobble.reports.cli.main import app, main
 from rockwobble.reports.pages import page as page_module
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.validity import limits_table, validity_page
@@ -29,13 +29,17 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Validity:
     return tiny_validity(tmp_path_factory.getbasetemp())
 
 
+def page_of(found: Validity) -> Page:
+    return validity_page(found, manifest_of(found, TINY, "rockwobble validity"))
+
+
 def changed(found: Validity, name: str, table: pd.DataFrame) -> str:
     """The document with another table of a part."""
-    return validity_page(dataclasses.replace(found, tables={**found.tables, name: table})).markdown()
+    return page_of(dataclasses.replace(found, tables={**found.tables, name: table})).markdown()
 
 
 def test_the_document_shows_every_picture_and_its_tables_are_whole(found: Validity) -> None:
-    page = validity_page(found)
+    page = page_of(found)
     document = page.markdown()
     shown = re.findall(r"\]\((.*?)\.svg\)", document)
     assert sorted(shown) == sorted(picture.name for picture in page.pictures)
@@ -46,7 +50,7 @@ def test_the_document_shows_every_picture_and_its_tables_are_whole(found: Validi
 
 
 def test_every_figure_can_be_read(found: Validity) -> None:
-    for picture in validity_page(found).pictures:
+    for picture in page_of(found).pictures:
         assert len(picture.entries()) <= 8
         assert picture.title
         assert picture.caption
@@ -54,7 +58,7 @@ def test_every_figure_can_be_read(found: Validity) -> None:
 
 def test_the_headline_says_what_the_records_show(found: Validity) -> None:
     records = found.tables["records"]
-    assert "**It is undecided whether the engine in an ideal recess" in validity_page(found).markdown()
+    assert "**It is undecided whether the engine in an ideal recess" in page_of(found).markdown()
     # twenty times the same records: the interval closes
     many = pd.concat(
         [records.assign(motion=[f"{name} {n}" for name in records["motion"]]) for n in range(20)]
@@ -73,7 +77,7 @@ def test_the_headline_says_what_the_records_show(found: Validity) -> None:
 
 def test_other_numbers_say_something_else(found: Validity) -> None:
     peaks = found.tables["peaks"]
-    assert "| Contact | kept in all" in validity_page(found).markdown()
+    assert "| Contact | kept in all" in page_of(found).markdown()
     assert "| Contact | lost in" in changed(
         found, "peaks", peaks.assign(least_normal=peaks["least_normal"] - 1.0)
     )
@@ -99,7 +103,7 @@ def test_the_command_stores_what_its_pages_are_drawn_from(
     before = (tmp_path / "validity.md").read_text()
     assert "| Contact | kept in all" in before
     shaken = stored.tables["peaks"].assign(least_normal=-1.0)
-    write_results(tmp_path, stored.made, {**stored.tables, "peaks": shaken, "limits": limits})
+    write_results(tmp_path, manifest_of(stored, TINY), {**stored.tables, "peaks": shaken, "limits": limits})
     # drawn to the end once, above
     with monkeypatch.context() as patch:
         patch.setattr(Page, "html", lambda _: "")
@@ -111,17 +115,21 @@ def test_the_command_stores_what_its_pages_are_drawn_from(
 @pytest.mark.parametrize(
     ("options", "says"),
     [
-        (["--workers", "0"], "--workers must be at least 1, got 0"),
+        (["--workers", "0"], "'--workers': must be at least 1, got 0"),
         (["--out", "{file}"], "the output folder must be a folder"),
     ],
 )
-def test_bad_input_is_one_line(tmp_path: Path, options: list[str], says: str) -> None:
+def test_bad_input_is_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], options: list[str], says: str
+) -> None:
     file = tmp_path / "file"
     file.touch()
     given = [option.format(file=file) for option in options]
     out = [] if "--out" in given else ["--out", str(tmp_path / "out")]
-    done = CliRunner().invoke(app, ["validity", "--quick", *given, *out])
-    assert done.exit_code == 2
-    assert says in done.stderr
-    assert done.stderr.count("\n") == 1
+    with pytest.raises(SystemExit) as ended:
+        main(["validity", "--quick", *given, *out])
+    assert ended.value.code == 2
+    error = capsys.readouterr().err
+    assert says in error
+    assert error.count("\n") == 1
     assert not (tmp_path / "out").exists()

@@ -12,8 +12,10 @@ from collections.abc import Iterator
 
 from rockwobble.models import Run
 
+from ...metrics.tilt import rms
 from ...runs.execution import Job
-from ..bench import Bench, engines_here, not_here, rms, why
+from ...runs.run_settings import at_step
+from ..bench import Bench, engines_here, not_here, why
 from ..finding import Bound, Finding, at_most
 from ..problems import released
 
@@ -35,7 +37,7 @@ def check(bench: Bench) -> Iterator[Finding]:
     for engine in engines_here(bench.engines):
         run = bench.adjust(Run(engine, "recess", STEP))
         step = run.time_step if isinstance(run.time_step, float) else STEP
-        finer = Run(engine, "recess", 0.5 * step, **run.settings)
+        finer = at_step(run, 0.5 * step)
         coarse, fine = bench.traces(
             [Job(case=CASE, run=run), Job(case=CASE, run=finer, label=f"{engine} recess, half the step")]
         )

@@ -17,16 +17,18 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from rockwobble.models import Case, GroundMotion, InitialState, Run, Trace
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+from rockwobble.models import Case, GroundMotion, InitialState, Trace
+from rockwobble.multibody.scene.froude import default_step
 from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
 
 from ...comparison.prediction import early_rms, estimated_error, landings, time_scale
 from ...metrics.agreement import AGREEMENT
+from ...metrics.tilt import rms
 from ...runs.choice import require_runnable
 from ...runs.execution import Job
+from ...runs.run_settings import at_step
 from ...traces.pair import is_release
-from ..bench import Array, Bench, rms, why
+from ..bench import Array, Bench, why
 from ..finding import Bound, Finding, at_most, not_run
 from .suspects import suspect
 
@@ -89,16 +91,16 @@ def in_motion(case: Case) -> Case | None:
 
 def other_step(job: Job, trace: Trace) -> tuple[Job, float]:
     """Return the run at twice its step, or at half of it, and what their difference is to be taken times."""
-    settings = {key: value for key, value in job.run.settings.items() if key != "step_tolerance"}
-    # a trace of several steps has none of its own: that of the engine by default
-    step = trace.time_step if math.isfinite(trace.time_step) else REFERENCE_TIME_STEP * time_scale(job.case)
+    case, step = job.case, trace.time_step
+    if not math.isfinite(step):  # of several steps: that of the engine by default
+        step = default_step(case.cylinder.semidiagonal, case.gravity)
     for times, factor in ((2.0, 1.0), (0.5, 2.0)):
-        run = Run(job.run.engine, job.run.support, times * step, **settings)
+        run = at_step(job.run, times * step)
         try:
-            require_runnable(job.case, run)
+            require_runnable(case, run)
         except ValueError:  # twice the step is more than contact allows
             continue
-        return Job(case=job.case, run=run, label=f"{job.label}, {times:g} times the step"), factor
+        return Job(case=case, run=run, label=f"{job.label}, {times:g} times the step"), factor
     raise ValueError(f"the run must have a step beside {step:g} s, got none for {job.label}")
 
 

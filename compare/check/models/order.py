@@ -9,8 +9,9 @@ import numpy as np
 
 from rockwobble.models import Case, Cylinder, Run, el_centro_1940
 
+from ...metrics.tilt import rms
 from ...runs.execution import Job
-from ..bench import Bench, engines_here, largest, not_here, rms
+from ..bench import Bench, engines_here, largest, not_here
 from ..finding import Bound, Finding, at_most
 from ..problems import PIER, released
 

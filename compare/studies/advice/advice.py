@@ -14,6 +14,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.shown import Shown
+from rockwobble.multibody.scene.ring_geometry import rim_overhang
 
 from ...comparison.prediction import Prediction
 from ...metrics.distributions import Contrast
@@ -182,12 +183,10 @@ class Advice(Shown):
             return None
         cylinder, tilt = self.case.cylinder, float(rows["peak_tilt_95"].max())
         theta, b = tilt * cylinder.alpha, cylinder.base_radius
-        cosine = math.cos(theta)
-        overhang = b * (math.sqrt(1.0 + (1.0 - cosine) * ((1.0 - cosine) + cosine**2 / (1.0 + cosine))) - 1.0)
-        height = b * math.tan(0.5 * theta)
+        overhang, height = (b * part for part in rim_overhang(theta))
         return {
             "tilt": tilt,
-            "force": (1.0 + cosine) * float(rows["moment_95"].max()),
+            "force": (1.0 + math.cos(theta)) * float(rows["moment_95"].max()),
             "height": height,
             "clearance": max(overhang, height * math.tan(theta)),
         }

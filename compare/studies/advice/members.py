@@ -11,10 +11,11 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, GroundMotion, Trace
+from rockwobble.models.records import p695
 
 from ...metrics.order_statistics import quantile_interval, share_interval
 from ...traces.pair import is_release
-from ..ensemble.members import FAR_FIELD_PAIRS, far_field_motions, synthetic_motions
+from ..ensemble.members import far_field_motions, synthetic_motions
 
 Array = NDArray[np.float64]
 
@@ -78,7 +79,7 @@ def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
     try:
         motions, source = far_field_motions(peak=motion.peak), "p695"
     except ValueError:  # not installed
-        motions = synthetic_motions(FAR_FIELD_PAIRS, peak=motion.peak, seed=_SEED)
+        motions = synthetic_motions(p695.PAIRS, peak=motion.peak, seed=_SEED)
         source = "synthetic"
     velocity = peak_velocity(motion)
     scaled = {

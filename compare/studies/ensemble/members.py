@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, GroundMotion, p695_far_field
+from rockwobble.models.number_checks import require_positive
+from rockwobble.models.records import p695
 
 from ...traces.pair import is_release
 
@@ -17,8 +19,6 @@ _GROUND_FREQUENCY, _GROUND_DAMPING = 5.0 * math.pi, 0.6
 # a second, high-pass filter (R. W. Clough, J. Penzien) takes what a ground cannot do: drift away
 _CORNER_FREQUENCY, _CORNER_DAMPING = 0.5 * math.pi, 0.6
 _TIME_STEP = 0.01
-# of the far-field set: FEMA P-695, table A-4A
-FAR_FIELD_PAIRS = 22
 # of the duration: rise and strong part of the envelope, followed by an exponential decay
 _RISE, _STRONG, _DECAY = 0.15, 0.4, 4.0
 
@@ -113,7 +113,8 @@ def synthetic_motions(count: int, *, peak: float, seed: int, duration: float = 2
     [4.0, 4.0, 4.0]
     """
     _require_count(count)
-    _require_positive(peak=peak, duration=duration)
+    require_positive("peak", peak, "m/s^2")
+    require_positive("duration", duration, "s")
     size = round(duration / _TIME_STEP) + 1
     noise = np.random.default_rng(seed).standard_normal((count, size, 2))
     frequency = 2.0 * math.pi * np.fft.rfftfreq(2 * size, _TIME_STEP)
@@ -148,9 +149,19 @@ def far_field_motions(*, peak: float) -> list[GroundMotion]:
     ValueError
         If the number is out of range, or the records of the extra `records` are not installed.
     """
-    _require_positive(peak=peak)
-    motions = (p695_far_field(pair) for pair in range(1, FAR_FIELD_PAIRS + 1))
-    return [motion.scaled(peak / motion.peak) for motion in motions]
+    require_positive("peak", peak, "m/s^2")
+    return [motion.scaled(peak / motion.peak) for motion in recorded_far_field()]
+
+
+def recorded_far_field() -> list[GroundMotion]:
+    """Return the 22 far-field pairs of FEMA P-695 as they were recorded.
+
+    Raises
+    ------
+    ValueError
+        If the records of the extra `records` are not installed.
+    """
+    return [p695_far_field(pair) for pair in range(1, p695.PAIRS + 1)]
 
 
 def _transfer(frequency: NDArray[np.float64]) -> NDArray[np.complex128]:
@@ -193,9 +204,3 @@ def with_motions(case: Case, motions: list[GroundMotion]) -> list[Case]:
 def _require_count(count: int) -> None:
     if count < 2:
         raise ValueError(f"an ensemble has at least 2 members, got {count!r}")
-
-
-def _require_positive(**numbers: float) -> None:
-    for name, value in numbers.items():
-        if not (math.isfinite(value) and value > 0.0):
-            raise ValueError(f"{name} must be positive and finite, got {value!r}")

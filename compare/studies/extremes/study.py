@@ -43,16 +43,18 @@ class Extremes(Shown):
     ----------
     table : DataFrame
         One row for each condition and method: extreme, value, method, and the attributes of `Verdict`.
-    made : Manifest
     """
 
     _figures: ClassVar[str] = "extremes"
     table: pd.DataFrame
-    made: Manifest
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """How many runs have each verdict."""
+        return dict(Counter(map(str, self.table["verdict"])))
 
     def _said(self) -> dict[str, str]:
-        counts = Counter(self.table["verdict"])
-        return {"runs": str(len(self.table)), **{str(verdict): str(n) for verdict, n in counts.items()}}
+        return {"runs": str(len(self.table)), **{verdict: str(n) for verdict, n in self.counts.items()}}
 
 
 def measure_extremes(
@@ -61,7 +63,6 @@ def measure_extremes(
     quick: bool = False,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
-    command: str = "",
 ) -> Extremes:
     """Run every condition by every method that is installed.
 
@@ -75,8 +76,6 @@ def measure_extremes(
         Processes; default one for each processor.
     progress : callable, optional
         Called with a `Progress` at the start and the end of each run.
-    command : str, optional
-        That asked for it.
     """
     tried = methods()
     tasks = [
@@ -106,13 +105,17 @@ def measure_extremes(
         ],
         ignore_index=True,
     )
-    headline = dict(Counter(str(verdict) for verdict in table["verdict"]))
-    return Extremes(table=table, made=made_now(KIND, command=command, headline=headline))
+    return Extremes(table=table)
+
+
+def manifest_of(found: Extremes, command: str = "") -> Manifest:
+    """Return what made a scan, with the number of runs of each verdict as headline."""
+    return made_now(KIND, command=command, headline=found.counts)
 
 
 def stored_extremes(results: Results) -> Extremes:
     """Return a scan that was stored."""
-    return Extremes(table=results.table(KIND), made=results.manifest)
+    return Extremes(table=results.table(KIND))
 
 
 def measure_task(task: Task) -> pd.DataFrame:

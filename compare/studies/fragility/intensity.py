@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, GroundMotion
+from rockwobble.models.number_checks import require_positive
 
 Array = NDArray[np.float64]
 
@@ -81,9 +82,8 @@ def intensity(
     1.432
     """
     require_measure(name)
-    for label, value in (("gravity", gravity), ("period", period)):
-        if not (math.isfinite(value) and value > 0.0):
-            raise ValueError(f"{label} must be positive and finite, got {value!r}")
+    require_positive("gravity", gravity, "m/s^2")
+    require_positive("period", period, "s")
     found = _value(name, motion, cylinder, gravity, period)
     if not found > 0.0:
         raise ValueError(f"the motion {motion.name!r} has no {name}: a component is zero throughout")

@@ -1,4 +1,4 @@
-"""Ground motions of a fragility: those of FEMA P-695 as recorded, and folders of records with a table."""
+"""Ground motions of a fragility: folders of records with a table."""
 
 from __future__ import annotations
 
@@ -6,23 +6,10 @@ import csv
 from collections.abc import Mapping
 from pathlib import Path
 
-from rockwobble.models import GroundMotion, p695_far_field, read_record
-
-from ..ensemble.members import FAR_FIELD_PAIRS
+from rockwobble.models import GroundMotion, read_record
 
 TABLE = "records.csv"
 _COLUMNS, _NEEDED = ("name", "x", "y", "z", "units", "scale"), ("x", "y")
-
-
-def recorded_far_field() -> list[GroundMotion]:
-    """Return the 22 far-field pairs of FEMA P-695 as they were recorded.
-
-    Raises
-    ------
-    ValueError
-        If the records of the extra `records` are not installed.
-    """
-    return [p695_far_field(pair) for pair in range(1, FAR_FIELD_PAIRS + 1)]
 
 
 def read_records(folder: str | Path, *, units: str | None = None) -> list[GroundMotion]:

@@ -11,7 +11,8 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.models.number_checks import require_positive
+from rockwobble.multibody.scene.froude import default_step
 
 from ...runs.choice import require_runnable
 from .intensity import intensity, measures_of, require_measure
@@ -81,8 +82,7 @@ class Plan:
         for label, values in (("levels", self.levels), ("scales", self.scales)):
             if values is not None:
                 _require_increasing(label, values)
-        if not (math.isfinite(self.step_factor) and self.step_factor > 0.0):
-            raise ValueError(f"step_factor must be positive and finite, got {self.step_factor!r}")
+        require_positive("step_factor", self.step_factor)
         if self.step_factor != 1.0 and not any(map(_has_default_step, self.methods)):
             raise ValueError(
                 f"step_factor is for engines at their default time step, got {self.step_factor!r}"
@@ -145,8 +145,8 @@ class Plan:
     def _stepped(self, run: Run, cylinder: Cylinder) -> Run:
         if run.engine is None or run.time_step is not None or self.step_factor == 1.0:
             return run
-        step = REFERENCE_TIME_STEP * froude_scale(cylinder.semidiagonal, self.gravity).time
-        return Run(run.engine, run.support, self.step_factor * step, **run.settings)
+        step = self.step_factor * default_step(cylinder.semidiagonal, self.gravity)
+        return Run(run.engine, run.support, step, **run.settings)
 
 
 def default_levels(

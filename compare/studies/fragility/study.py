@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from rockwobble.models import Cylinder, GroundMotion, Run
+from rockwobble.models.number_checks import require_positive
 from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...runs.progress import ProgressCallback
@@ -116,8 +116,7 @@ def fragility(
         )
     if levels is None and scales is None:
         levels = default_levels(bodies, motions, measure, gravity=gravity, period=period)
-    if not (math.isfinite(margin) and margin > 0.0):
-        raise ValueError(f"margin must be positive and finite, got {margin!r}")
+    require_positive("margin", margin)
     if resamples < 2:
         raise ValueError(f"resamples must be at least 2, got {resamples!r}")
     chosen, states = methods_of(methods, restitution=restitution), require_limits(limits)

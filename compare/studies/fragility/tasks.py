@@ -10,7 +10,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.scene.froude import default_step
 
 from ...metrics.tilt import overturned
 from ...runs.execution import simulate_run
@@ -74,7 +74,7 @@ class Task:
             return length * (_SOLUTION_TIME if self._solved else _KERNEL_TIME)
         step = self.run.time_step
         if not isinstance(step, float):
-            step = REFERENCE_TIME_STEP * froude_scale(self.cylinder.semidiagonal, self.gravity).time
+            step = default_step(self.cylinder.semidiagonal, self.gravity)
         return length / step * engine_facts(self.run.engine).step_time
 
     @property

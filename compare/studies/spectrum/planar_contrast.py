@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
@@ -35,33 +34,24 @@ CONTRAST_COLUMNS: dict[str, str] = {
 }
 
 
-def planar_contrast(spectrum: OverturningSpectrum, edges: Sequence[float] | None = None) -> pd.DataFrame:
+def planar_contrast(spectrum: OverturningSpectrum) -> pd.DataFrame:
     """Return the differences of 3D and planar runs, one row for each band of sizes and a last one for all.
 
     Parameters
     ----------
     spectrum : OverturningSpectrum
-    edges : sequence of float, optional
-        Increasing edges of the bands [m]; a size on an edge belongs to the band above, the last edge
-        to the last band. Default: about six bands of a round width.
 
     Returns
     -------
     DataFrame
-        The columns of `CONTRAST_COLUMNS`; bands without a size have no row.
-
-    Raises
-    ------
-    ValueError
-        If there are fewer than two edges or they do not increase.
+        The columns of `CONTRAST_COLUMNS`; bands without a size have no row. A size on an edge belongs to the
+        band above, the last edge to the last band.
     """
     sizes = spectrum.semidiagonals
-    bounds = size_bands(sizes) if edges is None else np.asarray(edges, dtype=np.float64)
-    if bounds.ndim != 1 or len(bounds) < 2 or not (np.diff(bounds) > 0.0).all():
-        raise ValueError(f"edges must be at least two and increasing [m], got {edges!r}")
-    band = np.searchsorted(bounds, sizes, side="right") - 1
-    band[sizes == bounds[-1]] = len(bounds) - 2
-    groups = [np.flatnonzero(band == i) for i in range(len(bounds) - 1)]
+    edges = size_bands(sizes)
+    band = np.searchsorted(edges, sizes, side="right") - 1
+    band[sizes == edges[-1]] = len(edges) - 2
+    groups = [np.flatnonzero(band == i) for i in range(len(edges) - 1)]
     rows = [_row(spectrum, group) for group in groups if len(group)]
     return pd.DataFrame([*rows, _row(spectrum, np.arange(len(sizes)))], columns=list(CONTRAST_COLUMNS))
 

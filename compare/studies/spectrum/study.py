@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from rockwobble import reduced
 from rockwobble.models import GroundMotion
+from rockwobble.models.number_checks import require_positive
 
 from ...runs.progress import ProgressCallback, Stages
 from .result import Array, OverturningSpectrum
@@ -80,8 +81,7 @@ def overturning_spectrum(
     sizes, levels = _axis("semidiagonals", semidiagonals), _axis("intensities", intensities)
     if support not in SUPPORTS:
         raise ValueError(f"support must be one of {', '.join(SUPPORTS)}, got {support!r}")
-    if not 0.0 < search_step < math.inf:
-        raise ValueError(f"search_step must be positive and finite, got {search_step!r}")
+    require_positive("search_step", search_step)
     unit = intensity_unit(tan_alpha, motion, gravity)
     peaks, lowest, below, start = {}, {}, {}, {}
     stages = Stages(progress, len(SERIES))

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 import numpy as np
 import pandas as pd
@@ -23,21 +22,13 @@ AGREEMENT = 0.02  # of the peak tilt
 CELLS = 60  # enough to find one wrong cell in twenty almost surely, in half a second
 
 
-def check_cells(
-    spectrum: OverturningSpectrum,
-    count: int = CELLS,
-    *,
-    series: Sequence[str] = SERIES,
-) -> pd.DataFrame:
+def check_cells(spectrum: OverturningSpectrum) -> pd.DataFrame:
     """Run randomly chosen cells again as single runs, each beside a copy with a record stronger by a hair.
 
     Parameters
     ----------
     spectrum : OverturningSpectrum
-    count : int, optional
-        Number of cells, drawn without repetition; at most those there are.
-    series : sequence of str, optional
-        From which to draw.
+        `CELLS` cells are drawn from all its series without repetition, or every one where there are fewer.
 
     Returns
     -------
@@ -45,20 +36,13 @@ def check_cells(
         One row for each cell: series, semidiagonal [m], intensity [-], peak_tilt of the grid,
         single_peak_tilt and copy_peak_tilt [rad], agrees (to 2 % of the peak tilt), and sensitive (single
         run and copy do not agree either).
-
-    Raises
-    ------
-    ValueError
-        If `count` is not positive.
     """
-    if count < 1:
-        raise ValueError(f"count must be at least 1, got {count!r}")
-    shape = len(series), len(spectrum.semidiagonals), len(spectrum.intensities)
+    shape = len(SERIES), len(spectrum.semidiagonals), len(spectrum.intensities)
     cells = math.prod(shape)
-    chosen = np.random.default_rng(0).choice(cells, size=min(count, cells), replace=False)
+    chosen = np.random.default_rng(0).choice(cells, size=min(CELLS, cells), replace=False)
     rows = []
     for which, i, j in zip(*np.unravel_index(np.sort(chosen), shape), strict=True):
-        name = series[which]
+        name = SERIES[which]
         peak = float(spectrum.peak_tilt[name][i, j])
         single, copy = (
             _single(spectrum, name, i, float(spectrum.scales[j]) * factor) for factor in (1.0, 1.0 + NUDGE)
@@ -78,30 +62,30 @@ def check_cells(
     return pd.DataFrame(rows)
 
 
-def confirm_lowest(spectrum: OverturningSpectrum, *, nudge: float = NUDGE) -> pd.DataFrame:
+def confirm_lowest(spectrum: OverturningSpectrum) -> pd.DataFrame:
     """Run each lowest intensity again, to a tighter tolerance and under a record that differs by a hair.
 
     Returns
     -------
     DataFrame
         That of `lowest_frame` with a column more. confirmed: it overturns again, in all of three runs under
-        the record and under those larger and smaller by `nudge`. What does not is a matter of chance: many
+        the record and under those larger and smaller by `NUDGE`. What does not is a matter of chance: many
         passes have multiplied the rounding of the solution to the size of the tilt.
     """
     table = spectrum.lowest_frame()
     unit = float(spectrum.scales[0] / spectrum.intensities[0])
     table["confirmed"] = [
-        _overturns_again(spectrum, name, i, unit * float(lowest), nudge)
+        _overturns_again(spectrum, name, i, unit * float(lowest))
         for name in SERIES
         for i, lowest in enumerate(spectrum.lowest[name])
     ]
     return table
 
 
-def _overturns_again(spectrum: OverturningSpectrum, series: str, i: int, scale: float, nudge: float) -> bool:
+def _overturns_again(spectrum: OverturningSpectrum, series: str, i: int, scale: float) -> bool:
     if math.isnan(scale):
         return False
-    factors = (1.0, 1.0 - nudge, 1.0 + nudge)
+    factors = (1.0, 1.0 - NUDGE, 1.0 + NUDGE)
     return all(overturned(_single(spectrum, series, i, scale * factor)) for factor in factors)
 
 

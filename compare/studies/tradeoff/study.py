@@ -50,7 +50,6 @@ class Tradeoff(Shown):
     load : tuple of float
         Of the machine before and after: how many processes wanted to run, ours included, over a minute;
         NaN where the system does not tell.
-    made : Manifest
     """
 
     _figures: ClassVar[str] = "tradeoff"
@@ -58,7 +57,6 @@ class Tradeoff(Shown):
     scenes: pd.DataFrame
     problems: pd.DataFrame
     load: tuple[float, float]
-    made: Manifest
 
     def _said(self) -> dict[str, str]:
         low, high = engine_factors(self.points)
@@ -69,9 +67,7 @@ class Tradeoff(Shown):
         }
 
 
-def measure_tradeoff(
-    *, quick: bool = False, progress: ProgressCallback | None = None, command: str = ""
-) -> Tradeoff:
+def measure_tradeoff(*, quick: bool = False, progress: ProgressCallback | None = None) -> Tradeoff:
     """Measure all methods on all problems.
 
     Parameters
@@ -80,8 +76,6 @@ def measure_tradeoff(
         Fewer points and fewer members.
     progress : callable, optional
         Called with a `Progress` at the start and the end of each round.
-    command : str, optional
-        That asked for it.
     """
     before = _load()
     scene_rounds = 3 if quick else 9
@@ -100,21 +94,20 @@ def measure_tradeoff(
     clock("started", labels[0][1])
     points = [_points(each, methods_for(each, quick=quick), told) for each in asked]
     scenes = scene_costs(rounds=scene_rounds, steps=500 if quick else 2000, tell=told)
-    table = pd.concat(points, ignore_index=True)
-    low, high = engine_factors(table)
     load = (before, _load())
     return Tradeoff(
-        points=table,
+        points=pd.concat(points, ignore_index=True),
         scenes=scenes,
         problems=pd.concat([_described(each) for each in asked], ignore_index=True),
         load=load,
-        made=made_now(
-            KIND,
-            command=command,
-            headline={"engine over recess model, least": low, "engine over recess model, largest": high},
-            about={"load": list(load)},
-        ),
     )
+
+
+def manifest_of(found: Tradeoff, command: str = "") -> Manifest:
+    """Return what made a measurement, with the cost of engines as headline."""
+    low, high = engine_factors(found.points)
+    headline = {"engine over recess model, least": low, "engine over recess model, largest": high}
+    return made_now(KIND, command=command, headline=headline, about={"load": list(found.load)})
 
 
 def stored_tradeoff(results: Results) -> Tradeoff:
@@ -125,7 +118,6 @@ def stored_tradeoff(results: Results) -> Tradeoff:
         scenes=results.table("scenes"),
         problems=results.table("problems"),
         load=(before, after),
-        made=results.manifest,
     )
 
 

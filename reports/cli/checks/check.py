@@ -47,9 +47,6 @@ Only = Annotated[
 Json = Annotated[Path | None, _output("Write all findings as JSON.")]
 Junit = Annotated[Path | None, _output("Write a JUnit report (XML).")]
 Markdown = Annotated[Path | None, _output("Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")]
-Workers = Annotated[
-    int | None, typer.Option(min=1, help="Processes for the engines. Default: one for each core.")
-]
 Update = Annotated[
     bool,
     typer.Option(
@@ -67,7 +64,7 @@ def check(
     json: Json = None,
     junit: Junit = None,
     markdown: Markdown = None,
-    workers: Workers = None,
+    workers: options.Workers = None,
     update_baseline: Update = False,
     reason: Reason = None,
     model: Model = None,

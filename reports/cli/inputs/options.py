@@ -5,6 +5,7 @@ Units stand in words: square brackets are markup in a help text.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from pathlib import Path
 from typing import Annotated, Any
@@ -23,8 +24,22 @@ def panel(title: str) -> Callable[..., Any]:
     return option
 
 
+def whole(least: int, most: float = math.inf) -> Callable[[int | None], int | None]:
+    """Return the callback of a whole number: one out of range is refused in a line that says both."""
+    allowed = f"at least {least}" if most == math.inf else f"from {least} to {most}"
+
+    def checked(value: int | None) -> int | None:
+        if value is None or least <= value <= most:
+            return value
+        raise typer.BadParameter(f"must be {allowed}, got {value}")
+
+    return checked
+
+
 body, _ground, _release, method = map(panel, ("Cylinder", "Ground motion", "Release", "Method"))
-reduced, _external = map(panel, ("Reduced model", "Trajectory of a shake table or another code"))
+reduced, work, _external = map(
+    panel, ("Reduced model", "Work", "Trajectory of a shake table or another code")
+)
 
 Semidiagonal = Annotated[float | None, body("R = sqrt(b^2 + h^2), in m. Default: 6.")]
 TAN_ALPHA = body("Slenderness b/h, radius over half the height.")
@@ -156,5 +171,9 @@ Budget = Annotated[
         "steps: takes some seven times as long.",
         "--budget",
     ),
+]
+Seed = Annotated[int, method("Of everything random.", callback=whole(0))]
+Workers = Annotated[
+    int | None, work("Processes on this machine. Default: one for each processor.", callback=whole(1))
 ]
 Out = Annotated[Path, typer.Option(help="Folder for the results.")]

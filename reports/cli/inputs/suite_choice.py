@@ -51,7 +51,9 @@ def chosen_runs(
             runs = [run for run in runs if run.support in supports]
             runs += [rw.Run(maker, place) for place in supports if place not in known for maker in makers]
     if time_step is not None:
-        runs = [rw.Run(run.engine, run.support, time_step, **run.settings) for run in runs]
+        from rockwobble.compare.runs.run_settings import at_step
+
+        runs = [at_step(run, time_step) for run in runs]
     return runs
 
 

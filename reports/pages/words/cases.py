@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 if TYPE_CHECKING:
     from rockwobble.models import Case, GroundMotion
 
@@ -38,6 +36,8 @@ def describe(case: Case) -> list[str]:
 
 def _uplift_ratio(case: Case, motion: GroundMotion) -> float:
     """Return the largest horizontal acceleration over tan(alpha) times gravity and the vertical one."""
+    import numpy as np  # which no help needs
+
     x, y, *z = motion.acceleration.T
     weight = case.gravity + sum(z)
     with np.errstate(divide="ignore"):

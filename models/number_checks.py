@@ -1,11 +1,11 @@
-"""Checks shared by the values of this package: one clear line for bad input."""
+"""Checks of numbers: one clear line for bad input."""
 
 from __future__ import annotations
 
 import math
 
 
-def require_positive(name: str, value: float, unit: str) -> float:
+def require_positive(name: str, value: float, unit: str = "") -> float:
     """Return `value` as a float, or raise ValueError unless it is positive and finite."""
     number = require_finite(name, value, unit)
     if number <= 0.0:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from rockwobble.models import plain_json
+from .. import plain_json
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,7 +31,7 @@ def pack(table: pd.DataFrame | Mapping[str, object], about: Mapping[str, object]
     return buffer.getvalue()
 
 
-def read(content: bytes) -> tuple[pd.DataFrame, dict[str, object]]:
+def read(content: bytes) -> tuple[pd.DataFrame, dict[str, Any]]:
     """Return the table of a file that `pack` made, and what it says of itself.
 
     Raises
@@ -45,10 +45,10 @@ def read(content: bytes) -> tuple[pd.DataFrame, dict[str, object]]:
     return table.to_pandas(), read_about(content)
 
 
-def read_about(source: bytes | Path) -> dict[str, object]:
+def read_about(source: bytes | Path) -> dict[str, Any]:
     """Return what a Parquet file says of itself; nothing where rockwobble did not write it."""
     import pyarrow.parquet as pq
 
     metadata = pq.read_schema(io.BytesIO(source) if isinstance(source, bytes) else source).metadata or {}
-    found: dict[str, object] = plain_json.loads(metadata.get(METADATA, b"{}"))
+    found: dict[str, Any] = plain_json.loads(metadata.get(METADATA, b"{}"))
     return found
