@@ -32,6 +32,7 @@ from rockwobble import reduced
 from rockwobble.models import Diagnostic, Run, Trace
 from rockwobble.models.diagnostic import FAILURES
 from rockwobble.multibody.engines.registry import engine_facts
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 
 from ...comparison.prediction import time_scale
 from ...runs.choice import own_model
@@ -43,7 +44,6 @@ FINE = 0.01  # of alpha, or of the angle of turn: what ends an agreement everywh
 # relative to the energy that balances the cylinder on its rim
 _ENERGY = 1e-5
 _TIGHT, _REFERENCE = 1e-12, 1e-10  # tolerances
-_STEP = 1e-4  # [s] the default at 6 m
 # what makes an engine leave its reference; a reduced model errs only where the side of a pass is undetermined
 _EXPLAINS = frozenset(
     {"slip", "lift_off", "tension", "friction_needed", "wall_contact", "energy", "unresolved_pass",
@@ -136,7 +136,7 @@ def _reduced(condition: Condition, run: Run) -> Verdict:
 
 def _engine(condition: Condition, run: Run) -> Verdict:
     case = condition.case
-    step = _STEP * condition.time_step * time_scale(case)
+    step = REFERENCE_TIME_STEP * condition.time_step * time_scale(case)
     settings = {} if math.isnan(condition.contact) else {_contact_time(run): condition.contact * step}
     plain = condition.time_step == 1.0 and not settings
     run = Run(run.engine, run.support, None if plain else step, **settings)

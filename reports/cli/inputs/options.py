@@ -80,15 +80,15 @@ def _named(names: list[str] | None) -> list[str] | None:
     return _standing_alone(names)
 
 
-_ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
-_SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, MuJoCo only)"
-Engine = Annotated[str | None, method(f"{_ENGINES}. Default: the reduced model.")]
+ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
+_SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, by engines that have them)"
+Engine = Annotated[str | None, method(f"{ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"
-Engines = Annotated[list[str] | None, method(f"{_ENGINES}; may be repeated. {_DEFAULT}.", callback=_named)]
+Engines = Annotated[list[str] | None, method(f"{ENGINES}; may be repeated. {_DEFAULT}.", callback=_named)]
 EnginesOrAll = Annotated[
     list[str] | None,
     method(
-        f"{_ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed.",
+        f"{ENGINES}; may be repeated. {_DEFAULT}; all: every one that is installed.",
         callback=_standing_alone,
     ),
 ]

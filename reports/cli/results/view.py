@@ -29,6 +29,7 @@ Stored = Annotated[
 CaseName = Annotated[
     str | None, typer.Option("--case", help="Which case of the folder, where it has several.")
 ]
+Engine = Annotated[str | None, options.method(f"{options.ENGINES}. Default: the first of them.")]
 Open = Annotated[
     bool | None,
     typer.Option("--open/--no-open", help="Show it in the browser. Default: where there is a terminal."),
@@ -41,7 +42,7 @@ def view(
     problem: Problem,
     folder: Stored = None,
     case_name: CaseName = None,
-    engine: options.Engine = "mujoco",
+    engine: Engine = None,
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
@@ -65,7 +66,8 @@ def view(
                 raise ValueError("--case chooses from a folder, give the folder of a comparison as well")
             else:
                 case = problem.case()
-                (run,) = rc.with_settings(case, [rw.Run(engine, support, time_step)], settings(setting))
+                asked = rw.Run(engine or rw.multibody.DEFAULT_ENGINE, support, time_step)
+                (run,) = rc.with_settings(case, [asked], settings(setting))
                 require_feasible([case], [run])
                 rc.require_runnable(case, run)
                 name = case.name
