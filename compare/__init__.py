@@ -42,6 +42,7 @@ if TYPE_CHECKING:
     from .studies.fragility.study import fragility
     from .studies.sweep.cases import CaseSweep
     from .studies.sweep.grid import Grid
+    from .studies.sweep.result import Sweep
     from .studies.sweep.study import SweepIncompleteError, read_sweep, sweep
     from .traces.pair import Pair, make_pair
     from .traces.trajectory import External, read_trajectory
@@ -82,6 +83,7 @@ _MODULES = {
     "studies.fragility.study": ("fragility",),
     "studies.sweep.cases": ("CaseSweep",),
     "studies.sweep.grid": ("Grid",),
+    "studies.sweep.result": ("Sweep",),
     "studies.sweep.study": ("SweepIncompleteError", "read_sweep", "sweep"),
     "traces.pair": ("Pair", "make_pair"),
     "traces.trajectory": ("External", "read_trajectory"),
@@ -104,6 +106,7 @@ __all__ = [
     "Job",
     "Pair",
     "Progress",
+    "Sweep",
     "SweepIncompleteError",
     "compare",
     "default_runs",

@@ -105,7 +105,7 @@ class Trace(Limited, Shown):
     ((1501,), (1501, 2))
     """
 
-    _figures: ClassVar[str] = "trace"
+    _figures: ClassVar[str] = "runs.trace"
     case: Case
     run: Run
     version: str

@@ -38,7 +38,10 @@ def main_pairs(found: Ensemble) -> list[dict[str, Any]]:
 def pictures(found: Ensemble) -> list[Picture]:
     """Return the distribution of each method, and the ratios of the members of the main pairs."""
     rows = [row for row in main_pairs(found) if row["compared"]]
-    panels = [_distributions(found), *([_ratios(found, rows)] if rows else [])]
+    panels = [
+        distributions(found.members),
+        *([_ratios(found, rows)] if rows else []),
+    ]
     picture = Picture(
         name="ensemble",
         title="Distributions of peak tilt by method, and ratios of the peaks of each member",
@@ -53,19 +56,19 @@ def pictures(found: Ensemble) -> list[Picture]:
     return [picture]
 
 
-def _distributions(found: Ensemble) -> Panel:
-    standing = found.members.loc[found.members["outcome"] != "overturned", "peak_tilt"]
+def distributions(members: pd.DataFrame, what: str = "members") -> Panel:
+    """Return the share of members whose peak tilt over alpha is at most x, by each method."""
+    standing = members.loc[members["outcome"] != "overturned", "peak_tilt"]
     largest = float(standing.max(skipna=True)) if standing.notna().any() else 0.0
     end = 1.05 * largest or 1.0
-    styles = label_styles(list(found.methods["method"]))
     layers: list[Line] = []
-    for method, style in styles.items():
-        runs = found.members[found.members["method"] == method]
+    for method, style in label_styles(list(members["method"].unique())).items():
+        runs = members[members["method"] == method]
         if (runs["outcome"] != "failed").any():
             layers += peak_shares(runs, method, style, end, width=1.6, notes=True)
     return Panel(
         x=Axis(label="peak tilt / α", unit="-", low=0.0, high=end),
-        y=Axis(label="share of the members", unit="-", low=0.0, high=1.03),
+        y=Axis(label=f"share of the {what}", unit="-", low=0.0, high=1.03),
         layers=layers,
         title="Peak tilt",
         height=3.4,

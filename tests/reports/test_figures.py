@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from rockwobble.models import Case, Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 from rockwobble.reduced import simulate
 from rockwobble.reports.figures.heat import Gap, Heat, Shades, contour, names
 from rockwobble.reports.figures.interactive import figures, plots
@@ -174,3 +174,10 @@ def test_trace_draws_itself():
     assert tilt.lines[0].get_ydata()[0] == pytest.approx(0.5)
     # the contact point keeps to the original circle
     assert np.hypot(*path.lines[1].get_data()) == pytest.approx(1.0)
+
+
+def test_the_path_of_the_contact_point_does_not_cross_the_circle_in_a_near_pass():
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    path = np.array(simulate(Case(pier, el_centro_1940(), duration=20.0)).plot().axes[1].lines[1].get_data())
+    middles = np.hypot(*(0.5 * (path[:, 1:] + path[:, :-1])))
+    assert np.nanmin(middles) > 0.96  # of a chord of half the radius: sqrt(15)/4

@@ -53,7 +53,7 @@ def view(
 
     Without options: MuJoCo recess under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
-    Writes view.html, which needs nothing else and works offline.
+    Writes view.html, which needs nothing else and works offline, and what is on it as view.json.
     """
     with interruptible():
         with user_input():
@@ -78,13 +78,10 @@ def view(
             with user_input(), shown_progress() as tell:
                 comparison = rw.compare(case, runs=[run], progress=tell)
         with user_input():
-            from ...pages.comparison.report import view_page
+            from ...pages.comparison.view import save_view
 
-            page = view_page(comparison, name, command_line())
-            if page is None:
-                raise ValueError(f"there is nothing to play in {name!r}: the cylinder never uplifts")
-            rc.replace_files(out, {"view.html": page.html().encode()})
-    print(f"\nWritten to {out}: view.html")
+            written = save_view(out, comparison, name, command_line())
+    print(f"\nWritten to {out}: manifest.json, {', '.join(written)}")
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser
 

@@ -6,10 +6,11 @@ import numpy as np
 
 from rockwobble.models import Trace
 
-from .palette import GREY, ORDER, Style
-from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
+from ..palette import GREY, ORDER, Style
+from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
 
 _PATH = Style(colour=ORDER[0])
+_JUMP = 0.5  # of b between two samples: in a near pass the point runs along the circle, not across it
 _CIRCLE = Style(colour=GREY, dash="dash")
 
 
@@ -18,6 +19,8 @@ def pictures(trace: Trace) -> list[Picture]:
     cylinder = trace.case.cylinder
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
     x, y = trace.contact_point.T / cylinder.base_radius
+    jumps = np.flatnonzero(np.hypot(np.diff(x), np.diff(y)) > _JUMP) + 1
+    x, y = (np.insert(each, jumps, np.nan) for each in (x, y))
     tilt: list[Layer] = [Line(x=trace.time, y=trace.tilt / cylinder.alpha, style=_PATH)]
     if trace.uplift_time > 0.0:
         tilt.append(Rule(at=trace.uplift_time, axis="x", text="uplift", side="right"))
