@@ -153,7 +153,7 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({*__all__, *globals()})
+    return sorted(__all__)
 
 
 sys.modules[__name__].__class__ = _Callable

@@ -23,3 +23,7 @@ __all__ = [
     "simulate",
     "simulate_many",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

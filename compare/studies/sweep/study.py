@@ -167,7 +167,7 @@ def read_sweep(folder: str | Path) -> Sweep:
     >>> grid = Grid(semidiagonals=[6], tan_alphas=[0.2], scales=[1, 2], motions=[rw.el_centro_1940()])
     >>> _ = rw.sweep(grid, out=folder, workers=1)
     >>> read_sweep(folder)
-    Sweep(runs 2, rocked 2)
+    Sweep(runs 2, rocked 1, overturned 1)
     """
     return stored_sweep(read_results(folder, KIND))
 
