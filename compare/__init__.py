@@ -50,6 +50,7 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .studies.fragility.study import fragility as fragility
     from .studies.sweep.cases import CaseSweep as CaseSweep
     from .studies.sweep.grid import Grid as Grid
+    from .studies.sweep.result import Sweep as Sweep
     from .studies.sweep.study import SweepIncompleteError as SweepIncompleteError
     from .studies.sweep.study import read_sweep as read_sweep
     from .studies.sweep.study import sweep as sweep
@@ -94,6 +95,7 @@ _MODULES = {
     "studies.fragility.study": ("fragility",),
     "studies.sweep.cases": ("CaseSweep",),
     "studies.sweep.grid": ("Grid",),
+    "studies.sweep.result": ("Sweep",),
     "studies.sweep.study": ("SweepIncompleteError", "read_sweep", "sweep"),
     "traces.pair": ("Pair", "make_pair"),
     "traces.trajectory": ("External", "read_trajectory"),
@@ -116,7 +118,7 @@ def __getattr__(name: str) -> object:
 
 
 def __dir__() -> list[str]:
-    return sorted({*__all__, *globals()})
+    return sorted(__all__)
 
 
 sys.modules[__name__].__class__ = _Callable

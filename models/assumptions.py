@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from .diagnostic import Diagnostic
+from .shown import Brief
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Assumptions:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Assumptions(Brief):
     """The demands of a solution on ground and recess, as extrema of the continuous motion.
 
     Attributes
@@ -35,7 +36,7 @@ class Assumptions:
 
     breaches: tuple[Diagnostic, ...]
     least_normal_force: float
-    largest_normal_force: float
+    largest_normal_force: float = field(repr=False)
     largest_friction_needed: float
     largest_restraining_moment: float
     friction: float

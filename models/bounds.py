@@ -5,12 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 
 from .number_checks import require_positive
+from .shown import Brief
 
 REFERENCES = ("own", "recess", "flat")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Bounds:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Bounds(Brief):
     """Bounds on columns of the summary of a comparison; None asks nothing.
 
     Parameters

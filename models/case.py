@@ -12,7 +12,7 @@ from .cylinder import Cylinder
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
 from .number_checks import require_finite, require_positive
-from .shown import Brief
+from .shown import Brief, brief, line
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -72,9 +72,14 @@ class Case:
         run_duration(self.motion, self.duration)
 
     def __repr__(self) -> str:
-        parts = [str(part) for part in (self.cylinder, self.motion, self.initial) if part is not None]
-        parts += [f"gravity={self.gravity:g}"] if self.gravity != 9.81 else []
-        return f"Case({self.name!r}, {', '.join(parts)}, {self.length:g} s, friction={self.friction:g})"
+        cylinder, motion = self.cylinder, self.motion
+        facts = [brief(self.name), f"R={cylinder.semidiagonal:g} m", f"tan_alpha={cylinder.tan_alpha:g}"]
+        if motion is not None:
+            facts += [brief(motion.name)] if motion.name not in ("", self.name) else []
+            facts += [f"peak {motion.peak:.4g} m/s^2"]
+        facts += [f"tilt={self.initial.tilt:.4g}"] if self.initial else []
+        facts += [f"{self.length:g} s", f"friction={self.friction:g}"]
+        return line("Case", facts + ([f"gravity={self.gravity:g}"] if self.gravity != 9.81 else []))
 
     @property
     def length(self) -> float:
@@ -175,8 +180,8 @@ class Run:
 
     def __repr__(self) -> str:
         step = [] if self.time_step is None else [f"time_step={self.time_step}"]
-        given = [*step, *(f"{name}={value!r}" for name, value in self.settings.items())]
-        return f"Run({', '.join([repr(self.engine), repr(self.support), *given])})"
+        given = [*step, *(f"{name}={brief(value)}" for name, value in self.settings.items())]
+        return line("Run", [repr(self.engine), repr(self.support), *given])
 
     def __str__(self) -> str:
         if self.engine is not None:

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
+from .shown import Brief
+
 # code: (unit of size and bound, meaning)
 CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
@@ -66,8 +68,8 @@ def parted(cell: str) -> list[str]:
     return cell.split(_SEPARATOR) if cell else []
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Diagnostic:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Diagnostic(Brief):
     """A fact about a motion; programs decide by code, time and size, never by words.
 
     Attributes

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from .number_checks import require_finite, require_positive
+from .shown import brief, line
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -67,10 +68,8 @@ class GroundMotion:
 
     def __repr__(self) -> str:
         count, components = self.acceleration.shape
-        return (
-            f"GroundMotion({self.name!r}, {count} samples of {self.time_step:g} s, {components} components, "
-            f"peak {self.peak:.4g} m/s^2)"
-        )
+        samples, peak = f"{count} samples of {self.time_step:g} s", f"peak {self.peak:.4g} m/s^2"
+        return line("GroundMotion", [brief(self.name), samples, f"{components} components", peak])
 
     def __reduce__(self) -> tuple[Any, ...]:
         # a copy or a worker process must not get a writable array

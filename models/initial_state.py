@@ -35,7 +35,7 @@ class InitialState(Brief):
     Examples
     --------
     >>> InitialState(tilt=0.1, rolling_rate=0.5)
-    InitialState(tilt=0.1, tilt_rate=0, rolling_angle=0, rolling_rate=0.5)
+    InitialState(tilt=0.1, rolling_rate=0.5)
     """
 
     tilt: float

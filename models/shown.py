@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import html
 import importlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence, Sized
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
@@ -13,32 +13,62 @@ import numpy as np
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_FEW = 3  # so many items are shown themselves
-_MOST = 160  # characters of one field
+LONGEST = 110  # characters of a repr: a line
+_FEW, _MOST = 3, 70  # items, and characters of one fact, that are shown themselves
+
+
+def line(name: str, facts: Iterable[str]) -> str:
+    """Return `name(fact, fact, ...)`: as many of the facts, the first first, as a line has room for."""
+    kept = list(facts)
+    whole = f"{name}({', '.join(kept)})"
+    while len(whole) > LONGEST and len(kept) > 1:
+        kept.pop()
+        whole = f"{name}({', '.join(kept)}, ...)"
+    return whole
 
 
 class Brief:
-    """A dataclass whose repr fits on a line: of what is long it says how much there is, of None nothing."""
+    """A dataclass whose repr is a line: of what is long it says how much there is, of defaults nothing."""
 
     __slots__ = ()
 
     def __repr__(self) -> str:
         fields = dataclasses.fields(self)  # type: ignore[arg-type]  # its subclasses are dataclasses
-        given = {field.name: getattr(self, field.name) for field in fields if field.repr}
-        said = (f"{name}={_brief(value)}" for name, value in given.items() if value is not None)
-        return f"{type(self).__name__}({', '.join(said)})"
+        given = ((field, getattr(self, field.name)) for field in fields if field.repr)
+        told = (f"{field.name}={brief(value)}" for field, value in given if not _is_default(field, value))
+        return line(type(self).__name__, told)
 
 
-def _brief(value: Any) -> str:
+def _is_default(field: dataclasses.Field[Any], value: Any) -> bool:
+    if field.default_factory is not dataclasses.MISSING:
+        return isinstance(value, Sized) and not len(value)
+    if value is None or value is field.default:
+        return True
+    # also a NaN that is another object
+    return isinstance(value, int | float | str | tuple) and repr(value) == repr(field.default)
+
+
+def _cut(text: str, length: int) -> str:
+    return text if len(text) <= length else f"{text[: length - 3]}..."
+
+
+def brief(value: Any) -> str:
+    """Return a value in words for a part of a line."""
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, np.ndarray):
         return f"array{value.shape}"
-    many = isinstance(value, Mapping) or (isinstance(value, Sequence) and not isinstance(value, str))
-    text = repr(value)
-    if (many and len(value) > _FEW) or "\n" in text or len(text) > _MOST:
-        return f"{len(value)} items" if many else f"a {type(value).__name__}"
-    return text
+    if isinstance(value, str):
+        return repr(_cut(value, _MOST // 2))
+    many = isinstance(value, Mapping | Sequence)
+    if not many or len(value) <= _FEW:
+        text = repr(value)
+        if "\n" not in text and len(text) <= _MOST:
+            return text
+    if many:
+        return f"{len(value)} item{'' if len(value) == 1 else 's'}"
+    kind, name = type(value).__name__, getattr(value, "name", None)
+    return f"{kind} {brief(name)}" if isinstance(name, str) else f"a {kind}"
 
 
 class Shown:
@@ -52,9 +82,8 @@ class Shown:
         raise NotImplementedError
 
     def __repr__(self) -> str:
-        return (
-            f"{type(self).__name__}({', '.join(f'{name} {value}' for name, value in self._said().items())})"
-        )
+        facts = (f"{name} {value}" for name, value in self._said().items())
+        return line(type(self).__name__, (_cut(fact, _MOST) for fact in facts))
 
     def _repr_html_(self) -> str:
         rows = "".join(

@@ -4,11 +4,18 @@
 models: inertia, kinematics and energy are derived from the pose of a rigid body.
 """
 
-from .engines.registry import BrokenEngineError, EngineNotInstalledError, available_engines, engine_names
+from .engines.registry import (
+    DEFAULT_ENGINE,
+    BrokenEngineError,
+    EngineNotInstalledError,
+    available_engines,
+    engine_names,
+)
 from .ensemble import simulate_many
 from .simulation import simulate
 
 __all__ = [
+    "DEFAULT_ENGINE",
     "BrokenEngineError",
     "EngineNotInstalledError",
     "available_engines",
@@ -16,3 +23,7 @@ __all__ = [
     "simulate",
     "simulate_many",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -21,7 +21,7 @@ from rockwobble.models import Case, Trace
 from rockwobble.models.case import TimeStep
 from rockwobble.models.cpus import usable_cpus
 
-from .engines.registry import find_engine
+from .engines.registry import DEFAULT_ENGINE, find_engine
 from .simulation import simulate
 from .stepping import Progress
 
@@ -36,7 +36,7 @@ class _StoppedError(Exception):
 def simulate_many(
     cases: Sequence[Case],
     *,
-    engine: str = "mujoco",
+    engine: str = DEFAULT_ENGINE,
     support: str = "recess",
     time_step: TimeStep = None,
     sample_step: float = 0.01,

@@ -7,13 +7,15 @@ from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any
 
+from rockwobble.models.shown import Brief
+
 Options = Mapping[str, Any]
 
 _NOTHING: Options = MappingProxyType({})
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class EngineFacts:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class EngineFacts(Brief):
     """Measured facts of one engine, for plans and predictions; the defaults are those of an unknown one.
 
     Attributes

@@ -16,7 +16,7 @@ from rockwobble.models.number_checks import require_positive
 from rockwobble.models.traces.trace_source import Known
 
 from .engines.ability import require_able
-from .engines.registry import EngineNotInstalledError, find_engine
+from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, find_engine
 from .protocol import Scene
 from .recording.diagnostics import diagnostics
 from .recording.passes import passes_between, true_swings
@@ -41,7 +41,7 @@ _SWING = 1e-9  # [rad] smallest difference of two turning points that is not rou
 def simulate(
     case: Case,
     *,
-    engine: str = "mujoco",
+    engine: str = DEFAULT_ENGINE,
     support: str = "recess",
     time_step: TimeStep = None,
     sample_step: float = 0.01,

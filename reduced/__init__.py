@@ -41,3 +41,7 @@ __all__ = [
     "steady_wobble_rate",
     "wobbling_period",
 ]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

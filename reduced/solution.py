@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Assumptions
+from rockwobble.models.shown import Brief
 from rockwobble.models.traces.trace_source import friction_of
 
 from . import forces
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
-@dataclass(frozen=True, eq=False, kw_only=True)
-class Solution:
+@dataclass(frozen=True, eq=False, kw_only=True, repr=False)
+class Solution(Brief):
     """States of a reduced model at n samples, and the problem that they solve.
 
     Attributes

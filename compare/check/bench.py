@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace
+from rockwobble.models.shown import Brief
 from rockwobble.multibody.engines.registry import engine_lack, standard_engines
 
 from ..runs.choice import installed_engines
@@ -30,8 +31,8 @@ def _as_given(run: Run) -> Run:
     return run
 
 
-@dataclass(slots=True, kw_only=True)
-class Bench:
+@dataclass(slots=True, kw_only=True, repr=False)
+class Bench(Brief):
     """Subjects of the checks; engine runs are made once and kept for the checks that follow.
 
     Parameters

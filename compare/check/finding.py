@@ -7,6 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
+from rockwobble.models.shown import Brief
+
 Outcome = Literal["passed", "FAILED", "no baseline", "not run"]
 PASSED: Outcome = "passed"
 FAILED: Outcome = "FAILED"
@@ -32,8 +34,8 @@ class Bound:
     unit: str = ""
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Finding:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Finding(Brief):
     """One check.
 
     Parameters

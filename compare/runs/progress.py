@@ -9,9 +9,11 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
+from rockwobble.models.shown import Brief
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Progress:
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Progress(Brief):
     """Progress of tasks.
 
     Parameters

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from rockwobble.models import plain_json
+from rockwobble.models.shown import Brief
 from rockwobble.models.traces.parquet_file import pack
 
 from .files import replace_files, require_folder, write_whole
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
 MANIFEST = "manifest.json"
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Manifest:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Manifest(Brief):
     """Record of what results are and what made them.
 
     Attributes
@@ -58,7 +59,7 @@ class Manifest:
     """
 
     kind: str
-    inputs: str = ""
+    inputs: str = field(default="", repr=False)
     command: str = ""
     date: str = ""
     commit: str = ""

@@ -23,8 +23,8 @@ SUPPORT = "external"
 _FALLEN = 0.5 * math.pi - 0.01
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class External:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class External(Brief):
     """A file of a trajectory, and how to read it; `rockwobble.compare.traces.file` says what it may hold.
 
     Parameters

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..case import Case, Run
 from ..diagnostic import Diagnostic, joined
-from ..shown import Shown
+from ..shown import Shown, line
 from . import trace_file
 from .limited import Limited
 from .trace_source import Array, Late, Source, friction_of, no_passes
@@ -105,7 +105,7 @@ class Trace(Limited, Shown):
     ((1501,), (1501, 2))
     """
 
-    _figures: ClassVar[str] = "trace"
+    _figures: ClassVar[str] = "runs.trace"
     case: Case
     run: Run
     version: str
@@ -274,8 +274,8 @@ class Trace(Limited, Shown):
     _said = summary
 
     def __repr__(self) -> str:
-        said = [f"{name} {value}" for name, value in self.summary().items() if name not in ("case", "run")]
-        return f"Trace({self.run}: {', '.join(said)})"
+        facts = [f"{name} {value}" for name, value in self.summary().items() if name not in ("case", "run")]
+        return line("Trace", [f"{self.run}: {facts[0]}", *facts[1:]])
 
     @cached_property
     def late(self) -> Mapping[str, Array]:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..assumptions import Assumptions
+from ..shown import Brief
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -30,8 +31,8 @@ class Source(Protocol):
         ...
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Known:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Known(Brief):
     """A source that has everything at hand, such as an engine or a stored file."""
 
     values: Mapping[str, Array]

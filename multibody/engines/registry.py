@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
 GROUP = "rockwobble.engines"
+# where none is named: it comes with every installation, and has every support
+DEFAULT_ENGINE = "mujoco"
 
 
 class EngineNotInstalledError(ValueError):

@@ -12,11 +12,12 @@ everything that integrates.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from rockwobble.models import Cylinder, InitialState
+from rockwobble.models.shown import Brief
 
 from ..body import Body
 from ._checks import body_under
@@ -26,8 +27,8 @@ from ._turning import turning_tilts
 from .planar import quarter_period
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class FreeResponse:
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class FreeResponse(Brief):
     """Free response to a release on still ground, recess model, undamped.
 
     Attributes
@@ -55,7 +56,7 @@ class FreeResponse:
 
     minimum_tilt: float
     maximum_tilt: float
-    half_period: float
+    half_period: float = field(repr=False)
     period: float
     angle_of_turn: float
     energy: float

@@ -18,12 +18,11 @@ from .inputs import options
 from .inputs.estimate import require_feasible
 from .inputs.problem import Problem, given_options, states_problem
 
-_NO_ENGINE = "none"
-
 Engine = Annotated[
     str | None,
     options.method(
-        f"{options.ENGINES}, whose one run verifies the prediction; none leaves it out. Default: mujoco."
+        f"{options.ENGINES}. Its one run verifies the prediction; none leaves it out. "
+        "Default: the first of them."
     ),
 ]
 Support = Annotated[
@@ -105,16 +104,17 @@ def advise(
 def _run(case: rw.Case, engine: str | None, support: str, time_step: float | None) -> rw.Run | None:
     from rockwobble.compare.studies.advice.drive import SUPPORTS
 
-    if engine == _NO_ENGINE and time_step is not None:
+    if engine == options.NO_ENGINE and time_step is not None:
         raise ValueError("--time-step belongs to an engine, got it with --engine none")
-    missing = engine is None and "mujoco" not in rc.installed_engines()
+    default = rw.multibody.DEFAULT_ENGINE
+    missing = engine is None and default not in rc.installed_engines()
     if missing:
-        complain("mujoco is not installed here: the prediction stays unverified")
-    if missing or engine == _NO_ENGINE:
+        complain(f"{default} is not installed here: the prediction stays unverified")
+    if missing or engine == options.NO_ENGINE:
         if support not in SUPPORTS:
             raise ValueError(f"--support must be one of {', '.join(SUPPORTS)}, got {support!r}")
         return None
-    run = rw.Run(engine or "mujoco", support, time_step)
+    run = rw.Run(engine or default, support, time_step)
     rc.require_runnable(case, run)
     return run
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -13,13 +12,16 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.results import print_facts
+from ..console.results import show_and_write
 from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
 from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible, time_needed
 from .inputs.method_values import settings
 from .inputs.problem import Problem, states_problem
+
+if TYPE_CHECKING:
+    from rockwobble.compare.storage.manifest import Manifest
 
 RestTilt = Annotated[
     float | None,
@@ -43,8 +45,9 @@ def simulate(
 
     Without options: the recess model under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
-    Writes the samples to run.csv, the passes to passes.csv, all to run.parquet, which Trace.load reads, and
-    manifest.json, which says units and meaning of each column; SI units and radians.
+    Writes the samples to run.csv, the passes to passes.csv, all to run.parquet, which Trace.load reads,
+    manifest.json, which says units and meaning of each column, and run.html, run.md and trace.svg; SI units
+    and radians.
     """
     with interruptible():
         with user_input():
@@ -60,10 +63,10 @@ def simulate(
             print(line)
         job = rc.Job(case=case, run=run)
         trace = _run(job)
-        with user_input():
-            written = _save(out, job, trace)
-        _print_result(trace, job.label)
-    print(f"\nWritten to {out}: manifest.json, {', '.join(written)}")
+        from ..pages.runs.run import run_page
+
+        made, files = _results(job, trace)
+        show_and_write(out, run_page(trace, made), made, {}, files)
     if trace.outcome == "failed":
         raise typer.Exit(FAILED)
 
@@ -94,49 +97,10 @@ def _run(job: rc.Job) -> rw.Trace:
     return trace
 
 
-def _print_result(trace: rw.Trace, label: str) -> None:
-    from rich.text import Text
-
-    from ..pages.words.diagnostics import remarks
-
-    said = remarks(trace.diagnostics)
-    heading = f"\n[bold]{label}[/]: {trace.outcome}.", Text(f"{said}." if said else "")
-    print_facts(heading, _facts(trace))
-
-
-def _facts(trace: rw.Trace) -> dict[str, str]:
-    cylinder = trace.case.cylinder
-    facts = {
-        "peak tilt": f"{trace.peak_tilt / cylinder.alpha:.4f} alpha = {math.degrees(trace.peak_tilt):.4f} deg"
-        if math.isfinite(trace.peak_tilt)
-        else "unknown: the run failed",
-        "end": f"{trace.time[-1]:.4g} s",
-        "uplift": f"{trace.uplift_time:.4f} s towards {math.degrees(trace.uplift_direction):.2f} deg"
-        if math.isfinite(trace.uplift_time)
-        else "none",
-        "passes": str(len(trace.passes)),
-    }
-    if len(trace.passes):
-        facts["closest pass"] = f"{trace.passes['minimum_tilt'].min() / cylinder.alpha:.3g} alpha"
-    if (held := trace.assumptions) is not None:
-        needed = held.largest_friction_needed
-        facts["friction needed"] = f"{needed:.3f}" if math.isfinite(needed) else "contact lost"
-        if held.largest_restraining_moment > 0.0:
-            facts["restraining moment"] = f"kappa = {held.largest_restraining_moment:.3g} m times the weight"
-    if trace.run.engine is not None or trace.run.support != "recess":
-        facts["residual displacement"] = f"{trace.residual_displacement / cylinder.base_radius:.3g} b"
-        facts["residual twist"] = f"{math.degrees(trace.residual_twist):.3g} deg"
-    if math.isfinite(first := trace.first("wall_contact")):
-        facts["wall contact"] = f"{trace.wall_contact[-1]:.3g} s in all, first at {first:.4g} s"
-    if trace.run.engine is not None:
-        facts["time step"] = f"{trace.time_step:g} s"
-    facts["computing time"] = f"{trace.wall_time:.3g} s"
-    return facts
-
-
-def _save(out: Path, job: rc.Job, trace: rw.Trace) -> list[str]:
+def _results(job: rc.Job, trace: rw.Trace) -> tuple[Manifest, dict[str, bytes]]:
+    """Return what made a run, and its files of data."""
     from rockwobble.compare.runs.execution import job_fingerprint
-    from rockwobble.compare.storage.manifest import made_now, write_results
+    from rockwobble.compare.storage.manifest import made_now
     from rockwobble.models.traces.trace_file import COLUMNS, PASS_COLUMNS, case_to_plain, packed
 
     case, found = case_to_plain(job.case), trace.to_plain()
@@ -155,13 +119,12 @@ def _save(out: Path, job: rc.Job, trace: rw.Trace) -> list[str]:
         "uplift [s]": trace.uplift_time,
         "passes": len(trace.passes),
     }
-    made = made_now(
-        "run", inputs=job_fingerprint(job), command=command_line(), headline=headline, about=about
-    )
     files = {
         "run.parquet": packed(trace.to_frame(), trace.to_plain(), trace.case),
         "run.csv": trace.to_frame().to_csv(index=False).encode(),
         "passes.csv": trace.passes.to_csv(index=False).encode(),
     }
-    write_results(out, made, {}, files=files)
-    return list(files)
+    made = made_now(
+        "run", inputs=job_fingerprint(job), command=command_line(), headline=headline, about=about
+    )
+    return made, files

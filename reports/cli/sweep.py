@@ -12,12 +12,12 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
+from ..console.results import show_stored
 from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
 from .inputs import options
 from .inputs.estimate import require_sweep
 from .inputs.grid import grid_of
 from .inputs.problem import refuse
-from .results.show import show
 
 _grid = options.panel("Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT")
 # what states a grid: the file of a suite states its own
@@ -86,7 +86,7 @@ def sweep(
 
     Whatever ends the sweep, the same command goes on where it stopped.
 
-    Writes sweep.parquet, one row for each run; rockwobble show prints what it holds.
+    Writes sweep.parquet, one row for each run, sweep.html (open it in a browser), sweep.md and sweep.svg.
     """
     with user_input():
         plan: rc.Grid | rc.CaseSweep
@@ -122,8 +122,7 @@ def sweep(
     except rc.SweepIncompleteError as error:
         complain(str(error))
         raise typer.Exit(FAILED) from None
-    print()
-    show(out)
+    show_stored(out, "sweep")
 
 
 def _suite(name: str, models: list[str] | None) -> rc.CaseSweep:

@@ -21,11 +21,13 @@ _PAUSE = 10.0  # between two lines of more [s]
 
 
 @contextmanager
-def shown_progress(what: str = "runs") -> Iterator[ProgressCallback]:
-    """Yield a callback that shows how far tasks are; `what` they are, in words.
+def shown_progress(what: str = "runs", *, heading: str = "") -> Iterator[ProgressCallback]:
+    """Yield a callback that shows how far tasks are; `what` they are, and what for, in words.
 
     It names each file of finished tasks that is damaged, once.
     """
+    if heading:
+        _say(f"{heading} ...")
     named: set[str] = set()
     with _bar(what) if sys.stderr.isatty() else _lines(what) as show:
 
@@ -47,6 +49,10 @@ def sentence(event: Progress, what: str = "runs") -> str:
     if event.done < event.total and math.isfinite(event.left):
         words += f", about {number(event.left, 'duration')} left"
     return words
+
+
+def _say(words: str) -> None:
+    print(words, file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -86,21 +92,18 @@ def _lines(what: str) -> Iterator[ProgressCallback]:
     begun: dict[str, float] = {}
     last = time.monotonic()
 
-    def say(words: str) -> None:
-        print(words, file=sys.stderr, flush=True)
-
     def tell(event: Progress) -> None:
         nonlocal last
         now = time.monotonic()
         if event.total - event.found <= _FEW:
             if event.state == "started":
                 begun[event.label] = now
-                say(f"running {event.label} ...")
+                _say(f"running {event.label} ...")
             else:
                 took = now - begun.get(event.label, now)
-                say(f"  done {event.label} in {took:.1f} s ({event.done} of {event.total})")
+                _say(f"  done {event.label} in {took:.1f} s ({event.done} of {event.total})")
         elif now - last >= _PAUSE or (event.state == "finished" and event.done == event.total):
             last = now
-            say(sentence(event, what))
+            _say(sentence(event, what))
 
     yield tell

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -38,7 +38,8 @@ def main_pairs(found: Ensemble) -> list[dict[str, Any]]:
 def pictures(found: Ensemble) -> list[Picture]:
     """Return the distribution of each method, and the ratios of the members of the main pairs."""
     rows = [row for row in main_pairs(found) if row["compared"]]
-    panels = [_distributions(found), *([_ratios(found, rows)] if rows else [])]
+    models = found.methods.loc[found.methods["own_model"] == "", "method"]
+    panels = [distributions(found.members, list(models)), *([_ratios(found, rows)] if rows else [])]
     picture = Picture(
         name="ensemble",
         title="Distributions of peak tilt by method, and ratios of the peaks of each member",
@@ -53,20 +54,19 @@ def pictures(found: Ensemble) -> list[Picture]:
     return [picture]
 
 
-def _distributions(found: Ensemble) -> Panel:
-    standing = found.members.loc[found.members["outcome"] != "overturned", "peak_tilt"]
+def distributions(members: pd.DataFrame, models: Collection[str], what: str = "members") -> Panel:
+    """Return the share of members whose peak tilt over alpha is at most x, by method; some are models."""
+    standing = members.loc[members["outcome"] != "overturned", "peak_tilt"]
     largest = float(standing.max(skipna=True)) if standing.notna().any() else 0.0
     end = 1.05 * largest or 1.0
-    labels = found.methods["method"]
-    styles = label_styles(list(labels), list(labels[found.methods["own_model"] == ""]))
     layers: list[Line] = []
-    for method, style in styles.items():
-        runs = found.members[found.members["method"] == method]
+    for method, style in label_styles(list(members["method"].unique()), models).items():
+        runs = members[members["method"] == method]
         if (runs["outcome"] != "failed").any():
             layers += peak_shares(runs, method, style, end, width=1.6, notes=True)
     return Panel(
         x=Axis(label="peak tilt / α", unit="-", low=0.0, high=end),
-        y=Axis(label="share of the members", unit="-", low=0.0, high=1.03),
+        y=Axis(label=f"share of the {what}", unit="-", low=0.0, high=1.03),
         layers=layers,
         title="Peak tilt",
         height=3.4,

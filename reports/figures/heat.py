@@ -105,9 +105,27 @@ class Shades:
         return [(float(at), f"{value:.3g}") for at, value in zip(self.place(values), values, strict=True)]
 
 
+PEAKS = Shades(label="peak tilt / α", unit="-", low=0.0, high=1.0, steps=10)
+_OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
+
+
+def peak_map(x: Array, y: Array, tilt: Array, fell: NDArray[np.bool_]) -> Heat:
+    """Return a map of peak tilts over alpha (len(y), len(x)), in `PEAKS`; NaN was not solved."""
+    return Heat(
+        x=x,
+        y=y,
+        values=np.where(fell | (tilt == 0.0), np.nan, tilt),
+        gaps=[
+            Gap(name="overturned", colour=_OVERTURNED, cells=fell),
+            Gap(name="no uplift", colour=_NO_UPLIFT, cells=tilt == 0.0),
+            Gap(name="not solved", colour=_FAILED, cells=np.isnan(tilt)),
+        ],
+    )
+
+
 def names(values: Sequence[object]) -> tuple[Array, list[tuple[float, str]]]:
     """Return places 0, 1, 2, ... for values, and the ticks that name them."""
-    said = [f"{value:g}" if isinstance(value, float) else str(value) for value in values]
+    said = [f"{value:.4g}" if isinstance(value, float) else str(value) for value in values]
     places = np.arange(len(said), dtype=np.float64)
     return places, [(float(place), name) for place, name in zip(places, said, strict=True)]
 

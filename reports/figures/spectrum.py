@@ -7,12 +7,11 @@ import numpy as np
 from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, safe_islands
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
 
-from .heat import Gap, Heat, Shades
+from .heat import PEAKS, Heat, peak_map
 from .palette import Style, model_style, run_styles
 from .picture import Axis, Line, Panel, Picture, parted
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-south"}
-_OVERTURNED, _NO_UPLIFT, _FAILED = "#D55E00", "#ffffff", "#9a9a9a"
 _HEIGHT = 3.4
 _ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: islands side by side
 
@@ -58,23 +57,14 @@ def pictures(spectrum: OverturningSpectrum) -> list[Picture]:
         f"The lowest intensity is the lowest found, in steps down to {spectrum.search_step:g}.",
         panels=[*maps, curves],
         columns=2,
-        shades=Shades(label="peak tilt / α", unit="-", low=0.0, high=1.0, steps=10),
+        shades=PEAKS,
     )
     return [picture]
 
 
 def _map(spectrum: OverturningSpectrum, series: str) -> Heat:
     tilt, fell = spectrum.peak_tilt[series].T / spectrum.alpha, spectrum.overturned(series).T
-    return Heat(
-        x=spectrum.semidiagonals,
-        y=spectrum.intensities,
-        values=np.where(fell | (tilt == 0.0), np.nan, tilt),
-        gaps=[
-            Gap(name="overturned", colour=_OVERTURNED, cells=fell),
-            Gap(name="no uplift", colour=_NO_UPLIFT, cells=tilt == 0.0),
-            Gap(name="not solved", colour=_FAILED, cells=np.isnan(tilt)),
-        ],
-    )
+    return peak_map(spectrum.semidiagonals, spectrum.intensities, tilt, fell)
 
 
 def _curves(spectrum: OverturningSpectrum) -> list[Line]:

@@ -95,7 +95,7 @@ class Page:
         drawn = any(isinstance(part, Picture) for part in parts) or bool(self.blocks)
         return (
             _environment()
-            .get_template("base.html.j2")
+            .get_template("page/base.html.j2")
             .render(
                 title=re.sub("<.*?>", "", title[1]) if title else self.name,
                 body=body,

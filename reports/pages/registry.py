@@ -14,6 +14,9 @@ if TYPE_CHECKING:
 # wait for the imports of all
 KINDS: Mapping[str, str] = {
     "comparison": "pages.comparison.report",
+    "view": "pages.comparison.view",
+    "run": "pages.runs.run",
+    "sweep": "pages.runs.sweep",
     "ensemble": "pages.ensemble",
     "fragility": "pages.fragility",
     "overturning spectrum": "pages.spectrum",

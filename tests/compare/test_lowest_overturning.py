@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import threading
+import time
 
 import numpy as np
 import pytest
@@ -12,6 +14,7 @@ from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.studies.spectrum.search import (
     PROBES,
     STEP,
+    in_threads,
     lowest_on_grid,
     probe_below,
     run_searches,
@@ -107,6 +110,16 @@ def test_searches_side_by_side_find_what_each_finds_alone_and_share_levels():
     assert all(0.0 <= low - edge <= STEP for low, edge in zip(found[:2], edges[:2], strict=True))
     assert math.isnan(found[2])
     assert groups[0] == [0, 1, 2, 3]
+
+
+def test_threads_are_as_many_as_this_process_may_use(monkeypatch):
+    monkeypatch.setattr("rockwobble.compare.studies.spectrum.search.usable_cpus", lambda: 1)
+
+    def thread(_: int) -> int:
+        time.sleep(0.001)  # long enough for a second thread to take the next
+        return threading.get_ident()
+
+    assert len(set(in_threads(thread, range(20)))) == 1
 
 
 def test_an_interruption_passes_through_a_search():

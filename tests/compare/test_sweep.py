@@ -13,7 +13,7 @@ from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.task import Lost
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.compare.studies.sweep import study
-from rockwobble.compare.studies.sweep.study import KIND
+from rockwobble.compare.studies.sweep.result import KIND
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -31,7 +31,7 @@ def files(folder) -> dict[str, int]:
 
 
 def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
-    table = sweep(grid(models=["recess", "planar"]), workers=1)
+    table = sweep(grid(models=["recess", "planar"]), workers=1).table
     assert len(table) == 2 * 2 * 4 * 5
     cells = table.set_index(["model", "tan_alpha"])["peak_tilt"]
     for model in ("recess", "planar"):
@@ -49,16 +49,18 @@ def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
 
 
 def test_no_cell_depends_on_chunks_workers_or_neighbours(tmp_path):
-    whole = sweep(grid(), workers=1)
+    whole = sweep(grid(), workers=1).table
     for options in ({"chunk_size": 1}, {"chunk_size": 3}, {"chunk_size": 7, "out": tmp_path, "workers": 2}):
-        pd.testing.assert_frame_equal(sweep(grid(), **({"workers": 1} | options)), whole, check_exact=True)
+        pd.testing.assert_frame_equal(
+            sweep(grid(), **({"workers": 1} | options)).table, whole, check_exact=True
+        )
 
 
 def test_a_second_sweep_repeats_nothing(tmp_path):
-    first = sweep(grid(), out=tmp_path, workers=1, chunk_size=5)
+    first = sweep(grid(), out=tmp_path, workers=1, chunk_size=5).table
     before = files(tmp_path)
     events = []
-    second = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append)
+    second = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append).table
     assert events == []
     assert files(tmp_path) == before
     pd.testing.assert_frame_equal(first, second, check_exact=True)
@@ -68,11 +70,11 @@ def test_a_grid_that_grows_keeps_what_is_there(tmp_path):
     sweep(grid(tan_alphas=[0.2]), out=tmp_path, workers=1, chunk_size=5)
     before = set(files(tmp_path).values())
     events = []
-    table = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append)
+    table = sweep(grid(), out=tmp_path, workers=1, chunk_size=5, progress=events.append).table
     assert (events[0].found, events[0].total) == (4, 8)
     assert before < set(files(tmp_path).values())
-    pd.testing.assert_frame_equal(table, sweep(grid(), workers=1), check_exact=True)
-    pd.testing.assert_frame_equal(table, read_sweep(tmp_path), check_exact=True)
+    pd.testing.assert_frame_equal(table, sweep(grid(), workers=1).table, check_exact=True)
+    pd.testing.assert_frame_equal(table, read_sweep(tmp_path).table, check_exact=True)
 
 
 def test_chunks_of_another_sweep_go_only_when_this_one_is_complete(tmp_path):
@@ -86,9 +88,9 @@ def test_chunks_of_another_sweep_go_only_when_this_one_is_complete(tmp_path):
     with pytest.raises(KeyboardInterrupt):
         sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5, progress=interrupt)
     assert len(files(tmp_path)) == len(other) + 1
-    table = sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5)
+    table = sweep(grid(tan_alphas=[0.3]), out=tmp_path, workers=1, chunk_size=5).table
     assert not other & set(files(tmp_path))
-    pd.testing.assert_frame_equal(table, read_sweep(tmp_path), check_exact=True)
+    pd.testing.assert_frame_equal(table, read_sweep(tmp_path).table, check_exact=True)
 
 
 def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeypatch):
@@ -144,7 +146,7 @@ def test_cases_with_engines_and_models(tmp_path):
         for tilt in (0.3, 0.5)
     ]
     in_recess = Run("mujoco", "recess", 1e-3)
-    table = sweep(CaseSweep(cases, [Run(None, "recess"), in_recess]), out=tmp_path, workers=1)
+    table = sweep(CaseSweep(cases, [Run(None, "recess"), in_recess]), out=tmp_path, workers=1).table
     assert table[["case", "run"]].to_numpy().tolist() == [
         ["0.3", "recess model"],
         ["0.5", "recess model"],
@@ -152,7 +154,7 @@ def test_cases_with_engines_and_models(tmp_path):
         ["0.5", "mujoco recess"],
     ]
     assert table.peak_tilt_over_alpha.tolist() == pytest.approx([0.3, 0.5, 0.3, 0.5], rel=1e-3)
-    again = sweep(Suite(cases, [in_recess]), workers=1)
+    again = sweep(Suite(cases, [in_recess]), workers=1).table
     pd.testing.assert_frame_equal(again, table.tail(2).reset_index(drop=True), check_exact=True)
 
 
@@ -164,7 +166,7 @@ def test_the_chunks_of_a_suite_have_names_for_whoever_waits():
 
 
 def test_the_manifest_says_what_was_swept(tmp_path):
-    table = sweep(grid(), out=tmp_path, workers=1, seeds={"records": 7}, command="rockwobble sweep")
+    table = sweep(grid(), out=tmp_path, workers=1, seeds={"records": 7}, command="rockwobble sweep").table
     made = read_results(tmp_path, KIND).manifest
     assert (made.seeds, made.command) == ({"records": 7}, "rockwobble sweep")
     assert made.headline == {"runs": 40, **table["outcome"].value_counts().to_dict()}
@@ -173,15 +175,28 @@ def test_the_manifest_says_what_was_swept(tmp_path):
     assert np.array_equal(motions[["acceleration_x", "acceleration_y"]], SHORT.acceleration)
 
 
+def test_a_summary_counts_the_outcomes_of_each_part_and_an_overturned_run_is_infinite(tmp_path):
+    found = sweep(grid(), out=tmp_path, workers=1)
+    summary = found.summary()
+    assert list(summary["tan_alpha"]) == [0.1, 0.2]
+    for (_, row), (_, own) in zip(summary.iterrows(), found.table.groupby("tan_alpha"), strict=True):
+        counts = own["outcome"].value_counts().reindex(found.outcomes, fill_value=0)
+        assert row[found.outcomes].to_dict() == counts.to_dict()
+        fell = own["outcome"] == "overturned"
+        assert row["median"] == own["peak_tilt_over_alpha"].where(~fell, math.inf).median()
+        assert row["largest"] == own.loc[~fell, "peak_tilt_over_alpha"].max()
+    pd.testing.assert_frame_equal(read_sweep(tmp_path).summary(), summary, check_exact=True)
+
+
 @pytest.mark.parametrize("where", [100, -100])  # in the data, and in what the file says of itself
 def test_a_damaged_chunk_runs_again(tmp_path, where):
-    first = sweep(grid(), out=tmp_path, workers=1)
+    first = sweep(grid(), out=tmp_path, workers=1).table
     path = next((tmp_path / CACHE / KIND).glob("*.parquet"))
     content = bytearray(path.read_bytes())
     content[where] ^= 1  # a single bit
     path.write_bytes(content)
     events = []
-    again = sweep(grid(), out=tmp_path, workers=1, progress=events.append)
+    again = sweep(grid(), out=tmp_path, workers=1, progress=events.append).table
     assert (events[-1].found, events[-1].total) == (1, 2)
     pd.testing.assert_frame_equal(first, again, check_exact=True)
 

@@ -241,5 +241,5 @@ def test_measures_of_limits() -> None:
 
 def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactory) -> None:
     found = tiny_validity(tmp_path_factory.getbasetemp())
-    shows_itself(found, "motions ", "records 14 rows")
+    shows_itself(found, "motions ", "peaks 24 rows")
     assert found.plot("slip").axes

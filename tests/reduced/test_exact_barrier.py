@@ -128,9 +128,9 @@ def test_standing_has_no_free_response() -> None:
 
 @pytest.mark.parametrize("gravity", [0.0, -9.81, math.nan, math.inf])
 def test_gravity_is_checked(gravity: float) -> None:
-    with pytest.raises(ValueError, match="gravity must be (positive|a finite number)"):
+    with pytest.raises(ValueError, match=r"gravity must be (positive|a finite number)"):
         free_response(PIER, release(PIER, 0.5, 0.1), gravity=gravity)
-    with pytest.raises(ValueError, match="gravity must be (positive|a finite number)"):
+    with pytest.raises(ValueError, match=r"gravity must be (positive|a finite number)"):
         rocking_period(PIER, 0.1, gravity=gravity)
 
 

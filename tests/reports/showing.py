@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from rockwobble.models.shown import Shown
-
-LONGEST = 270  # characters, and no line break
+from rockwobble.models.shown import LONGEST, Shown
 
 
 def shows_itself(result: Shown, *facts: str) -> None:

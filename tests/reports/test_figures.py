@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from rockwobble.models import Case, Cylinder, InitialState
+from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 from rockwobble.reduced import simulate
 from rockwobble.reports.figures.heat import Gap, Heat, Shades, contour, names
 from rockwobble.reports.figures.interactive import figures, plots
@@ -24,6 +24,7 @@ from rockwobble.reports.figures.picture import (
     Text,
     ecdf,
 )
+from rockwobble.reports.figures.runs.trace import pictures as trace_pictures
 from rockwobble.reports.figures.svg import figure, svg
 
 ALPHA = Axis(label="tilt / α", unit="-", low=0.0)
@@ -182,3 +183,13 @@ def test_only_a_model_is_drawn_as_one_whatever_a_run_is_called() -> None:
     assert styles["recess model"] == Style(colour="#000000", dash="solid")
     assert styles["clay model"].colour in ORDER
     assert len(set(styles.values())) == len(labels)
+
+
+def test_the_path_of_the_contact_point_does_not_cross_the_circle_in_a_near_pass():
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    (picture,) = trace_pictures(simulate(Case(pier, el_centro_1940())))
+    _, page = figures(picture)
+    drawn = figure(picture).axes[1].lines[1].get_data()
+    for path in (np.array(drawn), np.array([page.data[1].x, page.data[1].y])):
+        middles = np.hypot(*(0.5 * (path[:, 1:] + path[:, :-1])))
+        assert np.nanmin(middles) > 0.96  # of a chord of half the radius: sqrt(15)/4

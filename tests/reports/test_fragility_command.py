@@ -280,4 +280,4 @@ def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words)
 
 
 def test_a_fragility_shows_itself(found):
-    shows_itself(found, "methods ", "runs ")
+    shows_itself(found, "motions ", "runs ")

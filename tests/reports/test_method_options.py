@@ -74,7 +74,7 @@ def test_settings_of_a_model_are_numbers(
 def test_auto_says_what_error_is_left(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     method = ["--engine", "mujoco", "--time-step", "auto", "--set", "step_tolerance=1e-4"]
     assert call("simulate", *RELEASE, *method, "--out", str(tmp_path)) == 0
-    assert "the tilt is, until 0.2 s, within" in " ".join(capsys.readouterr().out.split())
+    assert "The tilt is, until 0.2 s, within" in " ".join(capsys.readouterr().out.split())
     assert json.loads((tmp_path / "manifest.json").read_text())["about"]["result"]["error_estimate"] > 0.0
 
 
@@ -101,7 +101,7 @@ def test_a_run_that_flies_in_a_ring_of_its_own_says_so(
     walls = (result["settings"][f"ring_{name}"] for name in ("clearance", "inclination", "facets"))
     assert tuple(walls) == (3, 0.05, 16)
     (flight,) = (fact for fact in result["facts"] if fact["code"] == "lift_off")
-    said = f"the cylinder left the ground at {flight['time']:.4g} s"
+    said = f"The cylinder left the ground at {flight['time']:.4g} s"
     assert said in " ".join(capsys.readouterr().out.split())
     # from steps of 2e-5 to 1e-4 s and impedances of 0.99 to 0.9999 it is 0.2029 to 0.2063 s
     assert flight["time"] == pytest.approx(0.2046, abs=2e-3)

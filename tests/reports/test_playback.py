@@ -10,7 +10,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.comparison.playback import playback
 from rockwobble.reports.figures.comparison.view import case_views
-from rockwobble.reports.pages.comparison.report import view_page
+from rockwobble.reports.pages.comparison.view import view_values
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 # a page plays in float32: seven digits of some metres
@@ -67,7 +67,7 @@ def test_nothing_is_played_where_nothing_moves():
     still = GroundMotion(np.zeros((20, 2)), 0.01, "still")
     comparison = compare(Case(PIER, still, name="still"), runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     assert playback(case_views(comparison)[0]) is None
-    assert view_page(comparison, "still") is None
+    assert view_values(comparison, "still") is None
 
 
 def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp_path, monkeypatch, capsys):
@@ -87,7 +87,13 @@ def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp
     with pytest.raises(SystemExit) as ended:
         main(["view", str(stored), "--no-open", "--out", str(tmp_path / "played")])
     assert ended.value.code == 0
-    assert "rockwobblePlayback" in (tmp_path / "played" / "view.html").read_text()
+    page = (tmp_path / "played" / "view.html").read_text()
+    assert "rockwobblePlayback" in page
+    for command in ("show", "report"):
+        with pytest.raises(SystemExit) as ended:
+            main([command, str(tmp_path / "played")])
+        assert ended.value.code == 0
+    assert (tmp_path / "played" / "view.html").read_text() == page
 
 
 @pytest.mark.parametrize(

@@ -2,11 +2,13 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from showing import LONGEST, shows_itself
+from showing import shows_itself
 
 import rockwobble as rw
 import rockwobble.compare as rc
-from rockwobble.models.shown import Brief
+from rockwobble.models import Bounds
+from rockwobble.models.shown import LONGEST, Brief
+from rockwobble.multibody.engines.registry import engine_facts, engine_names
 
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0)
@@ -32,11 +34,18 @@ def test_comparison_shows_itself_case_by_case(comparison):
 
 def test_ensemble_shows_itself():
     found = rw.ensemble(RELEASE, runs=[], size=4, workers=1)
-    shows_itself(found, "4, starts of free response", "recess model, flat-ground model", "overturned 0 of 8")
+    shows_itself(found, "4, starts of free response", "overturned 0 of 8")
+
+
+def test_sweep_shows_itself():
+    shows_itself(rw.sweep([RELEASE], workers=1), "runs 1, completed 1")
+    grid = rc.Grid(semidiagonals=[1, 6], tan_alphas=[0.2], scales=[0.1, 2], motions=[rw.el_centro_1940()])
+    shows_itself(rw.sweep(grid, workers=1), "runs 4, stood 2, overturned 2")
 
 
 def test_values_are_a_line(comparison):
     trace, *_ = comparison.traces.values()
+    engine = rw.simulate(RELEASE, engine="mujoco", time_step=1e-3)
     pair = rc.make_pair(PIER, trace, trace)
     record = rw.el_centro_1940()
     values = [
@@ -54,6 +63,15 @@ def test_values_are_a_line(comparison):
         rc.CaseSweep([RELEASE], [rw.Run(None, "recess")]),
         rc.Job(case=RELEASE, run=trace.run),
         *trace.diagnostics,
+        trace.source,
+        engine.source,
+        trace.assumptions,
+        Bounds(),
+        Bounds(tilt_rms=1e-3, agreement_time=3.0),
+        rw.reduced.free_response(PIER, RELEASE.initial),
+        comparison.manifest("rockwobble compare " + 20 * "--record-x EW.AT2 "),
+        rc.Progress(label="x" * 200, state="started", done=0, total=1),
+        *(engine_facts(name) for name in engine_names()),
     ]
     for value in values:
         line = repr(value)
@@ -76,12 +94,14 @@ def test_a_line_says_of_what_is_long_how_much_there_is():
         words: str
 
     made = Made(1.0 / 3.0, (1, 2), [1] * 9, np.zeros((4, 2)), "x" * 200)
-    assert repr(made) == "Made(share=0.333333, few=(1, 2), many=9 items, table=array(4, 2), words=a str)"
+    text = f"{32 * 'x'}..."
+    assert repr(made) == f"Made(share=0.333333, few=(1, 2), many=9 items, table=array(4, 2), words='{text}')"
 
 
 def test_names_are_told_to_whoever_completes_them():
     assert {"simulate", "Case", "compare", "__version__"} <= set(dir(rw))
-    assert set(rc.__all__) <= set(dir(rw.compare))
+    for part in (rw.compare, rw.models, rw.reduced, rw.multibody):
+        assert dir(part) == sorted(part.__all__)
     for name in rc.__all__:
         assert getattr(rw.compare, name) is not None
     with pytest.raises(AttributeError, match="has no attribute 'nothing'"):

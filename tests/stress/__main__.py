@@ -39,7 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     chunk_size = CHUNK_SIZE if given.what == "kills" else DASK_CHUNK_SIZE
     sizes = max(1, (given.runs or (8_000 if given.what == "kills" else 40_000)) // ROWS_OF_A_SIZE)
     with tempfile.TemporaryDirectory(prefix="rockwobble-") as folder:
-        undisturbed = sweep(trial_grid(sizes), chunk_size=chunk_size)
+        undisturbed = sweep(trial_grid(sizes), chunk_size=chunk_size).table
         if given.what == "dask":
             table, done = dask_sweep_with_a_death(Path(folder), sizes=sizes, chunk_size=chunk_size)
             print(f"one of three Dask workers killed with -9 after {done:,} of {len(table):,} runs")

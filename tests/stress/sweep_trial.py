@@ -18,7 +18,8 @@ import numpy as np
 from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.sweep.grid import Grid
-from rockwobble.compare.studies.sweep.study import KIND, sweep
+from rockwobble.compare.studies.sweep.result import KIND
+from rockwobble.compare.studies.sweep.study import sweep
 from rockwobble.models import el_centro_1940
 
 if TYPE_CHECKING:
@@ -93,7 +94,7 @@ def killed_sweep(folder: Path, *, sizes: int, kills: int, seed: int, workers: in
         repeated += sum(now.get(name) != inode for name, inode in finished.items())
         finished = now
         counts.append(len(finished))
-    table = sweep(trial_grid(sizes), out=folder, chunk_size=CHUNK_SIZE, workers=workers)
+    table = sweep(trial_grid(sizes), out=folder, chunk_size=CHUNK_SIZE, workers=workers).table
     now = {path.name: path.stat().st_ino for path in (folder / CACHE / KIND).glob("*.parquet")}
     repeated += sum(now.get(name) != inode for name, inode in finished.items())
     return Kills(table=table, chunks=tuple(counts), repeated=repeated)
@@ -149,7 +150,9 @@ def dask_sweep_with_a_death(
                 processes[0].kill()
                 killed_at.append(event.done)
 
-        table = sweep(trial_grid(sizes), out=folder, chunk_size=chunk_size, scheduler=address, progress=tell)
+        table = sweep(
+            trial_grid(sizes), out=folder, chunk_size=chunk_size, scheduler=address, progress=tell
+        ).table
         status = processes[0].wait()
     if status != -9:
         raise RuntimeError(f"the Dask worker must have been killed, it ended with {status}")

@@ -43,7 +43,7 @@ def _grid() -> Iterator[Finding]:
         rest_tilt=1e-4,
     )
     # chunks that cut through the axes, and chunks of several sizes with all scales
-    first, table = (sweep(grid, workers=1, chunk_size=size) for size in (2, 6))
+    first, table = (sweep(grid, workers=1, chunk_size=size).table for size in (2, 6))
     axes = itertools.product(motions, MODELS, SLENDERNESS, SIZES, SCALES)
     wrong: list[str] = [] if first.equals(table) else ["it depends on the chunks"]
     apart, outcomes = 0.0, set()
@@ -80,7 +80,7 @@ def _cases() -> Finding:
         Case(PIER, initial=release, duration=5.0, name="released"),
     ]
     runs = [Run(None, "recess"), Run(None, "flat")]
-    table = sweep(CaseSweep(cases, runs), workers=1).to_dict("records")
+    table = sweep(CaseSweep(cases, runs), workers=1).table.to_dict("records")
     wrong = []
     for row, (run, case) in zip(table, itertools.product(runs, cases), strict=False):
         expected = _row(case, run, reduced.simulate(case, support=run.support))

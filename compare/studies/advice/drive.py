@@ -95,7 +95,7 @@ def advise(
     copies: list[Trace] = []
     others: list[Trace] = []
     with stage(f"{count} perturbed copies"):
-        if moves:
+        if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
             cases = perturbed_starts(case, count, perturbation=perturbation, seed=seed)
             copies = [simulate_run(each, model) for each in cases]
             others = [simulate_run(each, other, sample_step=BAND_STEP) for each in cases]

@@ -11,6 +11,8 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
+from rockwobble.multibody import DEFAULT_ENGINE
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 
 from ...comparison.driver import compare
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale
@@ -22,7 +24,6 @@ from ...traces.pair import make_pair
 # agreement between methods, would be exceeded by the percent that the copies differ by itself.
 LOST = 0.5
 BAND_STEP = 0.05  # [s] enough to draw a swing of a second
-_STEP = 1e-4  # [s] the default step of the engines at 6 m and 9.81 m/s^2, for a prediction without an engine
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -114,7 +115,7 @@ def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
     """Predicted divergence of an engine at its default step, from the reduced models alone."""
     if trace.outcome == "failed" or not math.isfinite(trace.uplift_time):
         return Prediction(length=case.length, reason="")
-    step = _STEP * time_scale(case)
+    step = REFERENCE_TIME_STEP * time_scale(case)
     if run is not None and isinstance(run.time_step, float):
         step = run.time_step
     return predict(
@@ -123,7 +124,7 @@ def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
         own=trace,
         # the tilt that the fastest fall crosses in one step; the penetration counts for less than it
         contact_resolution=float(np.abs(trace.tilt_rate).max()) * step,
-        error=estimated_error(case, "mujoco" if run is None else run.engine, step),
+        error=estimated_error(case, DEFAULT_ENGINE if run is None else run.engine, step),
         simulate=simulate_run,
     )
 

@@ -70,8 +70,8 @@ class Ensemble(Shown):
         runs = self.methods[["runs", "overturned", "failed"]].sum()
         return {
             "members": f"{self.members['member'].nunique()}, {self.about.get('members', '')}",
-            "methods": ", ".join(self.methods["method"]),
             "overturned": f"{runs['overturned']} of {runs['runs']} runs",
+            "methods": ", ".join(self.methods["method"]),
             "failed": str(runs["failed"]),
         }
 

@@ -32,6 +32,7 @@ from rockwobble import reduced
 from rockwobble.models import Case, Diagnostic, Run, Trace
 from rockwobble.models.diagnostic import FAILURES, joined
 from rockwobble.multibody.engines.registry import engine_facts
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 
 from ...comparison.prediction import time_scale
 from ...runs.choice import own_model, require_runnable
@@ -43,7 +44,6 @@ FINE = 0.01  # of alpha, or of the angle of turn: what ends an agreement everywh
 # relative to the energy that balances the cylinder on its rim
 _ENERGY = 1e-5
 _TIGHT, _REFERENCE = 1e-12, 1e-10  # tolerances
-_STEP = 1e-4  # [s] the default at 6 m
 # what makes an engine leave its reference: no wall, which the ring at half the step meets as well; a reduced
 # model errs only where the side of a pass is undetermined
 _EXPLAINS = frozenset(
@@ -112,7 +112,7 @@ def _asked(condition: Condition, run: Run) -> tuple[Case, Run]:
 
 
 def _step(condition: Condition) -> float:
-    return _STEP * condition.time_step * time_scale(condition.case)
+    return REFERENCE_TIME_STEP * condition.time_step * time_scale(condition.case)
 
 
 def _reduced(condition: Condition, run: Run, trace: Trace) -> Verdict:

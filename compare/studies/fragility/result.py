@@ -83,9 +83,9 @@ class Fragility(Shown):
         return {
             "cylinders": str(runs["cylinder"].nunique()),
             "motions": str(runs["motion"].nunique()),
-            "methods": ", ".join(dict.fromkeys(runs["method"])),
             "runs": str(len(runs)),
             "failed": str(int((runs["outcome"] == "failed").sum())),
+            "methods": ", ".join(dict.fromkeys(runs["method"])),
         }
 
     @property

@@ -79,10 +79,10 @@ class OverturningSpectrum(Shown):
         sizes, levels = self.semidiagonals, self.intensities
         return {
             "record": self.motion.name or "record",
-            "tan alpha": f"{self.tan_alpha:g}",
+            "overturned": f"{int(self.overturned(SPATIAL).sum())} of {len(sizes) * len(levels)} cells",
             "sizes": f"{len(sizes)} from {sizes[0]:g} to {sizes[-1]:g} m",
             "intensities": f"{len(levels)} from {levels[0]:g} to {levels[-1]:g}",
-            "overturned": f"{int(self.overturned(SPATIAL).sum())} of {len(sizes) * len(levels)} cells",
+            "tan alpha": f"{self.tan_alpha:g}",
         }
 
     @property

@@ -18,6 +18,8 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.models.cpus import usable_cpus
+
 from ...metrics.tilt import overturned
 
 Array = NDArray[np.float64]
@@ -117,7 +119,7 @@ def run_searches(
     peak_tilts : callable
         Runs some of them, by index, at one intensity, in one thread, for their peak tilts [rad].
     workers : int, optional
-        Number of threads.
+        Number of threads. Default: one for each processor that this process may use.
     """
     found: dict[int, T] = {}
     wanted: dict[int, Array] = {}
@@ -149,7 +151,7 @@ def in_threads(
     function: Callable[..., T], *arguments: Iterable[object], workers: int | None = None
 ) -> Iterator[T]:
     """Yield the values of a compiled function for each of its arguments, in order; an exception ends all."""
-    with ThreadPoolExecutor(workers) as pool:
+    with ThreadPoolExecutor(usable_cpus() if workers is None else workers) as pool:
         try:
             yield from pool.map(function, *arguments)
         except BaseException:

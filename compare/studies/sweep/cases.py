@@ -84,7 +84,7 @@ class CaseSweep(Brief):
     >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
     >>> case = rw.Case(pier, initial=release, duration=4.0)
     >>> found = rw.sweep(CaseSweep([case], [rw.Run(None, "recess"), rw.Run(None, "flat")]), workers=1)
-    >>> list(found["outcome"])
+    >>> list(found.table["outcome"])
     ['completed', 'completed']
     """
 

@@ -114,7 +114,7 @@ class Grid(Brief):
     >>> import rockwobble as rw
     >>> grid = Grid(semidiagonals=[3, 6], tan_alphas=[0.1, 0.2], scales=[1, 2], motions=[rw.el_centro_1940()])
     >>> found = rw.sweep(grid, workers=1)
-    >>> len(found)
+    >>> len(found.table)
     8
     """
 

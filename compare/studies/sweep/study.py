@@ -22,8 +22,8 @@ from ...storage.manifest import made_now, read_results, write_results
 from ...storage.provenance import engine_makers, reduced_makers
 from .cases import CaseChunk, CaseSweep
 from .grid import Grid, GridChunk
+from .result import KIND, Sweep, stored_sweep
 
-KIND = "sweep"
 # a chunk whose process died is tried this often: the process may have been ended from outside
 _TRIES = 3
 Chunk = GridChunk | CaseChunk
@@ -43,7 +43,7 @@ def sweep(
     seeds: Mapping[str, int] | None = None,
     progress: ProgressCallback | None = None,
     command: str = "",
-) -> pd.DataFrame:
+) -> Sweep:
     """Run every combination, and return the tidy table of what became of each.
 
     The runs are cut into chunks. With `out` each chunk is kept there as soon as it is finished, named by
@@ -75,8 +75,7 @@ def sweep(
 
     Returns
     -------
-    DataFrame
-        One row for each run, in the order of the plan.
+    Sweep
 
     Raises
     ------
@@ -89,7 +88,10 @@ def sweep(
     --------
     >>> from rockwobble.models import el_centro_1940
     >>> grid = Grid(semidiagonals=[2.0, 6.0], tan_alphas=[0.2], scales=[1.0, 3.0], motions=[el_centro_1940()])
-    >>> sweep(grid, workers=1)[["semidiagonal", "scale", "outcome"]].values.tolist()
+    >>> found = sweep(grid, workers=1)
+    >>> found
+    Sweep(runs 4, rocked 2, overturned 2)
+    >>> found.table[["semidiagonal", "scale", "outcome"]].values.tolist()
     [[2.0, 1.0, 'rocked'], [2.0, 3.0, 'overturned'], [6.0, 1.0, 'rocked'], [6.0, 3.0, 'overturned']]
     """
     whole = _plan(plan)
@@ -125,8 +127,8 @@ def sweep(
         table: pd.DataFrame = pd.concat(
             [each for each in tables if not isinstance(each, Lost)], ignore_index=True
         )
+        about = {"plan": whole.kind, "runs": whole.rows, **whole.describe()}
         if out is not None:
-            about = {"plan": whole.kind, "runs": whole.rows, **whole.describe()}
             made = made_now(
                 KIND,
                 inputs=fingerprint([chunk.key() for chunk in chunks]),
@@ -136,12 +138,12 @@ def sweep(
                 | {str(k): int(n) for k, n in table["outcome"].value_counts().items()},
                 about=about,
             )
-            write_results(out, made, {"sweep": table, **_motions(whole)})
-    return table
+            write_results(out, made, {KIND: table, **_motions(whole)})
+    return Sweep(table=table, about=about)
 
 
-def read_sweep(folder: str | Path) -> pd.DataFrame:
-    """Return the table of the sweep in a folder.
+def read_sweep(folder: str | Path) -> Sweep:
+    """Return the sweep in a folder.
 
     Parameters
     ----------
@@ -149,8 +151,7 @@ def read_sweep(folder: str | Path) -> pd.DataFrame:
 
     Returns
     -------
-    DataFrame
-        One row for each run.
+    Sweep
 
     Raises
     ------
@@ -165,10 +166,10 @@ def read_sweep(folder: str | Path) -> pd.DataFrame:
     >>> folder = mkdtemp()
     >>> grid = Grid(semidiagonals=[6], tan_alphas=[0.2], scales=[1, 2], motions=[rw.el_centro_1940()])
     >>> _ = rw.sweep(grid, out=folder, workers=1)
-    >>> len(read_sweep(folder))
-    2
+    >>> read_sweep(folder)
+    Sweep(runs 2, rocked 1, overturned 1)
     """
-    return read_results(folder, KIND).table(KIND)
+    return stored_sweep(read_results(folder, KIND))
 
 
 def run_chunk(chunk: Chunk) -> pd.DataFrame:

@@ -6,12 +6,13 @@ from collections.abc import Iterable
 
 from rockwobble import reduced
 from rockwobble.models import Run
+from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.reduced.body import body_of
 
 from ...runs.execution import simulate_run
 from .extent import Extent
 from .motions import EL_CENTRO, REFERENCE_SIZE, release_case, shaken_case
-from .part import ENGINE, Inputs, Part, Row
+from .part import Inputs, Part, Row
 
 _RELEASE, _SPIN, _PASSES = 0.5, 0.1, 4
 _INTENSITY, _LENGTH = 2.0, 10.0
@@ -31,7 +32,7 @@ def measure(tan_alpha: float, time_constant: float, damping: float) -> list[Row]
     softness, the time constant times the frequency parameter p; loss of energy per pass over the energy of
     the release, passes, peak and recess_peak under El Centro over alpha, free_outcome, outcome.
     """
-    run = Run(ENGINE, "recess", contact_time_constant=time_constant, contact_damping_ratio=damping)
+    run = Run(DEFAULT_ENGINE, "recess", contact_time_constant=time_constant, contact_damping_ratio=damping)
     free = simulate_run(release_case(tan_alpha, _RELEASE, _SPIN, _PASSES), run)
     case = shaken_case(EL_CENTRO, tan_alpha, REFERENCE_SIZE, _INTENSITY, duration=_LENGTH)
     shaken, recess = simulate_run(case, run), reduced.simulate(case)
@@ -56,5 +57,5 @@ PART = Part(
     measure=measure,
     keys=("tan_alpha", "time_constant", "damping"),
     cost=lambda **_: 1.0,
-    engine=ENGINE,
+    engine=DEFAULT_ENGINE,
 )

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rockwobble.models import Run
+from rockwobble.multibody import DEFAULT_ENGINE
 
 from ...comparison.driver import compare
 from ...runs.choice import SUPPORTS
 from .extent import Extent
 from .motions import EL_CENTRO, shaken_case
-from .part import ENGINE, Inputs, Part, Row
+from .part import Inputs, Part, Row
 
 _COLUMNS = (
     *("support", "reference_support", "outcome", "reference_outcome", "peak_tilt", "reference_peak_tilt"),
@@ -39,7 +40,7 @@ def measure(
     The columns are tan_alpha, semidiagonal, intensity, duration and those of `SUMMARY_COLUMNS`.
     """
     case = shaken_case(EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration)
-    summary = compare(case, runs=[Run(ENGINE, support)], workers=1).summary[list(_COLUMNS)]
+    summary = compare(case, runs=[Run(DEFAULT_ENGINE, support)], workers=1).summary[list(_COLUMNS)]
     return [{str(name): value for name, value in row.items()} for row in summary.to_dict("records")]
 
 
@@ -50,5 +51,5 @@ PART = Part(
     measure=measure,
     keys=("tan_alpha", "semidiagonal", "intensity", "duration"),
     cost=lambda duration, **_: 0.04 * duration,
-    engine=ENGINE,
+    engine=DEFAULT_ENGINE,
 )

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from .extent import Extent
 
-ENGINE = "mujoco"
 Inputs = Mapping[str, object]  # arguments of `Part.measure` by name: numbers, text and tuples of them
 Row = dict[str, float | str | bool]
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from rockwobble.models import Run
+from rockwobble.multibody import DEFAULT_ENGINE
 
 from ...runs.execution import simulate_run
 from .extent import Extent
 from .motions import record_names, shaken_case
-from .part import ENGINE, Inputs, Part, Row
+from .part import Inputs, Part, Row
 from .peaks import COPY
 
 RECESS, FLAT, PERTURBED = "recess model", "flat-ground model", "perturbed copy"
@@ -44,8 +45,10 @@ def measure(
         RECESS: (case, Run(None, "recess")),
         FLAT: (case, Run(None, "flat")),
         PERTURBED: (stronger, Run(None, "recess")),
-        **{support: (case, Run(ENGINE, support, time_step)) for support in ("recess", "flat", "ring")},
-        HALVED: (case, Run(ENGINE, "ring", 0.5 * time_step)),
+        **{
+            support: (case, Run(DEFAULT_ENGINE, support, time_step)) for support in ("recess", "flat", "ring")
+        },
+        HALVED: (case, Run(DEFAULT_ENGINE, "ring", 0.5 * time_step)),
     }
     rows: list[Row] = []
     for method, (problem, run) in plan.items():
@@ -70,5 +73,5 @@ PART = Part(
     measure=measure,
     keys=("motion", "tan_alpha", "semidiagonal", "intensity"),
     cost=lambda time_step, **_: 16.0 * 2e-4 / time_step,
-    engine=ENGINE,
+    engine=DEFAULT_ENGINE,
 )

@@ -9,6 +9,7 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
+from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 from rockwobble.multibody.scene.ring_geometry import clearance_needed
 from rockwobble.multibody.scene.ring_settings import take_ring
@@ -17,7 +18,7 @@ from ...runs.execution import simulate_run
 from ...traces.pair import FloatArray
 from .extent import Extent
 from .motions import AMPLE, EL_CENTRO, REFERENCE_SIZE, shaken_case
-from .part import ENGINE, Inputs, Part, Row
+from .part import Inputs, Part, Row
 
 # strong rocking without a fall
 INTENSITY = 1.5
@@ -62,12 +63,12 @@ def measure(
     shaken = shaken_case(EL_CENTRO, tan_alpha, REFERENCE_SIZE, INTENSITY, duration=length, turn=turn)
     rows: list[Row] = []
     for motion, case in ((FREE, release), (SHAKEN, shaken)):
-        run = Run(ENGINE, support, REFERENCE_TIME_STEP, **walls)
+        run = Run(DEFAULT_ENGINE, support, REFERENCE_TIME_STEP, **walls)
         if not has_room(case, run):
             continue
         halved = math.nan
         if support == "ring":
-            finer = Run(ENGINE, support, 0.5 * REFERENCE_TIME_STEP, **walls)
+            finer = Run(DEFAULT_ENGINE, support, 0.5 * REFERENCE_TIME_STEP, **walls)
             halved = simulate_run(case, finer).peak_tilt / case.cylinder.alpha
         rows.append(
             {
@@ -143,5 +144,5 @@ PART = Part(
     measure=measure,
     keys=(),
     cost=lambda support, length, **_: (0.8 if support == "ring" else 0.25) * length,
-    engine=ENGINE,
+    engine=DEFAULT_ENGINE,
 )

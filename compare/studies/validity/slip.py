@@ -13,7 +13,7 @@ from ...traces.pair import make_pair
 from .extent import Extent
 from .free_response import needs_of
 from .motions import release_case
-from .part import ENGINE, Inputs, Part, Row
+from .part import Inputs, Part, Row
 
 _PERIODS = 1.1  # one pass: the friction of the next is the same
 
@@ -37,7 +37,7 @@ def measure(tan_alpha: float, release: float, spin: float, shares: Sequence[floa
     recess = reduced.simulate(case, rtol=1e-10)
     rows: list[Row] = []
     for share in shares:
-        run = multibody.simulate(replace(case, friction=share * needed), engine=ENGINE)
+        run = multibody.simulate(replace(case, friction=share * needed))
         rows.append(
             {
                 "needed": needed,
@@ -58,5 +58,5 @@ PART = Part(
     measure=measure,
     keys=("tan_alpha", "release", "spin"),
     cost=lambda shares, **_: 0.5 * len(shares),
-    engine=ENGINE,
+    engine=multibody.DEFAULT_ENGINE,
 )

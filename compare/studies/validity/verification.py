@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from rockwobble.models import Run
+from rockwobble.multibody import DEFAULT_ENGINE
 
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import SUPPORTS, own_model
@@ -15,7 +16,7 @@ from ...traces.pair import make_pair
 from .extent import Extent
 from .free_response import next_maximum
 from .motions import release_case
-from .part import ENGINE, Inputs, Part, Row
+from .part import Inputs, Part, Row
 
 _PERIODS = 2.2  # the second maximum, and a little more, so that it is seen to be one
 _FRICTION = 10.0  # whatever the motion needs: friction is another limit
@@ -36,7 +37,7 @@ def measure(tan_alpha: float, release: float, spin: float) -> list[Row]:
     case = replace(release_case(tan_alpha, release, spin, _PERIODS), friction=_FRICTION)
     rows: list[Row] = []
     for support in SUPPORTS:
-        trial = Run(ENGINE, support)
+        trial = Run(DEFAULT_ENGINE, support)
         own = simulate_run(case, Run(None, own_model(trial).support, rtol=1e-10))
         run = simulate_run(case, trial)
         passes, own_passes = run.passes, own.passes
@@ -62,5 +63,5 @@ PART = Part(
     measure=measure,
     keys=("tan_alpha", "release", "spin"),
     cost=lambda **_: 1.5,
-    engine=ENGINE,
+    engine=DEFAULT_ENGINE,
 )

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import sys
 from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -77,8 +76,7 @@ def certify(
             bench.suite = rw.Suite(bench.suite.cases, runs, bench.suite.bounds)
         findings: list[Finding] = []
         for layer in layers:
-            print(f"checking {layer} ...", file=sys.stderr, flush=True)
-            with shown_progress("engine runs") as bench.progress:
+            with shown_progress("engine runs", heading=f"checking {layer}") as bench.progress:
                 findings += run_checks(bench, [layer])
         found = make(method, findings)
         write_certificate(found, out)

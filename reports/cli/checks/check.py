@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -165,8 +164,7 @@ def _run(bench: Bench, layers: list[str]) -> tuple[list[Finding], float]:
     begun = time.monotonic()
     findings: list[Finding] = []
     for layer in layers:
-        print(f"checking {layer} ...", file=sys.stderr, flush=True)
-        with shown_progress("engine runs") as bench.progress:
+        with shown_progress("engine runs", heading=f"checking {layer}") as bench.progress:
             of_layer = list(run_checks(bench, [layer]))
         print_layer(console, layer, of_layer)
         findings += of_layer

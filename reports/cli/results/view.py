@@ -29,6 +29,7 @@ Stored = Annotated[
 CaseName = Annotated[
     str | None, typer.Option("--case", help="Which case of the folder, where it has several.")
 ]
+Engine = Annotated[str | None, options.method(f"{options.ENGINES}. Default: the first of them.")]
 Open = Annotated[
     bool | None,
     typer.Option("--open/--no-open", help="Show it in the browser. Default: where there is a terminal."),
@@ -41,7 +42,7 @@ def view(
     problem: Problem,
     folder: Stored = None,
     case_name: CaseName = None,
-    engine: options.Engine = "mujoco",
+    engine: Engine = None,
     support: options.Support = "recess",
     time_step: options.TimeStep = None,
     setting: options.Settings = None,
@@ -52,7 +53,7 @@ def view(
 
     Without options: MuJoCo recess under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
-    Writes view.html, which needs nothing else and works offline.
+    Writes view.html, which needs nothing else and works offline, and what is on it as view.json.
     """
     with interruptible():
         with user_input():
@@ -65,7 +66,8 @@ def view(
                 raise ValueError("--case chooses from a folder, give the folder of a comparison as well")
             else:
                 case = problem.case()
-                (run,) = rc.with_settings(case, [rw.Run(engine, support, time_step)], settings(setting))
+                asked = rw.Run(engine or rw.multibody.DEFAULT_ENGINE, support, time_step)
+                (run,) = rc.with_settings(case, [asked], settings(setting))
                 require_feasible([case], [run])
                 rc.require_runnable(case, run)
                 name = case.name
@@ -76,13 +78,10 @@ def view(
             with user_input(), shown_progress() as tell:
                 comparison = rw.compare(case, runs=[run], progress=tell)
         with user_input():
-            from ...pages.comparison.report import view_page
+            from ...pages.comparison.view import save_view
 
-            page = view_page(comparison, name, command_line())
-            if page is None:
-                raise ValueError(f"there is nothing to play in {name!r}: the cylinder never uplifts")
-            rc.replace_files(out, {"view.html": page.html().encode()})
-    print(f"\nWritten to {out}: view.html")
+            written = save_view(out, comparison, name, command_line())
+    print(f"\nWritten to {out}: manifest.json, {', '.join(written)}")
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser
 

@@ -191,23 +191,3 @@ def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:
         for name, spec in specs.items()
         if spec is not None
     }
-
-
-def view_page(comparison: Comparison, name: str, command: str = "") -> Page | None:
-    """Return the page that plays one case of a comparison, None where nothing moves."""
-    (view,) = (view for view in case_views(comparison) if view.case.name == name)
-    spec = playback(view)
-    if spec is None:
-        return None
-    return Page(
-        name="view",
-        template="comparison/view",
-        values={
-            "name": name,
-            "lines": describe(view.case),
-            "findings": finding_sentences(view),
-            "command": command,
-            "versions": comparison.versions,
-        },
-        blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},
-    )

@@ -23,6 +23,11 @@ def sentence(template: str, macro: str, *values: object) -> str:
     return re.sub(r"[ \n]+", " ", said).strip()
 
 
+def lines(template: str, **values: object) -> list[str]:
+    """Return what a template says in a terminal, as plain text."""
+    return _environment(html=False).get_template(template).render(**values).splitlines()
+
+
 def fragment(template: str, **values: object) -> str:
     """Return a piece of a page, in which values are text and no markup."""
     return _environment(html=True).get_template(template).render(**values)

@@ -6,10 +6,12 @@ import numpy as np
 
 from rockwobble.models import Trace
 
-from .palette import GREY, ORDER, Style
-from .picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
+from ..palette import GREY, ORDER, Style
+from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
+from ..thinning import POINTS, kept_samples
 
 _PATH = Style(colour=ORDER[0])
+_JUMP = 0.5  # of b between two samples: in a near pass the point runs along the circle, not across it
 _CIRCLE = Style(colour=GREY, dash="dash")
 
 
@@ -17,7 +19,10 @@ def pictures(trace: Trace) -> list[Picture]:
     """Return tilt over alpha against time, and the contact point over b against the original circle."""
     cylinder = trace.case.cylinder
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
-    x, y = trace.contact_point.T / cylinder.base_radius
+    places = trace.contact_point / cylinder.base_radius
+    x, y = places[kept_samples(*places.T, points=POINTS // 2)].T  # a renderer leaves out no more of it
+    jumps = np.flatnonzero(np.hypot(np.diff(x), np.diff(y)) > _JUMP) + 1
+    x, y = (np.insert(each, jumps, np.nan) for each in (x, y))
     tilt: list[Layer] = [Line(x=trace.time, y=trace.tilt / cylinder.alpha, style=_PATH)]
     if trace.uplift_time > 0.0:
         tilt.append(Rule(at=trace.uplift_time, axis="x", text="uplift", side="right"))

@@ -1,0 +1,50 @@
+"""What the page of a run is given: its words are in the template runs/run.md.j2."""
+
+from __future__ import annotations
+
+import math
+
+from rockwobble.compare.storage.manifest import Manifest, Results
+from rockwobble.models import Trace
+
+from ...figures.runs.trace import pictures
+from ..page import Page
+from ..words.cases import describe
+from ..words.diagnostics import remarks
+
+
+def run_page(trace: Trace, manifest: Manifest) -> Page:
+    """Return the page of a run."""
+    values = {
+        "trace": trace,
+        "label": manifest.about["run"],
+        "lines": describe(trace.case),
+        "said": remarks(trace.diagnostics),
+        **_numbers(trace),
+        "about": manifest,
+    }
+    return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))
+
+
+def stored_page(results: Results) -> Page:
+    """Return the page of the run that is stored."""
+    return run_page(Trace.load(results.folder / "run.parquet"), results.manifest)
+
+
+def _numbers(trace: Trace) -> dict[str, object]:
+    """Return the main numbers, NaN or infinite where there is none."""
+    cylinder, held, engine = trace.case.cylinder, trace.assumptions, trace.run.engine is not None
+    return {
+        "alpha": cylinder.alpha,
+        "peak": trace.peak_tilt,
+        "end": float(trace.time[-1]),
+        "uplift": trace.uplift_time,
+        "closest": float(trace.passes["minimum_tilt"].min()) / cylinder.alpha,
+        "held": held,
+        "friction": held.largest_friction_needed if held else math.nan,
+        "moment": held.largest_restraining_moment if held else math.nan,
+        "engine": engine,
+        "moves": engine or trace.run.support != "recess",  # out of its place
+        "displacement": trace.residual_displacement / cylinder.base_radius,
+        "first_touch": trace.first("wall_contact"),
+    }

@@ -1,0 +1,137 @@
+"""The pages of single runs and sweeps: what they say, and that a stored folder draws them again."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from browser import complaints_of_all, needs_chromium
+
+import rockwobble as rw
+import rockwobble.compare as rc
+from rockwobble.compare.runs import execution
+from rockwobble.compare.storage.manifest import made_now
+from rockwobble.reports.cli.main import main
+from rockwobble.reports.figures.heat import Heat
+from rockwobble.reports.figures.runs import sweep as figure
+from rockwobble.reports.pages.page import Page
+from rockwobble.reports.pages.runs.run import run_page
+from rockwobble.reports.pages.runs.sweep import sweep_page
+
+PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0)
+GRID = rc.Grid(
+    semidiagonals=[1.0, 2.0, 20.0],
+    tan_alphas=[0.1, 0.2],
+    scales=[0.3, 1.0, 2.0],
+    motions=[rw.el_centro_1940()],
+)
+
+
+def page_of(case: rw.Case, run: rw.Run) -> Page:
+    settings = dict(run.settings)
+    trace = rw.simulate(case, engine=run.engine, support=run.support, time_step=run.time_step, **settings)
+    return run_page(trace, made_now("run", about={"run": str(run)}))
+
+
+def facts(page: Page) -> dict[str, str]:
+    rows = [line.strip("| ").split(" | ") for line in page.markdown().splitlines() if line.startswith("| ")]
+    return dict(rows[2:])
+
+
+@pytest.fixture(scope="module")
+def swept() -> dict[str, Page]:
+    cases = [rw.Case(PIER, initial=RELEASE.initial, duration=0.5 * n, name=f"{n}") for n in (1, 2)]
+    plans = {"grid": GRID, "cases": rc.CaseSweep(cases, [rw.Run(None, "recess"), rw.Run(None, "flat")])}
+    return {name: sweep_page(rw.sweep(plan, workers=1), made_now("sweep")) for name, plan in plans.items()}
+
+
+def test_a_run_says_what_its_method_gives_and_no_more():
+    shaken = rw.Case(PIER, rw.el_centro_1940(), duration=15.0)
+    said = facts(page_of(shaken, rw.Run(None, "recess")))
+    assert said["peak tilt"] == "0.2430 α = 2.7479 deg"
+    assert said["uplift"] == "2.0885 s towards 121.56 deg"
+    assert (said["passes"], said["end"], said["friction needed"]) == ("18", "15 s", "0.221")
+    assert {"closest pass", "restraining moment", "computing time"} < set(said)
+    assert not {"time step", "residual twist", "wall contact"} & set(said)
+    engine = facts(page_of(RELEASE, rw.Run("mujoco", "recess", 1e-3)))
+    assert engine["time step"] == "0.001 s"
+    assert {"residual twist", "residual displacement"} < set(engine)
+    assert not {"wall contact", "friction needed", "restraining moment", "closest pass"} & set(engine)
+
+
+def test_a_run_that_fails_or_falls_says_so():
+    steep = rw.Case(PIER, rw.el_centro_1940().scaled(5.0))
+    page = page_of(steep, rw.Run(None, "recess"))
+    assert facts(page)["peak tilt"].endswith("= 90.0000 deg")
+    assert facts(page)["friction needed"] == "contact lost"
+    assert "recess model: overturned\n\n**Contact is lost at 6.523 s" in page.markdown()
+    soft = rw.Run("mujoco", "recess", contact_damping_ratio=0.01)
+    assert facts(page_of(RELEASE, soft))["peak tilt"] == "unknown: the run failed"
+
+
+def test_a_sweep_counts_each_part(swept):
+    words = swept["grid"].markdown()
+    assert "18 runs from rest" in words
+    assert "| ground motion | model | tan α | runs | stood | rocked | overturned |" in words
+    assert words.count("| El Centro 1940 | recess |") == 2
+    words = swept["cases"].markdown()
+    assert "4 runs: 2 cases, 2 runs of each." in words
+    assert "| flat-ground model | 2 | 2 | 0.500 | 0.500 |" in words
+
+
+def test_a_map_has_a_cell_for_each_run_or_says_of_how_many(monkeypatch):
+    found = rw.sweep(GRID, workers=1)
+    own = found.table[found.table["tan_alpha"] == 0.1].set_index(["scale", "semidiagonal"])
+    (picture,) = figure.pictures(found)
+    heat = picture.panels[0].layers[0]
+    assert isinstance(heat, Heat)
+    for i, scale in enumerate(GRID.scales):
+        for j, size in enumerate(GRID.semidiagonals):
+            run = own.loc[scale, size]
+            moved = run["outcome"] not in ("stood", "overturned")
+            shown = heat.values[i, j]
+            assert shown == run["peak_tilt_over_alpha"] if moved else math.isnan(shown)
+    fell = sum(gap.cells for gap in heat.gaps if gap.name == "overturned")
+    assert np.count_nonzero(fell) == (own["outcome"] == "overturned").sum() > 0
+    monkeypatch.setattr(figure, "_MOST_CELLS", 4)
+    monkeypatch.setattr(figure, "_MOST_MAPS", 1)
+    (picture,) = figure.pictures(found)
+    assert picture.panels[0].layers[0].values.shape == (2, 2)
+    assert picture.caption.endswith("Of each 2 sizes and scales one is shown. The first 1 of 2 maps.")
+
+
+@pytest.mark.parametrize(
+    ("command", "names"),
+    [
+        (["simulate", "--release-tilt-deg", "5", "--duration", "1"], {"run.md", "run.html", "trace.svg"}),
+        (
+            ["sweep", "--semidiagonal", "1,6", "--scale", "0.3,2", "--workers", "1"],
+            {"sweep.md", "sweep.html", "sweep.svg"},
+        ),
+    ],
+)
+def test_a_stored_folder_draws_its_pages_again(tmp_path, monkeypatch, capsys, command, names):
+    monkeypatch.setattr(
+        execution, "run_tasks", lambda *given, **options: rc.run_tasks(*given, **options | {"workers": 1})
+    )
+    for arguments in ([*command, "--out", str(tmp_path / "made")], ["report", str(tmp_path / "made")]):
+        before = {path.name: path.read_bytes() for path in (tmp_path / "made").glob("*.*")}
+        with pytest.raises(SystemExit) as ended:
+            main(arguments)
+        assert ended.value.code == 0
+    after = {path.name: path.read_bytes() for path in (tmp_path / "made").glob("*.*")}
+    assert names < set(before)
+    assert after == before
+    assert "peak tilt" in capsys.readouterr().out
+
+
+@needs_chromium
+def test_pages_of_runs_are_drawn(swept, tmp_path: Path):
+    pages = [page_of(RELEASE, rw.Run(None, "recess")), swept["grid"]]
+    found = complaints_of_all([page.html() for page in pages], tmp_path, figures=2)
+    assert found == {0: [], 1: []}
+    (wrong,) = complaints_of_all([swept["cases"].html()], tmp_path, figures=1).values()
+    assert wrong == []
