@@ -273,5 +273,5 @@ def test_a_suite_that_is_expanded_wrong_is_found(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_sweep_that_mixes_its_rows_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    changed(monkeypatch, sweeps, "sweep", lambda table: table.iloc[::-1])
+    changed(monkeypatch, sweeps, "sweep", lambda found: replace(found, table=found.table.iloc[::-1]))
     assert len(failed_parts(sweeps)) == 3
