@@ -17,7 +17,7 @@ from .energy_watch import EnergyWatch
 from .forces import ForceSamples, first_grip, first_pull, force_of_steps
 from .passes import TurningPoint, turning_points
 from .rests import RestWatch
-from .uplift import UpliftWatch, sure_tilt
+from .uplift import UpliftWatch, begun_at, sure_tilt
 from .wall_watch import WallWatch
 
 Array = NDArray[np.float64]
@@ -143,8 +143,6 @@ class Recorder:
             wall = wall and Wall(wall.touching[inside], wall.force[inside], wall.depth[inside])
         if self._watch is not None and self.uplift is None:
             self.uplift = self._watch.watch(time, state.tilt, poses, after, acceleration)
-            if self.uplift is not None:
-                self._angle = self.uplift[1]  # of the azimuths a whole turn apart that of the uplift
         leans = state.tilt > self.floor
         angle = unwrap(
             state.azimuth,
@@ -153,6 +151,9 @@ class Recorder:
             self._angle,
             self._leans,
         )
+        if self._watch is not None and self.uplift is not None and leans.any():
+            angle = begun_at(self.uplift[1], angle, leans)
+            self._watch = None
         slip = self._slip(time, state)
         wall_contact, wall_impulse = self.walls.take(time, wall)
 

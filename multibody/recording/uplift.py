@@ -36,6 +36,13 @@ def sure_tilt(body: Body) -> float:
     return SURE_TILT * float(np.arctan(body.tan_alpha))
 
 
+def begun_at(direction: float, angle: Array, leans: NDArray[np.bool_]) -> Array:
+    """Return the rolling angle (n,) that begins, at the first lean, in the turn of the uplift's `direction`."""
+    first = int(np.argmax(leans))
+    turns = np.round((direction - angle[first]) / (2.0 * np.pi))
+    return np.where(np.arange(len(angle)) < first, angle, angle + 2.0 * np.pi * turns)
+
+
 class UpliftWatch:
     """Follows a standing cylinder chunk by chunk until it uplifts."""
 
