@@ -37,7 +37,7 @@ def sure_tilt(body: Body) -> float:
 
 
 def begun_at(direction: float, angle: Array, leans: NDArray[np.bool_]) -> Array:
-    """Return the rolling angle (n,) that begins, at the first lean, in the turn of the uplift's `direction`."""
+    """Return the rolling angle (n,) that begins, at the first lean, in the turn of `direction`."""
     first = int(np.argmax(leans))
     turns = np.round((direction - angle[first]) / (2.0 * np.pi))
     return np.where(np.arange(len(angle)) < first, angle, angle + 2.0 * np.pi * turns)
