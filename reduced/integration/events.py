@@ -197,7 +197,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
                 k = restarted(body, y_new, ground(a, slope, at), work)
         flat = is_flat(y) and is_flat(y_new)
         turn = turn_in(body, work, path, y, h, y_new)
-        if turn.kind != NO_TURN and not flat and turn.tilt <= 0.0:
+        if turn.kind != NO_TURN and not flat and min(turn.tilt, y_new[0]) <= 0.0:
             return Trial(REPEATED, h, _RETRY * h, count, y_new, k, path, turn, flat)
         return Trial(TAKEN, h, h_next, count, y_new, k, path, turn, flat)
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 
 SAMPLE = 0.001  # [s]
 STILL = 1e-8  # of the largest tilt rate
@@ -62,3 +62,16 @@ def test_a_block_that_lands_and_rises_within_one_step_is_seen_to_land() -> None:
     found = reduced.simulate(Case(Cylinder(semidiagonal=2.0, tan_alpha=0.1), along))
     assert found.outcome == "completed"
     assert cell == pytest.approx(found.peak_tilt, rel=1e-6)
+
+
+@pytest.mark.parametrize("rolling_rate", [1e-40, 1e-20, 1e-14])
+def test_a_hop_in_one_step_does_not_end_below_upright(rolling_rate: float) -> None:
+    """Between its two turning points the tilt passes close to zero, which spin keeps it from reaching."""
+    x = np.array([-17.1128, 0.2280, -10.5809])
+    release = InitialState(tilt=1.516939e-3, tilt_rate=-5.659764e-2, rolling_rate=rolling_rate)
+    cylinder = Cylinder(semidiagonal=7.566023, tan_alpha=0.2598229)
+    motion = GroundMotion(np.column_stack([x, 0.0 * x]), 0.1)
+    found = reduced.simulate(Case(cylinder, motion, initial=release, duration=0.2))
+    assert found.outcome == "completed"
+    assert found.tilt.min() > 0.0
+    assert found.passes["angle_of_turn"].tolist() == pytest.approx([3.2647283], abs=1e-6)

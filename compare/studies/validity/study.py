@@ -49,7 +49,8 @@ class Validity(Shown):
     records: str
 
     def _said(self) -> dict[str, str]:
-        return {"motions": self.records} | {name: f"{len(table)} rows" for name, table in self.tables.items()}
+        records, *_ = self.records.split(" (")  # and why these
+        return {"motions": records} | {name: f"{len(table)} rows" for name, table in self.tables.items()}
 
 
 def measure_all(
