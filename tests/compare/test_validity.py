@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ from rockwobble.compare.studies.validity.limits.distributions import cells, cont
 from rockwobble.compare.studies.validity.limits.engine import damping
 from rockwobble.compare.studies.validity.limits.needs import friction
 from rockwobble.compare.studies.validity.limits.numbers import first_failing, reached, up_to
-from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case
+from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case, source_of
 from rockwobble.compare.studies.validity.parts import PARTS, part_named
 from rockwobble.compare.studies.validity.records import HALVED, RECESS
 from rockwobble.compare.studies.validity.rings import FREE
@@ -242,4 +243,6 @@ def test_measures_of_limits() -> None:
 def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactory) -> None:
     found = tiny_validity(tmp_path_factory.getbasetemp())
     shows_itself(found, "motions ", "peaks 24 rows")
+    made_up = replace(found, records=source_of(["synthetic 1"]))  # as where the records are not installed
+    shows_itself(made_up, "motions synthetic records", "peaks 24 rows")
     assert found.plot("slip").axes
