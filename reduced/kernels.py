@@ -9,8 +9,9 @@ from rockwobble.models import Cylinder
 
 from ._compile import kernel
 from .body import Body, body_of
-from .integration.driver import make_driver, spin_momentum
+from .integration.driver import make_driver
 from .integration.march import March, Options
+from .integration.progress import spin_momentum
 from .integration.stepping import runge_kutta, taylor_series
 from .integration.systems import (
     FLAT,

@@ -36,6 +36,9 @@ class Turn(NamedTuple):
     angle: float  # rolling angle
 
 
+NONE = Turn(NO_TURN, 0.0, 0.0, 0.0)
+
+
 class Trial(NamedTuple):
     """A step that was tried."""
 
@@ -167,7 +170,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
     def turn_in(body: Body, work: NDArray[np.float64], path: Any, y: State, h: float, y_new: State) -> Turn:
         """Return the turning point of the tilt in a step from `y` to `y_new`."""
         if not y[1] * y_new[1] < 0.0:
-            return Turn(NO_TURN, 0.0, 0.0, 0.0)
+            return NONE
         at, tilt, angle = turning_point(body, work, path, y, h, y_new[1])
         return Turn(MAXIMUM if y[1] > 0.0 else MINIMUM, at, tilt, angle)
 
@@ -189,7 +192,7 @@ def make_events(system: System, stepper: Stepper) -> Events:
         """
         h, h_next, count, y_new, k, path = advance(body, rtol, y, k, work, h, length, a, slope)
         if h == 0.0:
-            return Trial(REPEATED, h, h_next, count, y_new, k, path, Turn(NO_TURN, 0.0, 0.0, 0.0), False)
+            return Trial(REPEATED, h, h_next, count, y_new, k, path, NONE, False)
         if y[1] * y_new[1] > 0.0 and y[1] * (y[1] + acceleration(work, path) * h) < 0.0:
             at = reversal(body, work, path, y, h, y_new[1])
             if at > 0.0:  # two turning points in one step: it ends between them

@@ -73,6 +73,7 @@ GROUPS = (
             "reduced/integration/events.py",
             "reduced/integration/log.py",
             "reduced/integration/march.py",
+            "reduced/integration/progress.py",
             "reduced/integration/recurrences.py",
             "reduced/integration/sampling.py",
             "reduced/integration/stepping.py",

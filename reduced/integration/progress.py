@@ -1,0 +1,212 @@
+"""How a run goes on: at rest to the end of a piece of the record or into an uplift, in motion by one step.
+
+What there is to list of it is left to the driver: a list that is handed on has its references counted in
+every step.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import pi
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .._compile import inlined, jit
+from ..body import Body
+from ..trigonometry import sin_cos
+from .endings import HALF_PI, may_sit_down, surely_overturns
+from .events import NONE, REPEATED, Turn, make_events
+from .march import COMPLETED, DECIDED, MAXIMUM, MINIMUM, OVER_BUDGET, OVERTURNED, STALLED, Options, Piece
+from .sampling import Wanted, make_sampling
+from .stepping import Stepper
+from .systems import System
+from .tsit5 import State, ground
+from .uplift import nearest_branch, start_length, started, uplift_in
+
+_LEAST_STEP = 1e-200  # a step that must be shorter fails whatever its length [s]
+_HAIR = 1e-6  # of 1/p; an uplift so near to the next sample leaves no more than its square
+
+
+@jit
+def spin_momentum(body: Body, theta: float, phi_rate: float) -> float:
+    """Return L = B phi' [m^2/s]."""
+    s, c = sin_cos(theta)
+    t = s / (1.0 + c)
+    return s * s * (body.J + (2.0 * body.E + body.C * t) * t) * phi_rate
+
+
+class Lift(NamedTuple):
+    """Uplift, or none, of a cylinder at rest within a piece of the record."""
+
+    stays: bool
+    at: float  # time of uplift since the beginning of the piece [s]
+    length: float  # for which the series of the uplift is used [s]
+    y: State  # after it
+
+
+class Moment(NamedTuple):
+    """A run between two steps, in a piece of the record."""
+
+    elapsed: float  # since the beginning of the piece [s]
+    y: State
+    k: State  # what the method of the steps left
+    h_next: float  # length proposed for the next step [s]
+    restart: bool  # the state or the forcing jumps here, so that `k` is made anew
+    resting: bool
+    peak: float  # largest tilt so far [rad]
+    sample: int  # the next one to fill in
+    step_count: int
+    status: int
+
+
+class Step(NamedTuple):
+    """One step of a run, and what there is to list of it."""
+
+    run: Moment  # after it
+    turn: Turn  # the turning point inside it
+    landing: Turn  # at its end
+
+
+@inlined
+def time_in(piece: Piece, elapsed: float) -> float:
+    """Return the time `elapsed` after the beginning of a piece, exactly its end where it is over [s]."""
+    return piece.finish if elapsed >= piece.length else piece.begin + elapsed
+
+
+class Progress(NamedTuple):
+    """The compiled functions that carry a run on."""
+
+    lifted: Callable[..., State]  # (body, time_step, piece, at, time, last)
+    lift_in: Callable[..., Lift]  # (body, rtol, time_step, piece, elapsed, y)
+    at_beginning: Callable[..., Moment]  # (run, jumps)
+    at_rest: Callable[..., Moment]  # (run)
+    stood: Callable[..., Moment]  # (body, time_step, piece, lift, wanted, run)
+    moved: Callable[..., Step]  # (body, options, piece, later, index, deciding, work, wanted, run)
+
+
+def make_progress(system: System, stepper: Stepper) -> Progress:
+    """Return what carries the runs of one model on by one method."""
+    _, restarted, _, partial, _ = stepper
+    tried, ending_of = make_events(system, stepper)
+    momenta = system.momenta
+    placed: Callable[..., State] = system.placed
+
+    @jit
+    def lifted(body: Body, time_step: float, piece: Piece, at: float, time: float, last: State) -> State:
+        """Return the state `time` after an uplift; `last` is the state in which it stood."""
+        theta, omega, angle, rate = started(body, time_step, piece.a, piece.slope, at, time)
+        return placed(last, theta, omega, nearest_branch(angle, last[2]), spin_momentum(body, theta, rate))
+
+    @inlined
+    def lift_in(body: Body, rtol: float, time_step: float, piece: Piece, elapsed: float, y: State) -> Lift:
+        """Return the uplift of a cylinder at rest after `elapsed` of a piece, if it does.
+
+        An uplift within a hair of the next sample is taken up there, already above the threshold,
+        however short that sample is.
+        """
+        wait = uplift_in(body, ground(piece.a, piece.slope, elapsed), piece.slope, piece.length - elapsed)
+        at = elapsed + wait
+        if wait < 0.0 or (at > 0.0 and piece.length - at < _HAIR / body.p):
+            return Lift(True, at, 0.0, y)
+        length = min(start_length(body, rtol, piece.a, piece.slope, at), piece.length - at)
+        return Lift(False, at, length, lifted(body, time_step, piece, at, length, y))
+
+    @inlined
+    def rebounded(y: State, restitution: float) -> State:
+        """Return the state after the base met the ground in planar motion: contact changes sides."""
+        opposite = y[2] + (-pi if y[2] > 0.0 else pi)
+        return placed(y, 0.0, restitution * abs(y[1]), opposite, 0.0)
+
+    sample_rest, sample_uplift, sample_step = make_sampling(lifted, partial)
+
+    @inlined
+    def at_beginning(run: Moment, jumps: bool) -> Moment:
+        """Return a run as it enters a piece; `jumps` says that the forcing does."""
+        _, y, k, h_next, restart, resting, peak, sample, step_count, status = run
+        return Moment(0.0, y, k, h_next, restart or jumps, resting, peak, sample, step_count, status)
+
+    @inlined
+    def falls(body: Body, y: State, later: NDArray[np.float64], index: int) -> bool:
+        """Return whether no ground motion to come can keep the side from the ground."""
+        outward = index < len(later) and y[0] > body.alpha and y[1] >= 0.0
+        return outward and surely_overturns(body, y[0], later[index, 0], body.g + later[index, 1])
+
+    @inlined
+    def at_rest(run: Moment) -> Moment:
+        """Return a run that stands from here on."""
+        elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
+        y = placed(y, 0.0, 0.0, y[2], 0.0)
+        return Moment(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
+
+    @inlined
+    def stood(body: Body, time_step: float, piece: Piece, lift: Lift, wanted: Wanted, run: Moment) -> Moment:
+        """Carry a cylinder at rest to the end of a piece, or as far as the series of its uplift reaches."""
+        _, y, k, h_next, restart, _, peak, sample, step_count, status = run
+        begin = piece.finish if lift.stays else piece.begin + lift.at
+        sample = sample_rest(wanted, sample, begin, y)
+        elapsed = piece.length if lift.stays else lift.at + lift.length
+        if lift.stays or lift.y[0] <= 0.0:  # or touched the threshold and fell back
+            return Moment(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
+        until = piece.begin + elapsed
+        sample = sample_uplift(wanted, sample, until, body, time_step, piece, lift.at, begin, y)
+        peak, h_next = max(peak, lift.y[0]), 0.1 * lift.length
+        return Moment(elapsed, lift.y, k, h_next, True, False, peak, sample, step_count, status)
+
+    @inlined
+    def moved(
+        body: Body,
+        options: Options,
+        piece: Piece,
+        later: NDArray[np.float64],
+        index: int,
+        deciding: bool,
+        work: NDArray[np.float64],
+        wanted: Wanted,
+        run: Moment,
+    ) -> Step:
+        """Take one step in the piece behind sample `index`, to an event at the most.
+
+        `deciding` says that the record is over, so that the next highest point tells that the cylinder
+        does not overturn.
+        """
+        elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
+        a = ground(piece.a, piece.slope, elapsed)
+        if restart:
+            k = restarted(body, y, a, work)
+        trial = tried(body, options.rtol, y, k, work, h_next, piece.length - elapsed, a, piece.slope)
+        k, h_next, step_count = trial.k, trial.h_next, step_count + trial.trials
+        restart, resting, turn, landing = False, False, NONE, NONE
+        if step_count > options.step_budget:
+            status = OVER_BUDGET
+        elif trial.verdict == REPEATED:
+            restart = trial.h > 0.0
+            status = STALLED if h_next < _LEAST_STEP and not restart else COMPLETED
+        elif falls(body, trial.y, later, index):
+            peak, status = HALF_PI, OVERTURNED
+        else:
+            ending = ending_of(body, work, y, trial)
+            begin = time_in(piece, elapsed)
+            elapsed = min(elapsed + ending.h, piece.length)
+            until = time_in(piece, elapsed)
+            sample = sample_step(wanted, sample, until, body, work, trial.path, begin, ending.y)
+            if ending.turns:
+                turn = trial.turn
+                peak = max(peak, turn.tilt)
+                status = DECIDED if deciding and turn.kind == MAXIMUM else COMPLETED
+            y, peak = ending.y, max(peak, ending.y[0])
+            if ending.overturns:
+                status = OVERTURNED
+            elif ending.lands:
+                landing = Turn(MINIMUM, ending.h, 0.0, y[2])
+                y, restart = rebounded(y, options.restitution), True
+                resting = y[1] == 0.0  # no speed is left: it stands, or lifts off again by (25) and (26)
+            if options.rest_tilt > 0.0 and not ending.overturns:
+                a = ground(piece.a, piece.slope, elapsed)
+                L, S = momenta(y)
+                resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)
+        after = Moment(elapsed, y, k, h_next, restart, resting, peak, sample, step_count, status)
+        return Step(after, turn, landing)
+
+    return Progress(lifted, lift_in, at_beginning, at_rest, stood, moved)
