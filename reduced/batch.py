@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion
 from rockwobble.models.cpus import usable_cpus
+from rockwobble.models.number_checks import quoted
 
 from .integration.march import OVERTURNED, March
 from .problem import REST_TILT, make_problem
@@ -122,7 +123,14 @@ def _peak(march: March) -> float:
 
 
 def _axis(name: str, values: ArrayLike) -> NDArray[np.float64]:
-    axis = np.asarray(values, dtype=np.float64)
-    if axis.ndim != 1 or not np.isfinite(axis).all() or (axis < 0.0).any():
-        raise ValueError(f"{name} must be a sequence of finite numbers, none negative, got {values!r}")
+    wanted = f"{name} must be a sequence of finite numbers, none negative, got"
+    try:
+        axis = np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"{wanted} {quoted(values)}") from None
+    if axis.ndim != 1:
+        raise ValueError(f"{wanted} {quoted(values)}")
+    wrong = np.flatnonzero(~(np.isfinite(axis) & (axis >= 0.0)))
+    if wrong.size:
+        raise ValueError(f"{wanted} {axis[wrong[0]]:g} at index {wrong[0]}")
     return axis

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.models.number_checks import quoted
 
 from . import kernels
 from .body import Body, body_of, restitution_from_momentum
@@ -230,19 +231,19 @@ def make_problem(
     """Check the options of a run and put them together; see `simulate`."""
     if support not in SUPPORTS:
         raise ValueError(f"support must be one of {', '.join(SUPPORTS)} for a reduced model, got {support!r}")
-    for name, value in (("rtol", rtol), ("rest_tilt", rest_tilt), ("plane", plane or 0.0)):
+    for name, value in (("rtol", rtol), ("rest_tilt", rest_tilt), ("plane", 0.0 if plane is None else plane)):
         if not isinstance(value, Real):
-            raise ValueError(f"{name} must be a number, got {value!r}")  # noqa: TRY004 (bad input)
+            raise ValueError(f"{name} must be a number, got {quoted(value)}")  # noqa: TRY004 (bad input)
     if not 1e-13 <= rtol <= 1e-2:
         raise ValueError(f"rtol must be from 1e-13 to 1e-2, got {rtol!r}")
     if not 0.0 <= rest_tilt <= LARGEST_REST_TILT:
         raise ValueError(f"rest_tilt must be from 0 (no rule) to 0.1 (of alpha), got {rest_tilt!r}")
     if plane is not None and not math.isfinite(plane):
         raise ValueError(f"plane must be a finite azimuth [rad], got {plane!r}")
-    if restitution == "momentum":
+    if isinstance(restitution, str) and restitution == "momentum":
         factor = restitution_from_momentum(case.cylinder)
-    elif isinstance(restitution, str) or not 0.0 <= restitution <= 1.0:
-        raise ValueError(f"restitution must be from 0 to 1 or 'momentum', got {restitution!r}")
+    elif not isinstance(restitution, Real) or not 0.0 <= restitution <= 1.0:
+        raise ValueError(f"restitution must be from 0 to 1 or 'momentum', got {quoted(restitution)}")
     else:
         factor = float(restitution)
     if plane is None and factor != 1.0:

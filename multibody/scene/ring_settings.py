@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
+from rockwobble.models.number_checks import quoted
+
 STEEPEST = 1.5  # [rad] a wall that leans further is a floor
 
 
@@ -80,4 +82,6 @@ def take_ring(
 def _require(name: str, value: Any, high: float, unit: str) -> None:
     number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
     if not (number and 0.0 <= value <= high):
-        raise ValueError(f"{name} must be from 0 to {high:g}{f' [{unit}]' if unit else ''}, got {value!r}")
+        raise ValueError(
+            f"{name} must be from 0 to {high:g}{f' [{unit}]' if unit else ''}, got {quoted(value)}"
+        )

@@ -106,8 +106,26 @@ def test_chatter_beyond_the_step_budget_is_masked():
 
 @pytest.mark.parametrize(
     ("sizes", "scales", "words"),
-    [([[1.0]], [1.0], "semidiagonals"), ([1.0], [-1.0], "scales"), ([0.0], [1.0], "semidiagonal")],
+    [
+        ([[1.0]], [1.0], "semidiagonals"),
+        ([1.0], [-1.0], "scales"),
+        ([0.0], [1.0], "semidiagonal"),
+        ([*300 * [1.0], math.nan], [1.0], "semidiagonals .* got nan at index 300$"),
+        ([1.0], 300 * ["a"], "scales .* got 300 items$"),
+    ],
 )
-def test_bad_axes_are_named(sizes, scales, words):
-    with pytest.raises(ValueError, match=words):
+def test_bad_axes_are_named_on_a_line(sizes, scales, words):
+    with pytest.raises(ValueError, match=words) as caught:
         reduced.peak_tilts(sizes, 0.1, EL_CENTRO, scales)
+    assert len(str(caught.value)) <= 110
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("name", ["rtol", "rest_tilt", "plane", "restitution", "sample_step"])
+@pytest.mark.parametrize("value", [np.ones(300), 300 * "q"])
+def test_an_option_that_is_no_number_is_told_on_a_line(name, value):
+    case = Case(Cylinder(semidiagonal=1.0, tan_alpha=0.1), duration=1.0)
+    with pytest.raises(ValueError, match=f"^{name} must be ") as caught:
+        reduced.simulate(case, **{name: value})
+    assert len(str(caught.value)) <= 110
+    assert "\n" not in str(caught.value)

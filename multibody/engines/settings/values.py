@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any, TypeVar
 
+from rockwobble.models.number_checks import quoted
+
 S = TypeVar("S")
 
 GUIDE = 0.2  # 2 h sqrt(stiffness of the guide): see `MujocoSettings.guide_stiffness`
@@ -30,7 +32,7 @@ def in_range(
     if not (number and value <= high and (value > low or (inclusive and value == low))):
         limit = "" if high == math.inf else f" and at most {high:g}"
         raise ValueError(
-            f"{name} must be {'at least' if inclusive else 'above'} {low:g}{limit}, got {value!r}"
+            f"{name} must be {'at least' if inclusive else 'above'} {low:g}{limit}, got {quoted(value)}"
         )
 
 
@@ -38,11 +40,11 @@ def whole(settings: object, name: str) -> None:
     """Refuse a setting that is no positive whole number."""
     value = getattr(settings, name)
     if type(value) is not int or value < 1:
-        raise ValueError(f"{name} must be a positive whole number, got {value!r}")
+        raise ValueError(f"{name} must be a positive whole number, got {quoted(value)}")
 
 
 def one_of(settings: object, name: str, allowed: tuple[Any, ...]) -> None:
     """Refuse a setting that is none of the values allowed."""
     value = getattr(settings, name)
     if value not in allowed:
-        raise ValueError(f"{name} must be one of {', '.join(map(str, allowed))}, got {value!r}")
+        raise ValueError(f"{name} must be one of {', '.join(map(str, allowed))}, got {quoted(value)}")
