@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.shown import Brief
-from rockwobble.multibody.engines.registry import engine_lack, standard_engines
+from rockwobble.multibody.engines.registry import engine_lack, own_engines, standard_engines
 
 from ..runs.choice import installed_engines
 from ..runs.execution import Job, simulate_all
@@ -63,6 +63,13 @@ class Bench(Brief):
     progress: ProgressCallback | None = None
     kept: dict[str, Trace] = field(default_factory=dict)
     engines: Sequence[str] = field(default_factory=lambda: ENGINES)
+
+    def further_engines(self) -> tuple[str, ...]:
+        """Return our other engines that are installed here; none where `engines` are not all the standard."""
+        standard = standard_engines()
+        if tuple(self.engines) != standard:
+            return ()
+        return tuple(name for name in own_engines() if name not in standard)
 
     def jobs(self) -> list[Job]:
         """Return every run of the suite, labelled as in tables."""

@@ -51,8 +51,28 @@ def test_traces_of_an_engine_hold(monkeypatch: pytest.MonkeyPatch, engine: str) 
     assert not [f"{f.name}: {f.value}" for f in findings if f.failed]
 
 
+@pytest.mark.parametrize("share", [1.0, 1.001])
+def test_an_engine_that_not_every_installation_has_is_held_too(
+    monkeypatch: pytest.MonkeyPatch, share: float
+) -> None:
+    pytest.importorskip("exudyn")
+
+    def run(case: Case, run: Run, **options: Any) -> Trace:
+        trace = once(case, run, **options)
+        return dataclasses.replace(trace, tilt_rate=share * trace.tilt_rate)
+
+    monkeypatch.setattr(traces, "simulate_run", run)
+    monkeypatch.setattr(traces, "engines_here", lambda among: ())
+    monkeypatch.setattr(bench, "own_engines", lambda: (*standard_engines(), "exudyn"))
+    found = [f for f in traces.check(made()) if f.outcome != NOT_RUN]
+    assert len(found) == 13
+    assert [f.part for f in found if f.failed] == ["tilt_rate of a trace of exudyn"] * (share != 1.0)
+    # a certificate of one engine has claims of no other
+    assert not list(traces.check(dataclasses.replace(made(), engines=())))
+
+
 def test_an_engine_that_is_not_installed_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    packages, find = engine_packages().values(), importlib.util.find_spec
+    packages, find = (*engine_packages().values(), "pydrake"), importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None if name in packages else find(name))
     found = list(run_checks(made(), ["traces"]))
     *missing, geometry = found

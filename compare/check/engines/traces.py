@@ -2,17 +2,21 @@
 
 Two short runs of each engine have all that a trace tells in them: a squat body with inertias of its own
 on ground that accelerates evenly in three components, and a standing pier on a ramp. Samples fall between
-the steps. The reduced models are held against the equations in the layers before.
+the steps. Engines that not every installation has run the beginning of the first, and the second: their
+steps cost up to twenty times as much. The reduced models are held against the equations in the layers
+before.
 """
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace
+from rockwobble.multibody.engines.registry import find_engine
 from rockwobble.multibody.scene.froude import default_step
 
 from ...runs.choice import own_model
@@ -36,6 +40,7 @@ SHAKEN = Case(
     friction=2.0,
     name="even acceleration in three components",
 )
+BEGINNING = dataclasses.replace(SHAKEN, duration=0.2)
 SAMPLE = 0.00437  # [s] no multiple of a step
 # a sample off by half a step, of 3.5e-5 s in MuJoCo, would be off by 2e-5 rad
 FIELDS: Mapping[str, Bound] = {
@@ -66,6 +71,7 @@ RAMP = Case(
 RISE = _contact(5e-5, "rad")  # 1e-5 was measured with PyBullet
 HIGHEST = Bound(0.0, "its last sample", "rad")
 UPLIFT, AZIMUTH = _contact(1e-6, "s"), _contact(1e-9, "rad")  # 1e-8 and 3e-15 were measured
+UPLIFT_FURTHER = _contact(2e-6, "s")  # 9e-7 was measured with Drake
 AT_REST = _contact(1e-6, "weights")
 RELEASE = released(0.3, 0.4, 1.9, name="release")  # one pass, at 0.1 alpha
 PEAK, PASS = _contact(1e-7, "rad"), _contact(1e-6, "s, rad")
@@ -78,22 +84,29 @@ def check(bench: Bench) -> Iterator[Finding]:
     yield from not_here("fields of a trace", bench.engines)
     for engine in engines_here(bench.engines):
         for support in ("recess", "flat"):
-            yield from _shaken(bench, bench.adjust(_run(engine, support, SHAKEN)))
-        yield from _uplift(bench, engine)
+            yield from _shaken(bench, SHAKEN, bench.adjust(_run(engine, support, SHAKEN)))
+        yield from _uplift(bench, engine, UPLIFT)
         yield from _passes(bench, engine)
         yield _slides(bench, engine)
+    for engine in bench.further_engines():
+        backend = find_engine(engine)
+        for support in ("recess", "flat"):
+            if support in backend.supports:
+                yield from _shaken(bench, BEGINNING, bench.adjust(_run(engine, support, BEGINNING)))
+        if backend.uplifts:
+            yield from _uplift(bench, engine, UPLIFT_FURTHER)
 
 
 def _run(engine: str, support: str, case: Case) -> Run:
     return Run(engine, support, 0.5 * default_step(case.cylinder.semidiagonal, case.gravity))
 
 
-def _shaken(bench: Bench, run: Run) -> Iterator[Finding]:
-    trace = simulate_run(SHAKEN, run, sample_step=SAMPLE)
+def _shaken(bench: Bench, case: Case, run: Run) -> Iterator[Finding]:
+    trace = simulate_run(case, run, sample_step=SAMPLE)
     if trace.outcome == "failed":
         yield _failed(str(run), trace)
         return
-    model = bench.solve(SHAKEN, own_model(run).support, rtol=1e-11, sample_step=SAMPLE)
+    model = bench.solve(case, own_model(run).support, rtol=1e-11, sample_step=SAMPLE)
     whole = len(trace.time) == len(model.time)
 
     def same(name: str, own: Array, other: Array, bound: Bound, more: str = "") -> Finding:
@@ -131,7 +144,7 @@ def _shaken(bench: Bench, run: Run) -> Iterator[Finding]:
     )
 
 
-def _uplift(bench: Bench, engine: str) -> Iterator[Finding]:
+def _uplift(bench: Bench, engine: str, latest: Bound) -> Iterator[Finding]:
     run = bench.adjust(Run(engine, "recess"))
     trace = simulate_run(RAMP, run, sample_step=0.05)
     if trace.outcome == "failed":
@@ -139,7 +152,7 @@ def _uplift(bench: Bench, engine: str) -> Iterator[Finding]:
         return
     vertical = ", or its vertical component"
     late = abs(trace.uplift_time - 0.8 / 2.5)
-    yield at_most(f"instant of uplift, {engine}", late, UPLIFT, f"uplift of a trace of {engine}{vertical}")
+    yield at_most(f"instant of uplift, {engine}", late, latest, f"uplift of a trace of {engine}{vertical}")
     off = abs(math.remainder(trace.uplift_direction - math.atan2(-1.2, 1.6), 2.0 * math.pi))
     yield at_most(f"azimuth of uplift, {engine}", off, AZIMUTH, f"azimuth of uplift of a trace of {engine}")
     model = bench.solve(RAMP, rtol=1e-11, sample_step=0.05)
