@@ -236,9 +236,10 @@ def _early_rows() -> dict[str, float]:
     for when, said in ((1.0, "after it touched a wall"), (4.0, "earlier")):
         touch = Diagnostic(code="wall_contact", time=when, duration=0.1, size=1.0)
         tilt = reference.tilt + 0.1 * ALPHA * (TIME > 2.0)
-        trial = made(TIME, tilt, facts=(touch,))
+        trial = made(TIME, tilt, facts=(touch,), rolling_angle=5.0 * (TIME > 2.5))
         row = summary_row(case, "recess model", reference, "made", trial, prediction=expected)
         off[f"left {said}"] = float(row["divergence"] != said)
+        off[f"turned since it left {said}"] = numbers_of(row)["turn_difference"]
     return off
 
 

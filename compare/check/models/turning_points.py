@@ -34,11 +34,20 @@ PEAK = Bound(1e-10, "the highest turning point of the samples", "rad")
 LISTED = Bound(0.0, "every change of direction of the samples is a turning point")
 HIGHEST = Bound(0.0, "no sample is higher than the peak", "alpha")
 PASSES = Bound(1e-6, "minima between two maxima, and the turn from one to the other", "s, rad")
+WAY = Bound(1e-9, "the azimuth of the shaking, or the opposite one", "rad")
 SHAKEN = polyline(
     [0.0, 0.5, 1.0, 1.5, 2.0],
     np.array([[0.0, 0.0, 0.0], [1.5, 1.1, 0.2], [-1.0, 1.0, -0.3], [0.8, -0.9, 0.2], [0.0, 0.0, 0.0]])
     * THRESHOLD,
     0.5,
+)
+_AZIMUTH = 0.6  # [rad] of shaking in a plane
+_ALONG = Case(
+    PIER,
+    GroundMotion(
+        THRESHOLD * np.outer([0.0, 1.6, -1.3, 0.9, 0.0], [math.cos(_AZIMUTH), math.sin(_AZIMUTH)]), 0.5
+    ),
+    duration=6.0,
 )
 
 
@@ -55,6 +64,18 @@ def check(bench: Bench) -> Iterator[Finding]:
         yield from _one(name, bench.solve(case, model, sample_step=_SAMPLE, rtol=1e-11, rest_tilt=0.0))
     for model in MODELS:
         yield from _rough(bench, model)
+    for model, options in (("recess", {}), ("planar", {"plane": _AZIMUTH})):
+        yield _in_plane(bench.solve(_ALONG, model, **options), model)
+
+
+def _in_plane(found: Trace, model: str) -> Finding:
+    """Shaking along one azimuth: every turning point leans that way or the other, and so does the uplift."""
+    time, _, angle, kind = found.extrema.T
+    away = np.sin(np.append(angle, found.uplift_direction) - _AZIMUTH)
+    listed = len(time) > 2 and bool((np.abs(kind) == 1.0).all())
+    name = f"azimuth of turning points, shaken in a plane, {model}"
+    part = "turning points or uplift: azimuth of the plane of motion"
+    return at_most(name, largest(away) if listed else math.nan, WAY, part, f"{len(time)} of them")
 
 
 def _rough(bench: Bench, model: str) -> Iterator[Finding]:
@@ -74,7 +95,7 @@ def _rough(bench: Bench, model: str) -> Iterator[Finding]:
 
 def _one(name: str, found: Trace) -> Iterator[Finding]:
     turns = _turns(found)
-    rows = found.extrema[found.extrema[:, 0] > 0.0]
+    rows = found.extrema
     same = len(rows) == len(turns) > 2 and bool((rows[:, 3] == turns[:, 3]).all())
     note = f"{len(turns)} of them" if same else f"{len(rows)} where the samples have {len(turns)}"
     for column, (what, bound) in enumerate(COLUMNS.items()):
