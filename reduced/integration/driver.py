@@ -33,7 +33,7 @@ from .march import (
     piece_of_record,
     write,
 )
-from .progress import Moment, make_progress, time_in
+from .progress import Stage, make_progress, time_in
 from .stepping import Stepper
 from .systems import System
 from .tsit5 import State
@@ -87,7 +87,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         resting = initial[0] == 0.0
         uplift = (np.nan, np.nan) if resting else (0.0, initial[2])  # time and direction
         h_next = _FIRST_STEP / body.p
-        run = Moment(0.0, initial, initial, h_next, True, resting, initial[0], _FIRST_SAMPLE, 0, COMPLETED)
+        run = Stage(0.0, initial, initial, h_next, True, resting, initial[0], _FIRST_SAMPLE, 0, COMPLETED)
         now, index = 0.0, 0
         end, deciding, mark = options.duration, False, mark_of(run.y, run.peak, log)
 

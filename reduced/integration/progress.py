@@ -46,7 +46,7 @@ class Lift(NamedTuple):
     y: State  # after it
 
 
-class Moment(NamedTuple):
+class Stage(NamedTuple):
     """A run between two steps, in a piece of the record."""
 
     elapsed: float  # since the beginning of the piece [s]
@@ -64,7 +64,7 @@ class Moment(NamedTuple):
 class Step(NamedTuple):
     """One step of a run, and what there is to list of it."""
 
-    run: Moment  # after it
+    run: Stage  # after it
     turn: Turn  # the turning point inside it
     landing: Turn  # at its end
 
@@ -80,9 +80,9 @@ class Progress(NamedTuple):
 
     lifted: Callable[..., State]  # (body, time_step, piece, at, time, last)
     lift_in: Callable[..., Lift]  # (body, rtol, time_step, piece, elapsed, y)
-    at_beginning: Callable[..., Moment]  # (run, jumps)
-    at_rest: Callable[..., Moment]  # (run)
-    stood: Callable[..., Moment]  # (body, time_step, piece, lift, wanted, run)
+    at_beginning: Callable[..., Stage]  # (run, jumps)
+    at_rest: Callable[..., Stage]  # (run)
+    stood: Callable[..., Stage]  # (body, time_step, piece, lift, wanted, run)
     moved: Callable[..., Step]  # (body, options, piece, later, index, deciding, work, wanted, run)
 
 
@@ -122,10 +122,10 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     sample_rest, sample_uplift, sample_step = make_sampling(lifted, partial)
 
     @inlined
-    def at_beginning(run: Moment, jumps: bool) -> Moment:
+    def at_beginning(run: Stage, jumps: bool) -> Stage:
         """Return a run as it enters a piece; `jumps` says that the forcing does."""
         _, y, k, h_next, restart, resting, peak, sample, step_count, status = run
-        return Moment(0.0, y, k, h_next, restart or jumps, resting, peak, sample, step_count, status)
+        return Stage(0.0, y, k, h_next, restart or jumps, resting, peak, sample, step_count, status)
 
     @inlined
     def falls(body: Body, y: State, later: NDArray[np.float64], index: int) -> bool:
@@ -134,25 +134,25 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         return outward and surely_overturns(body, y[0], later[index, 0], body.g + later[index, 1])
 
     @inlined
-    def at_rest(run: Moment) -> Moment:
+    def at_rest(run: Stage) -> Stage:
         """Return a run that stands from here on."""
         elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
         y = placed(y, 0.0, 0.0, y[2], 0.0)
-        return Moment(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
+        return Stage(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
 
     @inlined
-    def stood(body: Body, time_step: float, piece: Piece, lift: Lift, wanted: Wanted, run: Moment) -> Moment:
+    def stood(body: Body, time_step: float, piece: Piece, lift: Lift, wanted: Wanted, run: Stage) -> Stage:
         """Carry a cylinder at rest to the end of a piece, or as far as the series of its uplift reaches."""
         _, y, k, h_next, restart, _, peak, sample, step_count, status = run
         begin = piece.finish if lift.stays else piece.begin + lift.at
         sample = sample_rest(wanted, sample, begin, y)
         elapsed = piece.length if lift.stays else lift.at + lift.length
         if lift.stays or lift.y[0] <= 0.0:  # or touched the threshold and fell back
-            return Moment(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
+            return Stage(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
         until = piece.begin + elapsed
         sample = sample_uplift(wanted, sample, until, body, time_step, piece, lift.at, begin, y)
         peak, h_next = max(peak, lift.y[0]), 0.1 * lift.length
-        return Moment(elapsed, lift.y, k, h_next, True, False, peak, sample, step_count, status)
+        return Stage(elapsed, lift.y, k, h_next, True, False, peak, sample, step_count, status)
 
     @inlined
     def moved(
@@ -164,7 +164,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         deciding: bool,
         work: NDArray[np.float64],
         wanted: Wanted,
-        run: Moment,
+        run: Stage,
     ) -> Step:
         """Take one step in the piece behind sample `index`, to an event at the most.
 
@@ -206,7 +206,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
                 a = ground(piece.a, piece.slope, elapsed)
                 L, S = momenta(y)
                 resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)
-        after = Moment(elapsed, y, k, h_next, restart, resting, peak, sample, step_count, status)
+        after = Stage(elapsed, y, k, h_next, restart, resting, peak, sample, step_count, status)
         return Step(after, turn, landing)
 
     return Progress(lifted, lift_in, at_beginning, at_rest, stood, moved)
