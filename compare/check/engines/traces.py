@@ -74,6 +74,11 @@ UPLIFT, AZIMUTH = _contact(1e-6, "s"), _contact(1e-9, "rad")  # 1e-8 and 3e-15 w
 UPLIFT_FURTHER = _contact(2e-6, "s")  # 9e-7 was measured with Drake
 AT_REST = _contact(1e-6, "weights")
 RELEASE = released(0.3, 0.4, 1.9, name="release")  # one pass, at 0.1 alpha
+# smaller than the size at which the engines run every scene, as in `_slides`
+LANDING = Case(
+    Cylinder(semidiagonal=1.5, tan_alpha=0.2), initial=InitialState(0.06), duration=0.9, name="lands"
+)
+FLAT_ON_THE_GROUND = _contact(1e-6, "s")
 PEAK, PASS = _contact(1e-7, "rad"), _contact(1e-6, "s, rad")
 ENDS = _contact(0.0, "")
 SLIDE = Bound(0.05, "closed form; contact chatters as it slides: 0.01 and 0.03 were measured")
@@ -87,6 +92,7 @@ def check(bench: Bench) -> Iterator[Finding]:
             yield from _shaken(bench, SHAKEN, bench.adjust(_run(engine, support, SHAKEN)))
         yield from _uplift(bench, engine, UPLIFT)
         yield from _passes(bench, engine)
+        yield _lands(bench, engine)
         yield _slides(bench, engine)
     for engine in bench.further_engines():
         backend = find_engine(engine)
@@ -187,6 +193,15 @@ def _passes(bench: Bench, engine: str) -> Iterator[Finding]:
         f"turning points of a trace of {engine}",
         f"{len(own)} passes, {len(other)} of the model",
     )
+
+
+def _lands(bench: Bench, engine: str) -> Finding:
+    """A release without spin: its base meets the ground, which is a pass nearer than contact resolves."""
+    (trace,) = bench.traces([Job(case=LANDING, run=bench.adjust(Run(engine, "recess")))])
+    landing = bench.solve(LANDING, "planar").extrema[1, 0]
+    late = abs(trace.first("unresolved_pass") - landing)
+    part = f"turning points or diagnostics of a trace of {engine}: the first pass that is not resolved"
+    return at_most(f"first pass that is not resolved, {engine}", late, FLAT_ON_THE_GROUND, part)
 
 
 def _slides(bench: Bench, engine: str) -> Finding:
