@@ -202,7 +202,7 @@ def unwrap(
     momentum: Callable[[NDArray[np.intp]], Array],
     meaningful: NDArray[np.bool_],
     before: float,
-    leant_before: bool = True,
+    leant_before: bool,
 ) -> Array:
     """Return the rolling angle without jumps, going on from `before` [rad].
 

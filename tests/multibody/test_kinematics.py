@@ -126,20 +126,20 @@ def test_rolling_angle_goes_on_the_way_of_the_momentum(way: float, turn_in_step:
     steady = np.array([0.1, 0.2, 0.3])
     angle = way * np.concatenate([steady, steady[-1] + turn_in_step + steady])
     wrapped = np.angle(np.exp(1j * angle))
-    unwrapped = unwrap(wrapped, lambda at: np.full(len(at), way), np.ones(len(angle), dtype=bool), 0.0)
+    unwrapped = unwrap(wrapped, lambda at: np.full(len(at), way), np.ones(len(angle), dtype=bool), 0.0, True)
     np.testing.assert_allclose(unwrapped, angle, atol=1e-12)
 
 
 def test_a_small_step_back_is_not_a_whole_turn() -> None:
     # under excitation momentum and angle may disagree for a step: only large changes are ambiguous
     always = np.array([True, True])
-    np.testing.assert_allclose(unwrap(np.array([0.2, 0.1]), _forward, always, 0.15), [0.2, 0.1])
+    np.testing.assert_allclose(unwrap(np.array([0.2, 0.1]), _forward, always, 0.15, True), [0.2, 0.1])
 
 
 def test_the_angle_waits_while_the_cylinder_stands() -> None:
     azimuth = np.array([0.5, 2.0, -2.9, 1.0, -1.0, 0.7])
     leans = np.array([True, False, False, False, True, True])
-    found = unwrap(azimuth, _forward, leans, 0.4)
+    found = unwrap(azimuth, _forward, leans, 0.4, True)
     np.testing.assert_allclose(found, [0.5, 0.5, 0.5, 0.5, -1.0, 0.7])
 
 
@@ -148,9 +148,9 @@ def test_the_angle_goes_on_over_chunks(edge: int) -> None:
     # it stands, leans to the other side, and turns by more than a quarter at the upright position
     azimuth = np.array([0.5, 2.0, -2.9, 1.0, -2.4, 2.6, 2.7])
     leans = np.array([True, False, False, False, True, True, True])
-    whole = unwrap(azimuth, _forward, leans, 0.4)
+    whole = unwrap(azimuth, _forward, leans, 0.4, True)
     np.testing.assert_allclose(whole[3:], [0.5, -2.4, 2.6 - 2.0 * np.pi, 2.7 - 2.0 * np.pi])
-    first = unwrap(azimuth[:edge], _forward, leans[:edge], 0.4)
+    first = unwrap(azimuth[:edge], _forward, leans[:edge], 0.4, True)
     second = unwrap(azimuth[edge:], _forward, leans[edge:], first[-1], bool(leans[edge - 1]))
     np.testing.assert_allclose(np.append(first, second), whole)
 
