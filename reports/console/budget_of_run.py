@@ -14,11 +14,11 @@ def budget_of_run(case: rw.Case, run: rw.Run, reference: rw.Run) -> list[str]:
     """Return the lines; they rest on runs at finer time steps, made here."""
     comparison = rw.compare(case, runs=[run], budget=True)
     budget = next((found for key, found in comparison.budgets.items() if key[2] == str(reference)), None)
-    summary = comparison.summary
+    rows = comparison.summary[comparison.summary["reference"] == str(reference)]
     return lines(
         "comparison/budget_of_run.txt.j2",
         budget=budget,
-        row=summary[summary["reference"] == str(reference)].iloc[0],
+        row=next(rows.itertuples(), None),  # a reference that is not its own has none
         share=100.0 * COVERED,
         largest=budget and max(_PARTS, key=budget.rms),
     )

@@ -124,8 +124,10 @@ def peak_map(x: Array, y: Array, tilt: Array, fell: NDArray[np.bool_]) -> Heat:
 
 
 def names(values: Sequence[object]) -> tuple[Array, list[tuple[float, str]]]:
-    """Return places 0, 1, 2, ... for values, and the ticks that name them."""
-    said = [f"{value:.4g}" if isinstance(value, float) else str(value) for value in values]
+    """Return places 0, 1, 2, ... for values, and the ticks that name them, in digits that tell them apart."""
+    numbers = {value for value in values if isinstance(value, float)}
+    digits = next(n for n in range(4, 18) if len({f"{value:.{n}g}" for value in numbers}) == len(numbers))
+    said = [f"{value:.{digits}g}" if isinstance(value, float) else str(value) for value in values]
     places = np.arange(len(said), dtype=np.float64)
     return places, [(float(place), name) for place, name in zip(places, said, strict=True)]
 

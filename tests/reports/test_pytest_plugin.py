@@ -89,6 +89,14 @@ def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite, in_
     )
 
 
+def test_a_run_held_against_another_model_than_it_is_compared_with_says_what_failed(
+    suite, in_this_process
+) -> None:
+    result = suite(bounded('tilt_rms = 1e-12\nreference = "flat"')).runpytest("-k", "alpha and 1 and recess")
+    result.stdout.fnmatch_lines(["*against flat: tilt_rms: measured *at most 1e-12*", "There is no budget *"])
+    assert "Error" not in result.stdout.str()
+
+
 def test_the_budget_can_be_left_out(suite) -> None:
     pytester = suite(bounded("tilt_rms = 1e-12"))
     result = pytester.runpytest("-k", "0.2 and recess", "--no-rockwobble-budget")

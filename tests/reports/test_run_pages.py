@@ -16,6 +16,7 @@ from rockwobble.compare.storage.manifest import made_now
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat
 from rockwobble.reports.figures.runs import sweep as figure
+from rockwobble.reports.figures.runs import trace as trace_figure
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.runs.run import run_page
 from rockwobble.reports.pages.runs.sweep import sweep_page
@@ -59,6 +60,7 @@ def test_a_run_says_what_its_method_gives_and_no_more():
     engine = facts(page_of(RELEASE, rw.Run("mujoco", "recess", 1e-3)))
     assert engine["time step"] == "0.001 s"
     assert {"residual twist", "residual displacement"} < set(engine)
+    assert "uplift" not in engine  # a release leans from the start
     assert not {"wall contact", "friction needed", "restraining moment", "closest pass"} & set(engine)
 
 
@@ -100,7 +102,38 @@ def test_a_map_has_a_cell_for_each_run_or_says_of_how_many(monkeypatch):
     monkeypatch.setattr(figure, "_MOST_MAPS", 1)
     (picture,) = figure.pictures(found)
     assert picture.panels[0].layers[0].values.shape == (2, 2)
-    assert picture.caption.endswith("Of each 2 sizes and scales one is shown. The first 1 of 2 maps.")
+    assert picture.caption.endswith(
+        "Of the sizes one in 2 is shown. Of the scales one in 2 is shown. The first 1 of 2 maps."
+    )
+
+
+def test_a_short_axis_keeps_its_values_beside_a_long_one():
+    assert (figure._step(21_000, 2), figure._step(2, 21_000)) == (3, 1)
+    assert (figure._step(1_000, 1_000), figure._step(141, 141)) == (8, 1)
+
+
+def test_uneven_sizes_stand_side_by_side_and_close_ones_are_told_apart():
+    many = [*range(1, 14), 80.0, 200.0]
+    places, axis = figure._axis(np.array(many), "R", "m")
+    assert list(places) == list(range(15))
+    assert [name for _, name in axis.ticks] == ["1", "3", "5", "7", "9", "11", "13", "200"]
+    places, axis = figure._axis(np.linspace(1.0, 7.0, 13), "R", "m")
+    assert (places[1], axis.ticks) == (1.5, ())
+    _, axis = figure._axis(np.array([6.00001, 6.00002]), "R", "m")
+    assert [name for _, name in axis.ticks] == ["6.00001", "6.00002"]
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+def test_a_path_is_parted_where_it_jumps_and_nowhere_else(support: str):
+    trace = rw.simulate(rw.Case(PIER, rw.el_centro_1940()), support=support)
+    places = trace.contact_point / PIER.base_radius
+    away = np.hypot(*np.diff(places, axis=0).T)
+    x, y = (trace_figure._path(places)).T
+    gap = np.isnan(x)
+    assert np.count_nonzero(gap[1:] & ~gap[:-1]) == np.count_nonzero(away > 0.5) + np.isnan(places[0, 0]) - 1
+    drawn = np.hypot(np.diff(x), np.diff(y))
+    assert np.nanmax(drawn) <= 0.5 + 2.0 * np.nanmax(away[away <= 0.5])
+    assert len(x) < len(places)
 
 
 @pytest.mark.parametrize(

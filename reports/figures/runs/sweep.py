@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from itertools import islice
 
+import numpy as np
 import pandas as pd
 
 from rockwobble.compare import Sweep
@@ -26,9 +27,11 @@ def pictures(found: Sweep) -> list[Picture]:
 
 def _maps(found: Sweep) -> Picture:
     parts = found.table.groupby(found.keys, sort=False)
-    step = math.ceil(math.sqrt(len(found.table) / len(parts) / _MOST_CELLS))
-    panels = [_map(own, step) for _, own in islice(parts, _MOST_MAPS)]
-    left_out = f" Of each {step} sizes and scales one is shown." if step > 1 else ""
+    sizes, scales = (found.table[name].nunique() for name in ("semidiagonal", "scale"))
+    steps = _step(sizes, scales), _step(scales, sizes)
+    panels = [_map(own, *steps) for _, own in islice(parts, _MOST_MAPS)]
+    thinned = zip(("sizes", "scales"), steps, strict=True)
+    left_out = "".join(f" Of the {what} one in {step} is shown." for what, step in thinned if step > 1)
     left_out += f" The first {_MOST_MAPS} of {len(parts)} maps." if len(parts) > _MOST_MAPS else ""
     return Picture(
         name="sweep",
@@ -41,16 +44,22 @@ def _maps(found: Sweep) -> Picture:
     )
 
 
-def _map(own: pd.DataFrame, step: int) -> Panel:
+def _step(count: int, other: int) -> int:
+    """Return of how many values of an axis one is shown, beside `other` values of the other axis."""
+    side = math.isqrt(_MOST_CELLS)
+    return math.ceil(count * min(max(other, 1), side) / _MOST_CELLS) if count > side else 1
+
+
+def _map(own: pd.DataFrame, step_x: int, step_y: int) -> Panel:
     first = own.iloc[0]
     # one row a cell, as in every map
     tilts, outcomes = (
         own.pivot(index="scale", columns="semidiagonal", values=value)  # noqa: PD010
         for value in ("peak_tilt_over_alpha", "outcome")
     )
-    tilts, outcomes = tilts.iloc[::step, ::step], outcomes.iloc[::step, ::step]
-    x, x_axis = _axis(tilts.columns, "R", "m")
-    y, y_axis = _axis(tilts.index, "scale of the record", "-")
+    tilts, outcomes = (each.iloc[::step_y, ::step_x] for each in (tilts, outcomes))
+    x, x_axis = _axis(tilts.columns.to_numpy(float), "R", "m")
+    y, y_axis = _axis(tilts.index.to_numpy(float), "scale of the record", "-")
     return Panel(
         x=x_axis,
         y=y_axis,
@@ -60,22 +69,25 @@ def _map(own: pd.DataFrame, step: int) -> Panel:
     )
 
 
-def _axis(values: pd.Index, label: str, unit: str) -> tuple[Array, Axis]:
-    """Return the places of values and their axis: few are named, side by side."""
-    known = values.to_numpy(float)
-    places, ticks = names(known.tolist()) if len(known) <= _NAMED else (known, [])
-    return places, Axis(label=label, unit=unit, ticks=ticks)
+def _axis(values: Array, label: str, unit: str) -> tuple[Array, Axis]:
+    """Return the places of values and their axis: few or uneven ones stand side by side and are named."""
+    steps = np.diff(values)
+    if len(values) > _NAMED and np.allclose(steps, steps[0]):
+        return values, Axis(label=label, unit=unit)
+    places, ticks = names(values.tolist())
+    return places, Axis(label=label, unit=unit, ticks=ticks[:: math.ceil(len(ticks) / _NAMED)])
 
 
 def _distributions(table: pd.DataFrame) -> Picture:
     members = table.drop(columns="peak_tilt").rename(
         columns={"run": "method", "case": "member", "peak_tilt_over_alpha": "peak_tilt"}
     )
+    overturned = (members["outcome"] == "overturned").any()
     models = members.loc[members["engine"] == REDUCED, "method"].unique()
     return Picture(
         name="sweep",
         title="Distributions of peak tilt over the cases, by run",
-        caption="Share of the cases whose peak tilt is at most that of the axis; what a curve lacks to 1 at "
-        "the triangle overturns.",
+        caption="Share of the cases whose peak tilt is at most that of the axis"
+        + ("; what a curve lacks to 1 at the triangle overturns." if overturned else "."),
         panels=[distributions(members, list(models), "cases")],
     )

@@ -7,11 +7,11 @@ import numpy as np
 from rockwobble.models import Trace
 
 from ..palette import GREY, ORDER, Style
-from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
-from ..thinning import POINTS, kept_samples
+from ..picture import TILT, TIME, Array, Axis, Layer, Line, Panel, Picture, Rule
 
 _PATH = Style(colour=ORDER[0])
 _JUMP = 0.5  # of b between two samples: in a near pass the point runs along the circle, not across it
+_APART = 0.1  # of b between points that are drawn
 _CIRCLE = Style(colour=GREY, dash="dash")
 
 
@@ -19,10 +19,7 @@ def pictures(trace: Trace) -> list[Picture]:
     """Return tilt over alpha against time, and the contact point over b against the original circle."""
     cylinder = trace.case.cylinder
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
-    places = trace.contact_point / cylinder.base_radius
-    x, y = places[kept_samples(*places.T, points=POINTS // 2)].T  # a renderer leaves out no more of it
-    jumps = np.flatnonzero(np.hypot(np.diff(x), np.diff(y)) > _JUMP) + 1
-    x, y = (np.insert(each, jumps, np.nan) for each in (x, y))
+    x, y = _path(trace.contact_point / cylinder.base_radius).T
     tilt: list[Layer] = [Line(x=trace.time, y=trace.tilt / cylinder.alpha, style=_PATH)]
     if trace.uplift_time > 0.0:
         tilt.append(Rule(at=trace.uplift_time, axis="x", text="uplift", side="right"))
@@ -44,3 +41,15 @@ def pictures(trace: Trace) -> list[Picture]:
     title = f"{trace.case.name}, {trace.run}"
     caption = "Tilt of the axis in units of alpha, and where the rim touches the ground, seen from above."
     return [Picture(name="trace", title=title, caption=caption, panels=panels, columns=2)]
+
+
+def _path(places: Array) -> Array:
+    """Return as many of some places (n, 2) as a path shows, its pieces parted by NaN where it jumps."""
+    way = np.hypot(*np.diff(places, axis=0).T)
+    jumps = way > _JUMP
+    # along the path; it does not go on where the cylinder stands, which has no contact point
+    travelled = np.cumsum(np.where(jumps | np.isnan(way), 0.0, way)) // _APART
+    drawn = np.concatenate([[True], (np.diff(travelled, prepend=0.0) > 0.0) | jumps])
+    drawn |= np.append(jumps, True)  # both ends of each piece
+    piece = np.concatenate([[0], np.cumsum(jumps)])[drawn]
+    return np.insert(places[drawn], np.flatnonzero(np.diff(piece)) + 1, np.nan, axis=0)

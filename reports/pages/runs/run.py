@@ -1,4 +1,4 @@
-"""What the page of a run is given: its words are in the template runs/run.md.j2."""
+"""Values for the page of a run: its words are in the template runs/run.md.j2."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the page of a sweep is given: its words are in the template runs/sweep.md.j2."""
+"""Values for the page of a sweep: its words are in the template runs/sweep.md.j2."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ import math
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from rockwobble.models import Case, GroundMotion
+    from rockwobble.models import Case
 
 
 def describe(case: Case) -> list[str]:
@@ -18,12 +18,16 @@ def describe(case: Case) -> list[str]:
         f"(R = {cylinder.semidiagonal:g} m, tan alpha = {cylinder.tan_alpha:g})"
     ]
     if motion is not None:
-        peak = motion.peak / case.gravity
+        # here, because the help of the command line needs no numpy
+        from rockwobble.compare.studies.spectrum.series import uplift_factor
+
+        factor = uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length)
+        within = " within the run" if case.length < motion.duration else ""
         count, components = motion.acceleration.shape
         lines.append(
             f"Ground: {motion.name or 'record'}, {count} samples of {motion.time_step:g} s, "
-            f"{components} components, peak {peak:.3f} g "
-            f"({_uplift_ratio(case, motion):.2f} times the uplift threshold)"
+            f"{components} components, peak {motion.peak / case.gravity:.3f} g "
+            f"({1.0 / factor:.2f} times the uplift threshold{within})"
         )
     if initial is not None:
         lines.append(
@@ -32,17 +36,6 @@ def describe(case: Case) -> list[str]:
         )
     lines.append(f"Length of the run: {case.length:.4g} s")
     return lines
-
-
-def _uplift_ratio(case: Case, motion: GroundMotion) -> float:
-    """Return the largest horizontal acceleration over tan(alpha) times gravity and the vertical one."""
-    import numpy as np  # which no help needs
-
-    x, y, *z = motion.acceleration.T
-    weight = case.gravity + sum(z)
-    with np.errstate(divide="ignore"):
-        shares = np.hypot(x, y) / np.maximum(weight, 0.0) / case.cylinder.tan_alpha
-    return float(np.nanmax(shares))
 
 
 def group_of(name: str) -> str:
