@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -71,7 +72,12 @@ class Comparison(Shown):
     command: str = ""
 
     def save(
-        self, folder: str | Path, *, command: str = "", pages: Mapping[str, bytes] | None = None
+        self,
+        folder: str | Path,
+        *,
+        command: str = "",
+        pages: Mapping[str, bytes] | None = None,
+        manifest: Manifest | None = None,
     ) -> None:
         """Write the results to `folder`: whole files or none, other files there are left alone.
 
@@ -87,6 +93,8 @@ class Comparison(Shown):
             That asked for the comparison.
         pages : mapping, optional
             Name and content of what was drawn of it.
+        manifest : Manifest, optional
+            Of results that hold a comparison and are more than one. Default: its own.
 
         Raises
         ------
@@ -100,8 +108,34 @@ class Comparison(Shown):
         }
         if len(matrix := self.matrix()):
             files["matrix.csv"] = matrix.to_csv(index=False).encode()
-        made = self.manifest(command or self.command)
+        made = manifest or self.manifest(command or self.command)
         write_results(folder, made, self._tables(), files=files, pages=pages)
+
+    def of_case(self, name: str) -> Comparison:
+        """Return the part on one case.
+
+        Parameters
+        ----------
+        name : str
+
+        Returns
+        -------
+        Comparison
+
+        Raises
+        ------
+        ValueError
+            If there is no such case.
+        """
+        if name not in self.cases:
+            raise ValueError(f"case must be one of {', '.join(self.cases)}, got {name!r}")
+        return dataclasses.replace(
+            self,
+            summary=self.summary[self.summary["case"] == name].reset_index(drop=True),
+            cases={name: self.cases[name]},
+            traces={key: trace for key, trace in self.traces.items() if key[0] == name},
+            budgets={key: budget for key, budget in self.budgets.items() if key[0] == name},
+        )
 
     def manifest(self, command: str = "") -> Manifest:
         """Return the manifest: what made the comparison, and its main numbers.

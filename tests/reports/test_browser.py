@@ -14,7 +14,7 @@ from rockwobble.compare.storage.manifest import made_now
 from rockwobble.models import Case, Cylinder, InitialState
 from rockwobble.reports.pages.comparison import report
 from rockwobble.reports.pages.comparison.report import comparison_page
-from rockwobble.reports.pages.comparison.view import KIND, view_page, view_values
+from rockwobble.reports.pages.comparison.view import KIND, view_page
 from rockwobble.reports.pages.ensemble import ensemble_page
 
 # of a player: moved, it must say where it is
@@ -53,10 +53,7 @@ def test_page_of_a_study_is_drawn(kind: str, tmp_path: Path):
 @needs_chromium
 def test_pages_of_a_comparison_are_drawn(comparison: Comparison, tmp_path: Path, monkeypatch):
     assert complaints(comparison_page(comparison).html(), tmp_path, figures=15, further=PLAYER) == []
-    (name,) = comparison.cases
-    values = view_values(comparison, name)
-    assert values is not None
-    played = view_page(values, made_now(KIND))
+    played = view_page(comparison, made_now(KIND))
     # drawn without a graphics card, a player takes its time: the page above had it at both widths
     assert complaints(played.html(), tmp_path, figures=0, further=PLAYER, widths=["phone"]) == []
     monkeypatch.setattr(report, "SINGLY", 0)

@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from rockwobble.compare import compare
+from rockwobble.compare.storage.manifest import made_now
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.comparison.playback import playback
 from rockwobble.reports.figures.comparison.view import case_views
-from rockwobble.reports.pages.comparison.view import view_values
+from rockwobble.reports.pages.comparison.view import KIND, view_page
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 # a page plays in float32: seven digits of some metres
@@ -67,7 +68,8 @@ def test_nothing_is_played_where_nothing_moves():
     still = GroundMotion(np.zeros((20, 2)), 0.01, "still")
     comparison = compare(Case(PIER, still, name="still"), runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     assert playback(case_views(comparison)[0]) is None
-    assert view_values(comparison, "still") is None
+    with pytest.raises(ValueError, match="there is nothing to play in 'still'"):
+        view_page(comparison, made_now(KIND))
 
 
 def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp_path, monkeypatch, capsys):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -53,7 +54,7 @@ def view(
 
     Without options: MuJoCo recess under the 1940 El Centro record, R = 6 m, tan alpha = 0.2.
 
-    Writes view.html, which needs nothing else and works offline, and what is on it as view.json.
+    Writes view.html, which needs nothing else and works offline, and the comparison that it plays.
     """
     with interruptible():
         with user_input():
@@ -78,10 +79,13 @@ def view(
             with user_input(), shown_progress() as tell:
                 comparison = rw.compare(case, runs=[run], progress=tell)
         with user_input():
-            from ...pages.comparison.view import save_view
+            from ...pages.comparison.view import KIND, view_files
 
-            written = save_view(out, comparison, name, command_line())
-    print(f"\nWritten to {out}: manifest.json, {', '.join(written)}")
+            shown = comparison.of_case(name)
+            made = dataclasses.replace(shown.manifest(command_line()), kind=KIND)
+            pages = view_files(shown, made)
+            shown.save(out, pages=pages, manifest=made)
+    print(f"\nWritten to {out}: {', '.join(pages)}, the comparison that it plays, manifest.json")
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser
 

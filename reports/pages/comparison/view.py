@@ -1,13 +1,10 @@
-"""The page that plays one case of a comparison: its words are in the template comparison/view.md.j2."""
+"""Values for the page that plays a comparison of one case: its words are in comparison/view.md.j2."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from pathlib import Path
-
 from rockwobble.compare import Comparison
-from rockwobble.compare.storage.manifest import Manifest, Results, made_now, write_results
-from rockwobble.models import plain_json
+from rockwobble.compare.comparison.file import load_fields
+from rockwobble.compare.storage.manifest import Manifest, Results
 
 from ...figures.comparison.playback import playback
 from ...figures.comparison.view import case_views
@@ -16,51 +13,39 @@ from ..words.cases import describe
 from ..words.sentences import fragment
 from .findings import finding_sentences
 
-KIND, _VALUES = "view", "view.json"
+KIND = "view"
 
 
-def view_values(comparison: Comparison, name: str) -> dict[str, object] | None:
-    """Return what the page of a case is given, plain values; None where nothing moves."""
-    (view,) = (view for view in case_views(comparison) if view.case.name == name)
-    spec = playback(view)
-    if spec is None:
-        return None
-    return {"name": name, "lines": describe(view.case), "findings": finding_sentences(view), "spec": spec}
-
-
-def view_page(values: Mapping[str, object], manifest: Manifest) -> Page:
-    """Return the page of what `view_values` gave."""
-    player = fragment("comparison/player.html.j2", name="player", spec=values["spec"])
-    return Page(
-        name="view",
-        template="comparison/view",
-        values={**values, "about": manifest},
-        blocks={"player": player},
-    )
-
-
-def save_view(folder: Path, comparison: Comparison, name: str, command: str) -> list[str]:
-    """Write the page of a case and what it is given, and return the names of the files.
+def view_page(comparison: Comparison, manifest: Manifest) -> Page:
+    """Return the page of a comparison of one case.
 
     Raises
     ------
     ValueError
-        If nothing moves, or the folder cannot be written.
+        If nothing moves.
     """
-    values = view_values(comparison, name)
-    if values is None:
-        raise ValueError(f"there is nothing to play in {name!r}: the cylinder never uplifts")
-    inputs, versions = comparison.manifest().inputs, comparison.versions
-    made = made_now(KIND, inputs=inputs, command=command, headline={"case": name}, versions=versions)
-    files, pages = {_VALUES: plain_json.dumps(values).encode()}, _drawn(values, made)
-    write_results(folder, made, {}, files=files, pages=pages)
-    return [*files, *pages]
+    (view,) = case_views(comparison)
+    spec = playback(view)
+    if spec is None:
+        raise ValueError(f"there is nothing to play in {view.case.name!r}: the cylinder never uplifts")
+    return Page(
+        name="view",
+        template="comparison/view",
+        values={
+            "name": view.case.name,
+            "lines": describe(view.case),
+            "findings": finding_sentences(view),
+            "about": manifest,
+        },
+        blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},
+    )
+
+
+def view_files(comparison: Comparison, manifest: Manifest) -> dict[str, bytes]:
+    """Return name and content of the page: without the player there is nothing to see."""
+    return {"view.html": view_page(comparison, manifest).html().encode()}
 
 
 def stored_page(results: Results) -> dict[str, bytes]:
     """Return the page of the view that is stored."""
-    return _drawn(plain_json.loads(results.content(_VALUES)), results.manifest)
-
-
-def _drawn(values: Mapping[str, object], manifest: Manifest) -> dict[str, bytes]:
-    return {"view.html": view_page(values, manifest).html().encode()}
+    return view_files(Comparison(**load_fields(results)), results.manifest)
