@@ -123,6 +123,14 @@ def test_uneven_sizes_stand_side_by_side_and_close_ones_are_told_apart():
     assert [name for _, name in axis.ticks] == ["6.00001", "6.00002"]
 
 
+def test_a_path_is_parted_where_the_cylinder_stands():
+    lost = [math.nan, math.nan]
+    places = np.array([lost, lost, [1.0, 0.0], [1.0, 0.01], lost, lost, lost, [-1.0, 0.0], [-1.0, 0.02]])
+    x, y = trace_figure._path(places).T
+    assert list(np.isnan(x)) == [True, True, False, False, True, True, False, False]
+    assert list(y[~np.isnan(x)]) == [0.0, 0.01, 0.0, 0.02]
+
+
 @pytest.mark.parametrize("support", ["recess", "flat"])
 def test_a_path_is_parted_where_it_jumps_and_nowhere_else(support: str):
     trace = rw.simulate(rw.Case(PIER, rw.el_centro_1940()), support=support)

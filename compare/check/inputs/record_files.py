@@ -131,7 +131,7 @@ def _written(values: Array) -> dict[str, tuple[str, str, str | None, float]]:
     """Return text, unit, unit given and time step of each form, by name."""
     named = _at2(values, "NPTS= {n}, DT= .0050 SEC,")
     touching = _at2(values, "NPTS= {n}, DT= .0050 SEC,", "{:13.6E}")
-    columns = _columns(values, 0.01)
+    columns, even = _columns(values, 0.01), _csv(values, 0.01, "g", ",")
     return {
         "AT2": (named, "g", None, 0.005),
         "AT2, numbers before names": (_at2(values, "{n:5d}    .0050   NPTS, DT"), "g", "g", 0.005),
@@ -144,12 +144,7 @@ def _written(values: Array) -> dict[str, tuple[str, str, str | None, float]]:
         "columns, unit in a comment": ("# acceleration in gal\n" + columns, "cm/s2", None, 0.01),
         "columns, times of four digits": (_columns(values, 1.0 / 60.0), "g", "g", 0.3667 / 22.0),
         "CSV": (_csv(values, 0.004, "g", ","), "g", None, 0.004),
-        "CSV, a mark after the last cell": (
-            _csv(values, 0.01, "g", ",").replace("\n", ",\n"),
-            "g",
-            None,
-            0.01,
-        ),
+        "CSV, lines that end with a comma": (even.replace("\n", ",\n"), "g", None, 0.01),
         "CSV, semicolons": (_csv(values, 0.01, "m/s^2", ";"), "m/s2", None, 0.01),
         "CSV, a start that is not zero": (_csv(values, 0.01, "cm/s/s", ",", start=7.3), "cm/s2", None, 0.01),
     }

@@ -49,8 +49,7 @@ class Validity(Shown):
     records: str
 
     def _said(self) -> dict[str, str]:
-        records, *_ = self.records.split(" (")  # and why these
-        return {"motions": records} | {name: f"{len(table)} rows" for name, table in self.tables.items()}
+        return {"motions": self.records} | {name: f"{len(table)} rows" for name, table in self.tables.items()}
 
 
 def measure_all(

@@ -44,12 +44,14 @@ def pictures(trace: Trace) -> list[Picture]:
 
 
 def _path(places: Array) -> Array:
-    """Return as many of some places (n, 2) as a path shows, its pieces parted by NaN where it jumps."""
+    """Return as many of some places (n, 2) as a path shows, its pieces parted by NaN where it jumps.
+
+    While the cylinder stands it has no place: NaN, of which one is kept.
+    """
     way = np.hypot(*np.diff(places, axis=0).T)
     jumps = way > _JUMP
-    # along the path; it does not go on where the cylinder stands, which has no contact point
+    ends = jumps | (np.diff(np.isnan(places[:, 0])) != 0)  # between two samples, one on either side
     travelled = np.cumsum(np.where(jumps | np.isnan(way), 0.0, way)) // _APART
-    drawn = np.concatenate([[True], (np.diff(travelled, prepend=0.0) > 0.0) | jumps])
-    drawn |= np.append(jumps, True)  # both ends of each piece
-    piece = np.concatenate([[0], np.cumsum(jumps)])[drawn]
-    return np.insert(places[drawn], np.flatnonzero(np.diff(piece)) + 1, np.nan, axis=0)
+    drawn = np.append(ends, True) | np.concatenate([[True], (np.diff(travelled, prepend=0.0) > 0.0) | ends])
+    after = np.flatnonzero(np.diff(np.concatenate([[0], np.cumsum(jumps)])[drawn])) + 1
+    return np.insert(places[drawn], after, np.nan, axis=0)
