@@ -48,9 +48,7 @@ def record_names(members: int) -> list[str]:
 def source_of(names: Iterable[str]) -> str:
     """Return the source of the motions of an ensemble, in words."""
     kinds = {name.rsplit(" ", 1)[0] for name in names}
-    return (
-        "FEMA P-695 far-field records" if kinds == {"record"} else "synthetic records, for want of FEMA P-695"
-    )
+    return "FEMA P-695 far-field records" if kinds == {"record"} else "synthetic records"
 
 
 @cache
