@@ -6,6 +6,11 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.models import Case, Cylinder, el_centro_1940
 from rockwobble.reduced._compile import _is_ours, on_disk
 
 
@@ -59,3 +64,14 @@ def test_stale_code_that_another_process_has_removed_meanwhile_is_no_error(monke
     assert not on_disk(entry)
     kept.touch()
     assert on_disk(entry)
+
+
+@pytest.mark.parametrize("options", [{"support": "recess"}, {"support": "flat"}, {"plane": 0.0}])
+def test_a_column_of_times_is_solved_by_what_is_compiled(options):
+    case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940().scaled(2.0), duration=3.0)
+    problem = reduced.simulate(case, **options).source.problem
+    column = np.linspace(0.0, 3.0, 20).reshape(10, 2)[:, 0]
+    march, _ = problem.solve(column)
+    assert march.samples.tolist() == problem.solve(column.copy())[0].samples.tolist()
+    # for strided arrays it would be compiled anew, for ten seconds
+    assert len(problem._set_up.march.signatures) == 1
