@@ -96,7 +96,9 @@ class Problem:
         record_steps: bool = False,
     ) -> tuple[March, float]:
         """Return the march with states at `times` (n,) [s], and the azimuth its angles count from."""
-        times = np.ascontiguousarray(times)  # a column of a table would have the march compiled for its stride
+        times = np.ascontiguousarray(
+            times
+        )  # a column of a table would have the march compiled for its stride
         set_up = self._set_up
         march: March = set_up.march(
             self.body,

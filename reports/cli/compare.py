@@ -92,12 +92,13 @@ def compare(
                 resume=None if suite is None else out,
                 budget=budget,
             )
-        from ..pages.comparison.report import comparison_files, comparison_page
+        from ..pages.comparison.report import comparison_page
 
-        pages = comparison_files(comparison, command_line())
+        page = comparison_page(comparison, command_line())
+        pages = page.files()
         with user_input():
             comparison.save(out, command=command_line(), pages=pages)
-        comparison_page(comparison, drawn=False).show()
+        page.show()
     print(f"\nWritten to {out}: manifest.json, {', '.join(pages)} and the tables")
     if (comparison.summary["outcome"] == "failed").any():
         raise typer.Exit(FAILED)

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..pages.registry import stored_pages
+from ..pages.registry import stored_page
 from .terminal import user_input
 
 if TYPE_CHECKING:
@@ -58,8 +58,7 @@ def show_stored(folder: Path, kind: str) -> None:
     from rockwobble.compare.storage.manifest import write_pages
 
     with user_input():
-        page = stored_pages(kind, folder)
-        assert not isinstance(page, dict)
+        page = stored_page(kind, folder)
         pages = page.files()
         write_pages(folder, kind, pages)
     page.show()

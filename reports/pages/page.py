@@ -53,22 +53,34 @@ class Page:
     values : mapping
         What the template is given: plain values.
     pictures : iterable of Picture
+    alone : sequence of str, optional
+        Pictures that stand beside the page as files, with their titles, by name. Default: all of them,
+        without: the document has the titles.
     blocks : mapping of str to str
         HTML that only a page can show, such as motion in three dimensions.
+    outputs : sequence of {"markdown", "html"}
+        What is written.
     """
 
     name: str
     template: str
     values: Mapping[str, object]
     pictures: Iterable[Picture] = ()
+    alone: Sequence[str] | None = None
     blocks: Mapping[str, str] = field(default_factory=dict)
+    outputs: Sequence[Output] = ("markdown", "html")
 
     def files(self) -> dict[str, bytes]:
         """Return the files by name: NAME.md with its pictures as SVG beside it, and NAME.html."""
+        texts = {"markdown": ("md", self.markdown), "html": ("html", self.html)}
+        titled = self.alone is not None
         return {
-            f"{self.name}.md": self.markdown().encode(),
-            f"{self.name}.html": self.html().encode(),
-            **{f"{picture.name}.svg": svg(picture) for picture in self.pictures},
+            **{f"{self.name}.{texts[output][0]}": texts[output][1]().encode() for output in self.outputs},
+            **{
+                f"{picture.name}.svg": svg(picture, titled=titled)
+                for picture in self.pictures
+                if self.alone is None or picture.name in self.alone
+            },
         }
 
     def markdown(self) -> str:

@@ -29,20 +29,8 @@ KINDS: Mapping[str, str] = {
 }
 
 
-def redrawn(kind: str, folder: Path) -> dict[str, bytes]:
-    """Return name and content of each page of the results of a kind in `folder`.
-
-    Raises
-    ------
-    ValueError
-        If they cannot be read.
-    """
-    pages = stored_pages(kind, folder)
-    return pages if isinstance(pages, dict) else pages.files()
-
-
-def stored_pages(kind: str, folder: Path) -> dict[str, bytes] | Page:
-    """Return the page of the results of a kind in `folder`, not drawn yet, or name and content of several.
+def stored_page(kind: str, folder: Path) -> Page:
+    """Return the page of the results of a kind in `folder`, not drawn yet.
 
     Raises
     ------
@@ -52,5 +40,5 @@ def stored_pages(kind: str, folder: Path) -> dict[str, bytes] | Page:
     from rockwobble.compare.storage.manifest import read_results  # it loads numpy, which no help needs
 
     drawer = importlib.import_module(f"rockwobble.reports.{KINDS[kind]}")
-    pages: dict[str, bytes] | Page = drawer.stored_page(read_results(folder, kind))
-    return pages
+    page: Page = drawer.stored_page(read_results(folder, kind))
+    return page

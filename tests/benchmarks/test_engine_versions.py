@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare.storage.manifest import made_now, read_results, write_results
-from rockwobble.reports.pages.registry import redrawn
+from rockwobble.reports.pages.registry import stored_page
 from rockwobble.reports.pages.versions import KIND, versions_page
 
 from .engine_versions import COLUMNS, made_table, minor_releases
@@ -43,4 +43,4 @@ def test_the_page_is_drawn_again_from_its_files(table: pd.DataFrame, tmp_path: P
     pages = versions_page(table, made).files()
     write_results(tmp_path, made, {"versions": table}, pages=pages)
     assert read_results(tmp_path, KIND).table("versions").equals(table)
-    assert set(redrawn(KIND, tmp_path)) == set(pages) == {"versions.md", "versions.html"}
+    assert set(stored_page(KIND, tmp_path).files()) == set(pages) == {"versions.md", "versions.html"}

@@ -19,7 +19,7 @@ from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import page
 from rockwobble.reports.pages.advice import advice_page, advice_values
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import stored_pages
+from rockwobble.reports.pages.registry import stored_page
 
 PAGE_LIMIT = 8e6  # bytes, of every page
 FAST = ["--engine", "none", "--copies", "20"]
@@ -83,7 +83,7 @@ def options_of(records: Path, **names: str) -> list[str]:
 )
 def test_every_kind_of_case_gets_its_page(names, more, words, records, tmp_path, monkeypatch, capsys):
     if len(names) == 2:  # its page has the panels of the others: they are drawn as a file, too
-        monkeypatch.setattr(page, "svg", lambda _: b"")
+        monkeypatch.setattr(page, "svg", lambda *_, **__: b"")
     assert call(*options_of(records, **names), *more, *FAST, "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
     text = (tmp_path / "advice.md").read_text()
@@ -94,8 +94,7 @@ def test_every_kind_of_case_gets_its_page(names, more, words, records, tmp_path,
     assert len((tmp_path / "advice.html").read_text()) < PAGE_LIMIT
     pages = {f"advice.{ending}" for ending in ("html", "md", "svg")}
     assert {path.name for path in tmp_path.iterdir()} == DATA | pages | {"manifest.json"}
-    again = stored_pages(KIND, tmp_path)
-    assert isinstance(again, Page)
+    again = stored_page(KIND, tmp_path)
     assert again.markdown() == text
     if more == ["--scale", "2"]:  # twice: with a vertical component, and in one plane
         assert again.html() == (tmp_path / "advice.html").read_text()  # with all that the pictures show

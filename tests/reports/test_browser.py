@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from browser import complaints, needs_chromium
-from test_published import WHOLE, whole_page
+from test_published import WHOLE
 
 from rockwobble import compare
 from rockwobble.compare import Comparison
@@ -16,6 +16,7 @@ from rockwobble.reports.pages.comparison import report
 from rockwobble.reports.pages.comparison.report import comparison_page
 from rockwobble.reports.pages.comparison.view import KIND, view_page
 from rockwobble.reports.pages.ensemble import ensemble_page
+from rockwobble.reports.pages.registry import stored_page
 
 # of a player: moved, it must say where it is
 PLAYER = """
@@ -46,7 +47,7 @@ def ensemble() -> str:
 @pytest.mark.parametrize("kind", sorted({kind for _, kind in WHOLE}))
 def test_page_of_a_study_is_drawn(kind: str, tmp_path: Path):
     folder = next(folder for folder, each in WHOLE if each == kind)
-    page = whole_page(kind, folder).html()
+    page = stored_page(kind, folder).html()
     assert complaints(page, tmp_path, figures=page.count("Plotly.newPlot(")) == []
 
 

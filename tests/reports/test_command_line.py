@@ -21,7 +21,7 @@ from rockwobble.models import Trace
 from rockwobble.models.traces.lost_trace import lost_trace
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.comparison import report
+from rockwobble.reports.pages import page
 from rockwobble.reports.pages.page import Page
 
 GOOD = "time [s], acceleration [g]\n0.00, 0.0\n0.01, 0.1\n0.02, 0.0\n"
@@ -50,7 +50,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.fixture
 def no_report(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw no report, for tests of what is printed."""
-    monkeypatch.setattr(report, "comparison_files", lambda *_: {})
+    monkeypatch.setattr(Page, "files", lambda _: {})
 
 
 def record(x: str, y: str = "good.csv") -> list[str]:
@@ -138,7 +138,7 @@ def test_no_engine_and_no_trajectory_leave_nothing_to_compare(folder, capsys):
 
 def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
     no_engines()
-    monkeypatch.setattr(report, "svg", lambda *_, **__: b"")  # tests of the page draw it
+    monkeypatch.setattr(page, "svg", lambda *_, **__: b"")  # tests of the page draw it
     monkeypatch.setattr(Page, "html", lambda _: "")
     (folder / "results").mkdir()
     (folder / "results" / "mine.txt").write_text("mine")

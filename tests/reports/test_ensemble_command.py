@@ -20,7 +20,7 @@ from rockwobble.reports.figures.ensemble import pictures, ratio_span, ratio_tick
 from rockwobble.reports.figures.picture import Line, Text
 from rockwobble.reports.pages.ensemble import ensemble_page
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import redrawn
+from rockwobble.reports.pages.registry import stored_page
 
 FALLEN = 7.9  # [alpha]
 RELEASE = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--members", "3"]
@@ -153,7 +153,9 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
     )
     (manifest,) = read_manifests(tmp_path)
     assert (manifest.kind, manifest.seeds) == (KIND, {"ensemble": 0})
-    assert redrawn(KIND, tmp_path) == {name: (tmp_path / name).read_bytes() for name in manifest.pages}
+    assert stored_page(KIND, tmp_path).files() == {
+        name: (tmp_path / name).read_bytes() for name in manifest.pages
+    }
 
 
 def test_made_up_records_are_the_members(tmp_path, in_this_process, monkeypatch, capsys):

@@ -23,7 +23,7 @@ from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.figures.picture import Band, Line
 from rockwobble.reports.pages.fragility import fragility_page
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import redrawn
+from rockwobble.reports.pages.registry import stored_page
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 LEVELS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
@@ -190,7 +190,9 @@ def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
     assert "Motions: 8, made-up ground motions, seed 0" in printed
     (manifest,) = read_manifests(tmp_path)
     assert (manifest.kind, manifest.seeds) == (KIND, {"resamples": 0})
-    assert redrawn(KIND, tmp_path) == {name: (tmp_path / name).read_bytes() for name in manifest.pages}
+    assert stored_page(KIND, tmp_path).files() == {
+        name: (tmp_path / name).read_bytes() for name in manifest.pages
+    }
     counts = pd.read_csv(tmp_path / "counts.csv")
     assert counts.to_dict("records") == json.loads((tmp_path / "counts.json").read_text())
     levels = sorted(set(counts["intensity"]))

@@ -8,7 +8,7 @@ from rockwobble.models import Case, Cylinder, Diagnostic, InitialState, Run
 from rockwobble.reports.figures.comparison.tilt import tilt_picture
 from rockwobble.reports.figures.comparison.view import case_views
 from rockwobble.reports.figures.svg import svg
-from rockwobble.reports.pages.comparison.report import comparison_files, comparison_page
+from rockwobble.reports.pages.comparison.report import comparison_page
 
 PAGE_LIMIT = 8_000_000  # [bytes]
 PICTURE_LIMIT = 300_000  # [bytes]
@@ -67,7 +67,7 @@ def test_page_is_whole_small_reproducible_and_says_what_was_found(comparison):
         if name not in ("case", "run", "reference"):
             assert name.replace("_", " ") in text
     assert "nan" not in re.findall(r"\w+", text)
-    files = comparison_files(comparison, "rockwobble compare")
+    files = comparison_page(comparison, "rockwobble compare").files()
     assert set(files) == {"report.html", "report.md", "figure.svg"}
     assert files["report.html"] == page.encode(), "drawn again it must be the same"
     picture = files["figure.svg"]
@@ -92,12 +92,12 @@ def test_a_run_that_never_moves_or_fails_can_be_shown(no_engines):
     cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     case = Case(cylinder, duration=1.0, name="still")
     no_engines()
-    still = comparison_files(compare(case, runs=[Run("mujoco", "recess")]))
+    still = comparison_page(compare(case, runs=[Run("mujoco", "recess")])).files()
     assert "both stay at rest" in still["report.html"].decode()
     assert still["figure.svg"]
     gained = (Diagnostic(code="energy_gain", time=0.5),)
     no_engines(outcome="failed", facts=gained, peak_tilt=float("nan"))
-    failed = comparison_files(compare(case, runs=[Run("mujoco", "recess")]))
+    failed = comparison_page(compare(case, runs=[Run("mujoco", "recess")])).files()
     said = "mujoco recess failed: the engine gained energy that nothing supplied at 0.5 s"
     assert said in failed["report.html"].decode()
     assert failed["figure.svg"]

@@ -11,8 +11,7 @@ import pytest
 
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import stored_pages
+from rockwobble.reports.pages.registry import stored_page
 from rockwobble.reports.paper import earthquake, overturning
 
 SVG_LIMIT = 400_000  # bytes, of each committed picture
@@ -70,8 +69,7 @@ def test_numbers_on_the_page_are_those_of_the_tables(made):
 
 
 def test_the_report_is_drawn_again_from_what_is_kept(made):
-    again = stored_pages("paper", made)
-    assert isinstance(again, Page)
+    again = stored_page("paper", made)
     # the page holds what the pictures beside the document show
     assert again.html() == (made / "paper.html").read_text()
     assert again.markdown() == (made / "paper.md").read_text()

@@ -13,8 +13,7 @@ from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manif
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.advice import RING
-from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import KINDS, stored_pages
+from rockwobble.reports.pages.registry import KINDS, stored_page
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
 FOLDERS = sorted(path.parent for path in PUBLISHED.rglob(MANIFEST))
@@ -28,13 +27,6 @@ WHOLE = [
 
 def name_of(value: object) -> str:
     return value.relative_to(PUBLISHED).as_posix() if isinstance(value, Path) else str(value)
-
-
-def whole_page(kind: str, folder: Path) -> Page:
-    """Return a page of which each test draws what it looks at."""
-    page = stored_pages(kind, folder)
-    assert isinstance(page, Page)
-    return page
 
 
 def test_every_study_is_published_and_most_of_them_whole() -> None:
@@ -54,7 +46,7 @@ def test_it_was_made_by_committed_code_and_nothing_is_damaged(folder: Path) -> N
 
 @pytest.mark.parametrize(("folder", "kind"), WHOLE, ids=name_of)
 def test_its_words_are_what_its_tables_say_today(folder: Path, kind: str) -> None:
-    page = whole_page(kind, folder)
+    page = stored_page(kind, folder)
     words = page.markdown()
     assert r"\*" not in words  # emphasis that would be read as asterisks
     assert (folder / f"{page.name}.md").read_text(encoding="utf-8") == words

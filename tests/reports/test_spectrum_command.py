@@ -22,7 +22,7 @@ from rockwobble.reports.figures.heat import Heat
 from rockwobble.reports.figures.spectrum import pictures
 from rockwobble.reports.figures.svg import svg
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import redrawn
+from rockwobble.reports.pages.registry import stored_page
 from rockwobble.reports.pages.spectrum import spectrum_page
 
 # the factors on the record differ by a rounding, grown by a few passes
@@ -62,7 +62,7 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     lowest = pd.read_parquet(tmp_path / "lowest.parquet")
     assert lowest["confirmed"].any()
     assert (lowest["intensity"] <= lowest["on_grid"].fillna(np.inf)).sum() >= 6
-    assert redrawn(KIND, tmp_path) == {name: (tmp_path / name).read_bytes() for name in PAGES}
+    assert stored_page(KIND, tmp_path).files() == {name: (tmp_path / name).read_bytes() for name in PAGES}
     page = (tmp_path / "spectrum.md").read_text()
     assert page.splitlines()[0] == "# Overturning spectrum: El Centro 1940, tan α = 0.2"
     assert f"numpy {np.__version__}" in page

@@ -19,6 +19,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, r
 from rockwobble.reports.cli.inputs.suite_choice import chosen_runs
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.comparison import report
+from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.words.cases import describe, group_of
 
 PAGE_LIMIT = 8_000_000  # [bytes]
@@ -130,7 +131,7 @@ def test_a_suite_is_echoed_run_summed_up_and_written(folder, no_engines, capsys)
 def test_runs_of_a_suite_that_part_are_named_the_worst_first(folder, no_engines, monkeypatch, capsys):
     # an engine that has lost the case from the beginning
     no_engines(tilt=np.full(201, 0.3))
-    monkeypatch.setattr(report, "comparison_files", lambda *_: {})  # what is printed is looked at
+    monkeypatch.setattr(Page, "files", lambda _: {})  # what is printed is looked at
     assert call("compare", "mine.suite.toml", "--engine", "mujoco", "--support", "recess") == 0
     out = capsys.readouterr().out
     assert re.search(r"release\s+mujoco recess +4 +0 +0 %", out)
@@ -205,7 +206,7 @@ def test_a_trajectory_is_one_more_run(folder, no_engines, monkeypatch, capsys):
     assert alone["tilt_rms"].max() < 1e-12  # written with all digits
     page = (folder / "alone" / "report.html").read_text()
     assert "table" in page
-    monkeypatch.setattr(report, "comparison_files", lambda *_: {})
+    monkeypatch.setattr(Page, "files", lambda _: {})
     assert call("compare", *arguments, "--engine", "mujoco", "--support", "recess", "--out", "both") == 0
     both = pd.read_csv(folder / "both" / "summary.csv")
     assert both["run"].tolist() == ["mujoco recess", "table"]

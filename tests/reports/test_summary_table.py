@@ -13,7 +13,7 @@ from rockwobble.reports.pages.comparison.report import comparison_page
 
 def printed(comparison, width: int) -> str:
     console = Console(width=width, file=io.StringIO(), force_terminal=True, no_color=True)
-    comparison_page(comparison, drawn=False).show(console)
+    comparison_page(comparison).show(console)
     return re.sub(r"\x1b\[[\d;]*m", "", console.file.getvalue())
 
 

@@ -107,7 +107,7 @@ def test_the_command_stores_what_its_pages_are_drawn_from(
     # drawn to the end once, above
     with monkeypatch.context() as patch:
         patch.setattr(Page, "html", lambda _: "")
-        patch.setattr(page_module, "svg", lambda _: b"")
+        patch.setattr(page_module, "svg", lambda *_, **__: b"")
         assert CliRunner().invoke(app, ["report", str(tmp_path)]).exit_code == 0
     assert "| Contact | lost in" in (tmp_path / "validity.md").read_text() != before
 

@@ -10,7 +10,7 @@ import typer
 import rockwobble.compare as rc
 
 from ...console.terminal import interruptible, user_input
-from ...pages.registry import KINDS, redrawn
+from ...pages.registry import KINDS, stored_page
 
 Folder = Annotated[Path, typer.Argument(help="Folder that a command has written.", show_default=False)]
 Out = Annotated[
@@ -35,7 +35,7 @@ def report(folder: Folder, out: Out = None) -> None:
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
         if not kinds:
             raise ValueError(f"pages are drawn of {', '.join(KINDS)}; {folder} holds none of them")
-        drawn = {kind: redrawn(kind, folder) for kind in kinds}
+        drawn = {kind: stored_page(kind, folder).files() for kind in kinds}
         for kind, pages in drawn.items():
             write_pages(place, kind, pages)
     print(f"Written to {place}: {', '.join(name for pages in drawn.values() for name in pages)}")

@@ -79,11 +79,11 @@ def view(
             with user_input(), shown_progress() as tell:
                 comparison = rw.compare(case, runs=[run], progress=tell)
         with user_input():
-            from ...pages.comparison.view import KIND, view_files
+            from ...pages.comparison.view import KIND, view_page
 
             shown = comparison.of_case(name)
             made = dataclasses.replace(shown.manifest(command_line()), kind=KIND)
-            pages = view_files(shown, made)
+            pages = view_page(shown, made).files()
             shown.save(out, pages=pages, manifest=made)
     print(f"\nWritten to {out}: {', '.join(pages)}, the comparison that it plays, manifest.json")
     if sys.stdout.isatty() if opened is None else opened:

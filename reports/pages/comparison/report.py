@@ -16,7 +16,6 @@ from ...figures.comparison.playback import playback
 from ...figures.comparison.tilt import tilt_picture
 from ...figures.comparison.view import CaseView, case_views, own_rows
 from ...figures.picture import Layer, Line, Picture
-from ...figures.svg import svg
 from ...figures.thinning import kept_points
 from ..page import Page
 from ..words.cases import describe, group_of
@@ -31,41 +30,27 @@ SINGLY = 3
 _ALL_POINTS = 115_000
 # more are not to be seen, fewer are no curve
 _MOST_POINTS, _FEWEST_POINTS = 1500, 120
-_BESIDE = ("figure", "budget")  # pictures that stand beside the page as files
+_ALONE = ("figure", "budget")
 _NAMED = 10  # runs that diverge, by name
 
 
-def comparison_files(comparison: Comparison, command: str = "") -> dict[str, bytes]:
-    """Return name and content of what a person opens: page, document and the main pictures."""
-    page = comparison_page(comparison, command or comparison.command)
-    return {
-        "report.html": page.html().encode(),
-        "report.md": page.markdown().encode(),
-        **{
-            f"{picture.name}.svg": svg(picture, titled=True)
-            for picture in page.pictures
-            if picture.name in _BESIDE
-        },
-    }
+def stored_page(results: Results) -> Page:
+    """Return the report of a comparison that is stored."""
+    return comparison_page(Comparison.load(results.folder))
 
 
-def stored_page(results: Results) -> dict[str, bytes]:
-    """Return the pages of a comparison that is stored."""
-    return comparison_files(Comparison.load(results.folder))
-
-
-def comparison_page(comparison: Comparison, command: str = "", *, drawn: bool = True) -> Page:
-    """Return the report, for a terminal without its pictures."""
+def comparison_page(comparison: Comparison, command: str = "") -> Page:
+    """Return the report; `command` made the comparison, where this does not say so itself."""
     views = case_views(comparison)
     many = len(views) > SINGLY
     summary, lengths = comparison.summary, {view.case.name: view.case.length for view in views}
-    pictures = {place: list(_pictures(view, place, many)) for place, view in enumerate(views) if drawn}
+    pictures = {place: list(_pictures(view, place, many)) for place, view in enumerate(views)}
     whole = [picture for of_case in pictures.values() for picture in of_case]
     if many:
         whole = _thinned(whole)
-    if drawn and comparison.budgets:
+    if comparison.budgets:
         whole.append(all_budgets_picture(comparison))
-    blocks = _blocks(views, many=many) if drawn else {}
+    blocks = _blocks(views, many=many)
     diverging = diverging_runs(summary, lengths) if many else []
     matrix = comparison.matrix()
     return Page(
@@ -73,7 +58,7 @@ def comparison_page(comparison: Comparison, command: str = "", *, drawn: bool = 
         template="comparison/report",
         values={
             "many": many,
-            "command": command,
+            "command": command or comparison.command,
             "versions": comparison.versions,
             "budgets": bool(comparison.budgets),
             "group_rows": group_rows(summary, lengths) if many else [],
@@ -94,13 +79,14 @@ def comparison_page(comparison: Comparison, command: str = "", *, drawn: bool = 
                 {
                     **_case(view),
                     "matrices": matrix_tables(matrix[matrix["case"] == view.case.name]),
-                    "pictures": [picture.name for picture in pictures.get(place, [])],
+                    "pictures": [picture.name for picture in pictures[place]],
                     "player": name if (name := f"player-{place}") in blocks else "",
                 }
                 for place, view in enumerate(views)
             ],
         },
         pictures=whole,
+        alone=_ALONE,
         blocks=blocks,
     )
 

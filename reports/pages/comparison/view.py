@@ -38,14 +38,10 @@ def view_page(comparison: Comparison, manifest: Manifest) -> Page:
             "about": manifest,
         },
         blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},
+        outputs=["html"],  # without the player there is nothing to see
     )
 
 
-def view_files(comparison: Comparison, manifest: Manifest) -> dict[str, bytes]:
-    """Return name and content of the page: without the player there is nothing to see."""
-    return {"view.html": view_page(comparison, manifest).html().encode()}
-
-
-def stored_page(results: Results) -> dict[str, bytes]:
+def stored_page(results: Results) -> Page:
     """Return the page of the view that is stored."""
-    return view_files(Comparison(**load_fields(results)), results.manifest)
+    return view_page(Comparison(**load_fields(results)), results.manifest)
