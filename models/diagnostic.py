@@ -9,10 +9,9 @@ from types import MappingProxyType
 
 from .shown import Brief
 
-# code: (unit of size and bound, meaning)
-CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
+# code: (unit of size and bound, meaning); why a run failed
+FAILURES: Mapping[str, tuple[str, str]] = MappingProxyType(
     {
-        # why a run failed
         "not_finite": ("", "the state is not finite"),
         "energy_gain": ("", "the engine gained energy that nothing supplied"),
         "penetration": ("", "the cylinder sank into the ground"),
@@ -22,6 +21,12 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "died": ("", "the run ended its process"),
         "step_budget": ("steps", "the steps allowed were used up: the motion chatters near upright"),
         "tolerance": ("", "no step met the tolerance"),
+    }
+)
+# and of every diagnostic
+CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
+    {
+        **FAILURES,
         # what limits a run
         "slip": ("", "contact slipped"),
         "lift_off": ("", "the cylinder left the ground"),
@@ -42,7 +47,13 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "missed_pass": ("passes", "passes fell between two samples"),
     }
 )
-FAILURES = frozenset(list(CODES)[:9])
+# code: why, as its detail says it
+REASONS: Mapping[str, frozenset[str]] = MappingProxyType(
+    {
+        "unsettled": frozenset({"fails", "still_changes", "no_later", "no_closer"}),
+        "not_extrapolated": frozenset({"fails", "diverged", "no_closer"}),
+    }
+)
 _SEPARATOR = ", "
 
 
@@ -86,12 +97,13 @@ class Diagnostic(Brief):
         bound of "settled" and "extrapolated" is the order of convergence, that of "unresolved_pass" the tilt
         that is resolved [rad].
     detail : str
-        What an engine or a file says, word for word. Not for decisions.
+        What an engine or a file says, word for word, not for decisions; of "unsettled" and "not_extrapolated"
+        one of `REASONS`.
 
     Raises
     ------
     ValueError
-        If the code is unknown.
+        If the code is unknown, or the detail none of its reasons.
 
     Examples
     --------
@@ -109,6 +121,9 @@ class Diagnostic(Brief):
     def __post_init__(self) -> None:
         if self.code not in CODES:
             raise ValueError(f"code must be one of {', '.join(CODES)}, got {self.code!r}")
+        reasons = REASONS.get(self.code)
+        if reasons and self.detail not in reasons:
+            raise ValueError(f"detail must be one of {', '.join(sorted(reasons))}, got {self.detail!r}")
 
     @property
     def meaning(self) -> str:

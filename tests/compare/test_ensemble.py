@@ -41,6 +41,19 @@ def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():
     assert first[0].duration == pytest.approx(5.0)
 
 
+def test_a_ring_is_held_against_the_recess_model(monkeypatch):
+    monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
+    runs = [Run("mujoco", support) for support in ("recess", "flat", "ring")]
+    methods = ensemble(CASE, runs=runs, size=2, workers=1).methods.set_index("method")
+    assert methods["own_model"].to_dict() == {
+        "recess model": "",
+        "flat-ground model": "",
+        "mujoco recess": "recess model",
+        "mujoco flat": "flat-ground model",
+        "mujoco ring": "recess model",
+    }
+
+
 def made_up(job: Job, peak: float, outcome: str = "completed") -> Trace:
     """Return a run that has another peak and outcome than it came to."""
     return dataclasses.replace(reduced.simulate(job.case, sample_step=1.0), peak_tilt=peak, outcome=outcome)

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from rockwobble.models import Diagnostic
-from rockwobble.models.diagnostic import CODES
+from rockwobble.models.diagnostic import CODES, REASONS
 from rockwobble.reports.pages.comparison.findings import (
     Finding,
     counted_remarks,
@@ -198,6 +198,13 @@ def test_each_code_has_words_with_its_numbers(code):
     assert text.startswith(words)
     assert text
     assert "nan" not in text
+
+
+@pytest.mark.parametrize(("code", "reason"), [(code, each) for code in REASONS for each in REASONS[code]])
+def test_each_reason_has_words_and_others_are_refused(code, reason):
+    assert sentence(Diagnostic(code=code, time=2.0, detail=reason)).split(": ")[1] not in ("", reason)
+    with pytest.raises(ValueError, match=f"detail must be one of .*{reason}.*, got 'because'"):
+        Diagnostic(code=code, detail="because")
 
 
 def test_words_are_joined_counted_and_told_from_failures():

@@ -76,11 +76,12 @@ def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
     motion = case.motion
     if motion is None or motion.peak == 0.0 or is_release(case):
         return {}, ""
-    try:
-        motions, source = far_field_motions(peak=motion.peak), "p695"
-    except ValueError:  # not installed
-        motions = synthetic_motions(p695.PAIRS, peak=motion.peak, seed=_SEED)
-        source = "synthetic"
+    source = "synthetic" if p695.missing_packages() else "p695"
+    motions = (
+        synthetic_motions(p695.PAIRS, peak=motion.peak, seed=_SEED)
+        if source == "synthetic"
+        else far_field_motions(peak=motion.peak)
+    )
     velocity = peak_velocity(motion)
     scaled = {
         ACCELERATION: motions,

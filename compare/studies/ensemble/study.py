@@ -14,7 +14,7 @@ from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.shown import Shown
 
-from ...runs.choice import default_runs, own_model, require_runnable
+from ...runs.choice import default_runs, require_runnable
 from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
 from ...runs.labels import run_labels
 from ...runs.progress import ProgressCallback
@@ -37,7 +37,8 @@ class Ensemble(Shown):
         One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
         overturned), outcome, diagnostics (their codes), wall_time [s], all as the run has them.
     methods : DataFrame
-        One row for each method: own_model (of the support of an engine), runs, rocked, overturned, failed,
+        One row for each method: own_model (of the support of an engine; of a ring, which has none, the recess
+        model), runs, rocked, overturned, failed,
         failed_members (their names), and of the peak tilts of what did not fail [alpha] the median with its
         interval (peak_median, _low, _high) and the 16th and 84th percentile (peak_16, peak_84): infinite
         where they overturn.
@@ -151,9 +152,14 @@ def ensemble(
         results = simulate_all(jobs, workers=workers, progress=progress, cache=cache)
     table = _members(jobs, results)
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
-    about |= {"methods": {label: str(own_model(run)) if run.engine else "" for label, run in methods.items()}}
+    about |= {"methods": {label: _held_against(run) for label, run in methods.items()}}
     about |= {"inputs": fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])}
     return ensemble_of(table, about)
+
+
+def _held_against(run: Run) -> str:
+    """Return the label of the model that an engine's run is held against: a ring against the recess model."""
+    return str(Run(None, "flat" if run.support == "flat" else "recess")) if run.engine else ""
 
 
 def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:

@@ -60,7 +60,7 @@ _WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
         f"vanishing step, by Richardson with order {fact.bound:.2g}"
     ),
     "unsettled": lambda fact: (
-        f"the tilt has not settled by halving the step: {_UNSETTLED.get(fact.detail, fact.detail)}"
+        f"the tilt has not settled by halving the step: {_UNSETTLED[fact.detail]}"
         + (
             ""
             if math.isnan(fact.size)
@@ -74,7 +74,7 @@ _WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
     ),
     "not_extrapolated": lambda fact: (
         f"it is not extrapolated{_from(fact) if fact.time > 0.0 else ''}, but the run at the finest time "
-        f"step: {_NOT_EXTRAPOLATED.get(fact.detail, fact.detail)}"
+        f"step: {_NOT_EXTRAPOLATED[fact.detail]}"
     ),
     "side": lambda fact: (
         f"it passed through upright itself, first{_at(fact)}: the ground had moved in one plane, and the "
