@@ -96,8 +96,7 @@ def ensemble(
                 for line in describe(case)[:1] if motions else describe(case):
                     print(line)
                 print(f"Members: {len(motions) or members}, {_source(synthetic, p695, perturbation)}")
-        from rockwobble.compare.storage.manifest import made_now
-        from rockwobble.compare.studies.ensemble.study import KIND
+        from rockwobble.compare.studies.ensemble.study import manifest_of
 
         from ..pages.ensemble import ensemble_page
 
@@ -112,18 +111,8 @@ def ensemble(
                 resume=out,
                 source=_source(synthetic, p695, perturbation) if suite is None else f"cases of {suite}",
             )
-        manifest = made_now(
-            KIND,
-            inputs=str(found.about["inputs"]),
-            command=command_line(),
-            seeds={"ensemble": seed},
-            headline={
-                f"{row['method']} / {row['against']}, median ratio": row["ratio"]
-                for row in found.contrasts.to_dict("records")
-            },
-            about=found.about,
-        )
-        tables = {"members": found.members, "methods": found.methods, "contrasts": found.contrasts}
+        manifest = manifest_of(found, command_line())
+        tables = found.tables
         sheets = {f"{name}.csv": table.to_csv(index=False).encode() for name, table in tables.items()}
         show_and_write(out, ensemble_page(found, manifest), manifest, tables, sheets)
 

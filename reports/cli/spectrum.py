@@ -100,14 +100,10 @@ def spectrum(
                 finest = f"--search-step must be at least {_FINEST:g} and finite"
                 raise ValueError(f"{finest}, got {search_step:g}")
             rc.require_writable(out)
-        from rockwobble.compare.storage.fingerprint import fingerprint
-        from rockwobble.compare.storage.manifest import made_now
-        from rockwobble.compare.storage.provenance import reduced_makers
-        from rockwobble.compare.studies.spectrum.result import KIND
         from rockwobble.compare.studies.spectrum.study import overturning_spectrum
-        from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
+        from rockwobble.compare.studies.spectrum.tables import manifest_of, tables_of
 
-        from ..pages.spectrum import spectrum_page, spectrum_tables
+        from ..pages.spectrum import spectrum_page
 
         for line in describe(case)[:2]:
             print(line)
@@ -122,18 +118,8 @@ def spectrum(
                 search_step=search_step,
                 progress=tell,
             )
-        tables = spectrum_tables(found, check_cells(found), confirm_lowest(found))
-        inputs = fingerprint([found.facts(), radii, levels, motion.acceleration, reduced_makers()])
-        every = tables["contrast"].iloc[-1]
-        headline = {
-            "cells": int(every["cells"]),
-            "share that overturns in 3D": float(every["overturned"]),
-            "share that overturns in 3D and in neither plane": float(every["missed"]),
-            "share that overturns in a plane and not in 3D": float(every["overcalled"]),
-        }
-        manifest = made_now(
-            KIND, inputs=inputs, command=command_line(), headline=headline, about=found.facts()
-        )
+        tables = tables_of(found)
+        manifest = manifest_of(found, tables, command_line())
         show_and_write(out, spectrum_page(found, tables, manifest), manifest, tables)
 
 

@@ -10,13 +10,8 @@ import pandas as pd
 
 from rockwobble.compare.metrics.order_statistics import share_interval
 from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast, unconservative_from
-from rockwobble.compare.studies.spectrum.result import (
-    OverturningSpectrum,
-    record_frame,
-    safe_islands,
-    spectrum_of,
-)
+from rockwobble.compare.studies.spectrum.planar_contrast import unconservative_from
+from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, stored_spectrum
 from rockwobble.compare.studies.spectrum.series import SPATIAL
 from rockwobble.compare.studies.spectrum.verification import AGREEMENT, CHECK_RTOL, NUDGE
 
@@ -27,20 +22,20 @@ from .page import Page
 def spectrum_page(
     spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame], manifest: Manifest
 ) -> Page:
-    """Return the page of a spectrum and its tables, of `spectrum_tables`."""
+    """Return the page of a spectrum and its tables, of `tables_of`."""
     values = {**spectrum_values(spectrum, tables), "about": manifest}
     return Page(name="spectrum", template="spectrum", values=values, pictures=pictures(spectrum))
 
 
 def stored_page(results: Results) -> Page:
     """Return the page of the spectrum that is stored."""
-    tables = {name: results.table(name) for name in ("lowest", "islands", "checked")}
-    return spectrum_page(spectrum_of(results), tables, results.manifest)
+    tables = {name: results.table(name) for name in ("lowest", "islands", "contrast", "checked")}
+    return spectrum_page(stored_spectrum(results), tables, results.manifest)
 
 
 def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame]) -> dict[str, object]:
     """Return the values of the templates of a spectrum, for its own page and for that of the paper."""
-    contrast, checked = planar_contrast(spectrum), tables["checked"]
+    contrast, checked = tables["contrast"], tables["checked"]
     bands, every = contrast.iloc[:-1], contrast.iloc[-1]
     return {
         "spectrum": spectrum,
@@ -65,20 +60,6 @@ def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataF
         "tolerance": CHECK_RTOL,
         "nudge": NUDGE,
         "agreement": AGREEMENT,
-    }
-
-
-def spectrum_tables(
-    spectrum: OverturningSpectrum, checked: pd.DataFrame, lowest: pd.DataFrame
-) -> dict[str, pd.DataFrame]:
-    """Return the tables of a spectrum by name; `checked` and `lowest` from its verification."""
-    return {
-        "spectrum": spectrum.to_frame(),
-        "record": record_frame(spectrum.motion),
-        "lowest": lowest,
-        "islands": safe_islands(spectrum),
-        "contrast": planar_contrast(spectrum),
-        "checked": checked,
     }
 
 

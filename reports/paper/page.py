@@ -12,12 +12,12 @@ from rockwobble.compare.runs.progress import Clock, ProgressCallback
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.compare.storage.manifest import Manifest, Results, made_now
 from rockwobble.compare.storage.provenance import code_digests, package_versions
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, spectrum_of
+from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, stored_spectrum
 from rockwobble.compare.studies.spectrum.study import overturning_spectrum
-from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
+from rockwobble.compare.studies.spectrum.tables import tables_of
 
 from ..pages.page import Page
-from ..pages.spectrum import spectrum_tables, spectrum_values
+from ..pages.spectrum import spectrum_values
 from . import earthquake, free, overturning, period, pictures
 from .statement import from_frame, to_frame
 
@@ -53,7 +53,7 @@ def compute(
         "figure-4": free.to_frame(modes),
         "figure-5": free.drawn_samples(shaken.trace, _SAMPLES),
         "statements": to_frame(found),
-        **spectrum_tables(spectrum, check_cells(spectrum), confirm_lowest(spectrum)),
+        **tables_of(spectrum),
     }
     inputs = fingerprint([grid, code_digests(), package_versions()])
     headline = dict(Counter(each.verdict for each in found))
@@ -88,4 +88,4 @@ def stored_page(results: Results) -> Page:
     """Return the page of what is stored."""
     names = [name.removesuffix(".parquet") for name in results.manifest.files]
     tables = {name: results.table(name) for name in names}
-    return paper_page(tables, results.manifest, spectrum_of(results))
+    return paper_page(tables, results.manifest, stored_spectrum(results))

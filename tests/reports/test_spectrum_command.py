@@ -13,7 +13,13 @@ from rich.console import Console
 
 from rockwobble import reduced
 from rockwobble.compare.storage.manifest import Manifest, read_results
-from rockwobble.compare.studies.spectrum.result import KIND, OverturningSpectrum, safe_islands, spectrum_of
+from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast
+from rockwobble.compare.studies.spectrum.result import (
+    KIND,
+    OverturningSpectrum,
+    safe_islands,
+    stored_spectrum,
+)
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, SERIES, SPATIAL
 from rockwobble.compare.studies.spectrum.study import overturning_spectrum
 from rockwobble.models import GroundMotion, el_centro_1940
@@ -52,7 +58,7 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt"}
     assert all(name in printed for name in written)
 
-    found = spectrum_of(read_results(tmp_path, KIND))
+    found = stored_spectrum(read_results(tmp_path, KIND))
     sizes, levels = np.linspace(0.5, 20.0, 4), np.linspace(1.0, 9.0, 8)
     assert np.array_equal(found.semidiagonals, sizes)
     peaks = reduced.peak_tilts(
@@ -124,8 +130,7 @@ def spectrum() -> OverturningSpectrum:
 def said(found: OverturningSpectrum, checked: pd.DataFrame | None = None, **columns: object) -> str:
     """Return the words of the page of a spectrum; `columns` stand in the table of the lowest."""
     lowest = found.lowest_frame().assign(**({"confirmed": True} | columns))
-    # the contrast is made from the cells: columns of earlier versions had other names
-    tables = {"lowest": lowest, "islands": safe_islands(found)}
+    tables = {"lowest": lowest, "islands": safe_islands(found), "contrast": planar_contrast(found)}
     tables["checked"] = pd.DataFrame({"agrees": [True], "sensitive": [False]}) if checked is None else checked
     manifest = Manifest(kind=KIND, command="rockwobble spectrum", versions={"numpy": "2"})
     console = Console(file=io.StringIO(), width=100_000)

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
+from typing import ClassVar, cast
 
 import pandas as pd
 
@@ -19,7 +19,7 @@ from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_a
 from ...runs.labels import run_labels
 from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Results
+from ...storage.manifest import Manifest, Results, made_now
 from .members import perturbed_starts
 from .tables import contrast_table, method_table
 
@@ -66,6 +66,11 @@ class Ensemble(Shown):
     methods: pd.DataFrame
     contrasts: pd.DataFrame
     about: Mapping[str, object]
+
+    @property
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """The tables by name."""
+        return {"members": self.members, "methods": self.methods, "contrasts": self.contrasts}
 
     def _said(self) -> dict[str, str]:
         runs = self.methods[["runs", "overturned", "failed"]].sum()
@@ -164,13 +169,27 @@ def _held_against(run: Run) -> str:
 
 def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
     """Return the ensemble of a table of members, and of what `Ensemble.about` says of them."""
-    methods = about["methods"]
-    assert isinstance(methods, Mapping)
+    methods = cast("Mapping[str, str]", about["methods"])
     return Ensemble(
         members=members,
         methods=method_table(members, methods),
         contrasts=contrast_table(members, methods),
         about=about,
+    )
+
+
+def manifest_of(found: Ensemble, command: str = "") -> Manifest:
+    """Return the manifest of an ensemble, with the median ratio of each two methods as headline."""
+    return made_now(
+        KIND,
+        inputs=str(found.about["inputs"]),
+        command=command,
+        seeds={"ensemble": cast("int", found.about["seed"])},
+        headline={
+            f"{row['method']} / {row['against']}, median ratio": row["ratio"]
+            for row in found.contrasts.to_dict("records")
+        },
+        about=found.about,
     )
 
 
