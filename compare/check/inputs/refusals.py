@@ -12,7 +12,8 @@ from functools import partial
 from typing import Any
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940, pulse
-from rockwobble.multibody import simulate
+from rockwobble.multibody import available_engines, simulate
+from rockwobble.multibody.engines.registry import find_engine
 
 from ..bench import Bench
 from ..finding import Finding, none_wrong
@@ -128,6 +129,11 @@ def _options(bench: Bench) -> Makers:
     spun = replace(STILL, initial=InitialState(0.1, rolling_rate=0.1))
     found |= _each("rolling_rate", (0.1,), lambda _: solve(spun, plane=0.0))
     found |= _each("support", ("ice",), lambda value: simulate(STILL, support=value))
+    found |= {
+        f"support = {support!r} of {name}": partial(simulate, STILL, engine=name, support=support)
+        for name in available_engines()
+        for support in sorted({"recess", "flat", "ring"} - set(find_engine(name).supports))
+    }
     found |= _each("engine", ("none",), lambda value: simulate(STILL, engine=value))
     found |= _each("time_step", (-1.0, 1.0), lambda value: simulate(STILL, time_step=value), " of an engine")
     found |= _each("sample_step", NO_SIZES, lambda value: simulate(STILL, sample_step=value), " of an engine")

@@ -49,7 +49,7 @@ motion = { x = "x.csv", y = "y.csv", units = "g", scale = 1.5, rotation_deg = 90
 [[cases]]
 name = "earlier"
 cylinder = { semidiagonal = 6, tan_alpha = 0.2 }
-motion = { x = "x.csv", y = "y.csv", units = "g", time_shift = -0.4 }
+motion = { x = "x.csv", y = "y.csv", units = "g", time_shift = -0.2 }
 
 [[cases]]
 name = "strength"
@@ -149,7 +149,7 @@ def _motion_errors(named: dict[str, Case]) -> dict[str, float]:
     along = np.where(at >= 0.5, 1.2 * 9.81 * 0.25 * np.sin(math.pi * (at - 0.5)), 0.0)
     expected = {
         "record": (shifted, STEP),
-        "earlier": (both[2:], STEP),
+        "earlier": (both[1:], STEP),
         "strength: times_uplift 1.5": (1.5 * uplifts, STEP),
         "strength: times_uplift 2": (2.0 * uplifts, STEP),
         "pulse": (np.column_stack([0.0 * along, along]), PULSE_STEP),
