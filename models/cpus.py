@@ -1,10 +1,15 @@
-"""Number of processors that this process may use."""
+"""Processors that this process may use, and compiled functions in threads on all of them."""
 
 from __future__ import annotations
 
 import math
 import os
+from collections.abc import Callable, Generator, Iterable
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from typing import TypeVar
+
+T = TypeVar("T")
 
 _QUOTA = Path("/sys/fs/cgroup/cpu.max")  # of a container: microseconds of computing in a period, or "max"
 
@@ -17,3 +22,15 @@ def usable_cpus() -> int:
         return max(1, min(ours, math.ceil(int(quota) / int(period))))
     except (OSError, ValueError):  # no container, or one without a limit
         return ours
+
+
+def in_threads(
+    function: Callable[..., T], *arguments: Iterable[object], workers: int | None = None
+) -> Generator[T, None, None]:
+    """Yield the values of a compiled function for each of its arguments, in order; an exception ends all."""
+    with ThreadPoolExecutor(usable_cpus() if workers is None else workers) as pool:
+        try:
+            yield from pool.map(function, *arguments)
+        except BaseException:
+            pool.shutdown(wait=False, cancel_futures=True)
+            raise

@@ -5,13 +5,13 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, as_completed
+from contextlib import closing
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion
-from rockwobble.models.cpus import usable_cpus
+from rockwobble.models.cpus import in_threads, usable_cpus
 from rockwobble.models.number_checks import quoted
 
 from .integration.march import OVERTURNED, March
@@ -103,16 +103,10 @@ def peak_tilts(
     parts = min(len(sizes), math.ceil(_TASKS * threads / len(factors)))
     edges = [len(sizes) * part // parts for part in range(parts + 1)]
     tasks = [(column, slice(*rows)) for column in range(len(factors)) for rows in itertools.pairwise(edges)]
-    with ThreadPoolExecutor(threads) as pool:
-        running = [pool.submit(run_cells, *task) for task in tasks]
-        try:
-            for done, task in enumerate(as_completed(running), start=1):
-                task.result()
-                if progress is not None:
-                    progress(done / len(running))
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
+    with closing(in_threads(run_cells, *zip(*tasks, strict=True), workers=threads)) as results:
+        for done, _ in enumerate(results, start=1):
+            if progress is not None:
+                progress(done / len(tasks))
     return peaks
 
 

@@ -14,7 +14,6 @@ from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.studies.spectrum.search import (
     PROBES,
     STEP,
-    in_threads,
     lowest_on_grid,
     probe_below,
     run_searches,
@@ -22,6 +21,7 @@ from rockwobble.compare.studies.spectrum.search import (
 )
 from rockwobble.compare.studies.spectrum.series import uplift_factor
 from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models.cpus import in_threads
 
 FALL = 0.5 * math.pi
 ALPHA = 0.1
@@ -113,7 +113,7 @@ def test_searches_side_by_side_find_what_each_finds_alone_and_share_levels():
 
 
 def test_threads_are_as_many_as_this_process_may_use(monkeypatch):
-    monkeypatch.setattr("rockwobble.compare.studies.spectrum.search.usable_cpus", lambda: 1)
+    monkeypatch.setattr("rockwobble.models.cpus.usable_cpus", lambda: 1)
 
     def thread(_: int) -> int:
         time.sleep(0.001)  # long enough for a second thread to take the next

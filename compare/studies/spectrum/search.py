@@ -10,15 +10,14 @@ missed is measured: intensities drawn at random below the lowest are run, too.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Callable, Generator, Sequence
 from functools import partial
 from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models.cpus import usable_cpus
+from rockwobble.models.cpus import in_threads
 
 from ...metrics.tilt import overturned
 
@@ -145,15 +144,3 @@ def run_searches(
         for i, levels in asked.items():
             go_on(i, partial(searches[i].send, np.array([tilts[i, level] for level in levels.tolist()])))
     return [found[i] for i in range(len(searches))]
-
-
-def in_threads(
-    function: Callable[..., T], *arguments: Iterable[object], workers: int | None = None
-) -> Iterator[T]:
-    """Yield the values of a compiled function for each of its arguments, in order; an exception ends all."""
-    with ThreadPoolExecutor(usable_cpus() if workers is None else workers) as pool:
-        try:
-            yield from pool.map(function, *arguments)
-        except BaseException:
-            pool.shutdown(wait=False, cancel_futures=True)
-            raise
