@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .._compile import inlined, jit
 from ..body import Body
 from .endings import HALF_PI
-from .march import MAXIMUM, MINIMUM
+from .result import MAXIMUM, MINIMUM
 from .stepping import Stepper
 from .systems import System
 from .tsit5 import State, Vector, ground

@@ -18,7 +18,8 @@ from ..body import Body
 from ..trigonometry import sin_cos
 from .endings import HALF_PI, may_sit_down, surely_overturns
 from .events import NONE, REPEATED, Turn, make_events
-from .march import COMPLETED, DECIDED, MAXIMUM, MINIMUM, OVER_BUDGET, OVERTURNED, STALLED, Options, Piece
+from .record import Piece
+from .result import COMPLETED, DECIDED, MAXIMUM, MINIMUM, OVER_BUDGET, OVERTURNED, STALLED, Options
 from .sampling import Wanted, make_sampling
 from .stepping import Stepper
 from .systems import System

@@ -42,7 +42,7 @@ class Stepper(NamedTuple):
     """The compiled functions of one method: how it steps, and how it fills a step.
 
     ``k`` is a tuple and ``work`` an array that one step leaves to the next, ``path`` says with
-    ``work`` what the last step was. The march never assigns ``work`` anew: counting the references
+    ``work`` what the last step was. The integration never assigns ``work`` anew: counting the references
     to an array would take longer than a tenth of a step.
     """
 
@@ -117,7 +117,7 @@ def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callab
 
     @jit
     def partial(body: Body, work: NDArray[np.float64], path: Any, time: float) -> tuple[State, State]:
-        """Return the state and its derivative: by a step, as accurate as those of the march."""
+        """Return the state and its derivative: by a step, as accurate as those of the integration."""
         y, k, a, slope = path
         y_new, k_new, _, _ = step(body, y, k, time, a, slope)
         return y_new, k_new
