@@ -1,4 +1,4 @@
-"""A solution of a reduced model: what a trace of it is made of, and what it computes when it is asked."""
+"""Solution of a reduced model: its states, and positions, forces, energy and passes computed from them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Events inside a step: the tilt turns, the base meets the ground, or the side does.
+"""Events inside a step: turning points of the tilt, impact of the base, overturning.
 
 A step is given by its method (`stepping.Stepper`) and what that keeps of it: ``work`` and ``path``.
 """

@@ -1,4 +1,4 @@
-"""How a run goes on: at rest to the end of a piece of the record or into an uplift, in motion by one step.
+"""One stage of a run: at rest, to the end of a piece of the record or to an uplift; in motion, one step.
 
 What there is to list of it is left to the driver: a list that is handed on has its references counted in
 every step.

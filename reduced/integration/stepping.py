@@ -2,7 +2,7 @@
 
 Nothing here knows of records: the ground acceleration is a + slope t, t from the start of the step.
 Two methods take the steps. The recess model, of which millions of runs are asked, has Taylor series
-(`taylor`). Planar and rolling motion have a Runge-Kutta pair (`tsit5`), which needs the equations
+(`taylor`). Planar motion and that on flat ground have a Runge-Kutta pair (`tsit5`), which needs the equations
 only: the four more variables of the flat-ground model would take as many products of series again, for
 single runs that take a millisecond, and planar motion has no spin whose passes take most steps.
 
