@@ -15,7 +15,7 @@ from rockwobble.compare.studies.spectrum.result import (
     OverturningSpectrum,
     record_frame,
     safe_islands,
-    spectrum_of,
+    stored_spectrum,
 )
 from rockwobble.compare.studies.spectrum.series import SPATIAL
 from rockwobble.compare.studies.spectrum.verification import AGREEMENT, CHECK_RTOL, NUDGE
@@ -35,7 +35,7 @@ def spectrum_page(
 def stored_page(results: Results) -> Page:
     """Return the page of the spectrum that is stored."""
     tables = {name: results.table(name) for name in ("lowest", "islands", "checked")}
-    return spectrum_page(spectrum_of(results), tables, results.manifest)
+    return spectrum_page(stored_spectrum(results), tables, results.manifest)
 
 
 def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame]) -> dict[str, object]:

@@ -12,7 +12,7 @@ from rockwobble.compare.runs.progress import Clock, ProgressCallback
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.compare.storage.manifest import Manifest, Results, made_now
 from rockwobble.compare.storage.provenance import code_digests, package_versions
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, spectrum_of
+from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, stored_spectrum
 from rockwobble.compare.studies.spectrum.study import overturning_spectrum
 from rockwobble.compare.studies.spectrum.verification import check_cells, confirm_lowest
 
@@ -88,4 +88,4 @@ def stored_page(results: Results) -> Page:
     """Return the page of what is stored."""
     names = [name.removesuffix(".parquet") for name in results.manifest.files]
     tables = {name: results.table(name) for name in names}
-    return paper_page(tables, results.manifest, spectrum_of(results))
+    return paper_page(tables, results.manifest, stored_spectrum(results))

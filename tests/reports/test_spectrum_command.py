@@ -13,7 +13,12 @@ from rich.console import Console
 
 from rockwobble import reduced
 from rockwobble.compare.storage.manifest import Manifest, read_results
-from rockwobble.compare.studies.spectrum.result import KIND, OverturningSpectrum, safe_islands, spectrum_of
+from rockwobble.compare.studies.spectrum.result import (
+    KIND,
+    OverturningSpectrum,
+    safe_islands,
+    stored_spectrum,
+)
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, SERIES, SPATIAL
 from rockwobble.compare.studies.spectrum.study import overturning_spectrum
 from rockwobble.models import GroundMotion, el_centro_1940
@@ -52,7 +57,7 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     assert {path.name for path in tmp_path.iterdir()} == written | {"kept.txt"}
     assert all(name in printed for name in written)
 
-    found = spectrum_of(read_results(tmp_path, KIND))
+    found = stored_spectrum(read_results(tmp_path, KIND))
     sizes, levels = np.linspace(0.5, 20.0, 4), np.linspace(1.0, 9.0, 8)
     assert np.array_equal(found.semidiagonals, sizes)
     peaks = reduced.peak_tilts(

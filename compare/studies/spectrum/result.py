@@ -177,7 +177,7 @@ def record_frame(motion: GroundMotion) -> pd.DataFrame:
     return pd.DataFrame(dict(zip("xyz", motion.acceleration.T, strict=False)))
 
 
-def spectrum_of(results: Results) -> OverturningSpectrum:
+def stored_spectrum(results: Results) -> OverturningSpectrum:
     """Return the spectrum that is stored in a folder, with the same bits."""
     cells, lowest, about = results.table("spectrum"), results.table("lowest"), results.manifest.about
     motion = GroundMotion(results.table("record").to_numpy(), **about["motion"])
