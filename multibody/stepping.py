@@ -1,4 +1,4 @@
-"""Stepping of an engine through a run, and on where its end does not say whether it overturns.
+"""Stepping of an engine through a run, and past its end where overturning is still undecided.
 
 A run may end while the cylinder falls, or moves with the energy to pass its balance. It is then carried on,
 over still ground, until the tilt turns back or the side is on the ground. In the first case the run stands,

@@ -14,7 +14,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion
 from rockwobble.models.cpus import in_threads, usable_cpus
 from rockwobble.models.number_checks import quoted
 
-from .integration.march import OVERTURNED, March
+from .integration.result import OVERTURNED, IntegrationResult
 from .problem import REST_TILT, make_problem
 from .simulation import make_ready
 
@@ -97,7 +97,7 @@ def peak_tilts(
 
     def run_cells(column: int, rows: slice) -> None:
         shaking = bodies[0].shaking(float(factors[column]))
-        peaks[rows, column] = [_peak(body.march_under(shaking)) for body in bodies[rows]]
+        peaks[rows, column] = [_peak(body.solve_under(shaking)) for body in bodies[rows]]
 
     threads = workers or usable_cpus()
     parts = min(len(sizes), math.ceil(_TASKS * threads / len(factors)))
@@ -110,10 +110,10 @@ def peak_tilts(
     return peaks
 
 
-def _peak(march: March) -> float:
-    if march.status == OVERTURNED:
+def _peak(result: IntegrationResult) -> float:
+    if result.status == OVERTURNED:
         return 0.5 * math.pi
-    return march.peak if march.status < OVERTURNED else math.nan
+    return result.peak if result.status < OVERTURNED else math.nan
 
 
 def _axis(name: str, values: ArrayLike) -> NDArray[np.float64]:

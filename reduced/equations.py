@@ -1,4 +1,4 @@
-"""Equations of motion of the planar, recess and flat models, in the form that computes well.
+"""Equations of motion of the planar, recess and flat models, in a form without cancellation near upright.
 
 All are written per unit mass, with s = sin theta, c = cos theta, v = 1 - c = 2 sin^2(theta/2),
 t = tan(theta/2) = v/s and
@@ -10,9 +10,9 @@ theta  rad      tilt, angle of the axis from the vertical                       
 omega  rad/s    theta'                                                          Fig. 2
 phi    rad      rolling angle, azimuth of the contact point                     Fig. 2
 L      m^2/s    B phi', momentum of the rolling angle (recess)                  (19)
-Lambda m^2/s    B phi' - G tau', the same where the twist is free (rolling)
+Lambda m^2/s    B phi' - G tau', the same where the twist is free (flat)
 tau    rad      twist phi + psi; 0 in the recess                                (14)
-S      m^2/s    M tau', momentum of the twist (rolling)
+S      m^2/s    M tau', momentum of the twist (flat)
 H      m^2      J + 2 E t + C t^2
 B      m^2      s^2 H = J s^2 + 2 E s v + C v^2, inertia of the rolling angle   (19)
 D      m        h s + b v, horizontal distance of the mass centre from O        (11)

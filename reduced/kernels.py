@@ -10,8 +10,8 @@ from rockwobble.models import Cylinder
 from ._compile import kernel
 from .body import Body, body_of
 from .integration.driver import make_driver
-from .integration.march import March, Options
 from .integration.progress import spin_momentum
+from .integration.result import IntegrationResult, Options
 from .integration.stepping import runge_kutta, taylor_series
 from .integration.systems import (
     FLAT,
@@ -24,13 +24,13 @@ from .integration.systems import (
 )
 from .integration.tsit5 import State
 
-_march_planar = make_driver(PLANAR, runge_kutta(PLANAR, planar_combine, planar_ratio))
-_march_recess = make_driver(RECESS, taylor_series())
-_march_flat = make_driver(FLAT, runge_kutta(FLAT, flat_combine, flat_ratio))
+_driver_planar = make_driver(PLANAR, runge_kutta(PLANAR, planar_combine, planar_ratio))
+_driver_recess = make_driver(RECESS, taylor_series())
+_driver_flat = make_driver(FLAT, runge_kutta(FLAT, flat_combine, flat_ratio))
 
 
 @kernel
-def march_planar(
+def integrate_planar(
     body: Body,
     options: Options,
     record: NDArray[np.float64],
@@ -38,13 +38,13 @@ def march_planar(
     initial: State,
     times: NDArray[np.float64],
     later: NDArray[np.float64],
-) -> March:
+) -> IntegrationResult:
     """Solve the planar model; see `driver.make_driver`."""
-    return _march_planar(body, options, record, time_step, initial, times, later)
+    return _driver_planar(body, options, record, time_step, initial, times, later)
 
 
 @kernel
-def march_recess(
+def integrate_recess(
     body: Body,
     options: Options,
     record: NDArray[np.float64],
@@ -52,13 +52,13 @@ def march_recess(
     initial: State,
     times: NDArray[np.float64],
     later: NDArray[np.float64],
-) -> March:
+) -> IntegrationResult:
     """Solve the recess model; see `driver.make_driver`."""
-    return _march_recess(body, options, record, time_step, initial, times, later)
+    return _driver_recess(body, options, record, time_step, initial, times, later)
 
 
 @kernel
-def march_flat(
+def integrate_flat(
     body: Body,
     options: Options,
     record: NDArray[np.float64],
@@ -66,9 +66,9 @@ def march_flat(
     initial: State,
     times: NDArray[np.float64],
     later: NDArray[np.float64],
-) -> March:
+) -> IntegrationResult:
     """Solve the flat-ground model; see `driver.make_driver`."""
-    return _march_flat(body, options, record, time_step, initial, times, later)
+    return _driver_flat(body, options, record, time_step, initial, times, later)
 
 
 @kernel
@@ -77,13 +77,13 @@ def momentum_of_release(body: Body, tilt: float, rolling_rate: float) -> float:
     return spin_momentum(body, tilt, rolling_rate)
 
 
-MARCHES = {"planar": march_planar, "recess": march_recess, "flat": march_flat}
+INTEGRATORS = {"planar": integrate_planar, "recess": integrate_recess, "flat": integrate_flat}
 SIZES = {"planar": 3, "recess": 4, "flat": 8}  # variables of a state
 
 
 def load(model: str) -> None:
-    """Load or compile the march of `model`, by running it on a cylinder at rest for a moment."""
+    """Load or compile the time integration of `model`, by running it on a cylinder at rest for a moment."""
     body = body_of(Cylinder(semidiagonal=1.0, tan_alpha=0.2), 9.81)
     options = Options(1e-6, 0.0, 1.0, 1.0, 1, False)
     start = (0.0,) * SIZES[model]
-    MARCHES[model](body, options, np.zeros((0, 3)), 1.0, start, np.zeros(1), np.zeros((0, 2)))
+    INTEGRATORS[model](body, options, np.zeros((0, 3)), 1.0, start, np.zeros(1), np.zeros((0, 2)))

@@ -19,7 +19,7 @@ from rockwobble.models.number_checks import quoted
 from . import kernels
 from .body import Body, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
-from .integration.march import March, Options
+from .integration.result import IntegrationResult, Options
 
 SUPPORTS = ("recess", "flat")
 _OUT_OF_PLANE = 1e-9  # [rad] more than what rounding makes of an azimuth
@@ -52,10 +52,10 @@ class Plane(NamedTuple):
 class SetUp(NamedTuple):
     """Arguments of a time integration."""
 
-    march: Callable[..., Any]
+    integrate: Callable[..., Any]
     record: NDArray[np.float64]  # (n, 3) [m/s^2]
     start: tuple[float, ...]  # (size,) state at time zero
-    azimuth: float  # from which the angles of the march count [rad]
+    azimuth: float  # from which the angles of the result count [rad]
 
 
 class Shaking(NamedTuple):
@@ -81,7 +81,7 @@ class Problem:
     restitution: float
 
     def __reduce__(self) -> tuple[Any, ...]:
-        # what is derived stays behind: a compiled march that travels is compiled again where it arrives
+        # what is derived stays behind: compiled code that travels is compiled again where it arrives
         return _restored, ({field.name: getattr(self, field.name) for field in fields(self)},)
 
     @cached_property
@@ -94,13 +94,12 @@ class Problem:
         times: NDArray[np.float64],
         *,
         record_steps: bool = False,
-    ) -> tuple[March, float]:
-        """Return the march with states at `times` (n,) [s], and the azimuth its angles count from."""
-        times = np.ascontiguousarray(
-            times
-        )  # a column of a table would have the march compiled for its stride
+    ) -> tuple[IntegrationResult, float]:
+        """Return the result with states at `times` (n,) [s], and the azimuth its angles count from."""
+        # a column of a table would have the time integration compiled for its stride
+        times = np.ascontiguousarray(times)
         set_up = self._set_up
-        march: March = set_up.march(
+        result: IntegrationResult = set_up.integrate(
             self.body,
             self._options(record_steps),
             set_up.record,
@@ -109,7 +108,7 @@ class Problem:
             times,
             np.empty((0, 2)),
         )
-        return march, set_up.azimuth
+        return result, set_up.azimuth
 
     def shaking(self, factor: float) -> Shaking:
         """Return the arguments of a run from rest under ``motion.scaled(factor)``, whatever the size."""
@@ -120,10 +119,10 @@ class Problem:
         # far from planar, so that the plane need not be looked for: a third of the time of a short run
         return Shaking(self._set_up._replace(record=self._set_up.record * factor), self._later * factor)
 
-    def march_under(self, shaking: Shaking) -> March:
-        """Return the march of this body under a motion of another size, for the peak only."""
+    def solve_under(self, shaking: Shaking) -> IntegrationResult:
+        """Return the result for this body under a motion of another size, for the peak only."""
         set_up, later = shaking
-        march: March = set_up.march(
+        result: IntegrationResult = set_up.integrate(
             self.body,
             self._options(False),
             set_up.record,
@@ -132,7 +131,7 @@ class Problem:
             np.empty(0),
             later,
         )
-        return march
+        return result
 
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""
@@ -155,16 +154,16 @@ class Problem:
 
     @cached_property
     def _set_up(self) -> SetUp:
-        """Choose the march: motion that stays in one vertical plane is solved as planar.
+        """Choose the model that is integrated: motion that stays in one vertical plane is solved as planar.
 
         Rounding would otherwise choose on which side such motion passes upright.
         """
         plane = self._plane
         if plane is not None:
             start = self._start(kernels.SIZES["planar"], plane.azimuth)
-            return SetUp(kernels.march_planar, plane.record, start, plane.azimuth)
+            return SetUp(kernels.integrate_planar, plane.record, start, plane.azimuth)
         start = self._start(kernels.SIZES[self.model], 0.0)
-        return SetUp(kernels.MARCHES[self.model], three_columns(self.motion), start, 0.0)
+        return SetUp(kernels.INTEGRATORS[self.model], three_columns(self.motion), start, 0.0)
 
     @cached_property
     def _later(self) -> NDArray[np.float64]:

@@ -18,7 +18,7 @@ from rockwobble.models.number_checks import require_positive
 
 from . import kernels
 from ._compile import in_memory, on_disk
-from .integration.march import COMPLETED, OVER_BUDGET, OVERTURNED, REST, March
+from .integration.result import COMPLETED, OVER_BUDGET, OVERTURNED, REST, IntegrationResult
 from .problem import REST_TILT, Problem, make_problem
 from .solution import Solution, six_columns
 
@@ -87,20 +87,20 @@ def simulate(
     make_ready("planar" if problem.is_planar() else problem.model)
     times = sample_times(problem.duration, sample_step)
     started = time.perf_counter()
-    march, azimuth = problem.solve(times)
-    if march.end > problem.duration:  # it overturns later
-        times = sample_times(march.end, sample_step)
-        march, azimuth = problem.solve(times)
+    result, azimuth = problem.solve(times)
+    if result.end > problem.duration:  # it overturns later
+        times = sample_times(result.end, sample_step)
+        result, azimuth = problem.solve(times)
     wall_time = time.perf_counter() - started
     given: dict[str, Any] = {} if plane is None else {"plane": plane}
     given |= {} if restitution == 1.0 else {"restitution": restitution}
     settings = {"rtol": rtol, "rest_tilt": rest_tilt, "plane": plane, "restitution": problem.restitution}
-    return _trace(problem, march, azimuth, times, case, Run(None, support, **given), settings, wall_time)
+    return _trace(problem, result, azimuth, times, case, Run(None, support, **given), settings, wall_time)
 
 
 def make_ready(model: str) -> None:
-    """Load the march of `model`, or compile it and say so on standard error: that takes seconds."""
-    entry = kernels.MARCHES[model]
+    """Load the compiled code of `model`, or compile it and say so on standard error: that takes seconds."""
+    entry = kernels.INTEGRATORS[model]
     if not in_memory(entry):
         if not on_disk(entry):
             print(f"rockwobble: compiling the {model} model, once for this installation ...", file=sys.stderr)
@@ -119,7 +119,7 @@ def sample_times(duration: float, sample_step: float) -> NDArray[np.float64]:
 
 def _trace(
     problem: Problem,
-    march: March,
+    result: IntegrationResult,
     azimuth: float,
     times: NDArray[np.float64],
     case: Case,
@@ -127,18 +127,18 @@ def _trace(
     settings: dict[str, Any],
     wall_time: float,
 ) -> Trace:
-    reached = march.reached
-    times, states, moving = times[:reached], march.samples[:reached], march.moving[:reached]
-    overturned = march.status == OVERTURNED
-    if overturned and (not reached or times[-1] < march.end):
-        times = np.append(times, march.end)
-        states = np.vstack([states, march.final])
+    reached = result.reached
+    times, states, moving = times[:reached], result.samples[:reached], result.moving[:reached]
+    overturned = result.status == OVERTURNED
+    if overturned and (not reached or times[-1] < result.end):
+        times = np.append(times, result.end)
+        states = np.vstack([states, result.final])
         moving = np.append(moving, True)
     full = six_columns(states, azimuth)
     if overturned:
         full[-1, 0] = 0.5 * math.pi  # the last of a Newton iteration
-    outcome = _OUTCOMES.get(march.status, "failed")
-    extrema = march.extrema
+    outcome = _OUTCOMES.get(result.status, "failed")
+    extrema = result.extrema
     extrema[:, 2] += azimuth
     solution = Solution(
         problem=problem,
@@ -146,9 +146,9 @@ def _trace(
         time=times,
         states=full,
         roll_out=states[:, 6:8] if states.shape[1] == 8 else np.zeros((len(states), 2)),
-        uplift_time=march.uplift_time,
+        uplift_time=result.uplift_time,
         extrema=extrema,
-        rests=march.rests,
+        rests=result.rests,
     )
     return Trace(
         case=case,
@@ -161,29 +161,29 @@ def _trace(
         twist=full[:, 4],
         contact_point=solution.contact_point(moving),
         centre_of_mass=solution.centre_of_mass(),
-        peak_tilt=math.nan if outcome == "failed" else 0.5 * math.pi if overturned else march.peak,
+        peak_tilt=math.nan if outcome == "failed" else 0.5 * math.pi if overturned else result.peak,
         outcome=outcome,
-        uplift_time=march.uplift_time,
-        uplift_direction=march.uplift_direction + azimuth,
+        uplift_time=result.uplift_time,
+        uplift_direction=result.uplift_direction + azimuth,
         source=solution,
         passes=solution.passes(),
-        facts=tuple(_facts(problem, march)),
-        rests=march.rests,
+        facts=tuple(_facts(problem, result)),
+        rests=result.rests,
         extrema=extrema,
         settings=settings,
         wall_time=wall_time,
-        step_count=march.step_count,
+        step_count=result.step_count,
         residual_displacement=solution.residual_displacement(),
     )
 
 
-def _facts(problem: Problem, march: March) -> Iterator[Diagnostic]:
+def _facts(problem: Problem, result: IntegrationResult) -> Iterator[Diagnostic]:
     """Facts of a run: what ended it, and what it leaves undetermined."""
-    if march.status == OVER_BUDGET:
-        yield Diagnostic(code="step_budget", time=march.end, size=march.step_count - 1.0)
-    elif march.status not in _OUTCOMES:
-        yield Diagnostic(code="tolerance", time=march.end, bound=problem.rtol)
-    straight = march.extrema[march.extrema[:, 1] == 0.0]
+    if result.status == OVER_BUDGET:
+        yield Diagnostic(code="step_budget", time=result.end, size=result.step_count - 1.0)
+    elif result.status not in _OUTCOMES:
+        yield Diagnostic(code="tolerance", time=result.end, bound=problem.rtol)
+    straight = result.extrema[result.extrema[:, 1] == 0.0]
     if len(straight) and not problem.is_planar():
         yield Diagnostic(code="side", time=float(straight[0, 0]))
 

@@ -1,4 +1,4 @@
-"""A solution of a reduced model: what a trace of it is made of, and what it computes when it is asked."""
+"""Solution of a reduced model: its states, and positions, forces, energy and passes computed from them."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from rockwobble.models.traces.trace_source import friction_of
 from . import forces
 from .assumptions import Demands, review
 from .columns import ground_at, in_plane
-from .integration.march import MAXIMUM, MINIMUM
+from .integration.result import MAXIMUM, MINIMUM
 from .problem import Problem
 
 if TYPE_CHECKING:
@@ -119,19 +119,19 @@ class Solution(Brief):
 
     def assumptions(self, until: float) -> Assumptions:
         """Return whether contact and friction held until a time [s]; solved again, between its steps too."""
-        march, _ = self.problem.solve(np.empty(0), record_steps=True)
-        steps = np.concatenate([[0.0], march.steps[:, 0], self.rests[:, 0], [min(march.end, until)]])
+        result, _ = self.problem.solve(np.empty(0), record_steps=True)
+        steps = np.concatenate([[0.0], result.steps[:, 0], self.rests[:, 0], [min(result.end, until)]])
         landings = self.extrema[self.extrema[:, 1] == 0.0, 0]
         jumps = np.concatenate([[self.uplift_time], self.rests[:, 1], landings])
         jumps = jumps[np.isfinite(jumps) & (jumps > 0.0) & (jumps < until)]
         return review(self._demands_at, np.unique(steps[steps <= until]), jumps, self.friction)
 
     def _demands_at(self, times: Array) -> Demands:
-        march, azimuth = self.problem.solve(times)
-        reached = march.reached
-        derived = self._derive(times[:reached], six_columns(march.samples[:reached], azimuth))
+        result, azimuth = self.problem.solve(times)
+        reached = result.reached
+        derived = self._derive(times[:reached], six_columns(result.samples[:reached], azimuth))
         force = derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
-        return Demands(force[:, 2], friction_of(force), derived[:, forces.MOMENT], march.moving[:reached])
+        return Demands(force[:, 2], friction_of(force), derived[:, forces.MOMENT], result.moving[:reached])
 
     def _derive(self, times: Array, states: Array) -> Array:
         problem = self.problem

@@ -90,10 +90,10 @@ class CertificateItem(pytest.Item):
         """Repeat the fingerprint, and raise if it changed."""
         from rockwobble.compare.certificate import read_certificate, verify
 
-        answer = verify(read_certificate(self.certificate))
-        if answer.exit_code:
-            raise ChangedError(answer.words())
-        self.add_report_section("call", "certificate", answer.words())
+        verdict = verify(read_certificate(self.certificate))
+        if verdict.exit_code:
+            raise ChangedError(verdict.words())
+        self.add_report_section("call", "certificate", verdict.words())
 
     def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
         """Return what changed; anything else as pytest has it."""

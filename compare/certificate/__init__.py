@@ -1,14 +1,14 @@
-"""Certificate of an installation: claims with their evidence, and a fingerprint to tell it by."""
+"""Certificate of an installation: claims with their evidence, and a fingerprint to verify it by."""
 
 from .certificate import certify, read_certificate, verify
 from .claims import Claim, claims_of
 from .fingerprint import engine_method, reduced_method
-from .verdict import Answer, Certificate
+from .verdict import Certificate, FingerprintVerdict
 
 __all__ = [
-    "Answer",
     "Certificate",
     "Claim",
+    "FingerprintVerdict",
     "certify",
     "claims_of",
     "engine_method",

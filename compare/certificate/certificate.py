@@ -15,7 +15,7 @@ from ..storage.provenance import commit, package_versions
 from .claims import claims_of
 from .fingerprint import Method, engine_method, fingerprint, reduced_method, repeated
 from .short_cases import short_cases
-from .verdict import KIND, Answer, Certificate, Described, compare, read, require_whole
+from .verdict import KIND, Certificate, Described, FingerprintVerdict, compare, read, require_whole
 
 FORMAT = 3
 
@@ -66,8 +66,8 @@ def method_of(certificate: Certificate) -> Method:
     return engine_method(given["engine"], given["time_step"], **given["settings"])
 
 
-def verify(certificate: Certificate, method: Method | None = None) -> Answer:
-    """Compute the fingerprint here, up to the first change, and answer.
+def verify(certificate: Certificate, method: Method | None = None) -> FingerprintVerdict:
+    """Compute the fingerprint here, up to the first change, and return the verdict.
 
     Parameters
     ----------

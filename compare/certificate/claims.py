@@ -1,4 +1,4 @@
-"""Claims: what holds, where, to which bound, by which evidence; and what nobody has shown."""
+"""Claims of a certificate: statement, range, bound and evidence of each, and what no evidence covers."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The fingerprint of a method: twelve short motions, how exactly they repeat, and from when they cannot.
+"""Fingerprint of a method: twelve short motions, how exactly they repeat, and how long they can agree.
 
 Two installations of one method differ by rounding, and two versions of an engine by a little more. What that
 becomes in time is told by copies of a case whose start or record is off by the accuracy of the method: a

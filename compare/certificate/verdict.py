@@ -73,8 +73,8 @@ class Certificate(TypedDict):
 
 
 @dataclass(frozen=True)
-class Answer:
-    """The word, and why.
+class FingerprintVerdict:
+    """Verdict on two fingerprints: the word, and the case that decides it.
 
     Parameters
     ----------
@@ -116,21 +116,21 @@ class Answer:
         )
 
 
-def compare(old: Iterable[Entry], new: Iterable[Sample]) -> Answer:
-    """Return the answer for two fingerprints; the entries of `new` are taken only up to the first change."""
-    answer = Answer(SAME)
+def compare(old: Iterable[Entry], new: Iterable[Sample]) -> FingerprintVerdict:
+    """Return the verdict on two fingerprints; the entries of `new` are taken only up to the first change."""
+    verdict = FingerprintVerdict(SAME)
     for one, other in zip(old, new, strict=True):
         found = compare_entries(one, other)
         if found.word == CHANGED:
             return found
-        if answer.word == SAME:
-            answer = found
-    return answer
+        if verdict.word == SAME:
+            verdict = found
+    return verdict
 
 
-def compare_entries(old: Entry, new: Sample) -> Answer:
-    """Return the answer for one case."""
-    decided = partial(Answer, case=old["name"], claim=old["claim"], term=old["term"])
+def compare_entries(old: Entry, new: Sample) -> FingerprintVerdict:
+    """Return the verdict on one case."""
+    decided = partial(FingerprintVerdict, case=old["name"], claim=old["claim"], term=old["term"])
     end = math.inf if old["agreement_time"] is None else old["agreement_time"]
     if old["name"] != new["name"]:
         return decided(CHANGED, quantity="the case itself")
@@ -148,9 +148,9 @@ def compare_entries(old: Entry, new: Sample) -> Answer:
             return decided(CHANGED, quantity=f"outcome {old['outcome']}, now {new['outcome']}")
         if apart > allowed:
             return decided(CHANGED, quantity="peak_tilt", difference=apart, allowed=allowed)
-        return Answer(SAME)
+        return FingerprintVerdict(SAME)
     if first is None and old["outcome"] == new["outcome"]:
-        return Answer(SAME)
+        return FingerprintVerdict(SAME)
     old_peaks, new_peaks = (late_peaks(one, end) for one in (old, new))
     if not len(new_peaks):
         return decided(CHANGED, quantity="agreement time, which no longer ends")
@@ -269,9 +269,9 @@ def main(arguments: list[str]) -> int:
     except ValueError as error:
         print(error, file=sys.stderr)
         return 2
-    answer = compare(old["fingerprint"], new["fingerprint"])
-    print(answer.words())
-    return answer.exit_code
+    verdict = compare(old["fingerprint"], new["fingerprint"])
+    print(verdict.words())
+    return verdict.exit_code
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Consistency checks: the reduced model against itself as it was, and against the engines.
+"""Consistency checks: the reduced model against exact solutions, its baseline and the engines.
 
 Layers of checks, tightest first; every check has a measured value, a bound, the reason for the bound,
 and the part that is suspect where it fails. `rockwobble check` runs them.

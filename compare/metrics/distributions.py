@@ -182,8 +182,8 @@ def paired_difference(only: int, only_there: int, count: int) -> Interval:
     )
 
 
-def fewest_to_tell() -> int:
-    """Return the least count that must overturn by one method alone, and none by the other, to tell them."""
+def least_significant_count() -> int:
+    """Return the least count by one method alone, none by the other, that is significant by `mcnemar_p`."""
     return math.floor(math.log2(2.0 / SIGNIFICANCE)) + 1
 
 

@@ -1,4 +1,4 @@
-"""The energy that a run lost on its way.
+"""Energy that a run has lost by its end.
 
 The reduced models lose none, so what an engine loses is contact damping and numerics.
 """

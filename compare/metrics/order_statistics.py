@@ -1,4 +1,4 @@
-"""Quantiles of a few members, with intervals that ask nothing of their distribution.
+"""Quantiles of small samples, with intervals that hold for any distribution.
 
 A quantile lies between two order statistics with a probability that is known exactly, whatever is sampled:
 that the k-th of n values is below the quantile of share q is I_q(k, n + 1 - k), the regularised incomplete

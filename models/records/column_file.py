@@ -118,7 +118,7 @@ def _cells(text: str) -> list[str]:
 
 
 def _has_decimal_comma(text: str) -> bool:
-    """Return whether a line of numbers is parted by semicolons or blanks, with commas inside the numbers."""
+    """Return whether semicolons or blanks separate the numbers of a line, with commas inside the numbers."""
     parts = [part.strip() for part in (text.split(";") if ";" in text else text.split())]
     commas = [re.fullmatch(_COMMA_NUMBER, part) is not None for part in parts]
     return (

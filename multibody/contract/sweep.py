@@ -1,4 +1,4 @@
-"""The static uplift sweep of the contract: where the base opens, and towards where."""
+"""The static uplift sweep of the contract: threshold and direction of uplift."""
 
 from __future__ import annotations
 

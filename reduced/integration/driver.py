@@ -1,4 +1,4 @@
-"""Time integration through a record: rest, uplift, motion, turning points, rest_tilt, overturning.
+"""Time integration through a record: uplift, motion, turning points, rest, overturning.
 
 One driver serves the three models; they differ in their equations and in the number of variables.
 `systems` says which.
@@ -21,19 +21,19 @@ from ..body import Body
 from .endings import may_overturn
 from .events import NO_TURN
 from .log import as_table, empty_log, mark_of
-from .march import (
+from .progress import Stage, make_progress, time_in
+from .record import piece_of_record
+from .result import (
     COMPLETED,
     DECIDED,
     MAXIMUM,
     MINIMUM,
     REST,
     Driver,
-    March,
+    IntegrationResult,
     Options,
-    piece_of_record,
     write,
 )
-from .progress import Stage, make_progress, time_in
 from .stepping import Stepper
 from .systems import System
 from .tsit5 import State
@@ -47,12 +47,12 @@ _UNDECIDED = 15.0
 
 
 def make_driver(system: System, stepper: Stepper) -> Driver:
-    """Return the compiled march of one model by one method."""
+    """Return the compiled time integration of one model by one method."""
     lifted, lift_in, at_beginning, at_rest, stood, moved = make_progress(system, stepper)
     workspace, derivative, momenta = stepper.workspace, system.derivative, system.momenta
 
     @once
-    def march(
+    def integrate(
         body: Body,
         options: Options,
         record: NDArray[np.float64],
@@ -60,7 +60,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         initial: State,
         times: NDArray[np.float64],
         later: NDArray[np.float64],
-    ) -> March:
+    ) -> IntegrationResult:
         """Solve one problem.
 
         Parameters
@@ -141,7 +141,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         final = np.empty(len(y))
         write(y, final)
         owned[0][0] = 0.0
-        return March(
+        return IntegrationResult(
             status,
             now,
             peak,
@@ -157,4 +157,4 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             run.step_count,
         )
 
-    return march
+    return integrate

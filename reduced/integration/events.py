@@ -1,4 +1,4 @@
-"""Events inside a step: the tilt turns, the base meets the ground, or the side does.
+"""Events inside a step: turning points of the tilt, impact of the base, overturning.
 
 A step is given by its method (`stepping.Stepper`) and what that keeps of it: ``work`` and ``path``.
 """
@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .._compile import inlined, jit
 from ..body import Body
 from .endings import HALF_PI
-from .march import MAXIMUM, MINIMUM
+from .result import MAXIMUM, MINIMUM
 from .stepping import Stepper
 from .systems import System
 from .tsit5 import State, Vector, ground

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._compile import jit
-from .march import write
+from .result import write
 from .tsit5 import State
 
 
 class Log(NamedTuple):
-    """Rows of the tables that a march returns (`March`).
+    """Rows of the tables that a time integration returns (`IntegrationResult`).
 
     Lists, typed by a row and emptied: a growing array would have its references counted in each step.
     """
@@ -24,7 +24,7 @@ class Log(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """State at the end of the duration, where the march goes on to see whether the cylinder overturns."""
+    """State at the end of the duration, from which the integration goes on to see whether it overturns."""
 
     y: State
     peak: float

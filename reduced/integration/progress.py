@@ -1,4 +1,4 @@
-"""How a run goes on: at rest to the end of a piece of the record or into an uplift, in motion by one step.
+"""One stage of a run: at rest, to the end of a piece of the record or to an uplift; in motion, one step.
 
 What there is to list of it is left to the driver: a list that is handed on has its references counted in
 every step.
@@ -18,7 +18,8 @@ from ..body import Body
 from ..trigonometry import sin_cos
 from .endings import HALF_PI, may_sit_down, surely_overturns
 from .events import NONE, REPEATED, Turn, make_events
-from .march import COMPLETED, DECIDED, MAXIMUM, MINIMUM, OVER_BUDGET, OVERTURNED, STALLED, Options, Piece
+from .record import Piece
+from .result import COMPLETED, DECIDED, MAXIMUM, MINIMUM, OVER_BUDGET, OVERTURNED, STALLED, Options
 from .sampling import Wanted, make_sampling
 from .stepping import Stepper
 from .systems import System

@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from .._compile import inlined
 from ..body import Body
-from .march import Piece, write
+from .record import Piece
+from .result import write
 from .tsit5 import State
 
 Wanted = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.bool_]]  # times, states there, in motion

@@ -29,7 +29,7 @@ Path = tuple[float, int]  # of the last series: unit of time [s], order
 
 @jit
 def workspace(y: State) -> NDArray[np.float64]:
-    """Return the memory that a march needs for its steps."""
+    """Return the memory that a time integration needs for its steps."""
     return np.zeros(_SIZE)
 
 

@@ -2,7 +2,7 @@
 
 Nothing here knows of records: the ground acceleration is a + slope t, t from the start of the step.
 Two methods take the steps. The recess model, of which millions of runs are asked, has Taylor series
-(`taylor`). Planar and rolling motion have a Runge-Kutta pair (`tsit5`), which needs the equations
+(`taylor`). Planar motion and that on flat ground have a Runge-Kutta pair (`tsit5`), which needs the equations
 only: the four more variables of the flat-ground model would take as many products of series again, for
 single runs that take a millisecond, and planar motion has no spin whose passes take most steps.
 
@@ -42,7 +42,7 @@ class Stepper(NamedTuple):
     """The compiled functions of one method: how it steps, and how it fills a step.
 
     ``k`` is a tuple and ``work`` an array that one step leaves to the next, ``path`` says with
-    ``work`` what the last step was. The march never assigns ``work`` anew: counting the references
+    ``work`` what the last step was. The integration never assigns ``work`` anew: counting the references
     to an array would take longer than a tenth of a step.
     """
 
@@ -117,7 +117,7 @@ def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callab
 
     @jit
     def partial(body: Body, work: NDArray[np.float64], path: Any, time: float) -> tuple[State, State]:
-        """Return the state and its derivative: by a step, as accurate as those of the march."""
+        """Return the state and its derivative: by a step, as accurate as those of the integration."""
         y, k, a, slope = path
         y_new, k_new, _, _ = step(body, y, k, time, a, slope)
         return y_new, k_new

@@ -1,11 +1,11 @@
-"""The three models as systems of first order: what the driver needs to know of each.
+"""The three models as systems of first order: their variables, derivatives and error norms.
 
 States are tuples whose first three entries are tilt, tilt rate and rolling angle:
 
 ======== ============================================================================
 planar   theta, theta', phi; the plane is x z, so phi is 0 or pi
 recess   theta, theta', phi, L
-rolling  theta, theta', phi, Lambda, tau, S, X, Y; the rim rolls on the circle about
+flat     theta, theta', phi, Lambda, tau, S, X, Y; the rim rolls on the circle about
          (X, Y), so the contact point is (X + b cos phi, Y + b sin phi), and moves
          at the speed b psi'
 ======== ============================================================================

@@ -1,4 +1,4 @@
-"""`rockwobble advise`: what to make of one cylinder and one record, on one page."""
+"""`rockwobble advise`: outcome, trust and demands on the support for one cylinder and one record."""
 
 from __future__ import annotations
 

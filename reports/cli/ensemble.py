@@ -1,4 +1,4 @@
-"""`rockwobble ensemble`: peak tilts of many members, for what lies beyond the agreement of traces."""
+"""`rockwobble ensemble`: peak tilts of many members by several methods, compared as distributions."""
 
 from __future__ import annotations
 

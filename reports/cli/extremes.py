@@ -1,4 +1,4 @@
-"""`rockwobble extremes`: what breaks first, and whether it says so."""
+"""`rockwobble extremes`: every method under extreme conditions, with a verdict on each run."""
 
 from __future__ import annotations
 

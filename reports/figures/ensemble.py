@@ -1,4 +1,4 @@
-"""Peak tilts of an ensemble: distributions over each other, and each member against itself."""
+"""Peak tilts of an ensemble: their distributions by every method, and each member by two methods."""
 
 from __future__ import annotations
 

@@ -133,14 +133,14 @@ def names(values: Sequence[object]) -> tuple[Array, list[tuple[float, str]]]:
 
 
 def contour(x: Array, y: Array, values: Array, level: float) -> tuple[Array, Array]:
-    """Return the line (n,), (n,) where values (len(y), len(x)) are `level`; NaN parts its pieces."""
+    """Return the line (n,), (n,) where values (len(y), len(x)) are `level`; NaN separates its pieces."""
     from contourpy import contour_generator
 
     if min(values.shape) < 2:  # through a single row of cells there is none
         return np.empty(0), np.empty(0)
     pieces = contour_generator(x, y, np.ma.masked_invalid(values)).lines(level)
-    parted = [part for piece in pieces for part in (np.asarray(piece), np.full((1, 2), np.nan))]
-    whole = np.concatenate(parted[:-1]) if parted else np.empty((0, 2))
+    separated = [part for piece in pieces for part in (np.asarray(piece), np.full((1, 2), np.nan))]
+    whole = np.concatenate(separated[:-1]) if separated else np.empty((0, 2))
     return whole[:, 0], whole[:, 1]
 
 

@@ -246,8 +246,8 @@ def ecdf(values: Array, *, total: int | None = None, end: float | None = None) -
     return x, counts / max(len(values) if total is None else total, 1)
 
 
-def parted(first: Array, second: Array) -> Array:
-    """Return the ends of bars one after the other, parted by NaN."""
+def separated(first: Array, second: Array) -> Array:
+    """Return the ends of bars one after the other, separated by NaN."""
     return np.column_stack([first, second, np.full(len(first), np.nan)]).ravel()
 
 

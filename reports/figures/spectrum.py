@@ -9,7 +9,7 @@ from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIE
 
 from .heat import PEAKS, Heat, peak_map
 from .palette import Style, model_style, run_styles
-from .picture import Axis, Line, Panel, Picture, parted
+from .picture import Axis, Line, Panel, Picture, separated
 
 NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-south"}
 _HEIGHT = 3.4
@@ -80,7 +80,7 @@ def _curves(spectrum: OverturningSpectrum) -> list[Line]:
         ends = closed["lower"].to_numpy(float) - half, closed["upper"].to_numpy(float) + half
         thin = Style(colour=styles[series].colour)
         found += [
-            Line(x=parted(place, place), y=parted(*ends), style=thin, width=0.7, opacity=0.45),
+            Line(x=separated(place, place), y=separated(*ends), style=thin, width=0.7, opacity=0.45),
             Line(
                 x=spectrum.semidiagonals,
                 y=spectrum.lowest[series],

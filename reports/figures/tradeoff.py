@@ -8,7 +8,7 @@ import pandas as pd
 from rockwobble.compare.studies.tradeoff.study import Tradeoff
 
 from .palette import DARK, GREY, ORDER, SYMBOLS, Style
-from .picture import Axis, Line, Panel, Picture, Rule, parted
+from .picture import Axis, Line, Panel, Picture, Rule, separated
 
 TITLES = {
     "turn": "Angle of turn in free response",
@@ -90,7 +90,7 @@ def _lines(points: pd.DataFrame) -> list[Line]:
         layers.append(
             Line(x=x, y=y, name=str(name), style=Style(colour=colour, symbol=symbols[index]), notes=notes)
         )
-        bars = parted(*(ordered[f"ratio_{end}"].to_numpy(float) for end in ("low", "high")))
+        bars = separated(*(ordered[f"ratio_{end}"].to_numpy(float) for end in ("low", "high")))
         layers.append(Line(x=bars, y=np.repeat(y, 3), style=Style(colour=colour), width=0.8))
     return layers
 

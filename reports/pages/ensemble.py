@@ -7,8 +7,8 @@ from rockwobble.compare.metrics.distributions import (
     MARGIN,
     POWER,
     SIGNIFICANCE,
-    fewest_to_tell,
     largest_share_unseen,
+    least_significant_count,
 )
 from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.ensemble.study import stored_ensemble
@@ -57,6 +57,6 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         "margin": MARGIN,
         "power": POWER,
         "significance": SIGNIFICANCE,
-        "fewest": fewest_to_tell(),
+        "fewest": least_significant_count(),
         "unseen": largest_share_unseen(int(contrasts["count"].min())) if rows else 1.0,
     }

@@ -1,4 +1,4 @@
-"""The report on the extremes: counts, and the runs that are not fine with what limits each."""
+"""The report on the extremes: counts of the verdicts, and what limits each run that is not fine."""
 
 from __future__ import annotations
 

@@ -141,7 +141,7 @@ def test_a_wrong_prediction_or_distribution_is_found(
         ("mcnemar_p", lambda p: 0.5 * p),
         ("adjusted", lambda p: np.minimum(p, 0.05)),
         ("largest_share_unseen", lambda share: 1.01 * share),
-        ("fewest_to_tell", lambda count: count - 1),
+        ("least_significant_count", lambda count: count - 1),
         ("ratio_within_reach", lambda ratio: 1.01 * ratio),
         ("log_ratios", lambda ratios: -ratios),
         ("paired_difference", lambda found: replace(found, low=-found.high, high=-found.low)),

@@ -20,8 +20,8 @@ from rockwobble.compare.metrics.distributions import (
     POWER,
     adjusted,
     contrast,
-    fewest_to_tell,
     largest_share_unseen,
+    least_significant_count,
     log_ratios,
     mcnemar_p,
     paired_difference,
@@ -252,7 +252,7 @@ def test_who_overturns_by_one_method_alone_decides():
     assert mcnemar_p(6, 0) == pytest.approx(2.0**-5, abs=ROUNDING)
     assert mcnemar_p(0, 0) == 1.0
     assert mcnemar_p(3, 8) == pytest.approx(binomtest(3, 11).pvalue, abs=ROUNDING)
-    few = fewest_to_tell()
+    few = least_significant_count()
     assert mcnemar_p(few, 0) < 0.05 <= mcnemar_p(few - 1, 0)
     # as many fall by each method, but never the same: no test of two samples would ask who they are
     fell = np.arange(COUNT) < 8

@@ -116,7 +116,7 @@ def _around(file: str, head: str, body: str) -> Fault:
 def _structure() -> list[Mutation]:
     # the pieces keep their times, but from the 21st on they are those of the next
     skipped = _around(
-        "integration/march.py",
+        "integration/record.py",
         "piece_of_record(record, time_step, index, begin, last)",
         "piece = without_fault(record, time_step, index, begin, last)\n"
         "skipped = 1 if 20 < index < len(record) - 2 else 0\n"
@@ -129,7 +129,9 @@ def _structure() -> list[Mutation]:
         "uplift_in(*arguments)",
         "return 0.0 if without_fault(*arguments) == 0.0 else -1.0",
     )
-    rolling = Fault(file="kernels.py", change=appended('MARCHES["recess"], SIZES["recess"] = march_flat, 8'))
+    rolling = Fault(
+        file="kernels.py", change=appended('INTEGRATORS["recess"], SIZES["recess"] = integrate_flat, 8')
+    )
     leak = Fault(file=FILE, change=after_assignment("expand", "momentum_1", "momentum_1 -= 1e-6 * h * L"))
     return [
         Mutation(

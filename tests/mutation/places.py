@@ -17,7 +17,7 @@ ORIGINAL = "without_fault"
 
 
 def function_in(tree: ast.AST, name: str) -> ast.FunctionDef:
-    """Return a function by its dotted name, such as "make_driver.march".
+    """Return a function by its dotted name, such as "make_driver.integrate".
 
     Raises
     ------

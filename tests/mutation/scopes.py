@@ -29,7 +29,7 @@ class Scope:
     Parameters
     ----------
     name : str
-        Dotted, such as "make_driver.march", or that of a value of the module.
+        Dotted, such as "make_driver.integrate", or that of a value of the module.
     roots : tuple of ast.AST
         Statements and values to look at.
     function : ast.FunctionDef, optional

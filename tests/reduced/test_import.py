@@ -53,14 +53,14 @@ def test_compiled_code_goes_to_a_folder_of_ours_where_it_has_no_other_place(tmp_
 
 
 def test_stale_code_that_another_process_has_removed_meanwhile_is_no_error(monkeypatch, tmp_path):
-    kept = tmp_path / "driver.march_recess-1.py311.nbi"
+    kept = tmp_path / "driver.integrate_recess-1.py311.nbi"
     true = Path.glob  # that of the sources goes on
 
     def glob(self, pattern, **options):
         return [kept] if pattern == "*.nbi" else true(self, pattern, **options)
 
     monkeypatch.setattr(Path, "glob", glob)
-    entry = SimpleNamespace(stats=SimpleNamespace(cache_path=tmp_path), __name__="march_recess")
+    entry = SimpleNamespace(stats=SimpleNamespace(cache_path=tmp_path), __name__="integrate_recess")
     assert not on_disk(entry)
     kept.touch()
     assert on_disk(entry)
@@ -71,7 +71,7 @@ def test_a_column_of_times_is_solved_by_what_is_compiled(options):
     case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940().scaled(2.0), duration=3.0)
     problem = reduced.simulate(case, **options).source.problem
     column = np.linspace(0.0, 3.0, 20).reshape(10, 2)[:, 0]
-    march, _ = problem.solve(column)
-    assert march.samples.tolist() == problem.solve(column.copy())[0].samples.tolist()
+    result, _ = problem.solve(column)
+    assert result.samples.tolist() == problem.solve(column.copy())[0].samples.tolist()
     # for strided arrays it would be compiled anew, for ten seconds
-    assert len(problem._set_up.march.signatures) == 1
+    assert len(problem._set_up.integrate.signatures) == 1

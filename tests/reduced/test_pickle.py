@@ -10,11 +10,11 @@ from rockwobble.models import Case, Cylinder, InitialState
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 
 
-def test_a_response_from_elsewhere_is_solved_again_with_the_compiled_march():
+def test_a_response_from_elsewhere_is_solved_again_with_the_code_that_is_compiled():
     # compiled code that travels with a response would be compiled again where it arrives, for many seconds
     response = reduced.simulate(Case(PIER, initial=InitialState(tilt=0.1, rolling_rate=0.1), duration=1.0))
     sent = pickle.loads(pickle.dumps(response))
     assert (
         sent.source.problem.solve(np.empty(0))[0].peak == response.source.problem.solve(np.empty(0))[0].peak
     )
-    assert sent.source.problem._set_up.march is response.source.problem._set_up.march
+    assert sent.source.problem._set_up.integrate is response.source.problem._set_up.integrate

@@ -44,7 +44,7 @@ def test_a_near_pass_turns_to_the_side_of_the_momentum():
         given = problem(seed, models=("recess", "flat"), sizes=(2.0, 50.0), released=seed % 3 == 0)
         response = given.simulate(rest_tilt=1e-4)  # less chatter
         passes = response.passes
-        # a column lends its numbers to be read only, for which both marches would be compiled once more
+        # a column lends its numbers to be read only, for which both models would be compiled once more
         solved, _ = response.source.problem.solve(passes.time.to_numpy(copy=True))
         maxima = response.extrema[response.extrema[:, 3] > 0.0]
         after = np.searchsorted(maxima[:, 0], passes.time)

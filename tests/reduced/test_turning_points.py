@@ -44,9 +44,9 @@ def test_each_turn_of_the_samples_is_listed_and_each_that_is_listed_turns(
         for turn in turns:
             assert np.abs(times - found.time[turn]).min() < 2.0 * SAMPLE, (seed, found.time[turn])
         turned += len(turns)
-        march, _ = found.source.problem.solve(times)
+        result, _ = found.source.problem.solve(times)
         turning = tilts > 0.0  # where the base lands in a plane it has a speed
-        rates = np.abs(march.samples[turning, 1])
+        rates = np.abs(result.samples[turning, 1])
         assert rates.max() < STILL * np.abs(found.tilt_rate).max(), (seed, times[turning][rates.argmax()])
     assert turned > 5 * PROBLEMS
 

@@ -163,7 +163,7 @@ def highest(h: float, tilt: float, rate: float, tilt_new: float, rate_new: float
 
 
 @jit
-def march(
+def integrate_arrays(
     P: Array, alpha: float, record: Array, dt: float, duration: float, y: Array, rest: float, rtol: float
 ) -> tuple[int, float, float, int]:
     """Return 0 rest, 1 completed, 2 overturned or 3 too many steps; peak, time of uplift, number of rests."""
@@ -250,7 +250,7 @@ def integrate(given: Problem, *, rtol: float = 1e-12, rest: float = 1e-8) -> Res
         y[3:6] = -spin * s * cos - rate * sin, -spin * s * sin + rate * cos, spin * (1.0 - math.cos(tilt))
         y[6] = angle
     motion = given.motion
-    status, peak, uplift, rests = march(
+    status, peak, uplift, rests = integrate_arrays(
         P, body.alpha, record, motion.time_step, motion.duration, y, rest, rtol
     )
     return Result(("rest", "completed", "overturned", "failed")[status], peak, uplift, rests)

@@ -1,4 +1,4 @@
-"""Layer agreement, first part: whether steps and contacts of the engines are what the comparison rests on.
+"""Layer agreement, first part: errors by the time step and by the contact of each engine.
 
 One release is run at the step of the suite and at half of it. Their difference is what the step does;
 what is left of the difference from the reduced model when both are extrapolated to no step at all is

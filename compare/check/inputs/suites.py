@@ -1,4 +1,4 @@
-"""Layer studies, third part: a suite file, and what its ranges and keys must come to."""
+"""Layer studies, second part: a suite file, and what its ranges and keys must come to."""
 
 from __future__ import annotations
 

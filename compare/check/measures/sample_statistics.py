@@ -1,4 +1,4 @@
-"""Layer metrics, fourth part: intervals, tests and what a sample can tell, from the sums that define them."""
+"""Layer metrics, fourth part: intervals, tests and the power of a sample, from the sums that define them."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from scipy.integrate import quad
 
 from ...metrics.distributions import (
     adjusted,
-    fewest_to_tell,
     largest_share_unseen,
+    least_significant_count,
     log_ratios,
     mcnemar_p,
     paired_difference,
@@ -83,7 +83,7 @@ def _tests() -> dict[str, float]:
     first, second = 5.0 / 22.0, 2.0 / 22.0  # of 4 and 1 of 20, with one more in either and two in all
     width = NORMAL * math.sqrt((first + second - (first - second) ** 2) / 22.0)
     difference = paired_difference(4, 1, 20)
-    told = next(count for count in range(1, 99) if 2.0 * _at_most(0, count, 0.5) < 0.05)
+    least = next(count for count in range(1, 99) if 2.0 * _at_most(0, count, 0.5) < 0.05)
     scatter = np.log([0.5, 0.8, 0.9, 1.0, 1.0, 1.05, 1.1, 1.3, 1.5, 2.0, 2.5])
     reach = ratio_within_reach(scatter)
     # Holm: the least of four times 4, the next times 3, and none below the one before
@@ -97,16 +97,16 @@ def _tests() -> dict[str, float]:
         "difference of shares": difference.value - 3.0 / 20.0,
         "difference of shares, low": difference.low - (first - second - width),
         "difference of shares, high": difference.high - (first - second + width),
-        "fewest to tell": float(fewest_to_tell() - told),
+        "least significant count": float(least_significant_count() - least),
         "share unseen": (1.0 - largest_share_unseen(COUNT)) ** COUNT - 0.05,
-        "ratio within reach": 0.0 if _is_least_told(scatter, reach) else math.inf,
+        "ratio within reach": 0.0 if _is_smallest_detected(scatter, reach) else math.inf,
         "Holm": float(np.abs(holm).max()),
         "ratios": ratios[3] - math.log(4.0) if known else math.inf,
     }
 
 
-def _is_least_told(scatter: Array, reach: float) -> bool:
-    """Whether members about `reach` are told from 1 with a power of 80 %, and about a little less are not.
+def _is_smallest_detected(scatter: Array, reach: float) -> bool:
+    """Whether a median of `reach` is found to differ from 1 with a power of 80 %, and a smaller one is not.
 
     The interval of their median begins at an order statistic: a beta distribution of its index says how often
     it is above 1 where a member is so with a given share.
@@ -118,10 +118,10 @@ def _is_least_told(scatter: Array, reach: float) -> bool:
         above = float(np.mean(sign * (scatter - middle) + logarithm >= 0.0))
         return _beta(count + 1.0 - index, index, above) if above < 1.0 else 1.0
 
-    def told(logarithm: float) -> bool:
+    def detected(logarithm: float) -> bool:
         return min(power(logarithm, 1.0), power(logarithm, -1.0)) >= 0.8
 
-    return told(math.log(reach) + 1e-9) and not told(math.log(reach) - 1e-9)
+    return detected(math.log(reach) + 1e-9) and not detected(math.log(reach) - 1e-9)
 
 
 def _words() -> list[str]:

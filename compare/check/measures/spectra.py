@@ -1,4 +1,4 @@
-"""Layer studies, third part: an overturning spectrum against single runs on a fine grid of intensities."""
+"""Layer studies, fourth part: an overturning spectrum against single runs on a fine grid of intensities."""
 
 from __future__ import annotations
 

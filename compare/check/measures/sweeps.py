@@ -1,4 +1,4 @@
-"""Layer studies, second part: a row of a sweep against a run of its own, and which rows there are."""
+"""Layer studies, third part: a row of a sweep against a run of its own, and which rows there are."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Checks of what somebody else made: a model that can be called, or the file of a trajectory."""
+"""Checks of an external model, which can be called, and of the file of an external trajectory."""
 
 from .model import check_model
 from .outputs import load_model

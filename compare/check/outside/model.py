@@ -1,4 +1,4 @@
-"""The checks of a model of somebody else: exact solutions, invariances, uplift, and one record.
+"""The checks of an external model: exact solutions, invariances, uplift, and one record.
 
 They ask for no more than a tolerance that the caller states: how exact the model claims to be.
 """

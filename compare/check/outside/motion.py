@@ -1,4 +1,4 @@
-"""Measures on the motion of a model of somebody else, sampled as it likes."""
+"""Measures on the motion of an external model, at whatever times it is sampled."""
 
 from __future__ import annotations
 

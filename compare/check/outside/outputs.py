@@ -1,4 +1,4 @@
-"""Call of a model of somebody else, and its output.
+"""Call of an external model, and its output.
 
 A model is any callable `model(case, support)` that takes a `rockwobble.Case` and "recess" or "flat", and
 returns a mapping, a table or an object with

@@ -1,4 +1,4 @@
-"""The checks of one trajectory of somebody else, as far as one motion allows."""
+"""The checks of one external trajectory, as far as one motion allows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Trust in a trace: until two methods diverge, or the same method on data known to a percent."""
+"""Time until which a trace can be trusted: until another method, or the same on data 1 % off, diverges."""
 
 from __future__ import annotations
 

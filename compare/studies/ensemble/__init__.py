@@ -1,1 +1,1 @@
-"""Ensembles: peak tilts of many members, for what lies beyond the agreement of traces."""
+"""Ensembles: peak tilts of many members by several methods, compared as distributions."""

@@ -1,4 +1,4 @@
-"""Ensembles: what can be compared beyond the agreement of traces, where single runs say nothing."""
+"""Study of an ensemble: distributions of peak tilts, which agree where single traces have diverged."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Extremes: every extreme by every method, each verdict with what backs it."""
+"""Extremes: every method under extreme conditions, with a verdict on each run and its evidence."""

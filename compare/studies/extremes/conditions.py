@@ -1,4 +1,4 @@
-"""The extremes: one thing of a plain run at a time, from far too small to far too large."""
+"""Extreme conditions: one parameter of a plain run at a time, from far too small to far too large."""
 
 from __future__ import annotations
 

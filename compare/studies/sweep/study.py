@@ -1,4 +1,4 @@
-"""Sweeps: more runs than fit into one sitting, in chunks that are kept as they are finished."""
+"""Sweeps: any number of runs, in chunks that are kept as they are finished."""
 
 from __future__ import annotations
 

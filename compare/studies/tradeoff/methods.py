@@ -1,4 +1,4 @@
-"""The methods that answer a problem: a line each, with the points of the knob that trades speed for error."""
+"""The methods that solve a problem: a line each, with the tolerances or time steps it is solved at."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ _SUPPORTS = ("recess", "flat", "ring")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
-class Answer:
-    """Answer of a method to one case: the quantity, empty where it failed, and codes or its refusal."""
+class MethodResult:
+    """Result of a method on one case: the quantity, empty where it failed, and codes or its refusal."""
 
     quantity: Array
     said: str = ""
@@ -56,7 +56,7 @@ class Method:
     value : float
         Of the knob; the smaller the more accurate.
     solve : callable
-        (case) -> Answer. This is what is timed.
+        (case) -> MethodResult. This is what is timed.
     """
 
     line: str
@@ -65,7 +65,7 @@ class Method:
     panel: str
     knob: str
     value: float
-    solve: Callable[[Case], Answer]
+    solve: Callable[[Case], MethodResult]
 
     @property
     def base(self) -> bool:
@@ -102,12 +102,12 @@ def rest_line(rest_tilt: float) -> str:
     return f"rest threshold {rest_tilt:g}"
 
 
-def _by_model(problem: Problem, support: str, rtol: float, rest_tilt: float, case: Case) -> Answer:
+def _by_model(problem: Problem, support: str, rtol: float, rest_tilt: float, case: Case) -> MethodResult:
     # not by a `Run`, which has forces computed that nobody asks for here
     trace = reduced.simulate(
         case, support=support, rtol=rtol, rest_tilt=rest_tilt, sample_step=problem.sample_step
     )
-    return _answer(problem, trace)
+    return _result(problem, trace)
 
 
 def _scipy(problem: Problem, quick: bool) -> Iterator[Method]:
@@ -134,9 +134,9 @@ def _scipy(problem: Problem, quick: bool) -> Iterator[Method]:
 
 def _by_scipy(
     problem: Problem, name: SolverName, rates: Mapping[str, Rates], rtol: float, case: Case
-) -> Answer:
+) -> MethodResult:
     quantity = solve(problem, case, name, rates[case.name], rtol)
-    return Answer(quantity=quantity, said="" if quantity.size else "gave up, or jumped over upright")
+    return MethodResult(quantity=quantity, said="" if quantity.size else "gave up, or jumped over upright")
 
 
 def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
@@ -191,14 +191,14 @@ def _line(
         )
 
 
-def _by_engine(problem: Problem, run: Run, case: Case) -> Answer:
+def _by_engine(problem: Problem, run: Run, case: Case) -> MethodResult:
     try:
         require_runnable(case, run)
     except ValueError as refusal:
-        return Answer(quantity=np.empty(0), said=str(refusal))
-    return _answer(problem, simulate_run(case, run, sample_step=problem.sample_step))
+        return MethodResult(quantity=np.empty(0), said=str(refusal))
+    return _result(problem, simulate_run(case, run, sample_step=problem.sample_step))
 
 
-def _answer(problem: Problem, trace: Trace) -> Answer:
+def _result(problem: Problem, trace: Trace) -> MethodResult:
     quantity = np.empty(0) if trace.outcome == "failed" else problem.quantity(trace)
-    return Answer(quantity=quantity, said=joined(fact.code for fact in trace.facts))
+    return MethodResult(quantity=quantity, said=joined(fact.code for fact in trace.facts))

@@ -18,7 +18,7 @@ from rockwobble.models.shown import Shown
 from ...runs.progress import Clock, ProgressCallback
 from ...storage.manifest import Manifest, Results, made_now
 from .conclusions import engine_factors
-from .methods import Answer, Method, methods_for
+from .methods import Method, MethodResult, methods_for
 from .problem import Problem, problems, sampling_distance
 from .scene_cost import scene_costs
 
@@ -138,7 +138,7 @@ def _described(problem: Problem) -> pd.DataFrame:
 
 def _points(problem: Problem, methods: list[Method], tell: Callable[[], None]) -> pd.DataFrame:
     visits = list(problem.cases) if len(problem.cases) > 1 else list(problem.cases) * ROUNDS
-    answers: list[list[Answer]] = [[] for _ in methods]
+    results: list[list[MethodResult]] = [[] for _ in methods]
     seconds = np.full((len(visits), len(methods)), np.nan)
     # compiled, imported, fetched: by the first point of each line, the coarsest
     for place, method in enumerate(methods):
@@ -146,9 +146,9 @@ def _points(problem: Problem, methods: list[Method], tell: Callable[[], None]) -
             method.solve(problem.cases[0])
     for number, case in enumerate(visits):
         for place, method in enumerate(methods):
-            seconds[number, place], answer = _timed(method, case)
-            if len(answers[place]) < len(problem.cases):
-                answers[place].append(answer)
+            seconds[number, place], result = _timed(method, case)
+            if len(results[place]) < len(problem.cases):
+                results[place].append(result)
         tell()
     base = next(place for place, method in enumerate(methods) if method.base)
     ratios = seconds / seconds[:, [base]]
@@ -166,27 +166,27 @@ def _points(problem: Problem, methods: list[Method], tell: Callable[[], None]) -
             "ratio_low": low[place],
             "ratio_high": high[place],
             "milliseconds": 1e3 * float(np.median(seconds[:, place])),
-            "error": problem.error(method.support, [answer.quantity for answer in answers[place]]),
-            "said": next((answer.said for answer in answers[place] if answer.said), ""),
+            "error": problem.error(method.support, [result.quantity for result in results[place]]),
+            "said": next((result.said for result in results[place] if result.said), ""),
         }
         for place, method in enumerate(methods)
     )
 
 
-def _timed(method: Method, case: Case) -> tuple[float, Answer]:
-    """Processor time of this process in one run [s], and what it answered."""
+def _timed(method: Method, case: Case) -> tuple[float, MethodResult]:
+    """Processor time of this process in one run [s], and its result."""
     begin = time.process_time()
-    answer = method.solve(case)
+    result = method.solve(case)
     first = time.process_time() - begin
     if first >= _SHORT:
-        return first, answer
+        return first, result
     again = []
     for _ in range(_REPEATS):
         begin = time.perf_counter()
         method.solve(case)
         again.append(time.perf_counter() - begin)
     # a finer clock, and the least of several: what another process took is not in it
-    return min(again), answer
+    return min(again), result
 
 
 def _load() -> float:

@@ -1,4 +1,4 @@
-"""Traces under El Centro: how long the engine follows the reduced model, and its peak tilt."""
+"""Traces under El Centro: agreement times of engine and reduced models, and their peak tilts."""
 
 from __future__ import annotations
 

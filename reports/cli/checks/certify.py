@@ -1,4 +1,4 @@
-"""`rockwobble certify` and `rockwobble verify`: what this installation can do, and whether it still does."""
+"""`rockwobble certify` and `rockwobble verify`: a certificate of this installation, made or verified."""
 
 from __future__ import annotations
 
@@ -93,9 +93,9 @@ def verify(certificate: CertificateFile, as_json: Json = False) -> None:
     """
     with interruptible(), user_input():
         from rockwobble.compare.certificate import read_certificate
-        from rockwobble.compare.certificate import verify as answer_to
+        from rockwobble.compare.certificate import verify as verdict_on
 
-        answer = answer_to(read_certificate(certificate))
-    print(json.dumps(asdict(answer), indent=1) if as_json else answer.words())
-    if answer.exit_code:
-        raise typer.Exit(answer.exit_code)
+        verdict = verdict_on(read_certificate(certificate))
+    print(json.dumps(asdict(verdict), indent=1) if as_json else verdict.words())
+    if verdict.exit_code:
+        raise typer.Exit(verdict.exit_code)

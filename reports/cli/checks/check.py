@@ -1,4 +1,4 @@
-"""`rockwobble check`: whether the reduced model is still the same model, and agrees with the engines."""
+"""`rockwobble check`: consistency checks of the reduced models and of the engines."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`rockwobble check --model` and `--trajectory`: the findings on what somebody else made."""
+"""`rockwobble check --model` and `--trajectory`: the checks of an external model or trajectory."""
 
 from __future__ import annotations
 

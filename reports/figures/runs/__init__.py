@@ -1,1 +1,1 @@
-"""One run, and what became of many."""
+"""Figures of a single run and of a sweep."""

@@ -44,7 +44,7 @@ def pictures(trace: Trace) -> list[Picture]:
 
 
 def _path(places: Array) -> Array:
-    """Return as many of some places (n, 2) as a path shows, its pieces parted by NaN where it jumps.
+    """Return as many of some places (n, 2) as a path shows, its pieces separated by NaN where it jumps.
 
     While the cylinder stands it has no place: NaN, of which one is kept.
     """

@@ -1,4 +1,4 @@
-"""The figures of the report on the limits: what the engine did, and its maps in `validity_maps`."""
+"""The figures of the report on the limits: those of the engine's runs, and the maps of `maps`."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from rockwobble.compare.studies.validity.rings import FREE
 from rockwobble.compare.studies.validity.study import Validity
 
 from ..palette import DARK, GREY, ORDER, Style, mark_styles
-from ..picture import Axis, Line, Panel, Picture, Rule, ecdf, parted
+from ..picture import Axis, Line, Panel, Picture, Rule, ecdf, separated
 from .maps import map_pictures
 
 # of a method, in words
@@ -138,7 +138,7 @@ def _verification(table: pd.DataFrame) -> Picture:
             )
         )
     ends = np.array([float(np.degrees(apart.min())), float(np.degrees(apart.max()))])
-    layers.append(Line(x=ends, y=ends, name="no telling apart", width=0.8))
+    layers.append(Line(x=ends, y=ends, name="difference of the models", width=0.8))
     return Picture(
         name="verification",
         title="The engine tells the models apart",
@@ -199,7 +199,7 @@ def _rings(table: pd.DataFrame) -> Picture:
             low, high = (np.maximum(end.to_numpy(float), least) for end in (over.min(), over.max()))
             x, bars = over.min().index.to_numpy(float), Style(colour=styles[name].colour)
             yield Line(x=x, y=np.sqrt(low * high), name=name, style=styles[name])
-            yield Line(x=np.repeat(x, 3), y=parted(low, high), style=bars, width=0.8)
+            yield Line(x=np.repeat(x, 3), y=separated(low, high), style=bars, width=0.8)
 
     clearance = Axis(label="clearance / b", unit="-", log=True)
     shaken, touched = plain[plain["motion"] != FREE], plain[plain["contact_time"] > 0.0]

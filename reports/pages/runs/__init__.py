@@ -1,1 +1,1 @@
-"""One run, and what became of many."""
+"""Pages of a single run and of a sweep."""

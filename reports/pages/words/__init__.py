@@ -1,1 +1,1 @@
-"""Words that no template alone can say: of a case, of a diagnostic, of numbers."""
+"""Words that pages share: of a case, of a diagnostic, of numbers."""

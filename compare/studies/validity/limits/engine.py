@@ -1,4 +1,4 @@
-"""Limits by the engine: where it confirms the reduced models, follows them, and leaves them."""
+"""Limits by the engine: where it confirms the reduced models, and until when their traces agree."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from .numbers import Numbers, Tables, column, first_failing, largest, quantile, 
 ALIKE = 0.01  # of period or angle of turn: below what a test on a shake table would see
 SMALL = 0.05  # of the peak tilt: less cannot be told from chance
 # an engine confirms a model if it is nearer to it than this share of the difference of the models
-_TEETH = 0.5
+_CONFIRMS = 0.5
 # and contradicts it where turn or period is off by more than this; the step of an engine errs by less
 _CONTRADICTS = 1e-3
 
@@ -54,7 +54,7 @@ def _decided(table: pd.DataFrame) -> tuple[float, float, float]:
     turn_off = error / np.abs(column(resolved, "turn"))
     period_off = np.abs(column(resolved, "engine_half_period") / column(resolved, "half_period") - 1.0)
     contradicts = ~((turn_off <= _CONTRADICTS) & (period_off <= _CONTRADICTS))
-    confirms = ~contradicts & (error < _TEETH * limits)
+    confirms = ~contradicts & (error < _CONFIRMS * limits)
     return float(confirms.sum()), float(contradicts.sum()), float(len(resolved))
 
 

@@ -1,4 +1,4 @@
-"""Needs of the recess model of ground and recess: friction, contact, restraining moment."""
+"""What the recess model needs of ground and recess: friction, contact, restraining moment."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Input and output of a time integration, and its access to the record."""
+"""Options and result of a time integration."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._compile import inlined, jit
-from .tsit5 import State, Vector
+from .._compile import jit
+from .tsit5 import State
 
-REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a march ends
+REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a time integration ends
 DECIDED = 5  # while it runs: it is known that it does not overturn after the duration
 MAXIMUM, MINIMUM = 1.0, -1.0
 
@@ -27,8 +27,8 @@ class Options(NamedTuple):
     record_steps: bool
 
 
-class March(NamedTuple):
-    """Output of a time integration; `size` is the number of variables of the model."""
+class IntegrationResult(NamedTuple):
+    """Result of a time integration; `size` is the number of variables of the model."""
 
     status: int
     end: float  # time reached [s]; later than the duration only where it overturns after it
@@ -45,7 +45,7 @@ class March(NamedTuple):
     step_count: int
 
 
-Driver = Callable[..., March]
+Driver = Callable[..., IntegrationResult]
 
 
 # Loops instead of slice assignment: that carries shape checks with formatted messages, which double
@@ -55,31 +55,3 @@ def write(source: State, target: NDArray[np.float64]) -> None:
     """Copy a tuple to an array of its length."""
     for i in range(len(source)):
         target[i] = source[i]
-
-
-class Piece(NamedTuple):
-    """A stretch of linear ground motion, from one sample of the record to the next."""
-
-    begin: float  # [s]
-    finish: float  # [s]
-    length: float  # [s]
-    a: Vector  # acceleration at its beginning [m/s^2]
-    slope: Vector  # its rate [m/s^3]
-
-
-@inlined
-def piece_of_record(
-    record: NDArray[np.float64], time_step: float, index: int, begin: float, last: float
-) -> Piece:
-    """Return the stretch behind sample `index`, from `begin` and to `last` at the latest [s]."""
-    if index >= len(record) - 1:  # the ground is still after the record
-        return Piece(begin, last, last - begin, (0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
-    end = index + 1
-    a = (record[index, 0], record[index, 1], record[index, 2])
-    slope = (
-        (record[end, 0] - a[0]) / time_step,
-        (record[end, 1] - a[1]) / time_step,
-        (record[end, 2] - a[2]) / time_step,
-    )
-    finish = min(end * time_step, last)
-    return Piece(begin, finish, finish - begin, a, slope)
