@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import importlib
 import sys
+from inspect import Signature, signature
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
@@ -39,7 +40,7 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .storage.files import replace_files as replace_files
     from .storage.manifest import require_writable as require_writable
     from .studies.ensemble.members import far_field_motions as far_field_motions
-    from .studies.ensemble.members import perturbed_starts as perturbed_starts
+    from .studies.ensemble.members import perturbed_copies as perturbed_copies
     from .studies.ensemble.members import synthetic_motions as synthetic_motions
     from .studies.ensemble.members import with_motions as with_motions
     from .studies.ensemble.study import Ensemble as Ensemble
@@ -84,7 +85,7 @@ _MODULES = {
     "storage.manifest": ("require_writable",),
     "studies.ensemble.members": (
         "far_field_motions",
-        "perturbed_starts",
+        "perturbed_copies",
         "synthetic_motions",
         "with_motions",
     ),
@@ -108,6 +109,10 @@ class _Callable(ModuleType):
         """Run engines and reduced models on the same problem; see the function `compare`."""
         found: Comparison = self.compare(*arguments, **options)
         return found
+
+    @property
+    def __signature__(self) -> Signature:
+        return signature(self.compare)
 
 
 def __getattr__(name: str) -> object:

@@ -11,7 +11,7 @@ from .bounds import Bounds
 from .cylinder import Cylinder
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
-from .number_checks import require_finite, require_positive
+from .number_checks import quoted, require_finite, require_positive
 from .shown import Brief, brief, line
 
 
@@ -59,6 +59,10 @@ class Case:
     name: str = ""
 
     def __post_init__(self) -> None:
+        for name, kind in (("cylinder", Cylinder), ("motion", GroundMotion), ("initial", InitialState)):
+            given = getattr(self, name)
+            if not (isinstance(given, kind) or (given is None and name != "cylinder")):
+                raise ValueError(f"{name} must be of kind {kind.__name__}, got {quoted(given)}")
         object.__setattr__(self, "gravity", require_positive("gravity", self.gravity, "m/s^2"))
         object.__setattr__(self, "friction", require_finite("friction", self.friction, ""))
         if self.friction < 0.0:

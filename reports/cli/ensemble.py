@@ -34,13 +34,13 @@ Perturbation = Annotated[
 Synthetic = Annotated[
     float | None,
     typer.Option(
-        help="Made-up ground motions instead of perturbed starts, with a peak of so many times g tan alpha."
+        help="Made-up ground motions instead of perturbed copies, with a peak of so many times g tan alpha."
     ),
 ]
 FarField = Annotated[
     float | None,
     typer.Option(
-        help="The 22 far-field pairs of FEMA P-695 (extra records) instead of perturbed starts, each scaled "
+        help="The 22 far-field pairs of FEMA P-695 (extra records) instead of perturbed copies, each scaled "
         "to a peak of so many times g tan alpha.",
     ),
 ]
@@ -63,7 +63,7 @@ def ensemble(
 ) -> None:
     """Hold the peak tilts of many members by each method against each other, member by member.
 
-    Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly different starts. With
+    Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly perturbed copies. With
     --synthetic or --p695 the members are ground motions, with a SUITE its cases, by its runs, among which
     --engine and --support choose. --engine none runs the reduced models alone.
 
@@ -131,7 +131,7 @@ def _refuse_ignored(context: typer.Context, synthetic: float | None, far_field: 
 def _motions(
     case: rw.Case, members: int, synthetic: float | None, far_field: float | None, seed: int
 ) -> list[rw.GroundMotion]:
-    """Return the ground motions that are the members; none where the members are perturbed starts."""
+    """Return the ground motions that are the members; none where the members are perturbed copies."""
     if synthetic is not None and far_field is not None:
         raise ValueError("the members are made-up ground motions or those of FEMA P-695, got both options")
     uplift = case.gravity * case.cylinder.tan_alpha
@@ -160,4 +160,4 @@ def _source(synthetic: float | None, far_field: float | None, perturbation: floa
         return f"far-field pairs of FEMA P-695, with peaks of {far_field:g} g tan alpha"
     if synthetic is not None:
         return f"made-up ground motions, with peaks of {synthetic:g} g tan alpha"
-    return f"starts perturbed by {100.0 * perturbation:g} %"
+    return f"perturbed copies, {100.0 * perturbation:g} %"

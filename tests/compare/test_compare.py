@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import inspect
 import math
 
 import numpy as np
@@ -260,3 +261,9 @@ def test_the_same_run_in_other_processes_is_the_same(cylinder):
     here, there = (simulate_all([job], workers=workers)[0] for workers in (1, 2))
     assert np.array_equal(here.tilt, there.tilt)
     assert np.array_equal(here.energy, there.energy)
+
+
+def test_the_module_that_may_be_called_shows_the_parameters_of_its_function():
+    import rockwobble as rw
+
+    assert inspect.signature(rw.compare) == inspect.signature(compare)

@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import ensemble, far_field_motions, perturbed_starts, synthetic_motions
+from rockwobble.compare import ensemble, far_field_motions, perturbed_copies, synthetic_motions
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
 from rockwobble.compare.storage.manifest import made_now, read_results, write_results
@@ -23,7 +23,7 @@ CASE = Case(PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0, nam
 
 
 def test_starts_are_perturbed_by_the_stated_size():
-    members = perturbed_starts(CASE, 400, perturbation=0.01, seed=5)
+    members = perturbed_copies(CASE, 400, perturbation=0.01, seed=5)
     tilts = np.array([case.initial.tilt for case in members]) / 0.1 - 1.0
     rates = np.array([case.initial.rolling_rate for case in members]) / 0.5 - 1.0
     # the standard deviation of 400 draws is known to 1/sqrt(800)

@@ -98,3 +98,17 @@ def test_refuses_a_suite_of_nothing_and_two_cases_of_one_name() -> None:
 def test_the_name_of_a_case_is_one_line(name: str) -> None:
     with pytest.raises(ValueError, match="the name of a case must be one line, got"):
         Case(PIER, SHORT, name=name)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ((6.0, SHORT), "cylinder must be of kind Cylinder, got 6.0"),
+        ((SHORT, PIER), "cylinder must be of kind Cylinder, got GroundMotion"),
+        ((PIER, "record.csv"), "motion must be of kind GroundMotion, got 'record.csv'"),
+        ((PIER, SHORT, 0.1), "initial must be of kind InitialState, got 0.1"),
+    ],
+)
+def test_a_part_of_another_kind_is_refused_by_name(given: Any, said: str) -> None:
+    with pytest.raises(ValueError, match=said):
+        Case(given[0], given[1], initial=(*given, None)[2])

@@ -126,6 +126,11 @@ def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch,
     assert sorted(path.name for path in folder.iterdir()) == before
 
 
+def test_a_plane_in_degrees_is_refused(folder, capsys):
+    assert call("simulate", "--plane", "90") == 2
+    assert "must be from -6.2832 to 6.2832 rad (90 deg is 1.5708), got 90" in capsys.readouterr().err
+
+
 def test_time_step_of_a_reduced_model_is_refused(folder, capsys):
     assert call("simulate", "--time-step", "1e-3") == 2
     assert "--time-step belongs to an engine" in capsys.readouterr().err

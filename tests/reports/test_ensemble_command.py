@@ -145,7 +145,7 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
     assert call("ensemble", *RELEASE, "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "alpha = 11.31 deg" in printed
-    assert "Members: 3, starts perturbed by 1 %" in printed
+    assert "Members: 3, perturbed copies, 1 %" in printed
     assert "flat-ground model against recess model: median ratio 1.000" in printed
     table = pd.read_parquet(tmp_path / "members.parquet")
     assert table["peak_tilt"].to_numpy() == pytest.approx(

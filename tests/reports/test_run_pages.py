@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +63,23 @@ def test_a_run_says_what_its_method_gives_and_no_more():
     assert {"residual twist", "residual displacement"} < set(engine)
     assert "uplift" not in engine  # a release leans from the start
     assert not {"wall contact", "friction needed", "restraining moment", "closest pass"} & set(engine)
+
+
+def test_a_planar_run_says_in_which_plane_and_with_what_loss():
+    shaken = rw.Case(PIER, rw.el_centro_1940(), duration=6.0)
+    said = facts(
+        run_page(rw.simulate(shaken, plane=-4.0, restitution=0.95), made_now("run", about={"run": ""}))
+    )
+    assert (said["plane"], said["restitution"]) == ("-229.18 deg", "0.95")
+    assert re.fullmatch(r"\d\.\d{4} s towards 130\.82 deg", said["uplift"])
+
+
+def test_a_run_that_falls_after_its_end_says_over_what():
+    cut = rw.Case(
+        rw.Cylinder(semidiagonal=2.9744, tan_alpha=0.2), rw.el_centro_1940().scaled(1.909), duration=3.93
+    )
+    said = facts(page_of(cut, rw.Run(None, "recess")))
+    assert re.fullmatch(r"8\.4\d+ s, over still ground from 3\.93 s on", said["end"])
 
 
 def test_a_run_that_fails_or_falls_says_so():

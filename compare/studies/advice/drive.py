@@ -15,7 +15,7 @@ from ...metrics.distributions import Contrast, contrast
 from ...runs.choice import require_runnable
 from ...runs.execution import SAMPLE_STEP, simulate_run
 from ...runs.progress import ProgressCallback, Stages
-from ..ensemble.members import perturbed_starts
+from ..ensemble.members import perturbed_copies
 from .advice import OTHER, Advice
 from .members import COPIES, VELOCITY, member_rows, other_records
 from .scales import planar_runs, scan_scales
@@ -53,7 +53,7 @@ def advise(
     friction_given : bool, optional
         Whether the friction of the case is what there is, not a default.
     count, perturbation, seed
-        Copies, their relative standard deviation, and the seed of both draws: see `perturbed_starts`.
+        Copies, their relative standard deviation, and the seed of both draws: see `perturbed_copies`.
     progress : callable, optional
         Called with a `Progress` at the start and at the end of each stage.
 
@@ -96,7 +96,7 @@ def advise(
     others: list[Trace] = []
     with stage(f"{count} perturbed copies"):
         if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
-            cases = perturbed_starts(case, count, perturbation=perturbation, seed=seed)
+            cases = perturbed_copies(case, count, perturbation=perturbation, seed=seed)
             copies = [simulate_run(each, model) for each in cases]
             others = [simulate_run(each, other, sample_step=BAND_STEP) for each in cases]
         rows = [*member_rows(COPIES, copies), *member_rows(OTHER, others)]
@@ -162,7 +162,7 @@ def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -
         record = el_centro_1940(vertical=True)
         record = record.scaled(motion.peak / record.peak)
     shaken = dataclasses.replace(case, motion=record, duration=case.duration if motion.has_vertical else None)
-    cases = perturbed_starts(shaken, _VERTICAL_COUNT, perturbation=perturbation, seed=seed)
+    cases = perturbed_copies(shaken, _VERTICAL_COUNT, perturbation=perturbation, seed=seed)
     flat = [dataclasses.replace(each, motion=_horizontal(each.motion)) for each in cases]
     found = _contrast(
         *([simulate_run(each, model, sample_step=1.0) for each in part] for part in (cases, flat))

@@ -23,7 +23,7 @@ _TIME_STEP = 0.01
 _RISE, _STRONG, _DECAY = 0.15, 0.4, 4.0
 
 
-def perturbed_starts(case: Case, count: int, *, perturbation: float, seed: int) -> list[Case]:
+def perturbed_copies(case: Case, count: int, *, perturbation: float, seed: int) -> list[Case]:
     """Return one problem `count` times, each with slightly different conditions.
 
     From a release its tilt and its rolling rate, from rest the two horizontal components of the ground
@@ -52,7 +52,7 @@ def perturbed_starts(case: Case, count: int, *, perturbation: float, seed: int) 
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
     >>> case = rw.Case(pier, initial=release, duration=4.0)
-    >>> copies = perturbed_starts(case, 3, perturbation=1e-3, seed=1)
+    >>> copies = perturbed_copies(case, 3, perturbation=1e-3, seed=1)
     >>> [round(copy.initial.tilt / release.tilt, 5) for copy in copies]
     [1.00035, 1.00033, 1.00091]
     """

@@ -20,7 +20,7 @@ from ...runs.labels import run_labels
 from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Manifest, Results, made_now
-from .members import perturbed_starts
+from .members import perturbed_copies
 from .tables import contrast_table, method_table
 
 KIND = "ensemble"
@@ -100,14 +100,14 @@ def ensemble(
     Parameters
     ----------
     case_or_members : Case, Suite or sequence of Case
-        One case is run with `size` perturbed starts, see `perturbed_starts`; several are the members,
+        One case is run as `size` perturbed copies, see `perturbed_copies`; several are the members,
         such as one body under many records.
     runs : iterable of Run, optional
         Default: those of the suite, else every installed engine with supports "recess" and "flat".
     models : sequence of Run, optional
         Reduced models. The first is named first in every contrast.
     size : int, optional
-        Number of perturbed starts.
+        Number of perturbed copies.
     perturbation : float, optional
         Their relative standard deviation.
     seed : int, optional
@@ -138,8 +138,8 @@ def ensemble(
     """
     about: dict[str, object] = {"seed": seed}
     if isinstance(case_or_members, Case):
-        members = perturbed_starts(case_or_members, size, perturbation=perturbation, seed=seed)
-        about |= {"members": f"starts of {case_or_members.name}, perturbed by {100.0 * perturbation:g} %"}
+        members = perturbed_copies(case_or_members, size, perturbation=perturbation, seed=seed)
+        about |= {"members": f"perturbed copies of {case_or_members.name}, {100.0 * perturbation:g} %"}
         about |= {"perturbation": perturbation}
     else:
         members = list(case_or_members.cases if isinstance(case_or_members, Suite) else case_or_members)

@@ -36,6 +36,12 @@ def whole(least: int, most: float = math.inf) -> Callable[[int | None], int | No
     return checked
 
 
+def _in_one_turn(plane: float | None) -> float | None:
+    if plane is None or abs(plane) <= math.tau:
+        return plane
+    raise typer.BadParameter(f"must be from -6.2832 to 6.2832 rad (90 deg is 1.5708), got {plane:g}")
+
+
 body, _ground, _release, method = map(panel, ("Cylinder", "Ground motion", "Release", "Method"))
 reduced, work, _external = map(
     panel, ("Reduced model", "Work", "Trajectory of a shake table or another code")
@@ -77,7 +83,11 @@ ReleaseTilt = Annotated[
 ]
 RollingRate = Annotated[float, _release("Rolling rate at release, in rad/s.")]
 Duration = Annotated[
-    float | None, _release("Length of the run, in s. Default: that of the ground motion, 10 s without one.")
+    float | None,
+    _release(
+        "Length of the run, in s; what is falling then is followed over still ground. Default: that of the "
+        "ground motion, 10 s without one."
+    ),
 ]
 ALL, NO_ENGINE = "all", "none"  # in place of the names of engines
 
@@ -129,7 +139,8 @@ Settings = Annotated[
     ),
 ]
 Plane = Annotated[
-    float | None, reduced("Planar motion: azimuth of the vertical plane that holds it, in rad.")
+    float | None,
+    reduced("Planar motion: azimuth of the vertical plane that holds it, in rad.", callback=_in_one_turn),
 ]
 Restitution = Annotated[
     Any,  # a number, "momentum" or None: typer knows no type for that
