@@ -96,22 +96,6 @@ def run_checks(bench: Bench, layers: Sequence[str] = LAYERS) -> Iterator[Finding
                 yield dataclasses.replace(finding, layer=layer)
 
 
-def first_failure(bench: Bench, layers: Sequence[str] = LAYERS) -> Finding | None:
-    """Return the first finding that failed, without running what comes after it.
-
-    Parameters
-    ----------
-    bench : Bench
-    layers : sequence of str, optional
-        Of `LAYERS`.
-
-    Returns
-    -------
-    Finding or None
-    """
-    return next((finding for finding in run_checks(bench, layers) if finding.failed), None)
-
-
 def _guarded(part: Check, bench: Bench) -> Iterator[Finding]:
     try:
         yield from part(bench)

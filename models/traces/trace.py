@@ -159,18 +159,6 @@ class Trace(Limited, Shown):
         """Twist at the end, whole turns included [rad]."""
         return float(self.twist[-1]) if len(self.twist) else math.nan
 
-    @property
-    def signed_tilt(self) -> Array:
-        """Tilt (n,) [rad], negative where it leans away from the reference direction.
-
-        That is the azimuth of the plane of planar motion, else the direction of first uplift or release. In
-        planar motion the signed tilt is continuous.
-        """
-        plane = self.run.settings.get("plane")
-        reference = self.uplift_direction if plane is None else plane
-        away = np.cos(np.nan_to_num(self.rolling_angle) - np.nan_to_num(reference)) < 0.0
-        return np.where(away, -self.tilt, self.tilt)
-
     def to_frame(self) -> pd.DataFrame:
         """Return the samples as a table, one column for each component, SI units and radians.
 
