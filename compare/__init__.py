@@ -23,7 +23,6 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .metrics.agreement import AGREEMENT as AGREEMENT
     from .metrics.contact import TILTED as TILTED
     from .runs.choice import default_runs as default_runs
-    from .runs.choice import installed_engines as installed_engines
     from .runs.choice import missing_engines as missing_engines
     from .runs.choice import own_model as own_model
     from .runs.choice import require_runnable as require_runnable
@@ -67,7 +66,6 @@ _MODULES = {
     "metrics.contact": ("TILTED",),
     "runs.choice": (
         "default_runs",
-        "installed_engines",
         "missing_engines",
         "own_model",
         "require_runnable",

@@ -107,7 +107,7 @@ def _run(case: rw.Case, engine: str | None, support: str, time_step: float | Non
     if engine == options.NO_ENGINE and time_step is not None:
         raise ValueError("--time-step belongs to an engine, got it with --engine none")
     default = rw.multibody.DEFAULT_ENGINE
-    missing = engine is None and default not in rc.installed_engines()
+    missing = engine is None and default not in rw.multibody.available_engines()
     if missing:
         complain(f"{default} is not installed here: the prediction stays unverified")
     if missing or engine == options.NO_ENGINE:
