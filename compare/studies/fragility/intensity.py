@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, GroundMotion
-from rockwobble.models.number_checks import require_positive
+from rockwobble.models.number_checks import require_one_of, require_positive
 
 Array = NDArray[np.float64]
 
@@ -92,8 +92,7 @@ def intensity(
 
 def require_measure(name: str) -> None:
     """Refuse a measure that is not one of `MEASURES`."""
-    if name not in MEASURES:
-        raise ValueError(f"an intensity must be one of {', '.join(MEASURES)}, got {name!r}")
+    require_one_of("an intensity", name, MEASURES)
 
 
 def velocity(motion: GroundMotion) -> Array:
