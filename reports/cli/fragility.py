@@ -72,9 +72,7 @@ Models = Annotated[
 ]
 Engines = Annotated[
     list[str] | None,
-    options.method(
-        "mujoco, pybullet, dart, drake or another that is installed; may be repeated. Default: none."
-    ),
+    options.method(f"{options.ENGINES}; may be repeated. Default: none."),
 ]
 Restitution = Annotated[
     str,
