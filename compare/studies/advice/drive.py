@@ -89,7 +89,7 @@ def advise(
     model, other = Run(None, "recess"), Run(None, "flat")
     if support == "flat":
         model, other = other, model
-    stage = Stages(progress, 4 if run is None else 5).stage
+    stage = Stages(progress, [1.0] * (4 if run is None else 5)).stage
     with stage("both reduced models (compiled on their first run)"):
         trace = simulate_run(case, model)
         if trace.time[-1] > case.length:

@@ -84,7 +84,7 @@ def overturning_spectrum(
     require_positive("search_step", search_step)
     unit = intensity_unit(tan_alpha, motion, gravity)
     peaks, lowest, below, start = {}, {}, {}, {}
-    stages = Stages(progress, len(SERIES))
+    stages = Stages(progress, [1.0] * len(SERIES))
     for index, name in enumerate(SERIES):
         start[name] = uplift_of_series(name, motion, tan_alpha, gravity) / unit
         run = partial(
