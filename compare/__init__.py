@@ -23,9 +23,7 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .comparison.summary import SUMMARY_COLUMNS as SUMMARY_COLUMNS
     from .metrics.agreement import AGREEMENT as AGREEMENT
     from .metrics.contact import TILTED as TILTED
-    from .metrics.tilt import relative_rms as relative_rms
     from .runs.choice import default_runs as default_runs
-    from .runs.choice import installed_engines as installed_engines
     from .runs.choice import missing_engines as missing_engines
     from .runs.choice import own_model as own_model
     from .runs.choice import require_runnable as require_runnable
@@ -67,10 +65,8 @@ _MODULES = {
     "comparison.summary": ("SUMMARY_COLUMNS",),
     "metrics.agreement": ("AGREEMENT",),
     "metrics.contact": ("TILTED",),
-    "metrics.tilt": ("relative_rms",),
     "runs.choice": (
         "default_runs",
-        "installed_engines",
         "missing_engines",
         "own_model",
         "require_runnable",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields
 
-from .number_checks import require_positive
+from .number_checks import require_one_of, require_positive
 from .shown import Brief
 
 REFERENCES = ("own", "recess", "flat")
@@ -57,8 +57,7 @@ class Bounds(Brief):
     def __post_init__(self) -> None:
         for name, value in self.given().items():
             object.__setattr__(self, name, require_positive(name, value, ""))
-        if self.reference not in REFERENCES:
-            raise ValueError(f"reference must be one of {', '.join(REFERENCES)}, got {self.reference!r}")
+        require_one_of("reference", self.reference, REFERENCES)
 
     def given(self) -> dict[str, float]:
         """Return the bounds that ask something, by column."""

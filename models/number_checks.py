@@ -1,9 +1,13 @@
-"""Checks of numbers: one clear line for bad input."""
+"""Checks of numbers and words: one clear line for bad input."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from .shown import brief
 
@@ -28,6 +32,23 @@ def require_finite(name: str, value: float, unit: str) -> float:
     if not math.isfinite(number):
         raise ValueError(f"{name} must be a finite number{_in(unit)}, got {quoted(value)}")
     return number
+
+
+def require_increasing(name: str, values: ArrayLike) -> NDArray[np.float64]:
+    """Return a read-only array (n,), or raise ValueError unless it is positive, finite and increasing."""
+    found = np.array(values, dtype=np.float64)
+    good = found.ndim == 1 and found.size and found[0] > 0.0 and (np.diff(found) > 0.0).all()
+    if not (good and np.isfinite(found).all()):
+        raise ValueError(f"{name} must be positive, finite and increasing, got {quoted(values)}")
+    found.flags.writeable = False
+    return found
+
+
+def require_one_of(name: str, value: object, allowed: Iterable[str]) -> None:
+    """Raise ValueError unless `value` is one of the words that are allowed."""
+    words = tuple(allowed)
+    if value not in words:
+        raise ValueError(f"{name} must be one of {', '.join(words)}, got {quoted(value)}")
 
 
 def quoted(value: Any) -> str:

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from .ground_motion import GroundMotion
-from .number_checks import require_finite, require_positive
+from .number_checks import require_finite, require_one_of, require_positive
 
 # name: periods that it lasts; the rest is still ground
 _LENGTHS = {"one-sine": 1.0, "one-cosine": 1.0, "half-sine": 0.5}
@@ -50,8 +50,7 @@ def pulse(
     >>> round(motion.peak, 12), motion.duration
     (3.0, 0.8)
     """
-    if kind not in _LENGTHS:
-        raise ValueError(f"pulse must be one of {', '.join(PULSES)}, got {kind!r}")
+    require_one_of("pulse", kind, PULSES)
     amplitude = require_positive("amplitude", amplitude, "m/s^2")
     period = require_positive("period", period, "s")
     azimuth = require_finite("azimuth", azimuth, "rad")

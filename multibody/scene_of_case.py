@@ -47,10 +47,8 @@ def resolved_settings(
 
 
 @contextlib.contextmanager
-def open_scene(
-    case: Case, engine: str, support: str, settings: Mapping[str, Any], time_step: float | None = None
-) -> Iterator[Any]:
-    """Open the scene of a case as `simulate` does, for who wants to step it alone.
+def open_scene(case: Case, engine: str, support: str, settings: Mapping[str, Any]) -> Iterator[Any]:
+    """Open the scene of a case as `simulate` does at its default step, for who wants to step it alone.
 
     Yields
     ------
@@ -62,12 +60,12 @@ def open_scene(
     ValueError
         As `simulate` does.
     """
-    backend, scene = _stated(case, engine, support, time_step)
+    backend, scene = _stated(case, engine, support)
     with backend.open(scene, backend.settings(settings, scene)) as stepper:
         yield stepper
 
 
-def _stated(case: Case, engine: str, support: str, time_step: float | None) -> tuple[Engine, Scene]:
+def _stated(case: Case, engine: str, support: str, time_step: float | None = None) -> tuple[Engine, Scene]:
     backend = find_engine(engine)
     require_able(backend, engine, case, support)
     size = case.cylinder.semidiagonal, case.gravity

@@ -6,7 +6,7 @@ and the part that is suspect where it fails. `rockwobble check` runs them.
 
 from .bench import Bench
 from .finding import FAILED, NO_BASELINE, NOT_RUN, PASSED, Finding
-from .layers import LAYERS, first_failure, run_checks
+from .layers import LAYERS, run_checks
 
 __all__ = [
     "FAILED",
@@ -16,6 +16,5 @@ __all__ = [
     "PASSED",
     "Bench",
     "Finding",
-    "first_failure",
     "run_checks",
 ]

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.shown import Brief
+from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_lack, own_engines, standard_engines
 
-from ..runs.choice import installed_engines
 from ..runs.execution import Job, simulate_all
 from ..runs.labels import run_labels
 from ..runs.progress import ProgressCallback
@@ -97,7 +97,7 @@ class Bench(Brief):
 
 def engines_here(among: Sequence[str] | None = None) -> tuple[str, ...]:
     """Return those of some engines, or of `ENGINES`, that are installed."""
-    return tuple(name for name in (ENGINES if among is None else among) if name in installed_engines())
+    return tuple(name for name in (ENGINES if among is None else among) if name in available_engines())
 
 
 def not_here(what: str, engines: Sequence[str]) -> Iterator[Finding]:

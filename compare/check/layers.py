@@ -6,6 +6,8 @@ import dataclasses
 import math
 from collections.abc import Callable, Iterator, Sequence
 
+from rockwobble.models.number_checks import require_one_of
+
 from .bench import Bench
 from .engines import (
     agreement,
@@ -88,28 +90,11 @@ def run_checks(bench: Bench, layers: Sequence[str] = LAYERS) -> Iterator[Finding
         If a layer is unknown.
     """
     for layer in layers:
-        if layer not in LAYERS:
-            raise ValueError(f"a layer must be one of {', '.join(LAYERS)}, got {layer!r}")
+        require_one_of("a layer", layer, LAYERS)
     for layer in (name for name in LAYERS if name in layers):
         for part in PARTS[layer]:
             for finding in _guarded(part, bench):
                 yield dataclasses.replace(finding, layer=layer)
-
-
-def first_failure(bench: Bench, layers: Sequence[str] = LAYERS) -> Finding | None:
-    """Return the first finding that failed, without running what comes after it.
-
-    Parameters
-    ----------
-    bench : Bench
-    layers : sequence of str, optional
-        Of `LAYERS`.
-
-    Returns
-    -------
-    Finding or None
-    """
-    return next((finding for finding in run_checks(bench, layers) if finding.failed), None)
 
 
 def _guarded(part: Check, bench: Bench) -> Iterator[Finding]:

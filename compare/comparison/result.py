@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
+from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Shown
 
 from ..runs.execution import case_inputs
@@ -127,8 +128,7 @@ class Comparison(Shown):
         ValueError
             If there is no such case.
         """
-        if name not in self.cases:
-            raise ValueError(f"case must be one of {', '.join(self.cases)}, got {name!r}")
+        require_one_of("case", name, self.cases)
         return dataclasses.replace(
             self,
             summary=self.summary[self.summary["case"] == name].reset_index(drop=True),

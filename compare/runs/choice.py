@@ -26,21 +26,6 @@ SUPPORTS = ("recess", "flat")
 _OWN_MODELS = {"recess": "recess", "flat": "flat", "ring": "flat"}
 
 
-def installed_engines() -> tuple[str, ...]:
-    """Return the engines that are installed here, whatever they can do.
-
-    Returns
-    -------
-    tuple of str
-
-    Examples
-    --------
-    >>> "mujoco" in installed_engines()
-    True
-    """
-    return available_engines()
-
-
 def missing_engines() -> tuple[str, ...]:
     """Return the engines that every installation is meant to have and this one has not.
 
@@ -48,7 +33,7 @@ def missing_engines() -> tuple[str, ...]:
     -------
     tuple of str
     """
-    return tuple(name for name in standard_engines() if name not in installed_engines())
+    return tuple(name for name in standard_engines() if name not in available_engines())
 
 
 def left_out(name: str) -> str:
@@ -73,7 +58,7 @@ def runs_here(runs: Sequence[Run], named: Sequence[str] = ()) -> tuple[list[Run]
     tuple
         The runs, a list of Run, and the lines, a list of str.
     """
-    here, found, said = installed_engines(), list[Run](), dict[str, str]()
+    here, found, said = available_engines(), list[Run](), dict[str, str]()
     for run in runs:
         name, other = run.engine, None
         if name is not None and name not in (*here, *named):
@@ -100,7 +85,7 @@ def reserved_engines() -> dict[str, str]:
     dict
         Reason by name of the engine.
     """
-    reasons = {name: _reservation(name) for name in installed_engines()}
+    reasons = {name: _reservation(name) for name in available_engines()}
     return {name: reason for name, reason in reasons.items() if reason}
 
 
@@ -173,7 +158,7 @@ def default_runs(
         return tuple(Run(engine, support) for support in supports for engine in engines)
     if engines is None:
         reserved = reserved_engines()
-        engines = [name for name in installed_engines() if name not in reserved]
+        engines = [name for name in available_engines() if name not in reserved]
     runs = []
     for support in SUPPORTS if supports is None else supports:
         able = [engine for engine in engines if support in find_engine(engine).supports]
@@ -189,7 +174,7 @@ def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tu
     ValueError
         If there is none.
     """
-    engines = [name for name in installed_engines() if not _unable(name, cases)]
+    engines = [name for name in available_engines() if not _unable(name, cases)]
     found = [
         Run(name, support)
         for support in (SUPPORTS if supports is None else supports)
@@ -205,7 +190,7 @@ def all_runs(cases: Sequence[Case], supports: Sequence[str] | None = None) -> tu
 
 def unable_engines(cases: Sequence[Case]) -> tuple[str, ...]:
     """Return why installed engines cannot run these cases, one sentence for each."""
-    return tuple(filter(None, (_unable(name, cases) for name in installed_engines())))
+    return tuple(filter(None, (_unable(name, cases) for name in available_engines())))
 
 
 def _unable(name: str, cases: Sequence[Case]) -> str:
@@ -224,7 +209,7 @@ def _unable(name: str, cases: Sequence[Case]) -> str:
 def unsupported(supports: Sequence[str]) -> tuple[str, ...]:
     """Return why a default run with these supports leaves out installed engines, one sentence for each."""
     reserved = reserved_engines()
-    names = [name for name in installed_engines() if name not in reserved]
+    names = [name for name in available_engines() if name not in reserved]
     lacks = [
         (name, support) for support in supports for name in names if support not in find_engine(name).supports
     ]

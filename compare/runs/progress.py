@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 from dataclasses import dataclass
 from typing import Literal
 
@@ -44,6 +44,7 @@ class Progress(Brief):
 
 
 ProgressCallback = Callable[[Progress], None]
+Stage = Callable[[str], AbstractContextManager[object]]
 
 
 class Clock:
@@ -63,7 +64,7 @@ class Clock:
     def __init__(
         self,
         tell: ProgressCallback | None,
-        costs: list[float],
+        costs: Sequence[float],
         found: int = 0,
         damaged: Sequence[str] = (),
     ) -> None:
@@ -103,12 +104,12 @@ class Stages:
     Parameters
     ----------
     tell : callable or None
-    total : int
-        Number of stages.
+    costs : sequence of float
+        Of the stages in their order, in any unit.
     """
 
-    def __init__(self, tell: ProgressCallback | None, total: int) -> None:
-        self._clock = Clock(tell, [1.0] * total)
+    def __init__(self, tell: ProgressCallback | None, costs: Sequence[float]) -> None:
+        self._clock = Clock(tell, costs)
         self._done = 0
 
     @contextmanager

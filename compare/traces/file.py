@@ -31,6 +31,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.models.number_checks import require_one_of
+
 Array = NDArray[np.float64]
 
 ANGLE_UNITS = {"rad": 1.0, "deg": math.pi / 180.0}
@@ -100,8 +102,8 @@ def read_columns(path: Path, angle_unit: str | None = None) -> Columns:
     ValueError
         If the file cannot be read, a column is missing or in an unknown unit, or a cell is no number.
     """
-    if angle_unit is not None and angle_unit not in ANGLE_UNITS:
-        raise ValueError(f"the unit of angles must be one of {', '.join(ANGLE_UNITS)}, got {angle_unit!r}")
+    if angle_unit is not None:
+        require_one_of("the unit of angles", angle_unit, ANGLE_UNITS)
     rows = _rows(path)
     first, header = next(rows, (0, []))
     if not first:

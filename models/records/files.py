@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..ground_motion import GroundMotion
+from ..number_checks import require_one_of
 from .at2_file import is_at2, read_at2
 from .column_file import read_columns, read_table
 from .component import Component
@@ -70,8 +71,8 @@ def read_record(
     >>> motion.name, motion.acceleration.shape, round(float(motion.acceleration[1, 0]), 3)
     ('pulse', (3, 2), 1.962)
     """
-    if units is not None and units not in UNITS:
-        raise ValueError(f"units must be one of {', '.join(UNITS)}, got {units!r}")
+    if units is not None:
+        require_one_of("units", units, UNITS)
     if y_path is None:
         if z_path is not None:
             raise ValueError(f"a file of all components has no other beside it, got {z_path} beside {x_path}")

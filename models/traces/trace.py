@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
+from ..assumptions import Assumptions
 from ..case import Case, Run
 from ..diagnostic import Diagnostic, joined
 from ..shown import Shown, line
 from . import trace_file
-from .limited import Limited
 from .trace_source import Array, Late, Source, friction_of, no_passes
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
-class Trace(Limited, Shown):
+class Trace(Shown):
     """Motion of one cylinder at n samples; positions are relative to O, which moves with the ground.
 
     What a source does not know is NaN.
@@ -65,8 +65,8 @@ class Trace(Limited, Shown):
         Largest tilt of the continuous motion [rad]; pi/2 if overturned, NaN if failed.
     outcome : {"rest", "completed", "overturned", "failed"}
         "rest": standing at the end; "completed": still in motion at the end.
-    diagnostics : tuple of Diagnostic
-        What ended or limits the motion.
+    facts, diagnostics : tuple of Diagnostic
+        What ended or limits the motion; the latter with breaches of the model's assumptions.
     uplift_time, uplift_direction : float
         First uplift [s] and rolling angle there [rad]; 0 and that of the start for a release, NaN without.
     passes : DataFrame
@@ -159,17 +159,41 @@ class Trace(Limited, Shown):
         """Twist at the end, whole turns included [rad]."""
         return float(self.twist[-1]) if len(self.twist) else math.nan
 
-    @property
-    def signed_tilt(self) -> Array:
-        """Tilt (n,) [rad], negative where it leans away from the reference direction.
+    @cached_property
+    def assumptions(self) -> Assumptions | None:
+        """Whether contact and friction held, from extrema of the continuous motion; None if not known."""
+        return self.source.assumptions(math.inf)
 
-        That is the azimuth of the plane of planar motion, else the direction of first uplift or release. In
-        planar motion the signed tilt is continuous.
+    def assumptions_until(self, end: float) -> Assumptions | None:
+        """Return whether contact and friction held until the time `end` [s], such as that of a fall.
+
+        A trace that was stored knows it of its whole run alone.
         """
-        plane = self.run.settings.get("plane")
-        reference = self.uplift_direction if plane is None else plane
-        away = np.cos(np.nan_to_num(self.rolling_angle) - np.nan_to_num(reference)) < 0.0
-        return np.where(away, -self.tilt, self.tilt)
+        return self.source.assumptions(end)
+
+    @property
+    def diagnostics(self) -> tuple[Diagnostic, ...]:
+        """What ended or limits the motion, breaches of the model's assumptions included."""
+        return self.facts + (self.assumptions.breaches if self.assumptions else ())
+
+    def first(self, *codes: str) -> float:
+        """Return the earliest time at which a diagnostic of these codes holds [s]; infinite if none does.
+
+        Parameters
+        ----------
+        *codes : str
+            Of `rockwobble.models.diagnostic.CODES`.
+
+        Examples
+        --------
+        >>> import rockwobble as rw
+        >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+        >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+        >>> case = rw.Case(pier, initial=release, duration=4.0)
+        >>> rw.simulate(case).first("slip", "friction_needed")
+        inf
+        """
+        return min((fact.time for fact in self.diagnostics if fact.code in codes), default=math.inf)
 
     def to_frame(self) -> pd.DataFrame:
         """Return the samples as a table, one column for each component, SI units and radians.
@@ -211,20 +235,7 @@ class Trace(Limited, Shown):
 
     @classmethod
     def from_plain(cls, facts: Mapping[str, Any], samples: pd.DataFrame, case: Case) -> Trace:
-        """Return the trace of what `to_plain` and `to_frame` gave, and its case.
-
-        Parameters
-        ----------
-        facts : mapping
-            Of `to_plain`.
-        samples : DataFrame
-            Of `to_frame`.
-        case : Case
-
-        Returns
-        -------
-        Trace
-        """
+        """Return the trace of what `to_plain` and `to_frame` gave, and its case."""
         return cls(case=case, **trace_file.restored(facts, samples))
 
     def save(self, path: str | Path) -> None:

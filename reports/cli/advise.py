@@ -58,11 +58,13 @@ def advise(
     """
     with interruptible():
         with user_input():
+            from rockwobble.compare.studies.advice.drive import require_count
+
             case = problem.case()
             friction = case.friction if "friction" in given_options(context) else None
             run = _run(case, engine, support, time_step)
             require_feasible([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
-            _require_count(copies)
+            require_count("--copies", copies)
             rc.require_writable(out)
         from rockwobble.compare.runs.execution import Job, job_fingerprint
         from rockwobble.compare.storage.fingerprint import fingerprint
@@ -103,24 +105,17 @@ def advise(
 
 def _run(case: rw.Case, engine: str | None, support: str, time_step: float | None) -> rw.Run | None:
     from rockwobble.compare.studies.advice.drive import SUPPORTS
+    from rockwobble.models.number_checks import require_one_of
 
     if engine == options.NO_ENGINE and time_step is not None:
         raise ValueError("--time-step belongs to an engine, got it with --engine none")
     default = rw.multibody.DEFAULT_ENGINE
-    missing = engine is None and default not in rc.installed_engines()
+    missing = engine is None and default not in rw.multibody.available_engines()
     if missing:
         complain(f"{default} is not installed here: the prediction stays unverified")
     if missing or engine == options.NO_ENGINE:
-        if support not in SUPPORTS:
-            raise ValueError(f"--support must be one of {', '.join(SUPPORTS)}, got {support!r}")
+        require_one_of("--support", support, SUPPORTS)
         return None
     run = rw.Run(engine or default, support, time_step)
     rc.require_runnable(case, run)
     return run
-
-
-def _require_count(copies: int) -> None:
-    from rockwobble.compare.studies.advice.drive import FEWEST, MOST
-
-    if not FEWEST <= copies <= MOST:
-        raise ValueError(f"--copies must be from {FEWEST} to {MOST}, got {copies}")

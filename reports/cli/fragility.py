@@ -72,9 +72,7 @@ Models = Annotated[
 ]
 Engines = Annotated[
     list[str] | None,
-    options.method(
-        "mujoco, pybullet, dart, drake or another that is installed; may be repeated. Default: none."
-    ),
+    options.method(f"{options.ENGINES}; may be repeated. Default: none."),
 ]
 Restitution = Annotated[
     str,
@@ -202,11 +200,11 @@ def fragility(
 
 def _levels(text: str) -> list[float]:
     """Return the numbers of a list, or of a range, which is even in the logarithm."""
+    from rockwobble.models.number_checks import require_increasing
+
     found = values_of("--levels", text)
+    require_increasing("--levels", found)
     if ":" not in text:
         return found
-    low, high = found[0], found[-1]
-    if not 0.0 < low < high:
-        raise ValueError(f"--levels must increase from above zero, got {text!r}")
-    count = len(found)
+    low, high, count = found[0], found[-1], len(found)
     return [low * math.exp(math.log(high / low) * place / (count - 1)) for place in range(count)]

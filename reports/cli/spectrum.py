@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import rockwobble.compare as rc
 
@@ -13,10 +13,6 @@ from ..console.results import show_and_write
 from ..console.terminal import command_line, interruptible, user_input
 from ..pages.words.cases import describe
 from .inputs import options
-
-if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
 
 _grid = options.panel("Grid")
 # a map of more cells than a screen has pixels is a slip of the hand
@@ -73,13 +69,20 @@ def spectrum(
     """
     with interruptible():
         with user_input():
+            import numpy as np
+
             from rockwobble.compare.studies.spectrum.series import intensity_unit
             from rockwobble.compare.studies.spectrum.study import SUPPORTS
+            from rockwobble.models.number_checks import require_increasing, require_one_of
 
             from .inputs.problem import Problem
 
-            levels = _axis("weakest", weakest, "strongest", strongest, intensities)
-            radii = _axis("smallest", smallest, "largest", largest, sizes)
+            require_increasing("--weakest and --strongest", (weakest, strongest))
+            require_increasing("--smallest and --largest", (smallest, largest))
+            levels, radii = (
+                np.linspace(weakest, strongest, intensities),
+                np.linspace(smallest, largest, sizes),
+            )
             case = Problem(
                 semidiagonal=largest,
                 tan_alpha=tan_alpha,
@@ -94,8 +97,7 @@ def spectrum(
             if motion is None:  # without a release there always is one
                 raise ValueError("a spectrum needs a ground motion")
             intensity_unit(tan_alpha, motion, case.gravity)
-            if support not in SUPPORTS:
-                raise ValueError(f"--support must be one of {', '.join(SUPPORTS)}, got {support!r}")
+            require_one_of("--support", support, SUPPORTS)
             if not _FINEST <= search_step < math.inf:
                 finest = f"--search-step must be at least {_FINEST:g} and finite"
                 raise ValueError(f"{finest}, got {search_step:g}")
@@ -121,11 +123,3 @@ def spectrum(
         tables = tables_of(found)
         manifest = manifest_of(found, tables, command_line())
         show_and_write(out, spectrum_page(found, tables, manifest), manifest, tables)
-
-
-def _axis(first: str, low: float, last: str, high: float, count: int) -> NDArray[np.float64]:
-    import numpy as np
-
-    if not (0.0 < low < math.inf and low < high < math.inf):
-        raise ValueError(f"--{first} and --{last} must be positive and increasing, got {low:g} and {high:g}")
-    return np.linspace(low, high, count)

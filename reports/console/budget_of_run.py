@@ -13,8 +13,9 @@ _PARTS = ("model_form", "numerics", "unexplained")
 def budget_of_run(case: rw.Case, run: rw.Run, reference: rw.Run) -> list[str]:
     """Return the lines; they rest on runs at finer time steps, made here."""
     comparison = rw.compare(case, runs=[run], budget=True)
-    budget = next((found for key, found in comparison.budgets.items() if key[2] == str(reference)), None)
-    rows = comparison.summary[comparison.summary["reference"] == str(reference)]
+    label = next((label for (_, label), trace in comparison.traces.items() if trace.run == reference), None)
+    rows = comparison.summary[comparison.summary["reference"] == label]
+    budget = next((found for key, found in comparison.budgets.items() if key[2] == label), None)
     return lines(
         "comparison/budget_of_run.txt.j2",
         budget=budget,

@@ -16,7 +16,7 @@ from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL
 
 from .ensemble import margin_rules, ratio_axes
-from .palette import DARK, GREY, ORDER, Style, pale
+from .palette import DARK, GREY, ORDER, Style, mark_styles, pale
 from .picture import Axis, Band, Line, Panel, Picture, Rule
 
 # of a panel: the support, and what it is called
@@ -26,9 +26,7 @@ _SUPPORTS: Mapping[str, str] = {
     "flat": "Flat ground",
     "ring": "Ring of walls",
 }
-_SYMBOLS = ("circle", "square", "triangle-up", "diamond")
 _COLOURS = (DARK, *ORDER)
-_DASHES = ("solid", "dash", "dashdot", "dot")
 _TICKS = (0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 50.0)
 _RATIOS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0)
 _LINE = 0.42  # inch for a pair of methods
@@ -122,8 +120,8 @@ def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -
     measure = MEASURES[str(found.about["measure"])]
     backs: list[Band | Line] = []
     fronts: list[Band | Line] = []
-    for index, label in enumerate(labels):
-        colour, dash = _COLOURS[index % len(_COLOURS)], _DASHES[index % len(_DASHES)]
+    for index, (label, style) in enumerate(mark_styles(labels).items()):
+        colour = _COLOURS[index % len(_COLOURS)]
         own = curves[curves["method"] == label]
         if not len(own):
             continue
@@ -136,12 +134,12 @@ def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -
                 x=x,
                 y=own["probability"].to_numpy(float),
                 name=label,
-                style=Style(colour=colour, dash=dash),
+                style=Style(colour=colour, dash=style.dash),
                 width=1.8,
             )
         )
         part = _grouped(counts[counts["method"] == label])
-        mark = Style(colour=colour, dash="none", symbol=_SYMBOLS[index % len(_SYMBOLS)])
+        mark = Style(colour=colour, dash="none", symbol=style.symbol)
         fronts.append(
             Line(
                 x=part["intensity"].to_numpy(float),

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 
+from rockwobble.models import Run
+
 # M. Okabe and K. Ito, Color Universal Design, 2008; without black (the reference) and the pale yellow
 ORDER = ("#0072B2", "#D55E00", "#56B4E9", "#E69F00", "#009E73", "#CC79A7")
 DARK, GREY, PALE = "#222222", "#9a9a9a", "#e8eef4"
@@ -26,8 +28,6 @@ SYMBOLS: Mapping[str, str] = {
     **{"star": "*", "cross": "P", "x": "X", "pentagon": "p", "hexagon": "h"},
     **{"triangle-left": "<", "triangle-right": ">", "cross-thin": "+", "x-thin": "x"},
 }
-_REFERENCE = {"recess": ("#000000", "solid"), "flat": ("#666666", "dash"), "flat-ground": ("#666666", "dash")}
-_REST = ("#000000", "dot")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -39,10 +39,16 @@ class Style:
     symbol: str = ""
 
 
-def model_style(model: str) -> Style:
-    """Return the style of a reduced model, by its support or its label."""
-    colour, dash = _REFERENCE.get(model.removesuffix(" model"), _REST)
-    return Style(colour=colour, dash=dash)
+_MODELS = {
+    str(Run(None, "recess")): Style(colour="#000000"),
+    str(Run(None, "flat")): Style(colour="#666666", dash="dash"),
+}
+_OTHER_MODEL = Style(colour="#000000", dash="dot")
+
+
+def model_style(label: str) -> Style:
+    """Return the style of a reduced model."""
+    return _MODELS.get(label, _OTHER_MODEL)
 
 
 def run_styles(labels: Sequence[str]) -> dict[str, Style]:

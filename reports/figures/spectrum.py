@@ -6,6 +6,7 @@ import numpy as np
 
 from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, safe_islands
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
+from rockwobble.models import Run
 
 from .heat import PEAKS, Heat, peak_map
 from .palette import Style, model_style, run_styles
@@ -69,7 +70,7 @@ def _map(spectrum: OverturningSpectrum, series: str) -> Heat:
 
 def _curves(spectrum: OverturningSpectrum) -> list[Line]:
     planes = run_styles([PLANAR_X, PLANAR_Y])
-    styles = {SPATIAL: model_style(spectrum.support), **planes}
+    styles = {SPATIAL: model_style(str(Run(None, spectrum.support))), **planes}
     islands = safe_islands(spectrum)
     spacing = float(np.diff(spectrum.semidiagonals).min(initial=np.inf))
     half = 0.5 * float(np.diff(spectrum.intensities).min(initial=np.inf))

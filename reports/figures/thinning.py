@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 POINTS = 2000
+_WINDOW = 1.0  # of an envelope, about one swing [s]
 
 
 def kept_samples(*columns: NDArray[np.float64], points: int = POINTS) -> NDArray[np.intp]:
@@ -48,8 +49,8 @@ def kept_points(x: Array, y: Array, *, points: int = POINTS) -> NDArray[np.intp]
     return kept_samples(y, points=points) if rising else kept_samples(x, y, points=2 * points)
 
 
-def envelope(time: NDArray[np.float64], values: NDArray[np.float64], window: float) -> NDArray[np.float64]:
-    """Return the largest value within the last `window` seconds, shape (n,).
+def envelope(time: NDArray[np.float64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the largest value within the last second, shape (n,).
 
     A difference of two oscillations passes zero all the time; its envelope shows its size. It first
     exceeds a bound exactly where the values do.
@@ -59,12 +60,10 @@ def envelope(time: NDArray[np.float64], values: NDArray[np.float64], window: flo
     time : ndarray, shape (n,)
         Even steps but for the last [s].
     values : ndarray, shape (n,)
-    window : float
-        [s].
     """
     if len(time) < 2:
         return values
-    count = max(1, round(window / float(time[1] - time[0])))
+    count = max(1, round(_WINDOW / float(time[1] - time[0])))
     padded = np.concatenate([np.full(count - 1, -np.inf), values])
     upper: NDArray[np.float64] = np.lib.stride_tricks.sliding_window_view(padded, count).max(axis=1)
     return upper

@@ -7,7 +7,7 @@ import pandas as pd
 
 from rockwobble.compare.studies.tradeoff.study import Tradeoff
 
-from .palette import DARK, GREY, ORDER, SYMBOLS, Style
+from .palette import DARK, GREY, Style, mark_styles
 from .picture import Axis, Line, Panel, Picture, Rule, separated
 
 TITLES = {
@@ -78,17 +78,18 @@ def _picture(found: Tradeoff, problem: str) -> Picture:
 
 def _lines(points: pd.DataFrame) -> list[Line]:
     layers = []
-    symbols = list(SYMBOLS)
-    for index, (name, line) in enumerate(points.groupby("line", sort=False)):
+    styles = mark_styles(list(points["line"].unique()))
+    for name, line in points.groupby("line", sort=False):
         ordered = line.sort_values("value", ascending=False)
-        colour = DARK if name == _BASE else ORDER[index % len(ORDER)]
+        style = styles[str(name)]
+        colour = DARK if name == _BASE else style.colour
         x, y = ordered["ratio"].to_numpy(float), ordered["error"].to_numpy(float)
         notes = [
             f"{row['knob']} {row['value']:g}: {row['milliseconds']:.3g} ms {row['said']}".strip()
             for _, row in ordered.iterrows()
         ]
         layers.append(
-            Line(x=x, y=y, name=str(name), style=Style(colour=colour, symbol=symbols[index]), notes=notes)
+            Line(x=x, y=y, name=str(name), style=Style(colour=colour, symbol=style.symbol), notes=notes)
         )
         bars = separated(*(ordered[f"ratio_{end}"].to_numpy(float) for end in ("low", "high")))
         layers.append(Line(x=bars, y=np.repeat(y, 3), style=Style(colour=colour), width=0.8))

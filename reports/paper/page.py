@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable
-from typing import TypeVar
 
 import pandas as pd
 
-from rockwobble.compare.runs.progress import Clock, ProgressCallback
+from rockwobble.compare.runs.progress import ProgressCallback, Stages
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.compare.storage.manifest import Manifest, Results, made_now
 from rockwobble.compare.storage.provenance import code_digests, package_versions
@@ -21,7 +19,6 @@ from ..pages.spectrum import spectrum_values
 from . import earthquake, free, overturning, period, pictures
 from .statement import from_frame, to_frame
 
-R = TypeVar("R")
 KIND = "paper"
 _SAMPLES = 12_000  # of figure 5 that are kept
 
@@ -30,18 +27,15 @@ def compute(
     grid: int, command: str = "", progress: ProgressCallback | None = None
 ) -> tuple[Manifest, dict[str, pd.DataFrame], OverturningSpectrum]:
     """Run figures 3 to 6, the last on `grid` sizes and as many intensities, and keep them as tables."""
-    clock = Clock(progress, [1.0, 20.0, 40.0, 0.005 * grid * grid])
-
-    def timed(number: int, run: Callable[[], R]) -> R:
-        clock("started", f"figure {number}")
-        found = run()
-        clock("finished", f"figure {number}", number - 3)
-        return found
-
-    curves = timed(3, period.periods)
-    modes = timed(4, free.free_modes)
-    shaken = timed(5, earthquake.shaken)
-    spectrum = timed(6, lambda: overturning_spectrum(**overturning.problem(grid)))
+    stage = Stages(progress, [1.0, 20.0, 40.0, 0.005 * grid * grid]).stage
+    with stage("figure 3"):
+        curves = period.periods()
+    with stage("figure 4"):
+        modes = free.free_modes()
+    with stage("figure 5"):
+        shaken = earthquake.shaken()
+    with stage("figure 6"):
+        spectrum = overturning_spectrum(**overturning.problem(grid))
     found = [
         *period.statements(curves),
         *free.statements(modes),

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from rockwobble.compare.studies.spectrum.result import OverturningSpectrum
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
+from rockwobble.models import Run
 
 from ..figures.palette import DARK, ORDER, SHADED, Style, model_style, run_styles
 from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
@@ -156,7 +157,7 @@ def _signed_log(values: Array) -> Array:
 def overturning_picture(spectrum: OverturningSpectrum) -> Picture:
     """Return figure 6: the maps, and the lowest intensities on the axes of the paper and on equal shaking."""
     (whole,) = spectrum_pictures(spectrum)
-    styles = {SPATIAL: model_style(spectrum.support), **run_styles([PLANAR_X, PLANAR_Y])}
+    styles = {SPATIAL: model_style(str(Run(None, spectrum.support))), **run_styles([PLANAR_X, PLANAR_Y])}
     curves = []
     for own, label in ((True, "own peak / (g tan α)"), (False, "peak resultant / (g tan α)")):
         lowest = lowest_on_axes(spectrum, own=own)

@@ -19,14 +19,14 @@ from rockwobble.compare.check import Bench, Finding, bench
 from rockwobble.compare.check.engines import agreement, own_bounds, suspects
 from rockwobble.compare.check.measures.made_traces import made
 from rockwobble.compare.check.problems import PIER, released
-from rockwobble.compare.runs.choice import installed_engines
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Case, Cylinder, Run, Suite, Trace, el_centro_1940
+from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import standard_engines
 
 KEPT: dict[str, Trace] = {}
 SHORT = Case(PIER, el_centro_1940().scaled(2.0), duration=3.0, name="El Centro doubled")
-BOTH = pytest.mark.skipif("pybullet" not in installed_engines(), reason="pybullet has no wheel here")
+BOTH = pytest.mark.skipif("pybullet" not in available_engines(), reason="pybullet has no wheel here")
 
 
 def found(case: Case, *runs: Run, models: Any = reduced) -> list[Finding]:
@@ -174,7 +174,7 @@ RAMP = TIME * PIER.alpha
 def test_the_referee_decides(
     monkeypatch: pytest.MonkeyPatch, engine: float, referee: float, part: str, note: str
 ) -> None:
-    if SECOND not in installed_engines():
+    if SECOND not in available_engines():
         pytest.skip(f"{SECOND} is not installed")
     monkeypatch.setattr(suspects, "engines_here", lambda: ("mujoco", SECOND))
     trace_of: Callable[[float, str], Trace] = lambda off, outcome: made(  # noqa: E731

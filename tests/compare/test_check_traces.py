@@ -13,11 +13,11 @@ from rockwobble import reduced
 from rockwobble.compare.check import Bench, bench, run_checks
 from rockwobble.compare.check.engines import traces
 from rockwobble.compare.check.finding import NOT_RUN, PASSED
-from rockwobble.compare.runs import choice as runs
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.models import Case, GroundMotion, Run, Trace, read_suite
 from rockwobble.models.traces.trace_source import Known
+from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 
 KEPT: dict[str, Trace] = {}
@@ -42,7 +42,7 @@ def failed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
 
 @pytest.mark.parametrize("engine", ["mujoco", "pybullet"])
 def test_traces_of_an_engine_hold(monkeypatch: pytest.MonkeyPatch, engine: str) -> None:
-    if engine not in runs.installed_engines():
+    if engine not in available_engines():
         pytest.skip(f"{engine} has no wheel for this Python")
     monkeypatch.setattr(bench, "ENGINES", (engine,))
     monkeypatch.setattr(traces, "simulate_run", once)

@@ -8,7 +8,8 @@ import math
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import compare, relative_rms
+from rockwobble.compare import compare, make_pair
+from rockwobble.compare.metrics.tilt import tilt_rms_relative
 from rockwobble.models import Case, Cylinder, Run, el_centro_1940
 
 STEP = 1e-4  # [s]
@@ -49,7 +50,8 @@ def traces(comparison):
 @pytest.mark.parametrize("problem", [(10.0, 0.1, 1.0), (6.0, 0.2, 2.0)])
 def test_engine_agrees_with_the_recess_model(run, problem):
     case, response, trajectory = traces(run(*problem))
-    assert relative_rms(case.cylinder, response, trajectory, until=WINDOW) < AGREEMENT
+    pair = make_pair(case.cylinder, response, trajectory, until=WINDOW)
+    assert tilt_rms_relative(pair) < AGREEMENT
     row = run(*problem).summary.iloc[0]
     assert not row.diverged
     assert abs(row.uplift_time_difference) <= UPLIFT_STEPS * STEP
@@ -62,7 +64,7 @@ def test_the_comparison_has_teeth(run, factor):
     case, _, trajectory = traces(run(10.0, 0.1, 1.0))
     off = dataclasses.replace(case.cylinder, semidiagonal=factor * case.cylinder.semidiagonal)
     wrong = reduced.simulate(Case(off, case.motion, duration=WINDOW))
-    assert relative_rms(case.cylinder, wrong, trajectory, until=WINDOW) > TEETH
+    assert tilt_rms_relative(make_pair(case.cylinder, wrong, trajectory, until=WINDOW)) > TEETH
 
 
 def test_traces_with_passes_near_upright_agree_for_twenty_seconds_of_the_record(run):

@@ -246,7 +246,8 @@ def test_half_turns_of_planar_motion_are_passes_and_no_turn(save: Callable[..., 
     start = InitialState(0.5 * PIER.alpha)
     case = Case(PIER, initial=start, duration=6.0, name="planar")
     planar = reduced.simulate(Case(PIER, initial=start, duration=6.0), sample_step=0.005)
-    path = save(pd.DataFrame({"time": planar.time, "tilt [rad]": planar.signed_tilt, "azimuth [rad]": 0.0}))
+    signed = np.copysign(planar.tilt, np.cos(planar.rolling_angle))
+    path = save(pd.DataFrame({"time": planar.time, "tilt [rad]": signed, "azimuth [rad]": 0.0}))
     assert len(read_trajectory(path, case).passes) == len(planar.passes) == 2
     (row,) = compare(case, runs=[], external=[path], workers=1).summary.to_dict("records")
     assert row["turn_difference"] == pytest.approx(0.0, abs=1e-6)  # as above

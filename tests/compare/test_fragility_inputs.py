@@ -40,7 +40,7 @@ def test_methods_by_name():
         ({"methods": []}, "at least one method"),
         ({"methods": ["recess", "recess"]}, None),
         ({"methods": [Run("mujoco", "recess"), Run("mujoco", "recess")]}, "must differ"),
-        ({"levels": [2.0, 1.0]}, "levels must be positive and increase"),
+        ({"levels": [2.0, 1.0]}, "levels must be positive, finite and increasing"),
         ({"levels": [1.0], "scales": [1.0]}, "got both"),
         ({"limits": ["2 alpha"]}, "a limit must be one of uplift"),
         ({"margin": 0.0}, "margin must be positive"),

@@ -10,7 +10,6 @@ import pytest
 from rockwobble.compare import (
     compare,
     default_runs,
-    installed_engines,
     missing_engines,
     own_model,
     reserved_engines,
@@ -19,6 +18,7 @@ from rockwobble.compare import (
 from rockwobble.compare.runs.choice import references_of, require_runnable, unsupported
 from rockwobble.compare.runs.labels import labels_beside_references, run_labels
 from rockwobble.models import Case, Cylinder, InitialState, Run
+from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines import registry
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 
@@ -33,7 +33,7 @@ def case(cylinder):
 
 def test_default_runs_are_every_installed_engine_in_the_recess_and_on_flat_ground():
     first, second = standard_engines()
-    if second not in installed_engines():
+    if second not in available_engines():
         pytest.skip(f"{second} is not installed")
     runs = default_runs(engines=(first, second))
     assert [(run.engine, run.support) for run in runs] == [
@@ -48,7 +48,7 @@ def test_an_engine_without_a_wheel_is_left_out_and_refused_by_name(monkeypatch, 
     name = standard_engines()[1]  # PyBullet, or what takes its place where that has no wheel
     package, find = engine_packages()[name], importlib.util.find_spec
     monkeypatch.setattr(importlib.util, "find_spec", lambda asked: None if asked == package else find(asked))
-    assert name not in installed_engines()
+    assert name not in available_engines()
     assert name in missing_engines()
     assert name not in {run.engine for run in default_runs()}
     with pytest.raises(ValueError, match=f"'{name}' is not installed here: pip install '?{package}"):
@@ -56,11 +56,11 @@ def test_an_engine_without_a_wheel_is_left_out_and_refused_by_name(monkeypatch, 
 
 
 def test_a_suite_runs_with_what_takes_the_place_of_an_engine_without_a_wheel(monkeypatch):
-    if "dart" not in installed_engines():
+    if "dart" not in available_engines():
         pytest.skip("dart is not installed")
     place = {"pybullet": "dart"}.get
     monkeypatch.setattr("rockwobble.compare.runs.choice.stand_in", place)
-    monkeypatch.setattr("rockwobble.compare.runs.choice.installed_engines", lambda: ("mujoco", "dart"))
+    monkeypatch.setattr("rockwobble.compare.runs.choice.available_engines", lambda: ("mujoco", "dart"))
     runs = [Run(name, place) for name in ("mujoco", "pybullet", "dart") for place in ("recess", "ring")]
     found, said = runs_here(runs)
     assert found == [
@@ -85,10 +85,10 @@ def test_a_suite_leaves_out_an_engine_that_is_missing_and_keeps_an_extra(monkeyp
 
 def test_an_engine_that_lacks_a_library_of_the_system_is_left_out_and_says_which(monkeypatch, case):
     name = "exudyn"  # comes with the tests, and is linked with what draws
-    if name not in installed_engines():
+    if name not in available_engines():
         pytest.skip("exudyn is not installed")
     monkeypatch.setattr(registry, "_has_library", lambda library: library != "libGL.so.1")
-    assert name not in installed_engines()
+    assert name not in available_engines()
     with pytest.raises(ValueError, match=r"'exudyn' needs libGL.so.1 of the system: apt install libgl1"):
         require_runnable(case, Run(name, "flat"))
 
@@ -101,7 +101,7 @@ def test_a_library_that_is_not_there_is_missing():
 
 
 def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeypatch, case):
-    if "exudyn" not in installed_engines():
+    if "exudyn" not in available_engines():
         pytest.skip("exudyn is not installed")
     assert "exudyn" not in {run.engine for run in default_runs()}
     assert reserved_engines()["exudyn"] == "exudyn has no recess support and no uplift"
@@ -177,7 +177,7 @@ def test_a_ring_runs_with_the_engines_that_have_it_unless_others_are_named(case)
     assert [(run.engine, run.support) for run in default_runs(supports=["ring"])] == [("mujoco", "ring")]
     both = default_runs(supports=["ring", "flat"])
     assert ("pybullet", "ring") not in [(run.engine, run.support) for run in both]
-    if "pybullet" in installed_engines():
+    if "pybullet" in available_engines():
         assert unsupported(["ring", "flat"]) == ("pybullet has no ring support and is left out there",)
         assert ("pybullet", "flat") in [(run.engine, run.support) for run in both]
         with pytest.raises(ValueError, match=r"one of recess, flat in pybullet, got 'ring'"):

@@ -115,10 +115,10 @@ def test_the_rolling_model_makes_another_spectrum(spectrum):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"semidiagonals": [2.0, 1.0]}, "semidiagonals must be positive and increasing"),
+        ({"semidiagonals": [2.0, 1.0]}, "semidiagonals must be positive, finite and increasing"),
         ({"semidiagonals": [0.0, 1.0]}, "semidiagonals must be positive"),
-        ({"intensities": []}, "intensities must be a sequence"),
-        ({"intensities": [1.0, math.nan]}, "intensities must be a sequence of finite"),
+        ({"intensities": []}, r"intensities must be positive, .* got \[\]"),
+        ({"intensities": [1.0, math.nan]}, "intensities must be positive, finite and increasing"),
         ({"support": "ring"}, "support must be one of recess, flat, got 'ring'"),
         ({"search_step": 0.0}, "search_step must be positive, got 0.0"),
     ],

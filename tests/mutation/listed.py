@@ -19,7 +19,7 @@ from typing import Any
 import numpy as np
 
 import rockwobble.reduced
-from rockwobble.compare.check import LAYERS, Bench, Finding, first_failure, run_checks
+from rockwobble.compare.check import LAYERS, Bench, Finding, run_checks
 from rockwobble.compare.check.bench import engines_here
 from rockwobble.compare.runs.choice import runs_here
 from rockwobble.models import Run, Suite, read_suite
@@ -211,7 +211,8 @@ def failures(
 def false_alarm(layers: Sequence[str]) -> Finding | None:
     """Return what fails first in a copy without a fault: then a failure in one with a fault shows nothing."""
     with mutated() as copy:
-        return first_failure(Bench(reduced=copy, suite=read_suite("quick"), workers=1), layers)
+        bench = Bench(reduced=copy, suite=read_suite("quick"), workers=1)
+        return next((finding for finding in run_checks(bench, layers) if finding.failed), None)
 
 
 def names_it(mutation: Mutation, finding: Finding) -> bool:

@@ -12,10 +12,10 @@ import rockwobble.compare.certificate as certificate_package
 from rockwobble.compare.certificate.fingerprint import Method
 from rockwobble.compare.check import LAYERS, Bench, Finding
 from rockwobble.compare.check.engines import rings, time_steps, traces
-from rockwobble.compare.runs.choice import installed_engines
 from rockwobble.models import Case, Trace
 from rockwobble.models import Run as ModelRun
 from rockwobble.models.traces.lost_trace import lost_trace
+from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import standard_engines
 from rockwobble.reports.cli.main import main
 
@@ -90,7 +90,7 @@ def test_a_certificate_of_an_engine_holds_claims_of_no_other(
     run: Run, monkeypatch: pytest.MonkeyPatch, engine: str
 ) -> None:
     """What would be claimed, where every run of an engine fails at once."""
-    if engine not in installed_engines():
+    if engine not in available_engines():
         pytest.skip(f"{engine} is not installed")
     found: list[Finding] = []
 

@@ -15,10 +15,10 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare.runs import execution
-from rockwobble.compare.runs.choice import installed_engines
 from rockwobble.compare.runs.execution import Job
 from rockwobble.models import Trace
 from rockwobble.models.traces.lost_trace import lost_trace
+from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_packages, standard_engines
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import page
@@ -117,7 +117,7 @@ def test_bad_input_gets_one_clear_line_before_anything_runs(folder, monkeypatch,
     monkeypatch.setattr(execution, "run_tasks", lambda *_, **__: pytest.fail("it ran"))
     before = sorted(path.name for path in folder.iterdir())
     arguments, words = BAD[kind]
-    if "exudyn" in arguments and "exudyn" not in installed_engines():
+    if "exudyn" in arguments and "exudyn" not in available_engines():
         pytest.skip("exudyn is not installed")
     assert call(command, *arguments) == 2
     captured = capsys.readouterr()

@@ -93,9 +93,9 @@ def test_any_record_will_do(tmp_path: Path, monkeypatch, capsys):
     [
         (["--sizes", "1"], "'--sizes': must be from 2 to 2000, got 1"),
         (["--intensities", "9999"], "'--intensities': must be from 2 to 2000, got 9999"),
-        (["--smallest", "3", "--largest", "2"], "must be positive and increasing, got 3 and 2"),
-        (["--smallest", "-1"], "must be positive and increasing, got -1 and 30"),
-        (["--weakest", "nan"], "must be positive and increasing, got nan and 12"),
+        (["--smallest", "3", "--largest", "2"], "must be positive, finite and increasing, got (3.0, 2.0)"),
+        (["--smallest", "-1"], "must be positive, finite and increasing, got (-1.0, 30.0)"),
+        (["--weakest", "nan"], "must be positive, finite and increasing, got (nan, 12.0)"),
         (["--support", "ring"], "--support must be one of recess, flat, got 'ring'"),
         (["--search-step", "0"], "--search-step must be at least 1e-05 and finite, got 0"),
         (["--search-step", "inf"], "--search-step must be at least 1e-05 and finite, got inf"),

@@ -46,9 +46,9 @@ def test_a_path_keeps_the_extremes_of_both_coordinates():
 def test_envelope_is_the_largest_of_the_last_second_and_crosses_where_the_values_do():
     time = np.arange(1001) * 0.01
     values = np.abs(np.sin(np.pi * time)) * np.exp(0.5 * time)
-    upper = envelope(time, values, 1.0)
+    upper = envelope(time, values)
     assert np.argmax(upper > 5.0) == np.argmax(values > 5.0)
     assert upper[500] == values[401:501].max()
     assert upper[0] == values[0]
     assert (upper >= values).all()
-    assert envelope(time[:1], values[:1], 1.0).tolist() == values[:1].tolist()
+    assert envelope(time[:1], values[:1]).tolist() == values[:1].tolist()

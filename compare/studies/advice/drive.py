@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940
+from rockwobble.models.number_checks import require_one_of
 
 from ...metrics.distributions import Contrast, contrast
 from ...runs.choice import require_runnable
@@ -27,6 +28,12 @@ FEWEST, MOST = 20, 10_000  # one run stands for 5 % of them, and ten thousand ta
 PERTURBATION = 0.01  # nobody knows a record or a release better than to a percent
 SEED = 1
 _VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
+
+
+def require_count(name: str, count: int) -> None:
+    """Raise ValueError unless an advice can be had of so many copies."""
+    if not FEWEST <= count <= MOST:
+        raise ValueError(f"{name} must be from {FEWEST} to {MOST}, got {count!r}")
 
 
 def advise(
@@ -77,14 +84,12 @@ def advise(
     if run is not None:
         support = run.support
         require_runnable(case, run)
-    if support not in SUPPORTS:
-        raise ValueError(f"support must be one of {', '.join(SUPPORTS)}, got {support!r}")
-    if not FEWEST <= count <= MOST:
-        raise ValueError(f"count must be from {FEWEST} to {MOST}, got {count!r}")
+    require_one_of("support", support, SUPPORTS)
+    require_count("count", count)
     model, other = Run(None, "recess"), Run(None, "flat")
     if support == "flat":
         model, other = other, model
-    stage = Stages(progress, 4 if run is None else 5).stage
+    stage = Stages(progress, [1.0] * (4 if run is None else 5)).stage
     with stage("both reduced models (compiled on their first run)"):
         trace = simulate_run(case, model)
         if trace.time[-1] > case.length:

@@ -16,6 +16,7 @@ from rockwobble.models.records import p695
 from ...metrics.order_statistics import quantile_interval, share_interval
 from ...traces.pair import is_release
 from ..ensemble.members import far_field_motions, synthetic_motions
+from ..fragility.intensity import largest_resultant, velocity
 
 Array = NDArray[np.float64]
 
@@ -62,9 +63,7 @@ def demands_of(trace: Trace) -> dict[str, float]:
 
 def peak_velocity(motion: GroundMotion) -> float:
     """Return the peak horizontal resultant of the ground velocity [m/s], of the record without its mean."""
-    horizontal = motion.acceleration[:, :2] - motion.acceleration[:, :2].mean(axis=0)
-    steps = 0.5 * motion.time_step * (horizontal[1:] + horizontal[:-1])
-    return float(np.hypot(*np.cumsum(steps, axis=0).T).max())
+    return largest_resultant(velocity(motion, centred=True))
 
 
 def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
@@ -82,10 +81,10 @@ def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
         if source == "synthetic"
         else far_field_motions(peak=motion.peak)
     )
-    velocity = peak_velocity(motion)
+    own = peak_velocity(motion)
     scaled = {
         ACCELERATION: motions,
-        VELOCITY: [each.scaled(velocity / peak_velocity(each)) for each in motions],
+        VELOCITY: [each.scaled(own / peak_velocity(each)) for each in motions],
     }
     return {
         name: [dataclasses.replace(case, motion=each, duration=None, name=each.name) for each in found]

@@ -133,13 +133,13 @@ def verified(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction
     """Run the engine; what it resolved makes the prediction sharper."""
     found = compare(case, runs=[run], reference=model)
     row = found.summary.iloc[0]
-    trace = found.traces.get((case.name, str(run)))
+    trace = found.traces.get((case.name, row["run"]))
     agreed_until = 0.0
     if trace is not None:
-        pair = make_pair(case.cylinder, found.traces[case.name, str(model)], trace)
+        pair = make_pair(case.cylinder, found.traces[case.name, row["reference"]], trace)
         agreed_until = agreement_time(pair, broken=row["outcome"] == "failed").end
     verification = Verification(
-        label=str(run),
+        label=str(row["run"]),
         version=str(row["engine_version"]),
         time_step=float(row["time_step"]),
         outcome=str(row["outcome"]),

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, GroundMotion
-from rockwobble.models.number_checks import require_positive
+from rockwobble.models.number_checks import require_one_of, require_positive
 
 Array = NDArray[np.float64]
 
@@ -92,13 +92,17 @@ def intensity(
 
 def require_measure(name: str) -> None:
     """Refuse a measure that is not one of `MEASURES`."""
-    if name not in MEASURES:
-        raise ValueError(f"an intensity must be one of {', '.join(MEASURES)}, got {name!r}")
+    require_one_of("an intensity", name, MEASURES)
 
 
-def velocity(motion: GroundMotion) -> Array:
-    """Return the horizontal velocity of the ground (n, 2) [m/s], from rest at the first sample."""
+def velocity(motion: GroundMotion, *, centred: bool = False) -> Array:
+    """Return the horizontal velocity of the ground (n, 2) [m/s], from rest at the first sample.
+
+    Of the acceleration as it is, or `centred`: without its mean, so that the velocity does not drift.
+    """
     a = motion.acceleration[:, :2]
+    if centred:
+        a = a - a.mean(axis=0)
     steps = 0.5 * motion.time_step * (a[1:] + a[:-1])
     return np.vstack([np.zeros(2), np.cumsum(steps, axis=0)])
 
@@ -137,13 +141,13 @@ def _value(name: str, motion: GroundMotion, cylinder: Cylinder, gravity: float, 
     if name == "peak_velocity":
         from rockwobble.reduced.body import body_of  # the folder loads a compiler
 
-        return body_of(cylinder, gravity).p * _largest_resultant(velocity(motion)) / uplift
+        return body_of(cylinder, gravity).p * largest_resultant(velocity(motion)) / uplift
     if name == "pgv":
         return _mean_of_peaks(velocity(motion))
     if name == "pga":
         return _mean_of_peaks(motion.acceleration[:, :2]) / gravity
     response = pseudo_acceleration(motion, period)
-    return (_largest_resultant(response) if name == "sa" else _mean_of_peaks(response)) / gravity
+    return (largest_resultant(response) if name == "sa" else _mean_of_peaks(response)) / gravity
 
 
 def measures_of(
@@ -160,7 +164,8 @@ def measures_of(
     return {name: [known(name, motion) for motion in motions] for name in MEASURES}
 
 
-def _largest_resultant(components: Array) -> float:
+def largest_resultant(components: Array) -> float:
+    """Return the largest length of horizontal vectors (n, 2)."""
     return float(np.hypot(components[:, 0], components[:, 1]).max())
 
 

@@ -9,6 +9,8 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from rockwobble.models.number_checks import require_one_of
+
 OVERTURNED, CONTACT_LOST = "overturned", "contact_lost"
 # name: the tilt that is reached [alpha]; NaN where it is no tilt that decides
 LIMITS: Mapping[str, float] = {
@@ -33,8 +35,7 @@ def require_limits(names: Iterable[str]) -> tuple[str, ...]:
     """
     given = list(names)
     for name in given:
-        if name not in LIMITS:
-            raise ValueError(f"a limit must be one of {', '.join(LIMITS)}, got {name!r}")
+        require_one_of("a limit", name, LIMITS)
     if not given:
         raise ValueError("a fragility needs at least one limit, got none")
     return tuple(name for name in LIMITS if name in given)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from rockwobble.models import Run
+from rockwobble.models.number_checks import require_one_of
 
 from ...runs.labels import run_labels
 
@@ -66,8 +67,8 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
     """
     chosen: list[str | Run] = []
     for method in given:
-        if isinstance(method, str) and method not in MODELS:
-            raise ValueError(f"a reduced model must be one of {', '.join(MODELS)}, got {method!r}")
+        if isinstance(method, str):
+            require_one_of("a reduced model", method, MODELS)
         chosen += [plane for plane in _PLANES if method == WORSE_PLANE and plane not in chosen]
         if method not in chosen or not isinstance(method, str):
             chosen.append(method)

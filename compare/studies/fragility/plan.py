@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -11,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
-from rockwobble.models.number_checks import require_positive
+from rockwobble.models.number_checks import require_increasing, require_positive
 from rockwobble.multibody.scene.froude import default_step
 
 from ...runs.choice import require_runnable
@@ -81,7 +80,7 @@ class Plan:
             )
         for label, values in (("levels", self.levels), ("scales", self.scales)):
             if values is not None:
-                _require_increasing(label, values)
+                require_increasing(label, values)
         require_positive("step_factor", self.step_factor)
         if self.step_factor != 1.0 and not any(map(_has_default_step, self.methods)):
             raise ValueError(
@@ -182,10 +181,3 @@ def _together(singles: Sequence[Task]) -> Iterator[Task]:
 
 def _has_default_step(method: Method) -> bool:
     return method.run is not None and method.run.engine is not None and method.run.time_step is None
-
-
-def _require_increasing(label: str, values: Sequence[float]) -> None:
-    found = [float(value) for value in values]
-    good = all(math.isfinite(value) and value > 0.0 for value in found)
-    if not found or not good or sorted(set(found)) != found:
-        raise ValueError(f"{label} must be positive and increase, got {', '.join(map(str, values))}")

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from rockwobble import reduced
 from rockwobble.models import GroundMotion
-from rockwobble.models.number_checks import require_positive
+from rockwobble.models.number_checks import require_increasing, require_one_of, require_positive
 
 from ...runs.progress import ProgressCallback, Stages
 from .result import Array, OverturningSpectrum
@@ -78,13 +78,13 @@ def overturning_spectrum(
     >>> spectrum.overturned("3d").tolist()
     [[False, True], [False, False]]
     """
-    sizes, levels = _axis("semidiagonals", semidiagonals), _axis("intensities", intensities)
-    if support not in SUPPORTS:
-        raise ValueError(f"support must be one of {', '.join(SUPPORTS)}, got {support!r}")
+    sizes = require_increasing("semidiagonals", semidiagonals)
+    levels = require_increasing("intensities", intensities)
+    require_one_of("support", support, SUPPORTS)
     require_positive("search_step", search_step)
     unit = intensity_unit(tan_alpha, motion, gravity)
     peaks, lowest, below, start = {}, {}, {}, {}
-    stages = Stages(progress, len(SERIES))
+    stages = Stages(progress, [1.0] * len(SERIES))
     for index, name in enumerate(SERIES):
         start[name] = uplift_of_series(name, motion, tan_alpha, gravity) / unit
         run = partial(
@@ -124,13 +124,3 @@ def overturning_spectrum(
 
 def _at_level(run: Callable[..., Array], sizes: Array, unit: float, group: list[int], level: float) -> Array:
     return run(sizes[group], scales=[unit * level], workers=1)[:, 0]
-
-
-def _axis(name: str, values: ArrayLike) -> Array:
-    axis = np.array(values, dtype=np.float64)
-    if axis.ndim != 1 or not axis.size or not np.isfinite(axis).all():
-        raise ValueError(f"{name} must be a sequence of finite numbers, got {values!r}")
-    if axis[0] <= 0.0 or (np.diff(axis) <= 0.0).any():
-        raise ValueError(f"{name} must be positive and increasing, got {values!r}")
-    axis.flags.writeable = False
-    return axis

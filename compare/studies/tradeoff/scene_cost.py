@@ -9,7 +9,8 @@ Bullet its loop in Python.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -19,6 +20,8 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 from rockwobble.multibody.engines.scene_counts import SceneCounts
 from rockwobble.multibody.scene_of_case import open_scene
+
+from ...runs.progress import Stage
 
 ROUNDS = 9
 STEPS = 2000  # that are timed, 0.2 s of the cylinder of 6 m
@@ -95,7 +98,7 @@ def scene_costs(
     *,
     rounds: int = ROUNDS,
     steps: int = STEPS,
-    tell: Callable[[], None] | None = None,
+    stage: Stage = nullcontext,
 ) -> pd.DataFrame:
     """Measure the cost of a step in every scene.
 
@@ -105,8 +108,8 @@ def scene_costs(
         Default: ours, as far as they are installed.
     rounds, steps : int
         Times that each scene is measured, and steps each time.
-    tell : callable, optional
-        Called after each round.
+    stage : callable, optional
+        Of the label of a round: the block in which it runs, as that of `Stages`.
 
     Returns
     -------
@@ -126,12 +129,11 @@ def scene_costs(
     times = np.empty((rounds, len(scenes)))
     counts: list[SceneCounts] = []
     for number in range(rounds):
-        for place, scene in enumerate(scenes):
-            times[number, place], count = step_cost(*scene, steps)
-            if not number:
-                counts.append(count)
-        if tell is not None:
-            tell()
+        with stage(f"scenes, round {number + 1} of {rounds}"):
+            for place, scene in enumerate(scenes):
+                times[number, place], count = step_cost(*scene, steps)
+                if not number:
+                    counts.append(count)
     ratio = np.empty(len(scenes))
     for name in names:
         ours = np.array([engine == name for engine, _ in scenes])

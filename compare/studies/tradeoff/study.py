@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import os
 import time
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar
 
@@ -15,7 +14,7 @@ import pandas as pd
 from rockwobble.models import Case
 from rockwobble.models.shown import Shown
 
-from ...runs.progress import Clock, ProgressCallback
+from ...runs.progress import ProgressCallback, Stage, Stages
 from ...storage.manifest import Manifest, Results, made_now
 from .conclusions import engine_factors
 from .methods import Method, MethodResult, methods_for
@@ -80,20 +79,10 @@ def measure_tradeoff(*, quick: bool = False, progress: ProgressCallback | None =
     before = _load()
     scene_rounds = 3 if quick else 9
     asked = list(problems(quick=quick))
-    rounds = [(each.name, max(len(each.cases), ROUNDS)) for each in asked] + [("scenes", scene_rounds)]
-    labels = [(name, f"{name}, round {n + 1} of {count}") for name, count in rounds for n in range(count)]
-    clock = Clock(progress, [_COSTS[name] for name, _ in labels])
-    done = iter(range(len(labels)))
-
-    def told() -> None:
-        place = next(done)
-        clock("finished", labels[place][1], place)
-        if place + 1 < len(labels):
-            clock("started", labels[place + 1][1])
-
-    clock("started", labels[0][1])
-    points = [_points(each, methods_for(each, quick=quick), told) for each in asked]
-    scenes = scene_costs(rounds=scene_rounds, steps=500 if quick else 2000, tell=told)
+    rounds = [*((each.name, len(_visits(each))) for each in asked), ("scenes", scene_rounds)]
+    stage = Stages(progress, [_COSTS[name] for name, count in rounds for _ in range(count)]).stage
+    points = [_points(each, methods_for(each, quick=quick), stage) for each in asked]
+    scenes = scene_costs(rounds=scene_rounds, steps=500 if quick else 2000, stage=stage)
     load = (before, _load())
     return Tradeoff(
         points=pd.concat(points, ignore_index=True),
@@ -136,20 +125,23 @@ def _described(problem: Problem) -> pd.DataFrame:
     )
 
 
-def _points(problem: Problem, methods: list[Method], tell: Callable[[], None]) -> pd.DataFrame:
-    visits = list(problem.cases) if len(problem.cases) > 1 else list(problem.cases) * ROUNDS
+def _visits(problem: Problem) -> list[Case]:
+    """The case of each round."""
+    return list(problem.cases) if len(problem.cases) > 1 else list(problem.cases) * ROUNDS
+
+
+def _points(problem: Problem, methods: list[Method], stage: Stage) -> pd.DataFrame:
+    visits = _visits(problem)
     results: list[list[MethodResult]] = [[] for _ in methods]
     seconds = np.full((len(visits), len(methods)), np.nan)
-    # compiled, imported, fetched: by the first point of each line, the coarsest
-    for place, method in enumerate(methods):
-        if not place or method.line != methods[place - 1].line:
-            method.solve(problem.cases[0])
     for number, case in enumerate(visits):
-        for place, method in enumerate(methods):
-            seconds[number, place], result = _timed(method, case)
-            if len(results[place]) < len(problem.cases):
-                results[place].append(result)
-        tell()
+        with stage(f"{problem.name}, round {number + 1} of {len(visits)}"):
+            if not number:
+                _warm_up(methods, case)
+            for place, method in enumerate(methods):
+                seconds[number, place], result = _timed(method, case)
+                if len(results[place]) < len(problem.cases):
+                    results[place].append(result)
     base = next(place for place, method in enumerate(methods) if method.base)
     ratios = seconds / seconds[:, [base]]
     low, middle, high = np.quantile(ratios, (0.25, 0.5, 0.75), axis=0)
@@ -171,6 +163,13 @@ def _points(problem: Problem, methods: list[Method], tell: Callable[[], None]) -
         }
         for place, method in enumerate(methods)
     )
+
+
+def _warm_up(methods: list[Method], case: Case) -> None:
+    """Let all be compiled, imported and fetched, by the first point of each line, the coarsest."""
+    for place, method in enumerate(methods):
+        if not place or method.line != methods[place - 1].line:
+            method.solve(case)
 
 
 def _timed(method: Method, case: Case) -> tuple[float, MethodResult]:

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .values import GUIDE, build, in_range, whole
+from .values import GUIDE, build, positive, whole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -52,10 +52,10 @@ class DartSettings:
             If a setting is unknown or out of range.
         """
         settings = build(cls, "dart", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
-        in_range(settings, "guide_stiffness", 0.0)
-        in_range(settings, "depth", 0.0, 1e-3)
-        in_range(settings, "depth_gain", 0.0, 1.0)
-        in_range(settings, "friction_damping", 0.0, 2.0)
-        in_range(settings, "tolerance", 0.0, 1e-3)
+        positive(settings, "guide_stiffness")
+        positive(settings, "depth", most=1e-3)
+        positive(settings, "depth_gain", most=1.0)
+        positive(settings, "friction_damping", most=2.0)
+        positive(settings, "tolerance", most=1e-3)
         whole(settings, "iterations")
         return settings

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .values import GUIDE, build, in_range, one_of
+from .values import GUIDE, build, one_of, positive
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,10 +53,10 @@ class DrakeSettings:
             If a setting is unknown or out of range.
         """
         settings = build(cls, "drake", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
-        in_range(settings, "guide_stiffness", 0.0)
+        positive(settings, "guide_stiffness")
         one_of(settings, "approximation", ("lagged", "similar", "tamsi", "sap"))
-        in_range(settings, "contact_stiffness", 0.0)
-        in_range(settings, "dissipation", 0.0, inclusive=True)
-        in_range(settings, "stiction_tolerance", 0.0)
-        in_range(settings, "friction_damping", 0.0, 2.0)
+        positive(settings, "contact_stiffness")
+        positive(settings, "dissipation", or_zero=True)
+        positive(settings, "stiction_tolerance")
+        positive(settings, "friction_damping", most=2.0)
         return settings

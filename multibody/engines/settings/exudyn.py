@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .values import build, in_range, one_of, whole
+from .values import build, one_of, positive, whole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,8 +53,8 @@ class ExudynSettings:
         """
         settings = build(cls, "exudyn", given, {})
         one_of(settings, "integrator", ("trapezoidal", "generalized-alpha"))
-        in_range(settings, "spectral_radius", 0.0, 1.0, inclusive=True)
-        in_range(settings, "relative_tolerance", 0.0, 1e-3)
-        in_range(settings, "absolute_tolerance", 0.0, 1e-3)
+        positive(settings, "spectral_radius", most=1.0, or_zero=True)
+        positive(settings, "relative_tolerance", most=1e-3)
+        positive(settings, "absolute_tolerance", most=1e-3)
         whole(settings, "iterations")
         return settings

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .values import GUIDE, build, in_range, one_of, whole
+from .values import GUIDE, build, one_of, positive, whole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -93,15 +93,15 @@ class MujocoSettings:
             given,
             {"contact_time_constant": 2.0 * time_step, "guide_stiffness": (GUIDE / time_step) ** 2 / 4.0},
         )
-        in_range(settings, "contact_time_constant", 0.0)
-        in_range(settings, "contact_damping_ratio", 0.0)
-        in_range(settings, "impedance", 0.0, 0.9999)
-        in_range(settings, "rolling_impedance", 0.0, 0.9999)
-        in_range(settings, "friction_damping", 0.0, 2.0)
-        in_range(settings, "guide_stiffness", 0.0)
+        positive(settings, "contact_time_constant")
+        positive(settings, "contact_damping_ratio")
+        positive(settings, "impedance", most=0.9999)
+        positive(settings, "rolling_impedance", most=0.9999)
+        positive(settings, "friction_damping", most=2.0)
+        positive(settings, "guide_stiffness")
         one_of(settings, "integrator", ("Euler", "implicitfast", "implicit", "RK4", "discrete"))
         one_of(settings, "cone", ("elliptic", "pyramidal"))
-        in_range(settings, "tolerance", 0.0, 1e-3, inclusive=True)
+        positive(settings, "tolerance", most=1e-3, or_zero=True)
         one_of(settings, "standing_corners", tuple(range(0, 49, 4)))
         whole(settings, "iterations")
         return settings

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from .values import GUIDE, build, in_range, whole
+from .values import GUIDE, build, positive, whole
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -53,11 +53,11 @@ class PybulletSettings:
             If a setting is unknown or out of range.
         """
         settings = build(cls, "pybullet", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
-        in_range(settings, "guide_stiffness", 0.0)
-        in_range(settings, "friction_damping", 0.0, 2.0)
-        in_range(settings, "solver_residual", 0.0)
-        in_range(settings, "contact_slop", 0.0, 0.1, inclusive=True)
-        in_range(settings, "contact_erp", 0.0, 1.0)
-        in_range(settings, "collision_margin", 0.0, 0.1, inclusive=True)
+        positive(settings, "guide_stiffness")
+        positive(settings, "friction_damping", most=2.0)
+        positive(settings, "solver_residual")
+        positive(settings, "contact_slop", most=0.1, or_zero=True)
+        positive(settings, "contact_erp", most=1.0)
+        positive(settings, "collision_margin", most=0.1, or_zero=True)
         whole(settings, "iterations")
         return settings

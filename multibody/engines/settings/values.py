@@ -23,17 +23,13 @@ def build(kind: type[S], engine: str, given: Mapping[str, Any], defaults: Mappin
     return kind(**{**defaults, **given})
 
 
-def in_range(
-    settings: object, name: str, low: float, high: float = math.inf, *, inclusive: bool = False
-) -> None:
-    """Refuse a setting that is no number above `low` and at most `high`."""
+def positive(settings: object, name: str, *, most: float = math.inf, or_zero: bool = False) -> None:
+    """Refuse a setting that is no positive number of at most `most`; `or_zero` allows 0, too."""
     value = getattr(settings, name)
     number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-    if not (number and value <= high and (value > low or (inclusive and value == low))):
-        limit = "" if high == math.inf else f" and at most {high:g}"
-        raise ValueError(
-            f"{name} must be {'at least' if inclusive else 'above'} {low:g}{limit}, got {quoted(value)}"
-        )
+    if not (number and value <= most and (value > 0.0 or (or_zero and value == 0.0))):
+        limit = "" if most == math.inf else f" and at most {most:g}"
+        raise ValueError(f"{name} must be {'at least' if or_zero else 'above'} 0{limit}, got {quoted(value)}")
 
 
 def whole(settings: object, name: str) -> None:

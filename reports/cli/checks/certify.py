@@ -55,14 +55,14 @@ def certify(
         from rockwobble.compare.certificate.certificate import write_certificate
         from rockwobble.compare.check import LAYERS, Bench, run_checks
         from rockwobble.compare.storage.files import require_file
+        from rockwobble.models.number_checks import require_one_of
         from rockwobble.multibody.engines.registry import find_engine
 
         if time_step is not None and engine is None:
             raise ValueError("--time-step belongs to --engine, got it alone")
         layers = tuple(only or (*_LAYERS, *(_ENGINE_LAYERS if engine else ())))
         for layer in layers:
-            if layer not in LAYERS:
-                raise ValueError(f"--only must be one of {', '.join(LAYERS)}, got {layer!r}")
+            require_one_of("--only", layer, LAYERS)
         require_file("--out", out)
         method = reduced_method() if engine is None else engine_method(engine, time_step)
         bench = Bench(reduced=rw.reduced, suite=rw.read_suite("quick"))

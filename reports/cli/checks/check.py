@@ -92,12 +92,12 @@ def check(
         with user_input():
             from rockwobble.compare.check import LAYERS
             from rockwobble.compare.storage.files import require_file
+            from rockwobble.models.number_checks import require_one_of
 
             if reason is not None and not update_baseline:
                 raise ValueError("--reason belongs to --update-baseline, got it alone")
             for layer in only or ():
-                if layer not in LAYERS:
-                    raise ValueError(f"--only must be one of {', '.join(LAYERS)}, got {layer!r}")
+                require_one_of("--only", layer, LAYERS)
             of_suite = not only or not {"agreement", "baseline"}.isdisjoint(only)
             if suite is not None and not of_suite:
                 raise ValueError(f"--suite is for the layer agreement, got --only {' '.join(only or ())}")

@@ -12,7 +12,6 @@ from ..heat import names
 from ..palette import Style, pale
 from ..picture import TIME, Axis, Bars, Layer, Line, Panel, Picture, Rule, Text
 from ..thinning import envelope
-from .tilt import WINDOW
 from .view import CaseView, rows_of
 
 # blue, pale orange and vermilion of Okabe and Ito: apart in every kind of colour vision and in grey
@@ -102,7 +101,7 @@ def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture |
         for part, (words, style, _) in ({"whole": _WHOLE} | PARTS).items():
             values = np.abs(getattr(budget, part))
             if values.any():
-                upper = np.maximum(envelope(budget.time, values, WINDOW), _SMALLEST)
+                upper = np.maximum(envelope(budget.time, values), _SMALLEST)
                 width = 0.9 if part == "whole" else 1.6
                 lines.append(Line(x=budget.time, y=upper, name=words, style=style, width=width))
         layers: list[Layer] = [*lines, Rule(at=budget.covered, axis="x", text="counted up to here")]

@@ -16,8 +16,6 @@ from .view import CaseView, case_views
 
 # smaller differences are drawn here: a logarithm has no zero [alpha]
 SMALLEST = 1e-7
-# the difference is drawn as its largest value within this time, about one swing [s]
-WINDOW = 1.0
 _CUT = 1.5  # [alpha] where tilts are cut if one goes farther
 _HEIGHT = 2.3  # [inch]
 _WHERE = {
@@ -82,7 +80,7 @@ def _differences(view: CaseView, reference: str) -> Panel:
             continue
         pair = make_pair(view.case.cylinder, other, trial, until=view.case.length)
         style = view.styles[row.run]
-        apart = np.maximum(envelope(pair.time, np.abs(pair.tilt_difference), WINDOW), SMALLEST)
+        apart = np.maximum(envelope(pair.time, np.abs(pair.tilt_difference)), SMALLEST)
         layers.append(Line(x=pair.time, y=apart, name=row.run, style=style))
         if row.diverged:
             mark = Style(colour=style.colour, dash="none", symbol="diamond")

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.studies.validity.limits.distributions import CONTRASTS, POINT, ratios
+from rockwobble.compare.studies.validity.limits.engine import models_apart
 from rockwobble.compare.studies.validity.limits.numbers import Array, column
 from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
 from rockwobble.compare.studies.validity.rings import FREE
@@ -119,25 +120,22 @@ def _agreement(table: pd.DataFrame) -> Picture:
 
 
 def _verification(table: pd.DataFrame) -> Picture:
-    keys = ["tan_alpha", "release", "spin"]
-    models = table.pivot_table("turn", keys, "support", dropna=False)
-    apart = (models["recess"] - models["flat"]).abs()
+    table = table.assign(apart=np.degrees(models_apart(table)))
     styles = mark_styles(["recess", "flat"], lines=False)
     layers = []
     for support, rows in table.groupby("support", sort=False):
-        x = np.degrees(apart.reindex(rows.set_index(keys).index).to_numpy(dtype=np.float64))
         off = np.degrees(np.abs(column(rows, "engine_turn") - column(rows, "turn")))
         name = str(support)
         layers.append(
             Line(
-                x=x,
+                x=column(rows, "apart"),
                 y=np.maximum(off, _LEAST),
                 name=f"engine, {name}",
                 style=styles[name],
                 filled=rows["resolved"].to_numpy(dtype=bool),
             )
         )
-    ends = np.array([float(np.degrees(apart.min())), float(np.degrees(apart.max()))])
+    ends = table["apart"].agg(["min", "max"]).to_numpy(dtype=np.float64)
     layers.append(Line(x=ends, y=ends, name="difference of the models", width=0.8))
     return Picture(
         name="verification",

@@ -9,7 +9,7 @@ import pandas as pd
 
 from ....comparison.prediction import IN_TIME
 from ..rings import FREE
-from .numbers import Numbers, Tables, column, first_failing, largest, quantile, up_to
+from .numbers import Array, Numbers, Tables, column, first_failing, largest, quantile, up_to
 
 ALIKE = 0.01  # of period or angle of turn: below what a test on a shake table would see
 SMALL = 0.05  # of the peak tilt: less cannot be told from chance
@@ -45,17 +45,22 @@ def free_response(tables: Tables) -> Numbers:
 
 def _decided(table: pd.DataFrame) -> tuple[float, float, float]:
     """Count the runs that confirm their model, those that contradict it, and all whose pass is resolved."""
-    keys = ["tan_alpha", "release", "spin"]
-    models = table.pivot_table("turn", keys, "support", dropna=False)
-    apart = (models["recess"] - models["flat"]).abs()
     resolved = table[table["resolved"].astype(bool)]
     error = np.abs(column(resolved, "engine_turn") - column(resolved, "turn"))
-    limits = apart.reindex(resolved.set_index(keys).index).to_numpy(dtype=np.float64)
+    limits = models_apart(table)[table["resolved"].to_numpy(bool)]
     turn_off = error / np.abs(column(resolved, "turn"))
     period_off = np.abs(column(resolved, "engine_half_period") / column(resolved, "half_period") - 1.0)
     contradicts = ~((turn_off <= _CONTRADICTS) & (period_off <= _CONTRADICTS))
     confirms = ~contradicts & (error < _CONFIRMS * limits)
     return float(confirms.sum()), float(contradicts.sum()), float(len(resolved))
+
+
+def models_apart(table: pd.DataFrame) -> Array:
+    """Return how far the turns of the recess and of the flat model are apart in the release of each row."""
+    keys = ["tan_alpha", "release", "spin"]
+    models = table.pivot_table("turn", keys, "support", dropna=False)
+    apart = (models["recess"] - models["flat"]).abs()
+    return apart.reindex(table.set_index(keys).index).to_numpy(dtype=np.float64)
 
 
 def traces(tables: Tables) -> Numbers:
