@@ -13,7 +13,7 @@ import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.results import show_stored
-from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
+from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 from .inputs.estimate import require_sweep
 from .inputs.grid import grid_of
@@ -108,20 +108,16 @@ def sweep(
         rc.require_writable(out)
     for line in (*_echo(plan), how_long):
         print(line)
-    try:
-        with interruptible(out), user_input(), shown_progress("chunks") as tell:
-            rw.sweep(
-                plan,
-                out=out,
-                scheduler=scheduler,
-                workers=workers,
-                chunk_size=chunk,
-                progress=tell,
-                command=command_line(),
-            )
-    except rc.SweepIncompleteError as error:
-        complain(str(error))
-        raise typer.Exit(FAILED) from None
+    with interruptible(out), user_input(), shown_progress("chunks") as tell:
+        rw.sweep(
+            plan,
+            out=out,
+            scheduler=scheduler,
+            workers=workers,
+            chunk_size=chunk,
+            progress=tell,
+            command=command_line(),
+        )
     show_stored(out, "sweep")
 
 

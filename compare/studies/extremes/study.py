@@ -14,10 +14,8 @@ from rockwobble.models import Run
 from rockwobble.models.shown import Shown
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
-from ...runs.cache import open_table_cache
 from ...runs.progress import ProgressCallback
-from ...runs.scheduler import run_tasks
-from ...runs.task import Lost
+from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Manifest, Results, made_now
 from ...storage.provenance import code_digests, package_versions
@@ -86,26 +84,21 @@ def measure_extremes(
     # an engine may read whatever of the package, and what is looked at takes minutes: any change repeats all
     made_with = fingerprint({"code": code_digests(), "versions": package_versions()})
 
-    def name(task: Task) -> str:
+    def key(task: Task) -> str:
         return fingerprint({"task": list(task), "made with": made_with})
 
-    with open_table_cache(folder, KIND, name) as cache:
-        found = run_tasks(
-            measure_task,
-            tasks,
-            workers=workers,
-            label=lambda task: f"{task[0]} {task[1]}, {tried[task[2]]}",
-            progress=progress,
-            cache=cache,
-        )
-    table = pd.concat(
-        [
-            row(task, Verdict(verdict="silent", limit="died")) if isinstance(result, Lost) else result
-            for task, result in zip(tasks, found, strict=True)
-        ],
-        ignore_index=True,
-    )
-    return Extremes(table=table)
+    with run_tables(
+        measure_task,
+        tasks,
+        kind=KIND,
+        key=key,
+        label=lambda task: f"{task[0]} {task[1]}, {tried[task[2]]}",
+        folder=folder,
+        lost=lambda task: row(task, Verdict(verdict="silent", limit="died")),
+        workers=workers,
+        progress=progress,
+    ) as found:
+        return Extremes(table=pd.concat(found, ignore_index=True))
 
 
 def manifest_of(found: Extremes, command: str = "") -> Manifest:

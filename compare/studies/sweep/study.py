@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 
@@ -12,14 +11,11 @@ import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Suite
 
-from ...runs.cache import open_table_cache
-from ...runs.dask_backend import ClusterError
+from ...runs.execution import all_makers
 from ...runs.progress import ProgressCallback
-from ...runs.scheduler import run_tasks
-from ...runs.task import Lost
+from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import made_now, read_results, write_results
-from ...storage.provenance import engine_makers, reduced_makers
 from .cases import CaseChunk, CaseSweep
 from .grid import Grid, GridChunk
 from .result import KIND, Sweep, stored_sweep
@@ -27,10 +23,6 @@ from .result import KIND, Sweep, stored_sweep
 # a chunk whose process died is tried this often: the process may have been ended from outside
 _TRIES = 3
 Chunk = GridChunk | CaseChunk
-
-
-class SweepIncompleteError(RuntimeError):
-    """Some chunks are not finished: their processes died again and again, or the Dask cluster is gone."""
 
 
 def sweep(
@@ -81,7 +73,7 @@ def sweep(
     ------
     ValueError
         If the plan, the folder or the scheduler is not usable.
-    SweepIncompleteError
+    IncompleteError
         If chunks could not be finished because their processes died, or the Dask cluster cannot do them.
 
     Examples
@@ -100,33 +92,22 @@ def sweep(
     chunks: list[Chunk] = list(whole.chunks(chunk_size))
     # in a mixed order the runs that take long are spread evenly, and so the time left can be predicted
     order = np.random.default_rng(0).permutation(len(chunks)).tolist()
-    with nullcontext() if out is None else open_table_cache(out, KIND, _key) as cache:
-        try:
-            found = run_tasks(
-                run_chunk,
-                [chunks[index] for index in order],
-                workers=workers,
-                scheduler=scheduler,
-                label=lambda chunk: chunk.name,
-                progress=progress,
-                cache=cache,
-                tries=_TRIES,
-                makers=partial(_makers, whole),
-            )
-        except ClusterError as error:
-            kept = "nothing is kept" if cache is None else f"{cache.count} chunks are kept in {out}"
-            raise SweepIncompleteError(f"{error}; {kept}") from None
-        lost = [each.why for each in found if isinstance(each, Lost)]
-        if lost:
-            raise SweepIncompleteError(
-                f"{len(lost)} of {len(chunks)} chunks ended their processes {_TRIES} times, all others are "
-                f"finished; the last words: {lost[0]}"
-            )
+    with run_tables(
+        run_chunk,
+        [chunks[index] for index in order],
+        kind=KIND,
+        key=_key,
+        label=lambda chunk: chunk.name,
+        folder=out,
+        what="chunks",
+        tries=_TRIES,
+        makers=partial(all_makers, () if isinstance(whole, Grid) else whole.runs),
+        workers=workers,
+        scheduler=scheduler,
+        progress=progress,
+    ) as found:
         by_place = dict(zip(order, found, strict=True))
-        tables = [by_place[index] for index in range(len(chunks))]
-        table: pd.DataFrame = pd.concat(
-            [each for each in tables if not isinstance(each, Lost)], ignore_index=True
-        )
+        table: pd.DataFrame = pd.concat([by_place[place] for place in range(len(chunks))], ignore_index=True)
         about = {"plan": whole.kind, "runs": whole.rows, **whole.describe()}
         if out is not None:
             made = made_now(
@@ -175,12 +156,6 @@ def read_sweep(folder: str | Path) -> Sweep:
 def run_chunk(chunk: Chunk) -> pd.DataFrame:
     """Return the table of a chunk, one row for each run."""
     return pd.DataFrame(chunk.run())
-
-
-def _makers(plan: Grid | CaseSweep) -> dict[str, str]:
-    """Return versions and code on which any of the runs depends."""
-    engines = () if isinstance(plan, Grid) else {run.engine for run in plan.runs if run.engine}
-    return reduced_makers() | (engine_makers(*sorted(engines)) if engines else {})
 
 
 def _key(chunk: Chunk) -> str:
