@@ -49,7 +49,6 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .studies.fragility.limits import LIMITS as LIMITS
     from .studies.fragility.result import Fragility as Fragility
     from .studies.fragility.study import fragility as fragility
-    from .studies.sweep.cases import CaseSweep as CaseSweep
     from .studies.sweep.grid import Grid as Grid
     from .studies.sweep.result import Sweep as Sweep
     from .studies.sweep.study import read_sweep as read_sweep
@@ -94,7 +93,6 @@ _MODULES = {
     "studies.fragility.limits": ("LIMITS",),
     "studies.fragility.result": ("Fragility",),
     "studies.fragility.study": ("fragility",),
-    "studies.sweep.cases": ("CaseSweep",),
     "studies.sweep.grid": ("Grid",),
     "studies.sweep.result": ("Sweep",),
     "studies.sweep.study": ("read_sweep", "sweep"),

@@ -7,7 +7,7 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import CaseSweep, Grid, IncompleteError, Progress, read_sweep, sweep
+from rockwobble.compare import Grid, IncompleteError, Progress, read_sweep, sweep
 from rockwobble.compare.runs import tables
 from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.dask_backend import ClusterError
@@ -17,6 +17,7 @@ from rockwobble.compare.studies.sweep.result import KIND
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+STANDING = Case(PIER, duration=1.0, name="a")
 SIZES, SCALES = [0.5, 2.0, 6.0, 20.0], [0.4, 1.0, 2.5, 6.0, 8.0]
 SHORT = GroundMotion(el_centro_1940().acceleration[:500], el_centro_1940().time_step, "short")
 
@@ -146,7 +147,7 @@ def test_cases_with_engines_and_models(tmp_path):
         for tilt in (0.3, 0.5)
     ]
     in_recess = Run("mujoco", "recess", 1e-3)
-    table = sweep(CaseSweep(cases, [Run(None, "recess"), in_recess]), out=tmp_path, workers=1).table
+    table = sweep(Suite(cases, [Run(None, "recess"), in_recess]), out=tmp_path, workers=1).table
     assert table[["case", "run"]].to_numpy().tolist() == [
         ["0.3", "recess model"],
         ["0.5", "recess model"],
@@ -161,7 +162,7 @@ def test_cases_with_engines_and_models(tmp_path):
 def test_the_chunks_of_a_suite_have_names_for_whoever_waits():
     cases = [Case(PIER, duration=0.1, name=name) for name in "abc"]
     events: list[Progress] = []
-    sweep(CaseSweep(cases, [Run(None, "recess")]), workers=1, chunk_size=2, progress=events.append)
+    sweep(Suite(cases, [Run(None, "recess")]), workers=1, chunk_size=2, progress=events.append)
     assert [event.label for event in events[::2]] == ["a, recess model and 1 more", "c, recess model"]
 
 
@@ -213,8 +214,10 @@ def test_a_damaged_chunk_runs_again(tmp_path, where):
         (lambda: grid(models=["glued"]), "models must be of recess, flat, planar, got 'glued'"),
         (lambda: grid(rtol=1.0), "rtol must be from"),
         (lambda: grid(speed=1.0), "the options of a grid are"),
-        (lambda: CaseSweep([], [Run(None, "recess")]), "at least one case"),
-        (lambda: CaseSweep([Case(PIER, duration=1.0, name="a")] * 2, [Run(None, "recess")]), "got 'a' twice"),
+        (lambda: sweep([]), "at least one case"),
+        (lambda: sweep([STANDING, STANDING]), "got 'a' twice"),
+        (lambda: sweep(Suite([STANDING], [Run(None, "recess")] * 2)), "got 'recess model' twice"),
+        (lambda: sweep(Suite([STANDING], [Run("mujoco", "glued")])), "got 'glued'"),
         (lambda: sweep(grid(), chunk_size=0), "chunk_size must be at least 1"),
         (lambda: read_sweep("/"), "does not hold results"),
     ],
