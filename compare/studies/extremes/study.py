@@ -19,12 +19,12 @@ from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Manifest, Results, made_now
 from ...storage.provenance import code_digests, package_versions
-from .conditions import conditions
+from .conditions import Condition, conditions
 from .verdict import Verdict, judge
 
 KIND = "extremes"
 MODELS = (Run(None, "flat", plane=0.0), Run(None, "recess"), Run(None, "flat"))
-Task = tuple[str, str, int]  # extreme and value of a condition, and the place of a method
+Task = tuple[Condition, Run]
 
 
 def methods() -> tuple[Run, ...]:
@@ -75,24 +75,19 @@ def measure_extremes(
     progress : callable, optional
         Called with a `Progress` at the start and the end of each run.
     """
-    tried = methods()
-    tasks = [
-        (condition.extreme, condition.value, place)
-        for condition in conditions(quick=quick)
-        for place in range(len(tried))
-    ]
+    tasks = [(condition, run) for condition in conditions(quick=quick) for run in methods()]
     # an engine may read whatever of the package, and what is looked at takes minutes: any change repeats all
     made_with = fingerprint({"code": code_digests(), "versions": package_versions()})
 
     def key(task: Task) -> str:
-        return fingerprint({"task": list(task), "made with": made_with})
+        return fingerprint({"task": task, "made with": made_with})
 
     with run_tables(
         measure_task,
         tasks,
         kind=KIND,
         key=key,
-        label=lambda task: f"{task[0]} {task[1]}, {tried[task[2]]}",
+        label=lambda task: f"{task[0].extreme} {task[0].value}, {task[1]}",
         folder=folder,
         lost=lambda task: row(task, Verdict(verdict="silent", limit="died")),
         workers=workers,
@@ -113,12 +108,11 @@ def stored_extremes(results: Results) -> Extremes:
 
 def measure_task(task: Task) -> pd.DataFrame:
     """Return the row of one condition and method."""
-    condition = next(each for each in conditions() if (each.extreme, each.value) == task[:2])
-    return row(task, judge(condition, methods()[task[2]]))
+    return row(task, judge(*task))
 
 
 def row(task: Task, found: Verdict) -> pd.DataFrame:
     """Return a verdict as a table of one row."""
-    extreme, value, place = task
-    named = {"extreme": extreme, "value": value, "method": str(methods()[place])}
+    condition, run = task
+    named = {"extreme": condition.extreme, "value": condition.value, "method": str(run)}
     return pd.DataFrame([named | dataclasses.asdict(found)])

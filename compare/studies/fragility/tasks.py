@@ -9,13 +9,10 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
-from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.scene.froude import default_step
 
 from ...metrics.tilt import overturned
-from ...runs.execution import simulate_run
+from ...runs.execution import engine_time, makers_of, simulate_run
 from ...storage.fingerprint import fingerprint
-from ...storage.provenance import engine_makers, reduced_makers
 
 # Computing time of a reduced run for each second of its motion, forces included or not, on one core [s]: a
 # rough mean of the models.
@@ -69,18 +66,14 @@ class Task:
     @property
     def cost(self) -> float:
         """Rough computing time [s]."""
+        if self.run.engine is not None:
+            return sum(
+                engine_time(Case(self.cylinder, each.motion, gravity=self.gravity), self.run)
+                * len(each.scales)
+                for each in self.shakings
+            )
         length = sum(shaking.motion.duration * len(shaking.scales) for shaking in self.shakings)
-        if self.run.engine is None:
-            return length * (_SOLUTION_TIME if self._solved else _KERNEL_TIME)
-        step = self.run.time_step
-        if not isinstance(step, float):
-            step = default_step(self.cylinder.semidiagonal, self.gravity)
-        return length / step * engine_facts(self.run.engine).step_time
-
-    @property
-    def makers(self) -> dict[str, str]:
-        """Versions and code on which the results depend."""
-        return reduced_makers() if self.run.engine is None else engine_makers(self.run.engine)
+        return length * (_SOLUTION_TIME if self._solved else _KERNEL_TIME)
 
     def key(self) -> str:
         """Return the hash of all that the results depend on; names are no part of it."""
@@ -92,7 +85,7 @@ class Task:
                 "run": self.run,
                 "gravity": self.gravity,
                 "friction": self.friction,
-                "made with": self.makers,
+                "made with": makers_of(self.run),
                 **own,
             }
         )
