@@ -43,10 +43,10 @@ def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
     assert one["scale"].tolist() == SCALES
     assert np.array_equal(one.peak_tilt_over_alpha, one.peak_tilt / math.atan(0.2))
     expected = np.select(
-        [table.peak_tilt == 0.0, table.peak_tilt == 0.5 * math.pi], ["stood", "overturned"], "rocked"
+        [table.peak_tilt == 0.0, table.peak_tilt == 0.5 * math.pi], ["rest", "overturned"], "completed"
     )
     assert table.outcome.tolist() == expected.tolist()
-    assert set(expected) == {"stood", "rocked", "overturned"}
+    assert set(expected) == {"rest", "completed", "overturned"}
 
 
 def test_no_cell_depends_on_chunks_workers_or_neighbours(tmp_path):

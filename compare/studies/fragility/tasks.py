@@ -10,7 +10,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
 
-from ...metrics.tilt import overturned
+from ...metrics.tilt import OUTCOMES, outcome_of_peak
 from ...runs.execution import engine_time, makers_of, simulate_run
 from ...storage.fingerprint import fingerprint
 
@@ -77,7 +77,11 @@ class Task:
 
     def key(self) -> str:
         """Return the hash of all that the results depend on; names are no part of it."""
-        own = {"contact": self.contact, "rtol": _RTOL} if self.run.engine is None else {}
+        own: dict[str, object] = {}
+        if self.run.engine is None:
+            own |= {"contact": self.contact, "rtol": _RTOL}
+        if self._of_peaks:
+            own["outcomes"] = OUTCOMES
         return fingerprint(
             {
                 "cylinder": self.cylinder,
@@ -96,9 +100,14 @@ class Task:
         own = self.cylinder
         return self.contact or (own.height, own.transverse_inertia, own.axial_inertia) != (None, None, None)
 
+    @property
+    def _of_peaks(self) -> bool:
+        """Whether the batch kernel does."""
+        return self.run.engine is None and not self._solved
+
     def rows(self) -> list[dict[str, Any]]:
         """Return a row for each motion and factor, in their order."""
-        if self.run.engine is None and not self._solved:
+        if self._of_peaks:
             return [row for shaking in self.shakings for row in self._peaks(shaking)]
         return [self._row(s.motion, scale) for s in self.shakings for scale in s.scales]
 
@@ -118,11 +127,7 @@ class Task:
         return [
             {
                 "peak_tilt": float(peak) / self.cylinder.alpha,
-                "outcome": "failed"
-                if math.isnan(peak)
-                else "overturned"
-                if overturned(peak)
-                else "completed",
+                "outcome": outcome_of_peak(float(peak)),
                 "contact_lost": math.nan,
             }
             for peak in peaks
