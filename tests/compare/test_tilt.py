@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rockwobble.compare import relative_rms
-from rockwobble.compare.metrics.tilt import OUTCOMES, outcome_of_peak, tilt_rms, tilt_rms_relative
+from rockwobble.compare.metrics.tilt import tilt_rms, tilt_rms_relative
 from rockwobble.compare.traces.pair import make_pair
 
 ROUNDING = 1e-12  # sums of some thousand terms of order one
@@ -95,18 +95,3 @@ def test_a_window_before_the_first_sample_is_refused(cylinder, make_trace):
     trace = make_trace(time, np.full_like(time, 0.1))
     with pytest.raises(ValueError, match="at least one sample"):
         make_pair(cylinder, trace, trace, until=-1.0)
-
-
-@pytest.mark.parametrize(
-    ("peak", "outcome"),
-    [
-        (0.0, "rest"),
-        (5e-324, "completed"),
-        (math.nextafter(0.5 * math.pi, 0.0), "completed"),
-        (0.5 * math.pi, "overturned"),
-        (math.nan, "failed"),
-    ],
-)
-def test_the_outcome_of_a_peak_is_a_word_of_a_trace(peak, outcome):
-    assert outcome_of_peak(peak) == outcome
-    assert outcome in OUTCOMES

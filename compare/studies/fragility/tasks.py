@@ -73,7 +73,7 @@ class Task:
                 for each in self.shakings
             )
         length = sum(shaking.motion.duration * len(shaking.scales) for shaking in self.shakings)
-        return length * (_SOLUTION_TIME if self._solved else _KERNEL_TIME)
+        return length * (_KERNEL_TIME if self._of_peaks else _SOLUTION_TIME)
 
     def key(self) -> str:
         """Return the hash of all that the results depend on; names are no part of it."""
@@ -95,15 +95,11 @@ class Task:
         )
 
     @property
-    def _solved(self) -> bool:
-        """Whether whole traces are needed; the batch kernel knows homogeneous cylinders and peaks alone."""
-        own = self.cylinder
-        return self.contact or (own.height, own.transverse_inertia, own.axial_inertia) != (None, None, None)
-
-    @property
     def _of_peaks(self) -> bool:
-        """Whether the batch kernel does."""
-        return self.run.engine is None and not self._solved
+        """Whether the batch kernel does, which knows homogeneous cylinders and peaks alone."""
+        own = self.cylinder
+        homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
+        return self.run.engine is None and homogeneous and not self.contact
 
     def rows(self) -> list[dict[str, Any]]:
         """Return a row for each motion and factor, in their order."""

@@ -106,7 +106,7 @@ def sweep(
         run_chunk,
         [chunks[index] for index in order],
         kind=KIND,
-        key=_key,
+        key=lambda chunk: chunk.key(),
         label=lambda chunk: chunk.name,
         folder=out,
         what="chunks",
@@ -166,10 +166,6 @@ def read_sweep(folder: str | Path) -> Sweep:
 def run_chunk(chunk: Chunk) -> pd.DataFrame:
     """Return the table of a chunk, one row for each run."""
     return pd.DataFrame(chunk.run())
-
-
-def _key(chunk: Chunk) -> str:
-    return chunk.key()
 
 
 def _motions(plan: Grid | Suite) -> dict[str, pd.DataFrame]:
