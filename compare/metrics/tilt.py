@@ -11,8 +11,6 @@ from rockwobble.models import Cylinder, Trace
 
 from ..traces.pair import Pair, make_pair
 
-OUTCOMES = ("rest", "completed", "overturned", "failed")
-
 
 def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
     """Return where a run of a reduced model overturned, by its peak tilt [rad]; False where it failed.
@@ -20,18 +18,6 @@ def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
     The models decide, also where a run ends in the middle of a fall, and then give pi/2 and no less.
     """
     return np.asarray(peak_tilts, dtype=np.float64) >= 0.5 * math.pi
-
-
-def outcome_of_peak(peak_tilt: float) -> str:
-    """Return the outcome of a run of a reduced model from rest, of `OUTCOMES`, by its peak tilt [rad].
-
-    "rest" is without uplift: a peak does not tell of a run that uplifted whether it stands at the end.
-    """
-    if math.isnan(peak_tilt):
-        return "failed"
-    if peak_tilt == 0.0:
-        return "rest"
-    return "overturned" if overturned(peak_tilt) else "completed"
 
 
 def rms(values: NDArray[np.float64]) -> float:

@@ -16,7 +16,6 @@ from rockwobble.compare.runs import execution
 from rockwobble.compare.studies.fragility import runs as running
 from rockwobble.compare.studies.fragility.islands import incremental, islands
 from rockwobble.compare.studies.fragility.limits import exceeded, require_limits
-from rockwobble.compare.studies.fragility.methods import methods_of
 from rockwobble.compare.studies.fragility.result import fragility_of
 from rockwobble.models import Case, Cylinder, Run
 
@@ -79,18 +78,6 @@ def test_the_worse_plane_is_the_larger_of_both(found):
     )
     fell = (x["outcome"] == "overturned").to_numpy() | (y["outcome"] == "overturned").to_numpy()
     np.testing.assert_array_equal(worse["outcome"] == "overturned", fell)
-
-
-def test_the_worse_of_two_planes_rests_only_where_both_do():
-    ends = [("rest", "rest"), ("rest", "completed"), ("completed", "overturned"), ("failed", "rest")]
-    plane = pd.DataFrame({"cylinder": "a", "motion": list("abcd"), "step": 0, "contact_lost": NAN})
-    runs = pd.concat(
-        plane.assign(method=name, outcome=[pair[index] for pair in ends], peak_tilt=0.0)
-        for index, name in enumerate(("planar x", "planar y"))
-    )
-    (both,) = (method for method in methods_of(["worse-plane"]) if method.of)
-    made = running.worse(runs, both)
-    assert list(made["outcome"]) == ["rest", "completed", "overturned", "failed"]
 
 
 def test_limits_are_one_inside_the_other(found):

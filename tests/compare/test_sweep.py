@@ -44,10 +44,10 @@ def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
     assert one["scale"].tolist() == SCALES
     assert np.array_equal(one.peak_tilt_over_alpha, one.peak_tilt / math.atan(0.2))
     expected = np.select(
-        [table.peak_tilt == 0.0, table.peak_tilt == 0.5 * math.pi], ["rest", "overturned"], "completed"
+        [table.peak_tilt == 0.0, table.peak_tilt == 0.5 * math.pi], ["stood", "overturned"], "rocked"
     )
     assert table.outcome.tolist() == expected.tolist()
-    assert set(expected) == {"rest", "completed", "overturned"}
+    assert set(expected) == {"stood", "rocked", "overturned"}
 
 
 @pytest.mark.parametrize(

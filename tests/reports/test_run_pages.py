@@ -77,7 +77,7 @@ def test_a_run_that_fails_or_falls_says_so():
 def test_a_sweep_counts_each_part(swept):
     words = swept["grid"].markdown()
     assert "18 runs from rest" in words
-    assert "| ground motion | model | tan α | runs | rest | completed | overturned |" in words
+    assert "| ground motion | model | tan α | runs | stood | rocked | overturned |" in words
     assert words.count("| El Centro 1940 | recess |") == 2
     words = swept["cases"].markdown()
     assert "4 runs: 2 cases, 2 runs of each." in words
@@ -93,7 +93,7 @@ def test_a_map_has_a_cell_for_each_run_or_says_of_how_many(monkeypatch):
     for i, scale in enumerate(GRID.scales):
         for j, size in enumerate(GRID.semidiagonals):
             run = own.loc[scale, size]
-            moved = run["outcome"] not in ("rest", "overturned")
+            moved = run["outcome"] not in ("stood", "overturned")
             shown = heat.values[i, j]
             assert shown == run["peak_tilt_over_alpha"] if moved else math.isnan(shown)
     fell = sum(gap.cells for gap in heat.gaps if gap.name == "overturned")

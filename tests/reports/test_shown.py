@@ -40,7 +40,7 @@ def test_ensemble_shows_itself():
 def test_sweep_shows_itself():
     shows_itself(rw.sweep([RELEASE], workers=1), "runs 1, completed 1")
     grid = rc.Grid(semidiagonals=[1, 6], tan_alphas=[0.2], scales=[0.1, 2], motions=[rw.el_centro_1940()])
-    shows_itself(rw.sweep(grid, workers=1), "runs 4, rest 2, overturned 2")
+    shows_itself(rw.sweep(grid, workers=1), "runs 4, stood 2, overturned 2")
 
 
 def test_values_are_a_line(comparison):

@@ -82,8 +82,7 @@ def worse(runs: pd.DataFrame, method: Method) -> pd.DataFrame:
     made = first.reset_index()
     made["method"] = method.label
     made["peak_tilt"] = peaks.max(axis=1)  # NaN where one failed
-    stands = np.where((outcomes == "rest").all(axis=1), "rest", "completed")
-    made["outcome"] = np.where(failed, "failed", np.where(fell, "overturned", stands))
+    made["outcome"] = np.where(failed, "failed", np.where(fell, "overturned", outcomes[:, 0]))
     made["contact_lost"] = lost.max(axis=1)
     return made
 

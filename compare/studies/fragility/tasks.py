@@ -10,7 +10,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
 
-from ...metrics.tilt import OUTCOMES, outcome_of_peak
+from ...metrics.tilt import overturned
 from ...runs.execution import engine_time, makers_of, simulate_run
 from ...storage.fingerprint import fingerprint
 
@@ -77,11 +77,7 @@ class Task:
 
     def key(self) -> str:
         """Return the hash of all that the results depend on; names are no part of it."""
-        own: dict[str, object] = {}
-        if self.run.engine is None:
-            own |= {"contact": self.contact, "rtol": _RTOL}
-        if self._of_peaks:
-            own["outcomes"] = OUTCOMES
+        own = {"contact": self.contact, "rtol": _RTOL} if self.run.engine is None else {}
         return fingerprint(
             {
                 "cylinder": self.cylinder,
@@ -103,7 +99,7 @@ class Task:
 
     def rows(self) -> list[dict[str, Any]]:
         """Return a row for each motion and factor, in their order."""
-        if self._of_peaks:
+        if self.run.engine is None and not self._solved:
             return [row for shaking in self.shakings for row in self._peaks(shaking)]
         return [self._row(s.motion, scale) for s in self.shakings for scale in s.scales]
 
@@ -123,7 +119,11 @@ class Task:
         return [
             {
                 "peak_tilt": float(peak) / self.cylinder.alpha,
-                "outcome": outcome_of_peak(float(peak)),
+                "outcome": "failed"
+                if math.isnan(peak)
+                else "overturned"
+                if overturned(peak)
+                else "completed",
                 "contact_lost": math.nan,
             }
             for peak in peaks

@@ -14,7 +14,7 @@ from rockwobble import reduced
 from rockwobble.models import GroundMotion
 from rockwobble.models.shown import Brief
 
-from ...metrics.tilt import OUTCOMES, outcome_of_peak
+from ...metrics.tilt import overturned
 from ...storage.fingerprint import fingerprint
 from ...storage.provenance import reduced_makers
 
@@ -58,7 +58,6 @@ class GridChunk:
                 "semidiagonals": np.array(self.semidiagonals),
                 "scales": np.array(self.scales),
                 "options": self.options,
-                "outcomes": OUTCOMES,
                 "made with": reduced_makers(),
             }
         )
@@ -82,7 +81,7 @@ class GridChunk:
             "scale": scales.ravel(),
             "peak_tilt": peaks,
             "peak_tilt_over_alpha": peaks / math.atan(self.tan_alpha),
-            "outcome": [outcome_of_peak(float(peak)) for peak in peaks],
+            "outcome": [_outcome(float(peak)) for peak in peaks],
         }
 
 
@@ -224,6 +223,14 @@ class Grid(Brief):
 
 def _motion_key(motion: GroundMotion) -> str:
     return fingerprint((motion.acceleration, motion.time_step))
+
+
+def _outcome(peak: float) -> str:
+    if math.isnan(peak):
+        return "failed"
+    if peak == 0.0:
+        return "stood"
+    return "overturned" if overturned(peak) else "rocked"
 
 
 def _axis(name: str, values: ArrayLike, *, above_zero: bool) -> tuple[float, ...]:

@@ -11,10 +11,11 @@ import pandas as pd
 
 from rockwobble.models.shown import Shown
 
-from ...metrics.tilt import OUTCOMES
 from ...storage.manifest import Results
 
 KIND = "sweep"
+# of a grid, whose runs are known by their peaks alone: no uplift, and uplift without overturning; of a trace
+_OUTCOMES = ("stood", "rest", "rocked", "completed", "overturned", "failed")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -24,8 +25,7 @@ class Sweep(Shown):
     Attributes
     ----------
     table : DataFrame
-        One row for each run, in the order of the plan. The outcome "rest" of a run of a grid is no uplift,
-        and "completed" uplift without overturning, whether or not it stands at the end.
+        One row for each run, in the order of the plan.
     about : mapping
         The plan: its kind, the number of runs, and the axes of a grid or its cases and methods.
     """
@@ -41,9 +41,9 @@ class Sweep(Shown):
 
     @property
     def outcomes(self) -> list[str]:
-        """The outcomes that there are, those of an earlier version last."""
+        """The outcomes that there are."""
         found = set(self.table["outcome"])
-        return [*(name for name in OUTCOMES if name in found), *sorted(found.difference(OUTCOMES))]
+        return [name for name in _OUTCOMES if name in found]
 
     def summary(self) -> pd.DataFrame:
         """Return one row for each part: how many runs ended how, and their peak tilts.
