@@ -35,6 +35,7 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .runs.progress import Progress as Progress
     from .runs.run_settings import with_settings as with_settings
     from .runs.scheduler import run_tasks as run_tasks
+    from .runs.task import IncompleteError as IncompleteError
     from .storage.files import replace_files as replace_files
     from .storage.manifest import require_writable as require_writable
     from .studies.ensemble.members import far_field_motions as far_field_motions
@@ -47,10 +48,8 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .studies.fragility.limits import LIMITS as LIMITS
     from .studies.fragility.result import Fragility as Fragility
     from .studies.fragility.study import fragility as fragility
-    from .studies.sweep.cases import CaseSweep as CaseSweep
     from .studies.sweep.grid import Grid as Grid
     from .studies.sweep.result import Sweep as Sweep
-    from .studies.sweep.study import SweepIncompleteError as SweepIncompleteError
     from .studies.sweep.study import read_sweep as read_sweep
     from .studies.sweep.study import sweep as sweep
     from .traces.pair import Pair as Pair
@@ -77,6 +76,7 @@ _MODULES = {
     "runs.progress": ("Progress",),
     "runs.run_settings": ("with_settings",),
     "runs.scheduler": ("run_tasks",),
+    "runs.task": ("IncompleteError",),
     "storage.files": ("replace_files",),
     "storage.manifest": ("require_writable",),
     "studies.ensemble.members": (
@@ -90,10 +90,9 @@ _MODULES = {
     "studies.fragility.limits": ("LIMITS",),
     "studies.fragility.result": ("Fragility",),
     "studies.fragility.study": ("fragility",),
-    "studies.sweep.cases": ("CaseSweep",),
     "studies.sweep.grid": ("Grid",),
     "studies.sweep.result": ("Sweep",),
-    "studies.sweep.study": ("SweepIncompleteError", "read_sweep", "sweep"),
+    "studies.sweep.study": ("read_sweep", "sweep"),
     "traces.pair": ("Pair", "make_pair"),
     "traces.trajectory": ("External", "read_trajectory"),
 }

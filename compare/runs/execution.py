@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import inspect
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
 from pathlib import Path
@@ -237,14 +237,20 @@ def engine_time(case: Case, run: Run) -> float:
     return case.length / equal_step(case, run) * engine_facts(run.engine).step_time
 
 
-def makers_of(job: Job) -> dict[str, str]:
-    """Return versions and code on which a job depends."""
-    return reduced_makers() if job.run.engine is None else engine_makers(job.run.engine)
+def makers_of(run: Run) -> dict[str, str]:
+    """Return versions and code on which a run depends."""
+    return reduced_makers() if run.engine is None else engine_makers(run.engine)
+
+
+def all_makers(runs: Iterable[Run]) -> dict[str, str]:
+    """Return versions and code on which any of the runs depends; of none, those of the reduced models."""
+    engines = sorted({run.engine for run in runs if run.engine is not None})
+    return reduced_makers() | (engine_makers(*engines) if engines else {})
 
 
 def job_fingerprint(job: Job) -> str:
     """Return the hash of everything that the result of a job depends on."""
-    own = {"method": job.run, "sample step": SAMPLE_STEP, "made with": makers_of(job)}
+    own = {"method": job.run, "sample step": SAMPLE_STEP, "made with": makers_of(job.run)}
     return fingerprint(case_inputs(job.case) | own)
 
 

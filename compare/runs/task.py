@@ -16,6 +16,10 @@ class Lost:
     why: str
 
 
+class IncompleteError(RuntimeError):
+    """Some tasks are not finished: their processes died again and again, or the Dask cluster is gone."""
+
+
 @dataclass(frozen=True, slots=True)
 class Started:
     """A task, by its place among all, has begun."""

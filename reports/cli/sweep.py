@@ -13,7 +13,7 @@ import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
 from ..console.results import show_stored
-from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
+from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 from .inputs.estimate import require_sweep
 from .inputs.grid import grid_of
@@ -89,7 +89,7 @@ def sweep(
     Writes sweep.parquet, one row for each run, sweep.html (open it in a browser), sweep.md and sweep.svg.
     """
     with user_input():
-        plan: rc.Grid | rc.CaseSweep
+        plan: rc.Grid | rw.Suite
         if suite is None:
             plan = grid_of(
                 semidiagonal,
@@ -108,45 +108,46 @@ def sweep(
         rc.require_writable(out)
     for line in (*_echo(plan), how_long):
         print(line)
-    try:
-        with interruptible(out), user_input(), shown_progress("chunks") as tell:
-            rw.sweep(
-                plan,
-                out=out,
-                scheduler=scheduler,
-                workers=workers,
-                chunk_size=chunk,
-                progress=tell,
-                command=command_line(),
-            )
-    except rc.SweepIncompleteError as error:
-        complain(str(error))
-        raise typer.Exit(FAILED) from None
+    with interruptible(out), user_input(), shown_progress("chunks") as tell:
+        rw.sweep(
+            plan,
+            out=out,
+            scheduler=scheduler,
+            workers=workers,
+            chunk_size=chunk,
+            progress=tell,
+            command=command_line(),
+        )
     show_stored(out, "sweep")
 
 
-def _suite(name: str, models: list[str] | None) -> rc.CaseSweep:
+def _suite(name: str, models: list[str] | None) -> rw.Suite:
+    from rockwobble.compare.studies.sweep.cases import runnable_suite
+
     for model in models or ():
         if model not in rw.reduced.MODELS:
             raise ValueError(f"--model must be of {', '.join(rw.reduced.MODELS)}, got {model!r}")
     suite = rw.read_suite(name)
     chosen = [rw.Run(None, **{"support": "recess", **rw.reduced.MODELS[model]}) for model in models or ()]
-    return rc.CaseSweep(suite.cases, (*chosen, *(suite.runs or (() if models else rc.default_runs()))))
+    runs = (*chosen, *(suite.runs or (() if models else rc.default_runs())))
+    return runnable_suite(rw.Suite(suite.cases, runs))
 
 
-def _echo(plan: rc.Grid | rc.CaseSweep) -> list[str]:
+def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
     if isinstance(plan, rc.Grid):
         ends = [
             rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(plan.semidiagonals), max(plan.semidiagonals))
             for tan_alpha in (min(plan.tan_alphas), max(plan.tan_alphas))
         ]
+        runs = plan.rows
         what = (
             f"{len(plan.semidiagonals)} sizes, {len(plan.tan_alphas)} slendernesses, "
             f"{len(plan.scales)} scales, {len(plan.motions)} records, models {', '.join(plan.models)}"
         )
     else:
         ends = [case.cylinder for case in plan.cases]
+        runs = len(plan.cases) * len(plan.runs)
         what = f"{len(plan.cases)} cases, {len(plan.runs)} runs of each"
     return [
         "Cylinders: "
@@ -157,7 +158,7 @@ def _echo(plan: rc.Grid | rc.CaseSweep) -> list[str]:
                 f"alpha = {_span([math.degrees(c.alpha) for c in ends])} deg",
             )
         ),
-        f"Runs: {plan.rows:,} ({what})",
+        f"Runs: {runs:,} ({what})",
     ]
 
 

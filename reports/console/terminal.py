@@ -14,6 +14,8 @@ from typing import TYPE_CHECKING, TextIO
 
 import typer
 
+import rockwobble.compare as rc
+
 if TYPE_CHECKING:
     from _typeshed import ReadableBuffer
 
@@ -62,9 +64,15 @@ def user_input() -> Iterator[None]:
 
 @contextmanager
 def interruptible(kept: Path | None = None) -> Iterator[None]:
-    """Turn Ctrl-C into one line and exit code 130; `kept` is the folder of runs that need no repetition."""
+    """Turn Ctrl-C into one line and exit code 130, and tasks that cannot be finished into one and code 1.
+
+    `kept` is the folder of runs that need no repetition.
+    """
     try:
         yield
+    except rc.IncompleteError as error:
+        complain(str(error))
+        raise typer.Exit(FAILED) from None
     except KeyboardInterrupt:
         if kept is not None and kept.is_dir():
             complain(f"interrupted, the finished runs are kept in {kept}, and the same command goes on")

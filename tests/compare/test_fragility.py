@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from pathlib import Path
 
@@ -10,7 +11,8 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import Fragility, fragility, synthetic_motions
+from rockwobble.compare import Fragility, IncompleteError, fragility, synthetic_motions
+from rockwobble.compare.runs import execution
 from rockwobble.compare.studies.fragility import runs as running
 from rockwobble.compare.studies.fragility.islands import incremental, islands
 from rockwobble.compare.studies.fragility.limits import exceeded, require_limits
@@ -236,6 +238,28 @@ def test_a_second_call_runs_nothing_again(tmp_path, monkeypatch):
     monkeypatch.setattr(running, "run_task", refuse)
     pd.testing.assert_frame_equal(once().runs, first.runs)
     assert once().about["inputs"] == first.about["inputs"]
+
+
+def test_a_dask_worker_with_another_version_of_an_engine_is_refused(monkeypatch):
+    distributed = pytest.importorskip("distributed")
+    versions = itertools.count()  # another at each look
+    monkeypatch.setattr(execution, "engine_makers", lambda name: {name: str(next(versions))})
+    words = r"a worker on .* must have what the caller has: mujoco is .* there .*; nothing is kept"
+    with (
+        distributed.LocalCluster(
+            n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None
+        ) as cluster,
+        pytest.raises(IncompleteError, match=words),
+    ):
+        fragility(
+            COLUMN,
+            MOTIONS[:2],
+            methods=[Run("mujoco", "recess")],
+            levels=[12.0],
+            step_factor=8.0,
+            resamples=5,
+            scheduler=cluster.scheduler_address,
+        )
 
 
 def test_engines_run_beside_their_model_and_a_ring_holds_what_has_overturned():

@@ -7,16 +7,18 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import CaseSweep, Grid, Progress, SweepIncompleteError, read_sweep, sweep
+from rockwobble.compare import Grid, IncompleteError, Progress, read_sweep, sweep
+from rockwobble.compare.metrics.tilt import OUTCOMES, outcome_of_peak
+from rockwobble.compare.runs import tables
 from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.dask_backend import ClusterError
 from rockwobble.compare.runs.task import Lost
 from rockwobble.compare.storage.manifest import read_results
-from rockwobble.compare.studies.sweep import study
 from rockwobble.compare.studies.sweep.result import KIND
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+STANDING = Case(PIER, duration=1.0, name="a")
 SIZES, SCALES = [0.5, 2.0, 6.0, 20.0], [0.4, 1.0, 2.5, 6.0, 8.0]
 SHORT = GroundMotion(el_centro_1940().acceleration[:500], el_centro_1940().time_step, "short")
 
@@ -46,6 +48,21 @@ def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
     )
     assert table.outcome.tolist() == expected.tolist()
     assert set(expected) == {"stood", "rocked", "overturned"}
+
+
+@pytest.mark.parametrize(
+    ("peak", "outcome"),
+    [
+        (0.0, "rest"),
+        (5e-324, "completed"),
+        (math.nextafter(0.5 * math.pi, 0.0), "completed"),
+        (0.5 * math.pi, "overturned"),
+        (math.nan, "failed"),
+    ],
+)
+def test_the_outcome_of_a_peak_is_a_word_of_a_trace(peak, outcome):
+    assert outcome_of_peak(peak) == outcome
+    assert outcome in OUTCOMES
 
 
 def test_no_cell_depends_on_chunks_workers_or_neighbours(tmp_path):
@@ -94,15 +111,15 @@ def test_chunks_of_another_sweep_go_only_when_this_one_is_complete(tmp_path):
 
 
 def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeypatch):
-    run_tasks = study.run_tasks
+    run_tasks = tables.run_tasks
 
     def losing(*args, **options):
         assert options["tries"] == 3
         found = run_tasks(*args, **options)
         return [Lost("killed"), *found[1:]]
 
-    monkeypatch.setattr(study, "run_tasks", losing)
-    with pytest.raises(SweepIncompleteError, match=r"1 of 8 chunks ended their processes 3 times.*killed"):
+    monkeypatch.setattr(tables, "run_tasks", losing)
+    with pytest.raises(IncompleteError, match=r"1 of 8 chunks ended their processes 3 times.*killed"):
         sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
     assert len(files(tmp_path)) == 8
     with pytest.raises(ValueError, match="does not hold results"):
@@ -110,14 +127,14 @@ def test_a_sweep_whose_chunks_die_says_so_and_keeps_the_others(tmp_path, monkeyp
 
 
 def test_a_cluster_that_is_gone_says_what_is_kept(tmp_path, monkeypatch):
-    run_tasks = study.run_tasks
+    run_tasks = tables.run_tasks
 
     def gone(*args, **options):
         run_tasks(args[0], args[1][:3], **options)
         raise ClusterError("the Dask scheduler does not answer any more")
 
-    monkeypatch.setattr(study, "run_tasks", gone)
-    with pytest.raises(SweepIncompleteError, match=f"any more; 3 chunks are kept in {tmp_path}$"):
+    monkeypatch.setattr(tables, "run_tasks", gone)
+    with pytest.raises(IncompleteError, match=f"any more; 3 chunks are kept in {tmp_path}$"):
         sweep(grid(), chunk_size=5, out=tmp_path, workers=1)
 
 
@@ -146,7 +163,7 @@ def test_cases_with_engines_and_models(tmp_path):
         for tilt in (0.3, 0.5)
     ]
     in_recess = Run("mujoco", "recess", 1e-3)
-    table = sweep(CaseSweep(cases, [Run(None, "recess"), in_recess]), out=tmp_path, workers=1).table
+    table = sweep(Suite(cases, [Run(None, "recess"), in_recess]), out=tmp_path, workers=1).table
     assert table[["case", "run"]].to_numpy().tolist() == [
         ["0.3", "recess model"],
         ["0.5", "recess model"],
@@ -161,7 +178,7 @@ def test_cases_with_engines_and_models(tmp_path):
 def test_the_chunks_of_a_suite_have_names_for_whoever_waits():
     cases = [Case(PIER, duration=0.1, name=name) for name in "abc"]
     events: list[Progress] = []
-    sweep(CaseSweep(cases, [Run(None, "recess")]), workers=1, chunk_size=2, progress=events.append)
+    sweep(Suite(cases, [Run(None, "recess")]), workers=1, chunk_size=2, progress=events.append)
     assert [event.label for event in events[::2]] == ["a, recess model and 1 more", "c, recess model"]
 
 
@@ -213,8 +230,10 @@ def test_a_damaged_chunk_runs_again(tmp_path, where):
         (lambda: grid(models=["glued"]), "models must be of recess, flat, planar, got 'glued'"),
         (lambda: grid(rtol=1.0), "rtol must be from"),
         (lambda: grid(speed=1.0), "the options of a grid are"),
-        (lambda: CaseSweep([], [Run(None, "recess")]), "at least one case"),
-        (lambda: CaseSweep([Case(PIER, duration=1.0, name="a")] * 2, [Run(None, "recess")]), "got 'a' twice"),
+        (lambda: sweep([]), "at least one case"),
+        (lambda: sweep([STANDING, STANDING]), "got 'a' twice"),
+        (lambda: sweep(Suite([STANDING], [Run(None, "recess")] * 2)), "got 'recess model' twice"),
+        (lambda: sweep(Suite([STANDING], [Run("mujoco", "glued")])), "got 'glued'"),
         (lambda: sweep(grid(), chunk_size=0), "chunk_size must be at least 1"),
         (lambda: read_sweep("/"), "does not hold results"),
     ],

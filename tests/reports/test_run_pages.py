@@ -46,7 +46,7 @@ def facts(page: Page) -> dict[str, str]:
 @pytest.fixture(scope="module")
 def swept() -> dict[str, Page]:
     cases = [rw.Case(PIER, initial=RELEASE.initial, duration=0.5 * n, name=f"{n}") for n in (1, 2)]
-    plans = {"grid": GRID, "cases": rc.CaseSweep(cases, [rw.Run(None, "recess"), rw.Run(None, "flat")])}
+    plans = {"grid": GRID, "cases": rw.Suite(cases, [rw.Run(None, "recess"), rw.Run(None, "flat")])}
     return {name: sweep_page(rw.sweep(plan, workers=1), made_now("sweep")) for name, plan in plans.items()}
 
 

@@ -60,7 +60,6 @@ def test_values_are_a_line(comparison):
         ),
         rw.External(path="shake table.csv"),
         rc.Grid(semidiagonals=range(1, 100), tan_alphas=[0.2], scales=[1.0], motions=[record]),
-        rc.CaseSweep([RELEASE], [rw.Run(None, "recess")]),
         rc.Job(case=RELEASE, run=trace.run),
         *trace.diagnostics,
         trace.source,

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import pytest
 
+from rockwobble.compare.runs import tables
+from rockwobble.compare.runs.task import Lost
 from rockwobble.reports.cli.main import main
 
 GRID = ["--semidiagonal", "1:20:4", "--tan-alpha", "0.1,0.2", "--scale", "0.3,2", "--workers", "1"]
@@ -41,3 +43,10 @@ def test_bad_input_of_a_sweep_gets_one_clear_line(tmp_path, capsys, arguments, w
     assert error.count("\n") == 1
     assert words in error
     assert not (tmp_path / "out").exists()
+
+
+def test_a_sweep_that_cannot_be_finished_says_so_in_one_line(tmp_path, capsys, monkeypatch):
+    monkeypatch.setattr(tables, "run_tasks", lambda _, tasks, **__: [Lost("killed") for _ in tasks])
+    assert call("sweep", *GRID, "--chunk", "8", "--out", str(tmp_path)) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line.startswith("rockwobble: 2 of 2 chunks ended their processes 3 times, all others are")

@@ -9,9 +9,8 @@ from collections.abc import Iterator
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace, pulse
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, Trace, pulse
 
-from ...studies.sweep.cases import CaseSweep
 from ...studies.sweep.grid import Grid
 from ...studies.sweep.study import sweep
 from ..bench import Bench
@@ -80,7 +79,7 @@ def _cases() -> Finding:
         Case(PIER, initial=release, duration=5.0, name="released"),
     ]
     runs = [Run(None, "recess"), Run(None, "flat")]
-    table = sweep(CaseSweep(cases, runs), workers=1).table.to_dict("records")
+    table = sweep(Suite(cases, runs), workers=1).table.to_dict("records")
     wrong = []
     for row, (run, case) in zip(table, itertools.product(runs, cases), strict=False):
         expected = _row(case, run, reduced.simulate(case, support=run.support))

@@ -14,19 +14,17 @@ from rockwobble.models import Run
 from rockwobble.models.shown import Shown
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
-from ...runs.cache import open_table_cache
 from ...runs.progress import ProgressCallback
-from ...runs.scheduler import run_tasks
-from ...runs.task import Lost
+from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Manifest, Results, made_now
 from ...storage.provenance import code_digests, package_versions
-from .conditions import conditions
+from .conditions import Condition, conditions
 from .verdict import Verdict, judge
 
 KIND = "extremes"
 MODELS = (Run(None, "flat", plane=0.0), Run(None, "recess"), Run(None, "flat"))
-Task = tuple[str, str, int]  # extreme and value of a condition, and the place of a method
+Task = tuple[Condition, Run]
 
 
 def methods() -> tuple[Run, ...]:
@@ -77,35 +75,25 @@ def measure_extremes(
     progress : callable, optional
         Called with a `Progress` at the start and the end of each run.
     """
-    tried = methods()
-    tasks = [
-        (condition.extreme, condition.value, place)
-        for condition in conditions(quick=quick)
-        for place in range(len(tried))
-    ]
+    tasks = [(condition, run) for condition in conditions(quick=quick) for run in methods()]
     # an engine may read whatever of the package, and what is looked at takes minutes: any change repeats all
     made_with = fingerprint({"code": code_digests(), "versions": package_versions()})
 
-    def name(task: Task) -> str:
-        return fingerprint({"task": list(task), "made with": made_with})
+    def key(task: Task) -> str:
+        return fingerprint({"task": task, "made with": made_with})
 
-    with open_table_cache(folder, KIND, name) as cache:
-        found = run_tasks(
-            measure_task,
-            tasks,
-            workers=workers,
-            label=lambda task: f"{task[0]} {task[1]}, {tried[task[2]]}",
-            progress=progress,
-            cache=cache,
-        )
-    table = pd.concat(
-        [
-            row(task, Verdict(verdict="silent", limit="died")) if isinstance(result, Lost) else result
-            for task, result in zip(tasks, found, strict=True)
-        ],
-        ignore_index=True,
-    )
-    return Extremes(table=table)
+    with run_tables(
+        measure_task,
+        tasks,
+        kind=KIND,
+        key=key,
+        label=lambda task: f"{task[0].extreme} {task[0].value}, {task[1]}",
+        folder=folder,
+        lost=lambda task: row(task, Verdict(verdict="silent", limit="died")),
+        workers=workers,
+        progress=progress,
+    ) as found:
+        return Extremes(table=pd.concat(found, ignore_index=True))
 
 
 def manifest_of(found: Extremes, command: str = "") -> Manifest:
@@ -120,12 +108,11 @@ def stored_extremes(results: Results) -> Extremes:
 
 def measure_task(task: Task) -> pd.DataFrame:
     """Return the row of one condition and method."""
-    condition = next(each for each in conditions() if (each.extreme, each.value) == task[:2])
-    return row(task, judge(condition, methods()[task[2]]))
+    return row(task, judge(*task))
 
 
 def row(task: Task, found: Verdict) -> pd.DataFrame:
     """Return a verdict as a table of one row."""
-    extreme, value, place = task
-    named = {"extreme": extreme, "value": value, "method": str(methods()[place])}
+    condition, run = task
+    named = {"extreme": condition.extreme, "value": condition.value, "method": str(run)}
     return pd.DataFrame([named | dataclasses.asdict(found)])

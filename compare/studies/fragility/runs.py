@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from contextlib import nullcontext
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from ...runs.cache import open_table_cache
+from ...runs.execution import all_makers
 from ...runs.progress import ProgressCallback
-from ...runs.scheduler import run_tasks
-from ...runs.task import Lost
+from ...runs.tables import run_tables
 from .methods import Method
 from .plan import Plan
 from .tasks import Task, run_task
@@ -50,22 +49,22 @@ def run_plan(
         process died failed.
     """
     tasks = list(plan.tasks())
-    with nullcontext() if folder is None else open_table_cache(folder, kind, Task.key) as cache:
-        found = run_tasks(
-            run_task,
-            tasks,
-            workers=workers,
-            scheduler=scheduler,
-            cost=lambda task: task.cost,
-            label=lambda task: task.title,
-            progress=progress,
-            cache=cache,
-            tries=_TRIES,
-        )
-    tables = [
-        _labelled(task, _lost(task) if isinstance(each, Lost) else each, plan)
-        for task, each in zip(tasks, found, strict=True)
-    ]
+    with run_tables(
+        run_task,
+        tasks,
+        kind=kind,
+        key=Task.key,
+        label=lambda task: task.title,
+        folder=folder,
+        lost=_lost,
+        cost=lambda task: task.cost,
+        tries=_TRIES,
+        makers=partial(all_makers, tuple(method.run for method in plan.methods if method.run is not None)),
+        workers=workers,
+        scheduler=scheduler,
+        progress=progress,
+    ) as found:
+        tables = [_labelled(task, each, plan) for task, each in zip(tasks, found, strict=True)]
     table = pd.concat(tables, ignore_index=True)
     return pd.concat([table, *(worse(table, m) for m in plan.methods if m.of)], ignore_index=True)
 

@@ -98,6 +98,8 @@ def fragility(
     ------
     ValueError
         If an argument is out of range, or an engine cannot run.
+    IncompleteError
+        If the Dask cluster cannot do the runs, as where a worker has another version of an engine.
 
     Examples
     --------

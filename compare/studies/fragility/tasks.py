@@ -9,13 +9,10 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
-from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.scene.froude import default_step
 
 from ...metrics.tilt import overturned
-from ...runs.execution import simulate_run
+from ...runs.execution import engine_time, makers_of, simulate_run
 from ...storage.fingerprint import fingerprint
-from ...storage.provenance import engine_makers, reduced_makers
 
 # Computing time of a reduced run for each second of its motion, forces included or not, on one core [s]: a
 # rough mean of the models.
@@ -69,18 +66,14 @@ class Task:
     @property
     def cost(self) -> float:
         """Rough computing time [s]."""
+        if self.run.engine is not None:
+            return sum(
+                engine_time(Case(self.cylinder, each.motion, gravity=self.gravity), self.run)
+                * len(each.scales)
+                for each in self.shakings
+            )
         length = sum(shaking.motion.duration * len(shaking.scales) for shaking in self.shakings)
-        if self.run.engine is None:
-            return length * (_SOLUTION_TIME if self._solved else _KERNEL_TIME)
-        step = self.run.time_step
-        if not isinstance(step, float):
-            step = default_step(self.cylinder.semidiagonal, self.gravity)
-        return length / step * engine_facts(self.run.engine).step_time
-
-    @property
-    def makers(self) -> dict[str, str]:
-        """Versions and code on which the results depend."""
-        return reduced_makers() if self.run.engine is None else engine_makers(self.run.engine)
+        return length * (_KERNEL_TIME if self._of_peaks else _SOLUTION_TIME)
 
     def key(self) -> str:
         """Return the hash of all that the results depend on; names are no part of it."""
@@ -92,16 +85,17 @@ class Task:
                 "run": self.run,
                 "gravity": self.gravity,
                 "friction": self.friction,
-                "made with": self.makers,
+                "made with": makers_of(self.run),
                 **own,
             }
         )
 
     @property
-    def _solved(self) -> bool:
-        """Whether whole traces are needed; the batch kernel knows homogeneous cylinders and peaks alone."""
+    def _of_peaks(self) -> bool:
+        """Whether the batch kernel does, which knows homogeneous cylinders and peaks alone."""
         own = self.cylinder
-        return self.contact or (own.height, own.transverse_inertia, own.axial_inertia) != (None, None, None)
+        homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
+        return self.run.engine is None and homogeneous and not self.contact
 
     def rows(self) -> list[dict[str, Any]]:
         """Return a row for each motion and factor, in their order."""

@@ -1,4 +1,4 @@
-"""Cases times methods, each run for its numbers without its samples."""
+"""A suite: every case with every run, for its numbers without its samples."""
 
 from __future__ import annotations
 
@@ -6,14 +6,13 @@ import math
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
-from rockwobble.models import Case, Run, Trace
+from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
-from rockwobble.models.shown import Brief
 from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
 from ...runs.choice import require_runnable
-from ...runs.execution import Job, job_fingerprint, makers_of, run_job
+from ...runs.execution import Job, job_fingerprint, run_job
 from ...runs.labels import REDUCED, run_labels
 from ...storage.fingerprint import fingerprint
 
@@ -37,20 +36,10 @@ class CaseChunk:
     jobs: tuple[Job, ...]
 
     @property
-    def rows(self) -> int:
-        """Number of runs."""
-        return len(self.jobs)
-
-    @property
     def name(self) -> str:
         """Description of the chunk, for whoever waits."""
-        more = f" and {self.rows - 1} more" if self.rows > 1 else ""
+        more = f" and {len(self.jobs) - 1} more" if len(self.jobs) > 1 else ""
         return f"{self.jobs[0].name}{more}"
-
-    @property
-    def makers(self) -> dict[str, str]:
-        """Versions and code on which the results depend."""
-        return makers_of(self.jobs[0])
 
     def key(self) -> str:
         """Return the hash of all that the results depend on."""
@@ -62,77 +51,45 @@ class CaseChunk:
         return {name: [row[name] for row in rows] for name in rows[0]}
 
 
-@dataclass(frozen=True, slots=True, eq=False, init=False, repr=False)
-class CaseSweep(Brief):
-    """Every case with every method: runs of engines, and reduced models by name.
-
-    Parameters
-    ----------
-    cases : iterable of Case
-        With different names.
-    runs : iterable of Run
+def runnable_suite(plan: Suite | Iterable[Case]) -> Suite:
+    """Return the suite that is swept: cases alone, and a suite without runs, are run with the recess model.
 
     Raises
     ------
     ValueError
-        If there is no case or no method, two are alike, or an engine cannot run a case.
-
-    Examples
-    --------
-    >>> import rockwobble as rw
-    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
-    >>> case = rw.Case(pier, initial=release, duration=4.0)
-    >>> found = rw.sweep(CaseSweep([case], [rw.Run(None, "recess"), rw.Run(None, "flat")]), workers=1)
-    >>> list(found.table["outcome"])
-    ['completed', 'completed']
+        If there is no case, two cases or two runs are alike, or an engine cannot run a case.
     """
+    suite = plan if isinstance(plan, Suite) else Suite(plan, ())
+    if not suite.runs:
+        suite = Suite(suite.cases, (Run(None, "recess"),), suite.bounds)
+    run_labels(suite.runs)
+    for run in suite.runs:
+        for case in suite.cases:
+            require_runnable(case, run)
+    return suite
 
-    cases: tuple[Case, ...]
-    runs: tuple[Run, ...]
 
-    def __init__(self, cases: Iterable[Case], runs: Iterable[Run]) -> None:
-        object.__setattr__(self, "cases", tuple(cases))
-        object.__setattr__(self, "runs", tuple(runs))
-        names = [case.name for case in self.cases]
-        if not names or not self.runs:
-            raise ValueError("a sweep must have at least one case and one run")
-        for name in names:
-            if names.count(name) > 1:
-                raise ValueError(f"the cases of a sweep must differ, got {name!r} twice")
-        run_labels(self.runs)
-        for run in self.runs:
-            for case in self.cases:
-                require_runnable(case, run)
+def chunks_of(suite: Suite, size: int | None = None) -> Iterator[CaseChunk]:
+    """Cut the runs of a suite into chunks, in the order of the table: method by method."""
+    for run, label in zip(suite.runs, run_labels(suite.runs), strict=True):
+        step = size or (_ENGINE_CHUNK_SIZE if run.engine else _REDUCED_CHUNK_SIZE)
+        for i in range(0, len(suite.cases), step):
+            yield CaseChunk(
+                jobs=tuple(Job(case=case, run=run, label=label) for case in suite.cases[i : i + step])
+            )
 
-    @property
-    def rows(self) -> int:
-        """Number of runs."""
-        return len(self.cases) * len(self.runs)
 
-    @property
-    def kind(self) -> str:
-        """Kind of the sweep, for people."""
-        return "cases and runs"
-
-    def chunks(self, size: int | None = None) -> Iterator[CaseChunk]:
-        """Cut the runs into chunks, in the order of the table: method by method."""
-        for run, label in zip(self.runs, run_labels(self.runs), strict=True):
-            step = size or (_ENGINE_CHUNK_SIZE if run.engine else _REDUCED_CHUNK_SIZE)
-            for i in range(0, len(self.cases), step):
-                yield CaseChunk(
-                    jobs=tuple(Job(case=case, run=run, label=label) for case in self.cases[i : i + step])
-                )
-
-    def describe(self) -> dict[str, object]:
-        """Return cases and methods, for a file; SI units and radians."""
-        return {
-            "cases": {case.name: describe_case(case) for case in self.cases},
-            "runs of each": [
-                {"label": label, **run_to_plain(run)}
-                for run, label in zip(self.runs, run_labels(self.runs), strict=True)
-            ],
-        }
+def describe_suite(suite: Suite) -> dict[str, object]:
+    """Return cases and runs, for a file; SI units and radians."""
+    return {
+        "plan": "cases and runs",
+        "runs": len(suite.cases) * len(suite.runs),
+        "cases": {case.name: describe_case(case) for case in suite.cases},
+        "runs of each": [
+            {"label": label, **run_to_plain(run)}
+            for run, label in zip(suite.runs, run_labels(suite.runs), strict=True)
+        ],
+    }
 
 
 def _row(job: Job, trace: Trace) -> dict[str, object]:

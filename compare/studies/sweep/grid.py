@@ -155,11 +155,6 @@ class Grid(Brief):
         axes = (self.semidiagonals, self.tan_alphas, self.scales, self.motions, self.models)
         return math.prod(len(axis) for axis in axes)
 
-    @property
-    def kind(self) -> str:
-        """Kind of the sweep, for people."""
-        return "grid of reduced runs"
-
     def chunks(self, size: int | None = None) -> Iterator[GridChunk]:
         """Cut the grid into chunks of about `size` runs, in the order of the table."""
         size = size or _CHUNK_SIZE
@@ -182,6 +177,8 @@ class Grid(Brief):
     def describe(self) -> dict[str, object]:
         """Return the axes and options, for a file; SI units."""
         return {
+            "plan": "grid of reduced runs",
+            "runs": self.rows,
             "semidiagonals": self.semidiagonals,
             "tan_alphas": self.tan_alphas,
             "scales": self.scales,

@@ -14,7 +14,7 @@ from rockwobble.models.shown import Shown
 from ...storage.manifest import Results
 
 KIND = "sweep"
-# of a run in a grid, and of a trace
+# of a grid, whose runs are known by their peaks alone: no uplift, and uplift without overturning; of a trace
 _OUTCOMES = ("stood", "rest", "rocked", "completed", "overturned", "failed")
 
 

@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from contextlib import nullcontext
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, GroundMotion, Run, Suite
+from rockwobble.models import Case, GroundMotion, Suite
 
-from ...runs.cache import open_table_cache
-from ...runs.dask_backend import ClusterError
+from ...runs.execution import all_makers
 from ...runs.progress import ProgressCallback
-from ...runs.scheduler import run_tasks
-from ...runs.task import Lost
+from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import made_now, read_results, write_results
-from ...storage.provenance import engine_makers, reduced_makers
-from .cases import CaseChunk, CaseSweep
+from .cases import CaseChunk, chunks_of, describe_suite, runnable_suite
 from .grid import Grid, GridChunk
 from .result import KIND, Sweep, stored_sweep
 
@@ -29,12 +25,8 @@ _TRIES = 3
 Chunk = GridChunk | CaseChunk
 
 
-class SweepIncompleteError(RuntimeError):
-    """Some chunks are not finished: their processes died again and again, or the Dask cluster is gone."""
-
-
 def sweep(
-    plan: Grid | CaseSweep | Suite | Iterable[Case],
+    plan: Grid | Suite | Iterable[Case],
     *,
     out: str | Path | None = None,
     scheduler: str | None = None,
@@ -53,9 +45,9 @@ def sweep(
 
     Parameters
     ----------
-    plan : Grid, CaseSweep, Suite or iterable of Case
-        A grid of peak tilts; cases with methods; a suite stands for its cases with its runs, cases alone
-        are run with the recess model.
+    plan : Grid, Suite or iterable of Case
+        A grid of peak tilts; every case of a suite with each of its runs; cases alone are run with the recess
+        model.
     out : str or Path, optional
         Folder of the sweep: sweep.parquet is the table, motions.parquet the ground motions of a grid. The
         chunks of another sweep stay there until this one is complete.
@@ -81,7 +73,7 @@ def sweep(
     ------
     ValueError
         If the plan, the folder or the scheduler is not usable.
-    SweepIncompleteError
+    IncompleteError
         If chunks could not be finished because their processes died, or the Dask cluster cannot do them.
 
     Examples
@@ -93,41 +85,40 @@ def sweep(
     Sweep(runs 4, rocked 2, overturned 2)
     >>> found.table[["semidiagonal", "scale", "outcome"]].values.tolist()
     [[2.0, 1.0, 'rocked'], [2.0, 3.0, 'overturned'], [6.0, 1.0, 'rocked'], [6.0, 3.0, 'overturned']]
+
+    Every case of a suite with each of its runs:
+
+    >>> from rockwobble.models import Cylinder, InitialState, Run
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=4.0)
+    >>> sweep(Suite([case], [Run(None, "recess"), Run(None, "flat")]), workers=1)
+    Sweep(runs 2, completed 2)
     """
-    whole = _plan(plan)
+    whole = plan if isinstance(plan, Grid) else runnable_suite(plan)
     if chunk_size is not None and chunk_size < 1:
         raise ValueError(f"chunk_size must be at least 1, got {chunk_size!r}")
-    chunks: list[Chunk] = list(whole.chunks(chunk_size))
+    chunks: list[Chunk] = (
+        [*whole.chunks(chunk_size)] if isinstance(whole, Grid) else [*chunks_of(whole, chunk_size)]
+    )
     # in a mixed order the runs that take long are spread evenly, and so the time left can be predicted
     order = np.random.default_rng(0).permutation(len(chunks)).tolist()
-    with nullcontext() if out is None else open_table_cache(out, KIND, _key) as cache:
-        try:
-            found = run_tasks(
-                run_chunk,
-                [chunks[index] for index in order],
-                workers=workers,
-                scheduler=scheduler,
-                label=lambda chunk: chunk.name,
-                progress=progress,
-                cache=cache,
-                tries=_TRIES,
-                makers=partial(_makers, whole),
-            )
-        except ClusterError as error:
-            kept = "nothing is kept" if cache is None else f"{cache.count} chunks are kept in {out}"
-            raise SweepIncompleteError(f"{error}; {kept}") from None
-        lost = [each.why for each in found if isinstance(each, Lost)]
-        if lost:
-            raise SweepIncompleteError(
-                f"{len(lost)} of {len(chunks)} chunks ended their processes {_TRIES} times, all others are "
-                f"finished; the last words: {lost[0]}"
-            )
+    with run_tables(
+        run_chunk,
+        [chunks[index] for index in order],
+        kind=KIND,
+        key=lambda chunk: chunk.key(),
+        label=lambda chunk: chunk.name,
+        folder=out,
+        what="chunks",
+        tries=_TRIES,
+        makers=partial(all_makers, () if isinstance(whole, Grid) else whole.runs),
+        workers=workers,
+        scheduler=scheduler,
+        progress=progress,
+    ) as found:
         by_place = dict(zip(order, found, strict=True))
-        tables = [by_place[index] for index in range(len(chunks))]
-        table: pd.DataFrame = pd.concat(
-            [each for each in tables if not isinstance(each, Lost)], ignore_index=True
-        )
-        about = {"plan": whole.kind, "runs": whole.rows, **whole.describe()}
+        table: pd.DataFrame = pd.concat([by_place[place] for place in range(len(chunks))], ignore_index=True)
+        about = whole.describe() if isinstance(whole, Grid) else describe_suite(whole)
         if out is not None:
             made = made_now(
                 KIND,
@@ -177,26 +168,7 @@ def run_chunk(chunk: Chunk) -> pd.DataFrame:
     return pd.DataFrame(chunk.run())
 
 
-def _makers(plan: Grid | CaseSweep) -> dict[str, str]:
-    """Return versions and code on which any of the runs depends."""
-    engines = () if isinstance(plan, Grid) else {run.engine for run in plan.runs if run.engine}
-    return reduced_makers() | (engine_makers(*sorted(engines)) if engines else {})
-
-
-def _key(chunk: Chunk) -> str:
-    return chunk.key()
-
-
-def _plan(plan: Grid | CaseSweep | Suite | Iterable[Case]) -> Grid | CaseSweep:
-    if isinstance(plan, Grid | CaseSweep):
-        return plan
-    recess = (Run(None, "recess"),)
-    if isinstance(plan, Suite):
-        return CaseSweep(plan.cases, plan.runs or recess)
-    return CaseSweep(plan, recess)
-
-
-def _motions(plan: Grid | CaseSweep) -> dict[str, pd.DataFrame]:
+def _motions(plan: Grid | Suite) -> dict[str, pd.DataFrame]:
     """Return the table of the motions of a grid; a component that one does not have is missing, not zero."""
     if not isinstance(plan, Grid):
         return {}

@@ -13,10 +13,8 @@ import pandas as pd
 
 from rockwobble.models.shown import Shown
 
-from ...runs.cache import open_table_cache
 from ...runs.progress import ProgressCallback
-from ...runs.scheduler import run_tasks
-from ...runs.task import Lost
+from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Manifest, Results, made_now
 from ...storage.provenance import engine_makers, reduced_makers
@@ -76,34 +74,26 @@ def measure_all(
     ------
     ValueError
         If nothing can be written there, or another process does.
-    RuntimeError
+    IncompleteError
         If a process ended in a task; what was finished is kept.
     """
     tasks: list[Task] = [(part.name, dict(inputs)) for part in PARTS for inputs in part.tasks(extent)]
-    with open_table_cache(folder, KIND, name=task_name) as cache:
-        found = run_tasks(
-            measure_task,
-            tasks,
-            workers=workers,
-            cost=lambda task: part_named(task[0]).cost(**task[1]),
-            label=lambda task: part_named(task[0]).title,
-            progress=progress,
-            cache=cache,
-        )
-        lost = [
-            f"{name}: {result.why}"
-            for (name, _), result in zip(tasks, found, strict=True)
-            if isinstance(result, Lost)
-        ]
-        if lost:
-            raise RuntimeError(f"processes ended in {len(lost)} tasks, the first in {lost[0]}")
-    kept = [
-        (name, table) for (name, _), table in zip(tasks, found, strict=True) if not isinstance(table, Lost)
-    ]
-    return {
-        part.name: pd.concat([table for name, table in kept if name == part.name], ignore_index=True)
-        for part in PARTS
-    }
+    with run_tables(
+        measure_task,
+        tasks,
+        kind=KIND,
+        key=task_name,
+        label=lambda task: part_named(task[0]).title,
+        folder=folder,
+        cost=lambda task: part_named(task[0]).cost(**task[1]),
+        workers=workers,
+        progress=progress,
+    ) as found:
+        made = list(zip(tasks, found, strict=True))
+        return {
+            part.name: pd.concat([table for (name, _), table in made if name == part.name], ignore_index=True)
+            for part in PARTS
+        }
 
 
 def measure_task(task: Task) -> pd.DataFrame:

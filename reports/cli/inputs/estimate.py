@@ -62,7 +62,7 @@ def require_feasible(
     )
 
 
-def require_sweep(plan: rc.Grid | rc.CaseSweep) -> str:
+def require_sweep(plan: rc.Grid | rw.Suite) -> str:
     """Return how long a sweep may take, and refuse one that takes years or does not fit into memory.
 
     Raises
@@ -74,10 +74,11 @@ def require_sweep(plan: rc.Grid | rc.CaseSweep) -> str:
 
     if isinstance(plan, rc.Grid):
         lengths = math.fsum(motion.duration for motion in plan.motions) / len(plan.motions)
-        seconds, row = plan.rows * lengths * _CELL_COST, _ROW_BYTES
+        seconds, needed = plan.rows * lengths * _CELL_COST, plan.rows * _ROW_BYTES
     else:
-        seconds, row = _all_seconds(plan.cases, plan.runs), _CASE_BYTES
-    _require(seconds, plan.rows * row, "sweep fewer runs at a time", "sweep fewer runs")
+        seconds = _all_seconds(plan.cases, plan.runs)
+        needed = len(plan.cases) * len(plan.runs) * _CASE_BYTES
+    _require(seconds, needed, "sweep fewer runs at a time", "sweep fewer runs")
     cores = usable_cpus()
     return f"Computing time: {_words(seconds)}" + (f", shared by {cores} cores" if cores > 1 else "")
 
