@@ -99,7 +99,7 @@ class Task:
 
     def rows(self) -> list[dict[str, Any]]:
         """Return a row for each motion and factor, in their order."""
-        if self.run.engine is None and not self._solved:
+        if self._of_peaks:
             return [row for shaking in self.shakings for row in self._peaks(shaking)]
         return [self._row(s.motion, scale) for s in self.shakings for scale in s.scales]
 
