@@ -8,7 +8,6 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import Grid, IncompleteError, Progress, read_sweep, sweep
-from rockwobble.compare.metrics.tilt import OUTCOMES, outcome_of_peak
 from rockwobble.compare.runs import tables
 from rockwobble.compare.runs.cache import CACHE
 from rockwobble.compare.runs.dask_backend import ClusterError
@@ -48,21 +47,6 @@ def test_the_table_holds_what_peak_tilts_gives_in_the_order_of_the_axes():
     )
     assert table.outcome.tolist() == expected.tolist()
     assert set(expected) == {"stood", "rocked", "overturned"}
-
-
-@pytest.mark.parametrize(
-    ("peak", "outcome"),
-    [
-        (0.0, "rest"),
-        (5e-324, "completed"),
-        (math.nextafter(0.5 * math.pi, 0.0), "completed"),
-        (0.5 * math.pi, "overturned"),
-        (math.nan, "failed"),
-    ],
-)
-def test_the_outcome_of_a_peak_is_a_word_of_a_trace(peak, outcome):
-    assert outcome_of_peak(peak) == outcome
-    assert outcome in OUTCOMES
 
 
 def test_no_cell_depends_on_chunks_workers_or_neighbours(tmp_path):
