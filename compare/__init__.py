@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import importlib
 import sys
-from inspect import Signature, signature
 from types import ModuleType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:  # under its own name again: that is how a type checker knows a name for a public one
+    from inspect import Signature
+
     from .comparison.driver import compare as compare
     from .comparison.error_budget import LARGEST_SHARE as LARGEST_SHARE
     from .comparison.error_budget import WORTH_EXPLAINING as WORTH_EXPLAINING
@@ -107,6 +108,8 @@ class _Callable(ModuleType):
 
     @property
     def __signature__(self) -> Signature:
+        from inspect import signature
+
         return signature(self.compare)
 
 
