@@ -149,6 +149,15 @@ def test_a_path_is_parted_where_the_cylinder_stands():
     assert list(y[~np.isnan(x)]) == [0.0, 0.01, 0.0, 0.02]
 
 
+@pytest.mark.parametrize(("options", "symbol"), [({"plane": 0.3}, "circle"), ({}, "")])
+def test_places_between_which_a_planar_run_only_jumps_are_marked(options, symbol):
+    trace = rw.simulate(rw.Case(PIER, rw.el_centro_1940(), duration=8.0), **options)
+    (picture,) = trace_figure.pictures(trace)
+    (line,) = (layer for layer in picture.panels[1].layers if getattr(layer, "name", "") == "contact point")
+    assert line.style.symbol == symbol
+    assert (line.style.dash == "none") == bool(symbol)
+
+
 @pytest.mark.parametrize("support", ["recess", "flat"])
 def test_a_path_is_parted_where_it_jumps_and_nowhere_else(support: str):
     trace = rw.simulate(rw.Case(PIER, rw.el_centro_1940()), support=support)

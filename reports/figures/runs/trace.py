@@ -10,6 +10,7 @@ from ..palette import GREY, ORDER, Style
 from ..picture import TILT, TIME, Array, Axis, Layer, Line, Panel, Picture, Rule
 
 _PATH = Style(colour=ORDER[0])
+_PLACES = Style(colour=ORDER[0], dash="none", symbol="circle")  # between which it only jumps, in a plane
 _JUMP = 0.5  # of b between two samples: in a near pass the point runs along the circle, not across it
 _APART = 0.1  # of b between points that are drawn
 _CIRCLE = Style(colour=GREY, dash="dash")
@@ -20,12 +21,13 @@ def pictures(trace: Trace) -> list[Picture]:
     cylinder = trace.case.cylinder
     turn = np.linspace(0.0, 2.0 * np.pi, 181)
     x, y = _path(trace.contact_point / cylinder.base_radius).T
+    rolls = np.nansum(np.hypot(np.diff(x), np.diff(y))) > _APART
     tilt: list[Layer] = [Line(x=trace.time, y=trace.tilt / cylinder.alpha, style=_PATH)]
     if trace.uplift_time > 0.0:
         tilt.append(Rule(at=trace.uplift_time, axis="x", text="uplift", side="right"))
     path = [
         Line(x=np.cos(turn), y=np.sin(turn), style=_CIRCLE, name="original circle", width=1.0),
-        Line(x=x, y=y, style=_PATH, name="contact point", width=1.0),
+        Line(x=x, y=y, style=_PATH if rolls else _PLACES, name="contact point", width=1.0),
     ]
     panels = [
         Panel(x=TIME, y=TILT, layers=tilt, title="tilt", height=3.4),
