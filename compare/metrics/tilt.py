@@ -7,6 +7,8 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rockwobble.models import Trace
+
 from ..traces.pair import Pair
 
 
@@ -16,6 +18,15 @@ def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
     The models decide, also where a run ends in the middle of a fall, and then give pi/2 and no less.
     """
     return np.asarray(peak_tilts, dtype=np.float64) >= 0.5 * math.pi
+
+
+def outcome_of(trace: Trace) -> str:
+    """Return the outcome of a run for a study: the walls of a ring have no top, and hold what has overturned.
+
+    A cylinder that leans on a wall beyond its balance when the ground is still again cannot come back.
+    """
+    leans = trace.run.support == "ring" and len(trace.tilt) and trace.tilt[-1] > trace.case.cylinder.alpha
+    return "overturned" if leans and trace.outcome != "failed" else trace.outcome
 
 
 def rms(values: NDArray[np.float64]) -> float:

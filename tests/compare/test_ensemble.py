@@ -8,13 +8,13 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import ensemble, far_field_motions, perturbed_copies, synthetic_motions
+from rockwobble.compare import ensemble, far_field_motions, perturbed_copies, sweep, synthetic_motions
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
 from rockwobble.compare.storage.manifest import made_now, read_results, write_results
 from rockwobble.compare.studies.ensemble import members as ensemble_members
 from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of, stored_ensemble
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, Trace
 
 ROUNDING = 1e-12
 RECESS = Run(None, "recess")
@@ -22,7 +22,21 @@ PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 CASE = Case(PIER, initial=InitialState(0.1, rolling_rate=0.5), duration=1.0, name="release")
 
 
-def test_starts_are_perturbed_by_the_stated_size():
+def test_what_a_wall_holds_beyond_its_balance_has_overturned_in_every_study():
+    cylinder = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    cases = [
+        Case(cylinder, initial=InitialState(share * cylinder.alpha), duration=3.0, name=f"{share}")
+        for share in (0.5, 1.3, 1.4)
+    ]
+    run = Run("mujoco", "ring", time_step=1e-3, ring_clearance=0.01, ring_inclination=0.5)
+    found = ensemble(cases, runs=[run], models=[], workers=1)
+    assert found.members["outcome"].tolist()[1:] == ["overturned", "overturned"]
+    assert (found.members["peak_tilt"] < 0.5 * math.pi / cylinder.alpha).all()
+    swept = sweep(Suite(cases, [run]), workers=1).table
+    assert swept["outcome"].tolist() == found.members["outcome"].tolist()
+
+
+def test_copies_are_perturbed_by_the_stated_size():
     members = perturbed_copies(CASE, 400, perturbation=0.01, seed=5)
     tilts = np.array([case.initial.tilt for case in members]) / 0.1 - 1.0
     rates = np.array([case.initial.rolling_rate for case in members]) / 0.5 - 1.0

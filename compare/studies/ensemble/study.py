@@ -14,6 +14,7 @@ from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.shown import Shown
 
+from ...metrics.tilt import outcome_of
 from ...runs.choice import default_runs, require_runnable
 from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
 from ...runs.labels import run_labels
@@ -35,11 +36,10 @@ class Ensemble(Shown):
     ----------
     members : DataFrame
         One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
-        overturned), outcome, diagnostics (their codes), wall_time [s], all as the run has them.
+        overturned), outcome (see `outcome_of`), diagnostics (their codes), wall_time [s].
     methods : DataFrame
         One row for each method: own_model (of the support of an engine; of a ring, which has none, the recess
-        model), runs, rocked, overturned, failed,
-        failed_members (their names), and of the peak tilts of what did not fail [alpha] the median with its
+        model), runs, rocked, overturned, failed, failed_members (their names), and of the peak tilts of what did not fail [alpha] the median with its
         interval (peak_median, _low, _high) and the 16th and 84th percentile (peak_16, peak_84): infinite
         where they overturn.
     contrasts : DataFrame
@@ -209,7 +209,7 @@ def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
             "member": job.case.name,
             "method": job.label,
             "peak_tilt": result.peak_tilt / job.case.cylinder.alpha,
-            "outcome": result.outcome,
+            "outcome": outcome_of(result),
             "diagnostics": joined(fact.code for fact in result.facts),
             "wall_time": result.wall_time,
         }

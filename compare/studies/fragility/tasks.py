@@ -10,7 +10,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
 
-from ...metrics.tilt import overturned
+from ...metrics.tilt import outcome_of, overturned
 from ...runs.execution import engine_time, makers_of, simulate_run
 from ...storage.fingerprint import fingerprint
 
@@ -137,17 +137,9 @@ class Task:
         trace = simulate_run(case, run)
         return {
             "peak_tilt": trace.peak_tilt / self.cylinder.alpha,
-            "outcome": self._outcome(trace),
+            "outcome": outcome_of(trace),
             "contact_lost": self._lost(trace),
         }
-
-    def _outcome(self, trace: Trace) -> str:
-        """Outcome by the one rule; the walls of a ring have no top, so they hold what has overturned.
-
-        A cylinder that leans on a wall beyond its balance when the ground is still again cannot come back.
-        """
-        leans = self.run.support == "ring" and trace.tilt[-1] > self.cylinder.alpha
-        return "overturned" if leans and trace.outcome != "failed" else trace.outcome
 
     def _lost(self, trace: Trace) -> float:
         """1 where contact was lost, 0 where it was not; NaN where nobody asked or the run failed."""

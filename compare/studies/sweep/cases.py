@@ -11,6 +11,7 @@ from rockwobble.models.diagnostic import joined
 from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...comparison.result import describe_case
+from ...metrics.tilt import outcome_of
 from ...runs.choice import require_runnable
 from ...runs.execution import Job, job_fingerprint, run_job
 from ...runs.labels import REDUCED, run_labels
@@ -105,7 +106,7 @@ def _row(job: Job, trace: Trace) -> dict[str, object]:
         "motion": motion.name if motion else "",
         "peak_tilt_over_alpha": float(trace.peak_tilt) / cylinder.alpha,
         **{name: float(getattr(trace, name)) for name in _RESULTS},
-        "outcome": trace.outcome,
+        "outcome": outcome_of(trace),
         "diagnostics": joined(fact.code for fact in trace.facts),
         "version": trace.version,
         "end": float(trace.time[-1]),
