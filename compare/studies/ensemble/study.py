@@ -39,9 +39,9 @@ class Ensemble(Shown):
         overturned), outcome (see `outcome_of`), diagnostics (their codes), wall_time [s].
     methods : DataFrame
         One row for each method: own_model (of the support of an engine; of a ring, which has none, the recess
-        model), runs, rocked, overturned, failed, failed_members (their names), and of the peak tilts of what did not fail [alpha] the median with its
-        interval (peak_median, _low, _high) and the 16th and 84th percentile (peak_16, peak_84): infinite
-        where they overturn.
+        model), runs, rocked, overturned, failed, failed_members (their names), and of the peak tilts of what
+        did not fail [alpha] the median with its interval (peak_median, _low, _high) and the 16th and 84th
+        percentile (peak_16, peak_84): infinite where they overturn.
     contrasts : DataFrame
         One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high, its
         verdict, masked (members that failed by one of them), and both probabilities corrected for the number
