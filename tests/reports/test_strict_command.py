@@ -1,0 +1,38 @@
+"""What was typed wrongly is refused in a line that says it, by every command in the same way."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+import typer
+
+from rockwobble.reports.cli.main import app, main
+
+COMMANDS = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+WITH_OUT = sorted(name for name, each in COMMANDS.items() if "out" in {option.name for option in each.params})
+
+
+def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
+    """Run a command that must refuse; return the one line that it prints."""
+    with pytest.raises(SystemExit) as ended:
+        main(list(arguments))
+    assert ended.value.code == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert printed.err.count("\n") == 1
+    return printed.err
+
+
+@pytest.mark.parametrize("command", WITH_OUT)
+def test_an_empty_folder_name_is_not_the_current_folder(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    needed = ["somewhere"] if command == "report" else []
+    assert "--out must not be empty, got ''" in refused(capsys, command, *needed, "--out", "")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_an_empty_argument_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    assert "STORE must not be empty, got ''" in refused(capsys, "show", "")
