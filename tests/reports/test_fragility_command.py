@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,9 +15,11 @@ from browser import complaints, needs_chromium
 from showing import shows_itself
 
 from rockwobble.compare import Fragility, fragility, synthetic_motions
+from rockwobble.compare.metrics.order_statistics import Interval
 from rockwobble.compare.storage.manifest import Manifest, read_manifests, read_results
 from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.result import KIND, fragility_of, manifest_of, stored_fragility
+from rockwobble.compare.studies.fragility.tables import margin_of
 from rockwobble.models import Cylinder
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
@@ -150,6 +154,25 @@ def test_the_words_are_those_of_the_tables(found):
     assert "15 motions: made up, each scaled to 6 levels" in words
     # all uplift at the lowest level
     assert "| pier | recess model | < 1.5 |" in words
+
+
+@pytest.mark.parametrize(
+    ("ends", "words"),
+    [
+        ((0.97, 1.04), "equivalent within 4 %"),
+        ((1.0, 1.9), "undecided at 10 %: the interval reaches 90 %"),
+        ((1.0, np.inf), "undecided at 10 %: the interval has no end"),
+        ((1.2, 1.9), "not equivalent"),
+    ],
+)
+def test_a_sentence_calls_equivalent_what_its_table_does(found, ends, words):
+    ratio = Interval(value=1.0, low=ends[0], high=ends[1])
+    row = {**ratio.columns("ratio"), "within": margin_of(ratio), "verdict": ratio.about_one(0.1)}
+    table = found.contrasts.assign(**row)
+    page = fragility_page(dataclasses.replace(found, contrasts=table), Manifest(kind=KIND)).markdown()
+    said = re.findall(r"^- (.+) against (.+): \d\.\d\d \(.*?\), (.*)\.$", page, re.M)
+    assert len(said) > 3
+    assert {verdict for *_, verdict in said} == {words}
 
 
 def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
