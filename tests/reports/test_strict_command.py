@@ -36,3 +36,23 @@ def test_an_empty_folder_name_is_not_the_current_folder(
 
 def test_an_empty_argument_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     assert "STORE must not be empty, got ''" in refused(capsys, "show", "")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "text"),
+    [
+        (["compare", "--scale", "abc"], "abc"),
+        (["simulate", "--plane", "north"], "north"),
+        (["simulate", "--engine", "mujoco", "--time-step", "short"], "short"),
+        (["ensemble", "--members", "2.5"], "2.5"),
+        (["spectrum", "--sizes", "many"], "many"),
+        (["fragility", "--seed", "1e3"], "1e3"),
+        (["certify", "--time-step", "1e"], "1e"),
+    ],
+)
+def test_what_is_no_number_is_said(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], text: str
+) -> None:
+    said = refused(capsys, *arguments)
+    assert f"'{arguments[-2]}'" in said
+    assert said.endswith(f", got {text!r}\n")
