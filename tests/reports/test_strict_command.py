@@ -56,3 +56,23 @@ def test_what_is_no_number_is_said(
     said = refused(capsys, *arguments)
     assert f"'{arguments[-2]}'" in said
     assert said.endswith(f", got {text!r}\n")
+
+
+@pytest.mark.parametrize(
+    ("arguments", "name"),
+    [
+        (["simulate", "--engine", "mujoco", "--engine", "dart"], "--engine"),
+        (["compare", "--scale", "1", "--scale=2"], "--scale"),
+        (["certify", "--out", "a", "--out", "b"], "--out"),
+        (["validity", "--quick", "--quick"], "--quick"),
+    ],
+)
+def test_an_option_that_comes_twice_is_refused(
+    capsys: pytest.CaptureFixture[str], arguments: list[str], name: str
+) -> None:
+    assert refused(capsys, *arguments) == f"rockwobble: {name} is given twice\n"
+
+
+def test_what_may_be_repeated_stays_so(capsys: pytest.CaptureFixture[str]) -> None:
+    said = refused(capsys, "compare", "--engine", "mujoco", "--engine", "all")
+    assert "all stands alone, got mujoco and all" in said

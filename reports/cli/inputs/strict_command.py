@@ -9,9 +9,10 @@ from typer.core import TyperCommand
 
 
 class StrictCommand(TyperCommand):
-    """A command whose options take no empty text, and whose refusals say what was given.
+    """A command whose options take no empty text and come once, and whose refusals say what was given.
 
-    An empty folder would be the one the command is run in.
+    An empty folder would be the one the command is run in; of an option that comes twice the last would
+    count in silence. Options that may be repeated stay so.
     """
 
     def parse_args(self, ctx: Any, args: list[str]) -> list[str]:
@@ -20,23 +21,34 @@ class StrictCommand(TyperCommand):
         Raises
         ------
         UsageError
-            If a text is empty, or a value is none of its kind.
+            If a text is empty, an option comes twice, or a value is none of its kind.
         """
         given, _, order = self.make_parser(ctx).parse_args(args=list(args))
-        for option in [] if ctx.resilient_parsing else order:
-            texts = given.get(option.name)
-            for text in texts if isinstance(texts, list | tuple) else [texts]:
-                if isinstance(text, str) and not text.strip():
-                    ctx.fail(f"{_name(option)} must not be empty, got {text!r}")
+        if not ctx.resilient_parsing:  # not while a shell asks how a line could go on
+            _refuse_empty(ctx, given, order)
+            _refuse_twice(ctx, order)
         try:
             return super().parse_args(ctx, args)
         except typer.BadParameter as error:
-            text: str | None = given.get(getattr(error.param, "name", None))
-            said = text is None or text in error.message or ", got " in error.message
-            if not said:
+            text = given.get(getattr(error.param, "name", None) or "")
+            if isinstance(text, str) and text not in error.message and ", got " not in error.message:
                 # "Input should be a valid number, unable to parse string as a number"
                 error.message = f"{error.message.partition(', unable')[0]}, got {text!r}"
             raise
+
+
+def _refuse_empty(ctx: Any, given: dict[str, Any], order: list[Any]) -> None:
+    for option in order:
+        texts = given.get(option.name)
+        for text in texts if isinstance(texts, list | tuple) else [texts]:
+            if isinstance(text, str) and not text.strip():
+                ctx.fail(f"{_name(option)} must not be empty, got {text!r}")
+
+
+def _refuse_twice(ctx: Any, order: list[Any]) -> None:
+    for place, option in enumerate(order):
+        if option in order[:place] and not (option.multiple or option.is_eager):
+            ctx.fail(f"{_name(option)} is given twice")
 
 
 def _name(option: Any) -> str:
