@@ -22,6 +22,7 @@ from rockwobble.compare.studies.fragility.result import KIND, fragility_of, mani
 from rockwobble.compare.studies.fragility.tables import margin_of
 from rockwobble.models import Cylinder
 from rockwobble.models.records import p695
+from rockwobble.reports.cli import fragility as command
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.figures.picture import Band, Line
@@ -302,6 +303,28 @@ def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words)
     assert error.count("\n") == 1
     assert words in error
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--measure", "foo"], "an intensity must be one of peak_acceleration"),
+        (["--limit", "foo"], "a limit must be one of uplift"),
+        (["--model", "none"], "at least one method, got none"),
+        (["--model", "foo"], "a reduced model must be one of recess"),
+        (["--levels", "1,2", "--cloud", "1"], "got both"),
+        (["--levels", "2,1"], "levels must be positive and increase, got 2.0, 1.0"),
+        (["--margin", "0"], "margin must be positive"),
+    ],
+)
+def test_what_no_motion_is_needed_for_is_refused_before_any_is_made(
+    tmp_path: Path, monkeypatch, capsys, arguments, words
+):
+    monkeypatch.setattr(command, "motions_of", lambda *_: pytest.fail("motions were made"))
+    assert call("fragility", *arguments, "--out", str(tmp_path / "out")) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert words in printed.err
 
 
 def test_a_fragility_shows_itself(found):

@@ -81,7 +81,7 @@ class Plan:
             )
         for label, values in (("levels", self.levels), ("scales", self.scales)):
             if values is not None:
-                _require_increasing(label, values)
+                require_increasing(label, values)
         require_positive("step_factor", self.step_factor)
         if self.step_factor != 1.0 and not any(map(_has_default_step, self.methods)):
             raise ValueError(
@@ -184,7 +184,8 @@ def _has_default_step(method: Method) -> bool:
     return method.run is not None and method.run.engine is not None and method.run.time_step is None
 
 
-def _require_increasing(label: str, values: Sequence[float]) -> None:
+def require_increasing(label: str, values: Sequence[float]) -> None:
+    """Refuse levels or factors that are not positive, or do not increase."""
     found = [float(value) for value in values]
     good = all(math.isfinite(value) and value > 0.0 for value in found)
     if not found or not good or sorted(set(found)) != found:
