@@ -179,7 +179,8 @@ def fragility(
             require_asked(**asked)
             motions, source = motions_of(p695, records, synthetic, units, seed)
             for name, body in bodies.items():
-                print(f"{name}: R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}")
+                size = f"R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}"
+                print(f"{name}: {size}" if cylinder else size)
             print(f"Motions: {len(motions)}, {source}")
         from rockwobble.compare.studies.fragility.result import manifest_of
 

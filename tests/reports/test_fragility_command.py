@@ -176,6 +176,32 @@ def test_a_sentence_calls_equivalent_what_its_table_does(found, ends, words):
     assert {verdict for *_, verdict in said} == {words}
 
 
+def by_one_method(found: Fragility, **changes: Any) -> str:
+    runs = found.runs[(found.runs["method"] == "recess model") & (found.runs["cylinder"] == "pier")]
+    points = found.points[found.points["cylinder"] == "pier"]
+    about = {**found.about, "methods": {"recess model": METHODS["recess model"][1]}}
+    about["cylinders"] = {"pier": {"semidiagonal": 6.0, "tan_alpha": 0.2}}
+    one = fragility_of(runs.assign(**changes), points, about)
+    return " ".join(fragility_page(one, Manifest(kind=KIND)).markdown().split())
+
+
+def test_one_method_is_not_asked_whether_it_agrees(found):
+    words = by_one_method(found)
+    fit = found.fits.set_index(["cylinder", "method", "limit"]).loc["pier", "recess model", "overturned"]
+    assert "overturns a cylinder? pier; 15 motions" in words
+    ends = f"{fit['median']:.3g} ({fit['median_low']:.3g} to {fit['median_high']:.3g})"
+    assert f"**Median overturning intensity [-] (95 % interval): {ends} by recess model.**" in words
+    for nothing in ("do methods agree", "Ratios of the median", "All methods", "equivalent"):
+        assert nothing not in words
+
+
+def test_without_overturning_no_curve_is_spoken_of(found):
+    words = by_one_method(found, outcome="completed", peak_tilt=0.5)
+    assert "**Nothing overturns at these intensities.**" in words
+    assert "Nothing overturns, so there is no curve." in words
+    assert "No curve is contradicted" not in words
+
+
 def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
     ratios, pier, _ = pictures(found)
     assert [panel.title for panel in ratios.panels] == ["pier", "tower", "Mean of all cylinders"]
@@ -204,6 +230,15 @@ def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
 def test_the_page_is_drawn_quiet_and_no_wider_than_the_window(found, tmp_path):
     page = fragility_page(found, Manifest(kind=KIND)).html()
     assert complaints(page, tmp_path, figures=3 + 2 * 4) == []
+
+
+def test_a_cylinder_without_a_name_is_said_once(tmp_path, monkeypatch, capsys):
+    def enough(*_: Any, **__: Any) -> None:
+        raise ValueError("enough")
+
+    monkeypatch.setattr(command.rw, "fragility", enough, raising=False)
+    assert call("fragility", *SMALL, "--out", str(tmp_path)) == 2
+    assert capsys.readouterr().out.splitlines()[0] == "R = 6 m, tan alpha = 0.2"
 
 
 def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
