@@ -191,6 +191,11 @@ WORDS = {
 }
 
 
+def test_a_friction_that_would_have_to_be_infinite_does_not_exist():
+    text = sentence(Diagnostic(code="friction_needed", time=2.0, duration=0.5, size=math.inf, bound=1.0))
+    assert text == "the rim would slip at 2 s, for 0.5 s in all: no friction suffices"
+
+
 @pytest.mark.parametrize("code", CODES)
 def test_each_code_has_words_with_its_numbers(code):
     words, values = WORDS.get(code, ("", {}))
