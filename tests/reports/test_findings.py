@@ -6,13 +6,16 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from rockwobble.models import Diagnostic
+from rockwobble.compare import compare
+from rockwobble.models import Case, Cylinder, Diagnostic, GroundMotion, InitialState, Run, el_centro_1940
 from rockwobble.models.diagnostic import CODES, REASONS
+from rockwobble.reports.figures.comparison.view import case_views
 from rockwobble.reports.pages.comparison.findings import (
     Finding,
     counted_remarks,
     divergence_sentences,
     finding,
+    finding_sentences,
     headline,
     reason,
 )
@@ -119,6 +122,18 @@ def test_an_external_trajectory_cannot_diverge_too_early():
 def test_peaks_are_told_apart_only_where_they_differ():
     assert "Peak tilt is the same to 0.4 %" in said(peak_tilt=0.251)
     assert "Peak tilt is 0.3 alpha against 0.25 alpha." in said(peak_tilt=0.3)
+
+
+def test_a_peak_that_is_the_release_tells_nothing(no_engines):
+    def words(tilt: float, motion: GroundMotion | None) -> str:
+        no_engines()
+        pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+        case = Case(pier, motion, initial=InitialState(tilt * pier.alpha), duration=15.0)
+        (view,) = case_views(compare(case, runs=[Run("mujoco", "recess")]))
+        return " ".join(finding_sentences(view))
+
+    assert "eak tilt" not in words(0.5, None)
+    assert "Peak tilt is" in words(0.02, el_centro_1940())  # which the shaking raises
 
 
 def test_outcomes_that_are_no_traces():

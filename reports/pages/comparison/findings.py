@@ -13,6 +13,7 @@ from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
 from rockwobble.compare.runs.labels import REDUCED
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
+from rockwobble.models import Case
 from rockwobble.models.diagnostic import parted
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
@@ -22,6 +23,8 @@ from .external import external_sentences, scope, within
 
 WORDS = "comparison/findings.md.j2"
 _LISTED = 10
+# of the tilt at release, which an engine is given as a pose
+_SAME_TILT = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,6 +44,8 @@ class Finding:
         What agreement means, in words.
     end : float
         Up to when traces of different length are compared [s]; NaN where it is to the end.
+    released : bool
+        Whether the peak tilt of both is that of the release, which tells nothing of either.
     """
 
     row: Any
@@ -50,6 +55,7 @@ class Finding:
     reason: str
     bound: str
     end: float
+    released: bool = False
 
     @property
     def external(self) -> bool:
@@ -85,7 +91,17 @@ def findings(view: CaseView) -> Iterator[Finding]:
             ),
             bound=within(row) if row.support == EXTERNAL else "1 % of alpha",
             end=end if end < length * (1.0 - 1e-9) else math.nan,
+            released=_is_release(view.case, row.peak_tilt)
+            and _is_release(view.case, row.reference_peak_tilt),
         )
+
+
+def _is_release(case: Case, peak: float) -> bool:
+    """Whether a peak tilt [alpha] is the tilt at release."""
+    if case.initial is None:
+        return False
+    tilt = case.initial.tilt / case.cylinder.alpha
+    return abs(peak - tilt) <= _SAME_TILT * tilt
 
 
 def reason(row: Any, length: float, *, touched: bool = False) -> str:
