@@ -1,13 +1,26 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 from types import SimpleNamespace
 
 import pandas as pd
 import pytest
 
+from rockwobble import reduced
 from rockwobble.compare import compare
-from rockwobble.models import Case, Cylinder, Diagnostic, GroundMotion, InitialState, Run, el_centro_1940
+from rockwobble.compare.comparison import driver
+from rockwobble.compare.runs.execution import Job
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    Diagnostic,
+    GroundMotion,
+    InitialState,
+    Run,
+    Trace,
+    el_centro_1940,
+)
 from rockwobble.models.diagnostic import CODES, REASONS
 from rockwobble.reports.figures.comparison.view import case_views
 from rockwobble.reports.pages.comparison.findings import (
@@ -16,6 +29,7 @@ from rockwobble.reports.pages.comparison.findings import (
     divergence_sentences,
     finding,
     finding_sentences,
+    findings,
     headline,
     reason,
 )
@@ -103,6 +117,32 @@ def test_a_divergence_and_its_reason_follow_from_the_numbers(values, words):
     text = said(**values)
     assert "for 20.0 s from uplift or release (7 passes by upright), then they diverge" in text
     assert words in text
+
+
+# a release without rolling is planar, and the same by both models
+@pytest.mark.parametrize(
+    ("moved_by", "of_support"),
+    [({"initial": InitialState(0.1), "duration": 20.0}, False), ({"motion": el_centro_1940()}, True)],
+)
+def test_the_support_divides_only_what_its_models_tell_apart(monkeypatch, moved_by, of_support):
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+
+    def simulated(jobs: list[Job], **_: object) -> list[Trace]:  # by an engine that errs by 0.2 % in size
+        found = []
+        for job in jobs:
+            off = dataclasses.replace(pier, semidiagonal=6.0 if job.run.engine is None else 6.012)
+            trace = reduced.simulate(dataclasses.replace(job.case, cylinder=off), support=job.run.support)
+            given = {"case": job.case, "run": job.run, "contact_resolution": 2e-5, "time_step": 1e-4}
+            found.append(trace if job.run.engine is None else dataclasses.replace(trace, **given))
+        return found
+
+    monkeypatch.setattr(driver, "simulate_all", simulated)
+    (view,) = case_views(compare(Case(pier, **moved_by), runs=[Run("mujoco", "flat")]))
+    against_recess, own = findings(view)
+    assert against_recess.row.diverged
+    assert own.row.diverged
+    assert own.reason != "support"
+    assert against_recess.reason == ("support" if of_support else own.reason)
 
 
 def test_of_two_reduced_models_nothing_is_said_about_contact():

@@ -11,9 +11,11 @@ import pandas as pd
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
+from rockwobble.compare.metrics.agreement import AGREEMENT
 from rockwobble.compare.runs.labels import REDUCED
+from rockwobble.compare.traces.pair import make_pair
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
-from rockwobble.models import Case
+from rockwobble.models import Case, Run
 from rockwobble.models.diagnostic import parted
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
@@ -87,7 +89,10 @@ def findings(view: CaseView) -> Iterator[Finding]:
             uplifted=moved[0],
             reference_uplifted=moved[1],
             reason=reason(
-                row, length, touched=any(fact.code == "wall_contact" for fact in view.facts[row.run])
+                row,
+                length,
+                touched=any(fact.code == "wall_contact" for fact in view.facts[row.run]),
+                models_differ=_models_differ(view, row),
             ),
             bound=within(row) if row.support == EXTERNAL else "1 % of alpha",
             end=end if end < length * (1.0 - 1e-9) else math.nan,
@@ -104,10 +109,32 @@ def _is_release(case: Case, peak: float) -> bool:
     return abs(peak - tilt) <= _SAME_TILT * tilt
 
 
-def reason(row: Any, length: float, *, touched: bool = False) -> str:
-    """Return why a run diverges from its reference, see `Finding`; `touched` says whether it met a wall."""
+def _models_differ(view: CaseView, row: Any) -> bool:
+    """Whether half of what ends an agreement lies between the models of recess and flat ground by then."""
+    traces = view.traces
+    models = [traces.get(str(Run(None, support))) for support in ("recess", "flat")]
+    if not row.diverged or row.reference not in traces or models[0] is None or models[1] is None:
+        return True
+    pair = make_pair(view.case.cylinder, models[0], models[1], until=view.divergence(row))
+    return bool((abs(pair.tilt_difference) > 0.5 * AGREEMENT).any())
+
+
+def reason(row: Any, length: float, *, touched: bool = False, models_differ: bool = True) -> str:
+    """Return why a run diverges from its reference, see `Finding`.
+
+    Parameters
+    ----------
+    row : namedtuple
+        Of the summary.
+    length : float
+        Of the run [s].
+    touched : bool, optional
+        Whether the run met a wall.
+    models_differ : bool, optional
+        Whether the models of recess and flat ground differ by then: else it is not for the support.
+    """
     against_recess = row.reference_support == "recess"
-    if row.support == "flat" and against_recess:
+    if row.support == "flat" and against_recess and models_differ:
         return "support"
     if row.support == "ring" and row.reference_support != "ring" and (against_recess or touched):
         return "walls"
