@@ -32,9 +32,11 @@ def certify(method: Method, findings: Iterable[Finding]) -> Certificate:
     Raises
     ------
     ValueError
-        If a check failed.
+        If a check failed, or none bears a claim out.
     """
     claims, open_points = claims_of(findings)
+    if not claims:
+        raise ValueError("a certificate needs a claim, and none of the checks makes one")
     return {
         "kind": KIND,
         "format": FORMAT,

@@ -16,6 +16,7 @@ _BETWEEN = frozenset({"traces", "agreement"})
 _OF_MODELS = frozenset(
     {"equations", "conserved", "exact", "rest", "invariance", "properties", "order", "residual"}
 )
+CLAIMING = _OF_MODELS | _BETWEEN
 DOMAINS = {
     "equations": "random states, tan alpha 0.1 to 3",
     "traces": "cases of the suite",
@@ -91,7 +92,7 @@ def claims_of(findings: Iterable[Finding]) -> tuple[list[Claim], list[str]]:
             raise ValueError(f"a check failed, and nothing is certified: {finding.name}")
         if finding.outcome == NOT_RUN:
             open_points.append(f"{finding.name}: {finding.note}")
-        elif finding.layer in _OF_MODELS | _BETWEEN and math.isfinite(finding.value):
+        elif finding.layer in CLAIMING and math.isfinite(finding.value):
             claims.append(
                 Claim(
                     quantity=finding.name,

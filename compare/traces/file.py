@@ -16,6 +16,9 @@ x, y, z        m, cm, mm    mass centre from the original base centre, which mov
                             m where the header is silent
 ============== ============ =======================================================================
 
+The run.csv of `rockwobble simulate` is read as it is: its names have one unit each, its rolling angle is the
+azimuth, and its centre x, y and z.
+
 There must be time, and one of: tilt, with or without azimuth; the quaternions; x, y and z. What is not there
 is not compared. Other columns are ignored. A line with a time and nothing else is a sample that was lost.
 """
@@ -24,7 +27,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -44,6 +47,16 @@ _UNITS = {
     **{name: {"m": 1.0, "cm": 1e-2, "mm": 1e-3} for name in ("x", "y", "z")},
 }
 _SILENT = {"time": "s", "x": "m", "y": "m", "z": "m", "qw": "", "qx": "", "qy": "", "qz": ""}
+# what stands in the header of the table of a run of this project, and what it is here
+_OWN = {
+    "time": "time [s]",
+    "tilt": "tilt [rad]",
+    "rolling_angle": "azimuth [rad]",
+    "centre_x": "x [m]",
+    "centre_y": "y [m]",
+    "centre_z": "z [m]",
+}
+_ROOM, _LONGEST = 80, 40  # of a list of names in a message, and of one of them
 QUATERNION = ("qw", "qx", "qy", "qz")
 POSITION = ("x", "y", "z")
 
@@ -92,6 +105,19 @@ class Columns:
         """Return the file as if its columns were in other units: values times the factor of their name."""
         values = {name: column * factors.get(name, 1.0) for name, column in self.values.items()}
         return replace(self, values=values)
+
+
+def listed(names: Sequence[str]) -> str:
+    """Return names for a message, as many as fit and how many more there are.
+
+    Examples
+    --------
+    >>> listed(["strain", "force"]), listed(["strain"] * 20)[-30:]
+    ('strain, force', 'strain, strain and 10 more')
+    """
+    short = [name if len(name) <= _LONGEST else f"{name[: _LONGEST - 3]}..." for name in names]
+    count = next((n for n in range(len(short), 1, -1) if len(", ".join(short[:n])) <= _ROOM), len(short[:1]))
+    return ", ".join(short[:count]) + (f" and {len(short) - count} more" if count < len(short) else "")
 
 
 def read_columns(path: Path, angle_unit: str | None = None) -> Columns:
@@ -159,7 +185,9 @@ def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
 def _known_columns(path: Path, header: list[str], angle_unit: str | None) -> dict[str, tuple[int, float]]:
     """Return place and factor to SI units of each known column, by name."""
     found: dict[str, tuple[int, float]] = {}
-    for at, title in enumerate(header):
+    own = set(_OWN) <= set(header)
+    for at, given in enumerate(header):
+        title = _OWN.get(given, given) if own else given
         match = re.fullmatch(r"(\w+)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?", title)
         name = match[1].lower() if match else ""
         if match is None or name not in _UNITS:
@@ -190,7 +218,7 @@ def _require_enough(path: Path, names: list[str], header: list[str]) -> None:
     if "time" not in names or not {"tilt", "qw", "x"} & set(names):
         raise ValueError(
             f"{path.name} must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x, y and z, "
-            f"got {', '.join(title for title in header if title)[:80] or 'none'}"
+            f"got {listed([title for title in header if title]) or 'none'}"
         )
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Cylinder
 
 from .azimuth import unwrapped
-from .file import POSITION, QUATERNION, Array, Columns
+from .file import POSITION, QUATERNION, Array, Columns, listed
 from .scatter import scatter
 
 # tilt below which the cylinder stands, in units of alpha; a measured azimuth means nothing there
@@ -147,7 +147,7 @@ def poses_of(columns: Columns, case: Case, *, noise: float | None = None, time_o
     if columns.lost:
         notes.append(f"{columns.lost} lost sample{'s are' if columns.lost > 1 else ' is'} left out")
     if columns.ignored:
-        notes.append(f"columns not read: {', '.join(columns.ignored)[:80]}")
+        notes.append(f"columns not read: {listed(columns.ignored)}")
     return Poses(
         time=time,
         tilt=tilt,

@@ -147,6 +147,10 @@ def _external(
         return []
     if len(cases) > 1:
         raise ValueError(f"--trajectory belongs to one case, got a suite of {len(cases)}")
+    if noise_deg is not None and not 0.0 < noise_deg < 90.0:
+        raise ValueError(f"--trajectory-noise-deg must be above 0 and below 90 [deg], got {noise_deg:g}")
+    if not math.isfinite(offset):
+        raise ValueError(f"--trajectory-offset must be finite [s], got {offset:g}")
     noise = None if noise_deg is None else math.radians(noise_deg)
     external = [rw.External(path=path, angle_unit=angles, time_offset=offset, noise=noise) for path in paths]
     for each in external:  # whatever is wrong with a file is said before anything runs

@@ -23,12 +23,14 @@ from .inputs.suite_choice import chosen_runs, refuse_problem_options, without_mi
 
 _MEMBERS = {"members", "perturbation", "synthetic", "p695"}  # options that state them
 
-Members = Annotated[int, typer.Option(help="Number of members, where no suite gives them.")]
+Members = Annotated[
+    int, typer.Option(help="Number of members, where no suite gives them.", callback=options.whole(2))
+]
 Perturbation = Annotated[
     float,
     typer.Option(
         help="Relative standard deviation of tilt and rolling rate at release, or of the two components "
-        "of the ground motion."
+        "of the ground motion; at most 0.1."
     ),
 ]
 Synthetic = Annotated[
@@ -74,6 +76,8 @@ def ensemble(
     """
     with interruptible(out):
         with user_input():
+            from rockwobble.compare.studies.ensemble.members import require_perturbation
+
             rc.require_writable(out)
             refuse_options_of_engines(context, engine)
             stated: rw.Case | rw.Suite | list[rw.Case]
@@ -90,6 +94,8 @@ def ensemble(
                 # each engine and its own model, and a perturbed copy of that
                 require_feasible([case], [rw.Run(None, "recess"), *runs], members=members, samples=False)
                 motions = _motions(case, members, synthetic, p695, seed)
+                if not motions:
+                    require_perturbation(perturbation)
                 # named by the motion alone: the others are all the same
                 each = [dataclasses.replace(case, name=motion.name, motion=motion) for motion in motions]
                 stated = each or case

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -146,6 +146,9 @@ def fragility(
 
     with interruptible(out):
         with user_input():
+            from rockwobble.compare.studies.fragility.limits import DEFAULT_LIMITS
+            from rockwobble.compare.studies.fragility.study import require_asked
+
             rc.require_writable(out)
             if cylinder:
                 refuse(
@@ -158,15 +161,25 @@ def fragility(
             if model and not {"planar-x", "planar-y", "worse-plane"} & set(model):
                 refuse(context, {"restitution"}, "belongs to planar models, give --model planar-x or another")
             bodies = cylinders_of(cylinder, semidiagonal, tan_alpha)
-            motions, source = motions_of(p695, records, synthetic, units, seed)
             methods = methods_of(
                 next(iter(bodies.values())), model, engine, support, settings(settings_given), time_step
             )
-            states = None if limit is None else tuple(limit)
+            asked: dict[str, Any] = {
+                "methods": methods,
+                "measure": measure,
+                "levels": None if levels is None else _levels(levels),
+                "scales": None if cloud is None else values_of("--cloud", cloud),
+                "limits": DEFAULT_LIMITS if limit is None else tuple(limit),
+                "margin": margin,
+                "restitution": restitution_of(restitution),
+                "resamples": resamples,
+            }
+            require_asked(**asked)
+            motions, source = motions_of(p695, records, synthetic, units, seed)
             for name, body in bodies.items():
-                print(f"{name}: R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}")
+                size = f"R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}"
+                print(f"{name}: {size}" if cylinder else size)
             print(f"Motions: {len(motions)}, {source}")
-        from rockwobble.compare.studies.fragility.limits import DEFAULT_LIMITS
         from rockwobble.compare.studies.fragility.result import manifest_of
 
         from ..pages.fragility import count_files, fragility_page
@@ -175,18 +188,11 @@ def fragility(
             found = rw.fragility(
                 bodies,
                 motions,
-                methods=methods,
-                measure=measure,
-                levels=None if levels is None else _levels(levels),
-                scales=None if cloud is None else values_of("--cloud", cloud),
-                limits=DEFAULT_LIMITS if states is None else states,
-                margin=margin,
+                **asked,
                 period=period,
-                restitution=restitution_of(restitution),
                 gravity=gravity,
                 friction=friction,
                 step_factor=step_factor,
-                resamples=resamples,
                 seed=seed,
                 workers=workers,
                 scheduler=scheduler,

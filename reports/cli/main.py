@@ -19,6 +19,7 @@ from .ensemble import ensemble
 from .extremes import extremes
 from .figures import figures
 from .fragility import fragility
+from .inputs.strict_command import StrictCommand
 from .results.report import report
 from .results.show import show
 from .results.view import view
@@ -35,25 +36,26 @@ app = typer.Typer(
     rich_markup_mode="rich",
     pretty_exceptions_enable=False,
 )
-app.command(epilog="Example: rockwobble compare --semidiagonal 10 --tan-alpha 0.1 --engine mujoco")(compare)
-app.command(epilog="Example: rockwobble advise --record-x EW.AT2 --record-y NS.AT2 --friction 0.5")(advise)
-app.command(epilog="Example: rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8")(
-    simulate
-)
-app.command(epilog="Example: rockwobble spectrum --tan-alpha 0.2 --sizes 50 --intensities 50")(spectrum)
-app.command(epilog="Example: rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid")(sweep)
-app.command(epilog="Example: rockwobble show rockwobble-sweep")(show)
-app.command(epilog="Example: rockwobble report rockwobble-compare")(report)
-app.command(epilog="Example: rockwobble view --scale 2 --support flat")(view)
-app.command(epilog="Example: rockwobble ensemble --synthetic 3 --members 40 --engine mujoco")(ensemble)
-app.command(epilog="Example: rockwobble fragility --p695 --cylinder pier=6,0.2 --engine mujoco")(fragility)
-app.command(epilog="Example: rockwobble check --only equations --only conserved")(check)
-app.command(epilog="Example: rockwobble certify --engine mujoco --out mujoco.json")(certify)
-app.command(epilog="Example: rockwobble verify mujoco.json")(verify)
-app.command(epilog="Example: rockwobble validity --quick --out validity")(validity)
-app.command(epilog="Example: rockwobble figures --out paper")(figures)
-app.command(epilog="Example: rockwobble tradeoff --quick --out tradeoff")(tradeoff)
-app.command(epilog="Example: rockwobble extremes --quick --out extremes")(extremes)
+for _command, _example in (
+    (compare, "rockwobble compare --semidiagonal 10 --tan-alpha 0.1 --engine mujoco"),
+    (advise, "rockwobble advise --record-x EW.AT2 --record-y NS.AT2 --friction 0.5"),
+    (simulate, "rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8"),
+    (spectrum, "rockwobble spectrum --tan-alpha 0.2 --sizes 50 --intensities 50"),
+    (sweep, "rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid"),
+    (show, "rockwobble show rockwobble-sweep"),
+    (report, "rockwobble report rockwobble-compare"),
+    (view, "rockwobble view --scale 2 --support flat"),
+    (ensemble, "rockwobble ensemble --synthetic 3 --members 40 --engine mujoco"),
+    (fragility, "rockwobble fragility --p695 --cylinder pier=6,0.2 --engine mujoco"),
+    (check, "rockwobble check --only equations --only conserved"),
+    (certify, "rockwobble certify --engine mujoco --out mujoco.json"),
+    (verify, "rockwobble verify mujoco.json"),
+    (validity, "rockwobble validity --quick --out validity"),
+    (figures, "rockwobble figures --out paper"),
+    (tradeoff, "rockwobble tradeoff --quick --out tradeoff"),
+    (extremes, "rockwobble extremes --quick --out extremes"),
+):
+    app.command(cls=StrictCommand, epilog=f"Example: {_example}")(_command)
 
 # typer brings its own click in some versions and imports click in others: one base class, two homes
 _USAGE_ERROR: Any = next(base for base in typer.BadParameter.__mro__ if base.__name__ == "ClickException")

@@ -107,8 +107,11 @@ def spectrum(
 
         from ..pages.spectrum import spectrum_page
 
-        for line in describe(case)[:2]:
-            print(line)
+        print(
+            f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(case.cylinder.alpha):.4g} deg), "
+            f"{sizes} sizes from R = {smallest:g} to {largest:g} m"
+        )
+        print(describe(case)[1])  # the ground: the threshold of uplift is that of all sizes
         with shown_progress("series") as tell:
             found = overturning_spectrum(
                 tan_alpha,

@@ -3,7 +3,8 @@
 A template is given plain values and says the words. In it stand ``{{ picture("name") }}``,
 ``{{ table(rows, [["key", "heading [unit]", ".3g"], ...]) }}`` and ``{{ block("name") }}``, each alone in a
 paragraph; numbers in sentences are ``{{ value | number(".3g") }}``, commands ``{{ command | code }}``.
-`output` is "terminal", "markdown" or "html" where one of the three is to say more or less.
+`output` is "terminal", "markdown" or "html" where one of the three is to say more or less, and
+`shows("key")` whether a table above has room for a column that a legend is to explain.
 """
 
 from __future__ import annotations
@@ -120,16 +121,17 @@ class Page:
         console = console or Console()
         if not console.is_terminal:
             console.width = max(console.width, _LEAST_WIDTH)
-        for part in self._parts("terminal"):
+        for part in self._parts("terminal", console.width):
             if isinstance(part, Table):
                 console.print(part.rich(console.width))
             elif isinstance(part, str) and not isinstance(part, Safe):
                 console.print(Markdown(part), highlight=False)
                 console.print()
 
-    def _parts(self, output: Output) -> list[str | Picture | Table | Safe]:
+    def _parts(self, output: Output, width: int = 0) -> list[str | Picture | Table | Safe]:
         """Return the rendered template, cut where a picture, a table or a block stands."""
         things: list[Picture | Table | Safe] = []
+        keys: set[str] = set()
         pictures = {picture.name: picture for picture in self.pictures}
 
         def place(thing: Picture | Table | Safe) -> Safe:
@@ -140,7 +142,10 @@ class Page:
             rows: Iterable[Row], columns: Sequence[Sequence[str]], group: str = "", folded: bool = False
         ) -> Safe:
             made = Table(columns=columns_of(columns), rows=list(rows), group=group, folded=folded)
-            return place(made) if made.rows else Safe("")
+            if not made.rows:
+                return Safe("")
+            keys.update(column.key for column in (made.shown(width) if width else made.columns))
+            return place(made)
 
         text = (
             _environment()
@@ -152,6 +157,7 @@ class Page:
                     "picture": lambda name: place(pictures[name]),
                     "block": lambda name: place(Safe(self.blocks[name])) if output == "html" else "",
                     "table": table,
+                    "shows": keys.__contains__,
                 }
             )
         )

@@ -149,14 +149,19 @@ class Table:
             found.append(f"<{kind}{scope}{mark}>{html.escape(cell)}</{kind}>")
         return f"<tr>{''.join(found)}</tr>"
 
-    def rich(self, width: int) -> RichTable:
-        """Return the table for a terminal of so many columns: what is wide only if there is room for it."""
+    def shown(self, width: int) -> Sequence[Column]:
+        """Return the columns that a terminal of so many columns shows: what is wide only if it has room."""
         from rich.console import Console
 
-        whole = self._rich(self.columns)
-        needed = Console(width=10_000).measure(whole).maximum
         narrow = [column for column in self.columns if not column.wide]
-        return whole if needed <= width or len(narrow) == len(self.columns) else self._rich(narrow)
+        if len(narrow) == len(self.columns):
+            return self.columns
+        needed = Console(width=10_000).measure(self._rich(self.columns)).maximum
+        return self.columns if needed <= width else narrow
+
+    def rich(self, width: int) -> RichTable:
+        """Return the table for a terminal of so many columns."""
+        return self._rich(self.shown(width))
 
     def _rich(self, columns: Sequence[Column]) -> RichTable:
         from rich import box

@@ -174,3 +174,26 @@ def test_columns_that_are_not_read_are_said(save):
     trajectory = read_trajectory(save(GOOD.replace("azimuth", "heading")), RELEASE)
     assert measurement(trajectory).poses.told == ("tilt",)
     assert "columns not read: heading [deg]" in notes(trajectory)
+
+
+def test_the_samples_of_a_run_of_this_project_are_read_as_they_are(tmp_path):
+    run = reduced.simulate(RELEASE)
+    run.to_frame().to_csv(tmp_path / "run.csv", index=False)
+    found = read_trajectory(tmp_path / "run.csv", RELEASE)
+    assert found.tilt == pytest.approx(run.tilt, abs=ROUNDING)
+    assert found.rolling_angle == pytest.approx(run.rolling_angle, abs=ROUNDING)
+    assert found.centre_of_mass == pytest.approx(run.centre_of_mass, abs=ROUNDING)
+
+
+def test_columns_that_are_not_read_are_named_whole(tmp_path):
+    more = [f"gauge_{number}" for number in range(30)]
+    path = tmp_path / "can.csv"
+    head, *samples = GOOD.splitlines()
+    path.write_text("\n".join([",".join([head, *more]), *(line + ",0" * len(more) for line in samples)]))
+    said = notes(read_trajectory(path, RELEASE)).removeprefix("columns not read: ")
+    listed, _, rest = said.partition(" and ")
+    assert set(listed.split(", ")) <= set(more)
+    assert rest == f"{len(more) - len(listed.split(', '))} more"
+    path.write_text("time [s]," + ",".join(more) + "\n0" + ",0" * len(more))
+    with pytest.raises(ValueError, match=r", got time \[s\], gauge_0, .*, gauge_\d+ and \d+ more$"):
+        read_trajectory(path, RELEASE)

@@ -74,6 +74,22 @@ def test_verify_answers_with_one_word_and_its_exit_code(
     assert run("verify", "nowhere.json") == 2
 
 
+@pytest.mark.parametrize("layers", [["metrics"], ["conserved", "records", "metrics"]])
+def test_layers_without_claims_are_refused(
+    run: Run, tmp_path: Path, capsys: pytest.CaptureFixture[str], layers: list[str]
+) -> None:
+    assert run("certify", *(word for layer in layers for word in ("--only", layer))) == 2
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert f"got {', '.join(layer for layer in layers if layer != 'conserved')}\n" in said
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_nothing_is_certified_without_a_claim() -> None:
+    with pytest.raises(ValueError, match="a certificate needs a claim"):
+        certificate_package.certify(certificate_package.reduced_method(), [])
+
+
 def test_bad_input_is_said_before_anything_runs(run: Run) -> None:
     assert run("certify", "--time-step", "1e-4") == 2
     assert run("certify", "--only", "none") == 2

@@ -209,13 +209,14 @@ def test_a_suite_keeps_its_runs_beside_options(tmp_path, monkeypatch):
         (["--engine", "mujoco"], "'--engine': none stands alone, got mujoco and none"),
         (["--engine", "all"], "all is for compare; name each engine here, or none"),
         (["--seed", "-1"], "'--seed': must be at least 0, got -1"),
-        (["--members", "1"], "at least 2 members"),
+        (["--members", "1"], "'--members': must be at least 2, got 1"),
         (["--perturbation", "1"], "perturbation must be above 0 and at most 0.1"),
     ],
 )
 def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words):
     assert call("ensemble", *arguments, "--engine", "none", "--out", str(tmp_path / "out")) == 2
-    error = capsys.readouterr().err
-    assert error.count("\n") == 1
-    assert words in error
+    printed = capsys.readouterr()
+    assert printed.out == ""  # nothing of members that there will not be
+    assert printed.err.count("\n") == 1
+    assert words in printed.err
     assert not (tmp_path / "out").exists()

@@ -1,18 +1,35 @@
 from __future__ import annotations
 
+import dataclasses
 import math
 from types import SimpleNamespace
 
 import pandas as pd
 import pytest
 
-from rockwobble.models import Diagnostic
+from rockwobble import reduced
+from rockwobble.compare import compare
+from rockwobble.compare.comparison import driver
+from rockwobble.compare.runs.execution import Job
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    Diagnostic,
+    GroundMotion,
+    InitialState,
+    Run,
+    Trace,
+    el_centro_1940,
+)
 from rockwobble.models.diagnostic import CODES, REASONS
+from rockwobble.reports.figures.comparison.view import case_views
 from rockwobble.reports.pages.comparison.findings import (
     Finding,
     counted_remarks,
     divergence_sentences,
     finding,
+    finding_sentences,
+    findings,
     headline,
     reason,
 )
@@ -102,6 +119,32 @@ def test_a_divergence_and_its_reason_follow_from_the_numbers(values, words):
     assert words in text
 
 
+# a release without rolling is planar, and the same by both models
+@pytest.mark.parametrize(
+    ("moved_by", "of_support"),
+    [({"initial": InitialState(0.1), "duration": 20.0}, False), ({"motion": el_centro_1940()}, True)],
+)
+def test_the_support_divides_only_what_its_models_tell_apart(monkeypatch, moved_by, of_support):
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+
+    def simulated(jobs: list[Job], **_: object) -> list[Trace]:  # by an engine that errs by 0.2 % in size
+        found = []
+        for job in jobs:
+            off = dataclasses.replace(pier, semidiagonal=6.0 if job.run.engine is None else 6.012)
+            trace = reduced.simulate(dataclasses.replace(job.case, cylinder=off), support=job.run.support)
+            given = {"case": job.case, "run": job.run, "contact_resolution": 2e-5, "time_step": 1e-4}
+            found.append(trace if job.run.engine is None else dataclasses.replace(trace, **given))
+        return found
+
+    monkeypatch.setattr(driver, "simulate_all", simulated)
+    (view,) = case_views(compare(Case(pier, **moved_by), runs=[Run("mujoco", "flat")]))
+    against_recess, own = findings(view)
+    assert against_recess.row.diverged
+    assert own.row.diverged
+    assert own.reason != "support"
+    assert against_recess.reason == ("support" if of_support else own.reason)
+
+
 def test_of_two_reduced_models_nothing_is_said_about_contact():
     models = {"run": "planar model", "engine": "reduced", "contact_resolution": math.nan, "predicted_by": ""}
     text = said(**models)
@@ -119,6 +162,18 @@ def test_an_external_trajectory_cannot_diverge_too_early():
 def test_peaks_are_told_apart_only_where_they_differ():
     assert "Peak tilt is the same to 0.4 %" in said(peak_tilt=0.251)
     assert "Peak tilt is 0.3 alpha against 0.25 alpha." in said(peak_tilt=0.3)
+
+
+def test_a_peak_that_is_the_release_tells_nothing(no_engines):
+    def words(tilt: float, motion: GroundMotion | None) -> str:
+        no_engines()
+        pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+        case = Case(pier, motion, initial=InitialState(tilt * pier.alpha), duration=15.0)
+        (view,) = case_views(compare(case, runs=[Run("mujoco", "recess")]))
+        return " ".join(finding_sentences(view))
+
+    assert "eak tilt" not in words(0.5, None)
+    assert "Peak tilt is" in words(0.02, el_centro_1940())  # which the shaking raises
 
 
 def test_outcomes_that_are_no_traces():
@@ -189,6 +244,11 @@ WORDS = {
     "missed_pass": ("2 near passes fell between two samples, first at 2 s", {"size": 2}),
     "note": ("positions are in mm", {"detail": "positions are in mm"}),
 }
+
+
+def test_a_friction_that_would_have_to_be_infinite_does_not_exist():
+    text = sentence(Diagnostic(code="friction_needed", time=2.0, duration=0.5, size=math.inf, bound=1.0))
+    assert text == "the rim would slip at 2 s, for 0.5 s in all: no friction suffices"
 
 
 @pytest.mark.parametrize("code", CODES)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +15,14 @@ from browser import complaints, needs_chromium
 from showing import shows_itself
 
 from rockwobble.compare import Fragility, fragility, synthetic_motions
+from rockwobble.compare.metrics.order_statistics import Interval
 from rockwobble.compare.storage.manifest import Manifest, read_manifests, read_results
 from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.result import KIND, fragility_of, manifest_of, stored_fragility
+from rockwobble.compare.studies.fragility.tables import margin_of
 from rockwobble.models import Cylinder
 from rockwobble.models.records import p695
+from rockwobble.reports.cli import fragility as command
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.figures.picture import Band, Line
@@ -152,6 +157,51 @@ def test_the_words_are_those_of_the_tables(found):
     assert "| pier | recess model | < 1.5 |" in words
 
 
+@pytest.mark.parametrize(
+    ("ends", "words"),
+    [
+        ((0.97, 1.04), "equivalent within 4 %"),
+        ((1.0, 1.9), "undecided at 10 %: the interval reaches 90 %"),
+        ((1.0, np.inf), "undecided at 10 %: the interval has no end"),
+        ((1.2, 1.9), "not equivalent"),
+    ],
+)
+def test_a_sentence_calls_equivalent_what_its_table_does(found, ends, words):
+    ratio = Interval(value=1.0, low=ends[0], high=ends[1])
+    row = {**ratio.columns("ratio"), "within": margin_of(ratio), "verdict": ratio.about_one(0.1)}
+    table = found.contrasts.assign(**row)
+    page = fragility_page(dataclasses.replace(found, contrasts=table), Manifest(kind=KIND)).markdown()
+    said = re.findall(r"^- (.+) against (.+): \d\.\d\d \(.*?\), (.*)\.$", page, re.M)
+    assert len(said) > 3
+    assert {verdict for *_, verdict in said} == {words}
+
+
+def by_one_method(found: Fragility, **changes: Any) -> str:
+    runs = found.runs[(found.runs["method"] == "recess model") & (found.runs["cylinder"] == "pier")]
+    points = found.points[found.points["cylinder"] == "pier"]
+    about = {**found.about, "methods": {"recess model": METHODS["recess model"][1]}}
+    about["cylinders"] = {"pier": {"semidiagonal": 6.0, "tan_alpha": 0.2}}
+    one = fragility_of(runs.assign(**changes), points, about)
+    return " ".join(fragility_page(one, Manifest(kind=KIND)).markdown().split())
+
+
+def test_one_method_is_not_asked_whether_it_agrees(found):
+    words = by_one_method(found)
+    fit = found.fits.set_index(["cylinder", "method", "limit"]).loc["pier", "recess model", "overturned"]
+    assert "overturns a cylinder? pier; 15 motions" in words
+    ends = f"{fit['median']:.3g} ({fit['median_low']:.3g} to {fit['median_high']:.3g})"
+    assert f"**Median overturning intensity [-] (95 % interval): {ends} by recess model.**" in words
+    for nothing in ("do methods agree", "Ratios of the median", "All methods", "equivalent"):
+        assert nothing not in words
+
+
+def test_without_overturning_no_curve_is_spoken_of(found):
+    words = by_one_method(found, outcome="completed", peak_tilt=0.5)
+    assert "**Nothing overturns at these intensities.**" in words
+    assert "Nothing overturns, so there is no curve." in words
+    assert "No curve is contradicted" not in words
+
+
 def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
     ratios, pier, _ = pictures(found)
     assert [panel.title for panel in ratios.panels] == ["pier", "tower", "Mean of all cylinders"]
@@ -180,6 +230,15 @@ def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):
 def test_the_page_is_drawn_quiet_and_no_wider_than_the_window(found, tmp_path):
     page = fragility_page(found, Manifest(kind=KIND)).html()
     assert complaints(page, tmp_path, figures=3 + 2 * 4) == []
+
+
+def test_a_cylinder_without_a_name_is_said_once(tmp_path, monkeypatch, capsys):
+    def enough(*_: Any, **__: Any) -> None:
+        raise ValueError("enough")
+
+    monkeypatch.setattr(command.rw, "fragility", enough, raising=False)
+    assert call("fragility", *SMALL, "--out", str(tmp_path)) == 2
+    assert capsys.readouterr().out.splitlines()[0] == "R = 6 m, tan alpha = 0.2"
 
 
 def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
@@ -279,6 +338,28 @@ def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words)
     assert error.count("\n") == 1
     assert words in error
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["--measure", "foo"], "an intensity must be one of peak_acceleration"),
+        (["--limit", "foo"], "a limit must be one of uplift"),
+        (["--model", "none"], "at least one method, got none"),
+        (["--model", "foo"], "a reduced model must be one of recess"),
+        (["--levels", "1,2", "--cloud", "1"], "got both"),
+        (["--levels", "2,1"], "levels must be positive and increase, got 2.0, 1.0"),
+        (["--margin", "0"], "margin must be positive"),
+    ],
+)
+def test_what_no_motion_is_needed_for_is_refused_before_any_is_made(
+    tmp_path: Path, monkeypatch, capsys, arguments, words
+):
+    monkeypatch.setattr(command, "motions_of", lambda *_: pytest.fail("motions were made"))
+    assert call("fragility", *arguments, "--out", str(tmp_path / "out")) == 2
+    printed = capsys.readouterr()
+    assert printed.out == ""
+    assert words in printed.err
 
 
 def test_a_fragility_shows_itself(found):

@@ -29,6 +29,8 @@ TEMPLATE = """
 {{ table(rows, [["name", "run", "words"], ["peak", "peak [α]", ".2f"], ["verdict", "verdict", "tag"],
                 ["note", "note", "words", "wide"]], group="case") }}
 
+peak: the largest.{% if shows("note") %} note: by hand.{% endif %}
+
 {% if output == "html" %}
 {{ block("player") }}
 {% endif %}
@@ -137,3 +139,15 @@ def test_folded_groups_open_one_by_one():
 )
 def test_numbers_in_words(value, form, said):
     assert number(value, form) == said
+
+
+def test_a_legend_explains_the_columns_that_are_shown(page):
+    def printed(width: int) -> str:
+        screen = io.StringIO()
+        page.show(Console(file=screen, width=width, force_terminal=True))
+        return screen.getvalue()
+
+    for text in (page.markdown(), page.html(), printed(150)):
+        assert "note: by hand." in text
+    assert "peak: the largest." in printed(60)
+    assert "note: by hand." not in printed(60)

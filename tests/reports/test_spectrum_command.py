@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import io
+import math
 from pathlib import Path
 
 import numpy as np
@@ -51,7 +52,8 @@ def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, caps
     coarse = ["--search-step", "0.4"]
     assert call(*SMALL, *coarse, "--tan-alpha", "0.2", "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
-    assert "R = 20 m" in printed
+    assert "Cylinders: tan alpha = 0.2 (alpha = 11.31 deg), 4 sizes from R = 0.5 to 20 m" in printed
+    assert "b = " not in printed  # of which of the sizes?
     assert "Planar analysis is unconservative in" in printed
     assert "in steps down to 0.4 where the tilt changes fast" in printed
     written = PAGES | {f"{name}.parquet" for name in TABLES} | {"manifest.json"}
@@ -169,6 +171,35 @@ def test_a_spectrum_without_overturning_says_how_it_was_searched(spectrum):
     assert "overturns in 0 % of 144 cells" in words
     assert "searched from the threshold of uplift up (1 g tan α in 3D), in steps down to 0.2" in words
     assert "stands again" not in words
+
+
+def with_safe(found: OverturningSpectrum, cells: list[tuple[int, int]]) -> OverturningSpectrum:
+    """Overturned from the fourth intensity on, but in some cells."""
+    tilt = np.full((12, 12), math.inf)
+    tilt[:, :3] = 0.1
+    for cell in cells:
+        tilt[cell] = 0.1
+    edge = np.full(12, found.intensities[3])
+    return dataclasses.replace(
+        found,
+        peak_tilt={**found.peak_tilt, SPATIAL: tilt},
+        lowest={**found.lowest, SPATIAL: edge},
+    )
+
+
+@pytest.mark.parametrize(
+    ("cells", "words"),
+    [
+        ([(2, 5)], "in 1 safe island at 1 of 12 sizes; it holds one intensity of the grid, 6.00 g tan α at"),
+        ([(2, 5), (2, 6)], "in 1 safe island at 1 of 12 sizes; it reaches from 6.00 to 7.00 g tan α at"),
+        (
+            [(2, 5), (2, 6), (4, 8)],
+            "in 2 safe islands at 2 of 12 sizes; the widest reaches from 6.00",
+        ),
+    ],
+)
+def test_islands_are_counted_and_spanned_as_one_says_it(spectrum, cells, words):
+    assert words in said(with_safe(spectrum, cells))
 
 
 def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):

@@ -83,6 +83,10 @@ BAD = {
         [*RELEASE, "--trajectory", "table.csv"],
         "table.csv does not say the unit of tilt",
     ),
+    "noise below zero": (
+        ["--trajectory", "none.csv", "--trajectory-noise-deg", "-1"],
+        "--trajectory-noise-deg must be above 0 and below 90 [deg], got -1",
+    ),
     "an option of a trajectory alone": (["--trajectory-offset", "1"], "need a --trajectory"),
     "a support of no engine": (
         [*RELEASE, "--trajectory", "table.csv", "--engine", "none", "--support", "ring"],

@@ -26,7 +26,7 @@ def call(*arguments: str) -> int:
         (["--tan-alpha", "1:2:1"], "--tan-alpha must be a number"),
         (["--model", "glued"], "models must be of recess, flat, planar, got 'glued'"),
         (["--record-x", "a.at2"], "each record needs both horizontal components"),
-        (["--units", "g"], "--record-z and --units belong to a record"),
+        (["--units", "g"], "--units belongs to a record"),
         (["no-such-suite"], "no-such-suite"),
         (["quick", "--units", "g"], "--units does not go with a suite, got quick"),
         (["quick", "--semidiagonal", "3"], "--semidiagonal does not go with a suite, got quick"),
@@ -34,7 +34,11 @@ def call(*arguments: str) -> int:
         (["--workers", "0"], "'--workers': must be at least 1, got 0"),
         (["--chunk", "0"], "'--chunk': must be at least 1, got 0"),
         (["--gravity", "-1"], "--gravity must be positive and finite"),
-        (["--semidiagonal", "1:9:99999", "--scale", "1:9:99999"], "the results take some 3e+03 GB of the"),
+        (["--record-z", "up.at2"], "--record-z belongs to a record"),
+        (
+            ["--semidiagonal", "1:9:99999", "--scale", "1:9:99999"],
+            "the results take some 3,000 GB of memory, more than the",
+        ),
     ],
 )
 def test_bad_input_of_a_sweep_gets_one_clear_line(tmp_path, capsys, arguments, words):

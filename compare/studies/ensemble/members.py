@@ -23,6 +23,16 @@ _TIME_STEP = 0.01
 _RISE, _STRONG, _DECAY = 0.15, 0.4, 4.0
 
 
+# a copy further off is another problem, and a factor could change its sign
+_MOST = 0.1
+
+
+def require_perturbation(perturbation: float) -> None:
+    """Refuse a relative standard deviation of copies that is out of range."""
+    if not 0.0 < perturbation <= _MOST:
+        raise ValueError(f"perturbation must be above 0 and at most {_MOST:g}, got {perturbation!r}")
+
+
 def perturbed_copies(case: Case, count: int, *, perturbation: float, seed: int) -> list[Case]:
     """Return one problem `count` times, each with slightly different conditions.
 
@@ -57,8 +67,7 @@ def perturbed_copies(case: Case, count: int, *, perturbation: float, seed: int) 
     [1.00035, 1.00033, 1.00091]
     """
     _require_count(count)
-    if not 0.0 < perturbation <= 0.1:
-        raise ValueError(f"perturbation must be above 0 and at most 0.1, got {perturbation!r}")
+    require_perturbation(perturbation)
     factors = 1.0 + perturbation * np.random.default_rng(seed).standard_normal((count, 2))
     return [
         dataclasses.replace(perturbed(case, *map(float, pair)), name=f"{case.name} #{index + 1}")

@@ -7,11 +7,12 @@ from pathlib import Path
 from typing import Any
 
 from rockwobble.models import Cylinder, GroundMotion, Run
-from rockwobble.models.number_checks import require_positive
+from rockwobble.models.number_checks import require_increasing, require_positive
 from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint
+from .intensity import require_measure
 from .limits import CONTACT_LOST, DEFAULT_LIMITS, require_limits
 from .methods import MODELS, Method, methods_of, own_model
 from .plan import Plan, default_levels
@@ -112,16 +113,18 @@ def fragility(
     [(1.5, 0, 8), (3.0, 6, 8), (6.0, 8, 8)]
     """
     bodies = _named(cylinders)
-    if levels is not None and scales is not None:
-        raise ValueError(
-            "levels are of motions that are scaled to them, scales of motions as they are: got both"
-        )
+    chosen, states = require_asked(
+        methods=methods,
+        measure=measure,
+        levels=levels,
+        scales=scales,
+        limits=limits,
+        margin=margin,
+        restitution=restitution,
+        resamples=resamples,
+    )
     if levels is None and scales is None:
         levels = default_levels(bodies, motions, measure, gravity=gravity, period=period)
-    require_positive("margin", margin)
-    if resamples < 2:
-        raise ValueError(f"resamples must be at least 2, got {resamples!r}")
-    chosen, states = methods_of(methods, restitution=restitution), require_limits(limits)
     plan = Plan(
         cylinders=bodies,
         motions=motions,
@@ -144,6 +147,43 @@ def fragility(
     }
     runs = run_plan(plan, KIND, folder=resume, workers=workers, scheduler=scheduler, progress=progress)
     return fragility_of(runs, plan.points, about)
+
+
+def require_asked(
+    *,
+    methods: Iterable[str | Run],
+    measure: str,
+    levels: Sequence[float] | None,
+    scales: Sequence[float] | None,
+    limits: Iterable[str],
+    margin: float,
+    restitution: float | str,
+    resamples: int,
+) -> tuple[tuple[Method, ...], tuple[str, ...]]:
+    """Return the methods and limit states of what is asked; no ground motion is needed for that.
+
+    Parameters
+    ----------
+    methods, measure, levels, scales, limits, margin, restitution, resamples
+        As in `fragility`.
+
+    Raises
+    ------
+    ValueError
+        If one is out of range or unknown, or two do not go together.
+    """
+    require_measure(measure)
+    if levels is not None and scales is not None:
+        raise ValueError(
+            "levels are of motions that are scaled to them, scales of motions as they are: got both"
+        )
+    for label, values in (("levels", levels), ("scales", scales)):
+        if values is not None:
+            require_increasing(label, values)
+    require_positive("margin", margin)
+    if resamples < 2:
+        raise ValueError(f"resamples must be at least 2, got {resamples!r}")
+    return methods_of(methods, restitution=restitution), require_limits(limits)
 
 
 def _about(plan: Plan) -> dict[str, Any]:

@@ -53,6 +53,7 @@ def certify(
         from rockwobble.compare.certificate import certify as make
         from rockwobble.compare.certificate import engine_method, reduced_method
         from rockwobble.compare.certificate.certificate import write_certificate
+        from rockwobble.compare.certificate.claims import CLAIMING
         from rockwobble.compare.check import LAYERS, Bench, run_checks
         from rockwobble.compare.storage.files import require_file
         from rockwobble.models.number_checks import require_one_of
@@ -63,6 +64,9 @@ def certify(
         layers = tuple(only or (*_LAYERS, *(_ENGINE_LAYERS if engine else ())))
         for layer in layers:
             require_one_of("--only", layer, LAYERS)
+        if silent := [layer for layer in layers if layer not in CLAIMING]:
+            able = ", ".join(layer for layer in LAYERS if layer in CLAIMING)
+            raise ValueError(f"--only must name layers that make claims ({able}), got {', '.join(silent)}")
         require_file("--out", out)
         method = reduced_method() if engine is None else engine_method(engine, time_step)
         bench = Bench(reduced=rw.reduced, suite=rw.read_suite("quick"))

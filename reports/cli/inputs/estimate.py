@@ -86,7 +86,8 @@ def require_sweep(plan: rc.Grid | rw.Suite) -> str:
 def _require(seconds: float, needed: float, less_memory: str, less_time: str) -> None:
     there = _memory()
     if needed > there:
-        size = f"some {needed / 1e9:.3g} GB of the {there / 1e9:.3g} there are"
+        much = f"{float(f'{needed / 1e9:.3g}'):,.12g}"  # 154,000, not 1.54e+05
+        size = f"some {much} GB of memory, more than the {there / 1e9:.3g} GB that are free"
         raise ValueError(f"the results take {size}: {less_memory}")
     if seconds > _YEAR:
         raise ValueError(f"the runs take some {seconds / _YEAR:.3g} years of computing: {less_time}")

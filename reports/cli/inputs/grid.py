@@ -77,10 +77,8 @@ def _motions(
 ) -> list[rw.GroundMotion]:
     x, y, z = x or [], y or [], z or []
     if not x and not y:
-        if z or units:
-            raise ValueError(
-                "--record-z and --units belong to a record, give --record-x and --record-y as well"
-            )
+        if lone := "--record-z" if z else "--units" if units else "":
+            raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
         return [rw.el_centro_1940()]
     if len(x) != len(y) or len(z) not in (0, len(x)):
         raise ValueError(

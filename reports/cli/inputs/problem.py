@@ -114,10 +114,8 @@ class Problem:
                 raise ValueError("--record holds all components, got --record-x, -y or -z beside it")
             return rw.read_record(whole, units=self.units).scaled(scale)
         if x is None and y is None:
-            if z is not None or self.units is not None:
-                raise ValueError(
-                    "--record-z and --units belong to a record, give --record-x and --record-y as well"
-                )
+            if lone := "--record-z" if z is not None else "--units" if self.units is not None else "":
+                raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
             if not still:
                 return rw.el_centro_1940().scaled(scale)
             if scale != 1.0:

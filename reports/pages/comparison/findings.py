@@ -11,8 +11,11 @@ import pandas as pd
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
+from rockwobble.compare.metrics.agreement import AGREEMENT
 from rockwobble.compare.runs.labels import REDUCED
+from rockwobble.compare.traces.pair import make_pair
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
+from rockwobble.models import Case, Run
 from rockwobble.models.diagnostic import parted
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
@@ -22,6 +25,8 @@ from .external import external_sentences, scope, within
 
 WORDS = "comparison/findings.md.j2"
 _LISTED = 10
+# of the tilt at release, which an engine is given as a pose
+_SAME_TILT = 1e-6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -41,6 +46,8 @@ class Finding:
         What agreement means, in words.
     end : float
         Up to when traces of different length are compared [s]; NaN where it is to the end.
+    released : bool
+        Whether the peak tilt of both is that of the release, which tells nothing of either.
     """
 
     row: Any
@@ -50,6 +57,7 @@ class Finding:
     reason: str
     bound: str
     end: float
+    released: bool = False
 
     @property
     def external(self) -> bool:
@@ -81,17 +89,52 @@ def findings(view: CaseView) -> Iterator[Finding]:
             uplifted=moved[0],
             reference_uplifted=moved[1],
             reason=reason(
-                row, length, touched=any(fact.code == "wall_contact" for fact in view.facts[row.run])
+                row,
+                length,
+                touched=any(fact.code == "wall_contact" for fact in view.facts[row.run]),
+                models_differ=_models_differ(view, row),
             ),
             bound=within(row) if row.support == EXTERNAL else "1 % of alpha",
             end=end if end < length * (1.0 - 1e-9) else math.nan,
+            released=_is_release(view.case, row.peak_tilt)
+            and _is_release(view.case, row.reference_peak_tilt),
         )
 
 
-def reason(row: Any, length: float, *, touched: bool = False) -> str:
-    """Return why a run diverges from its reference, see `Finding`; `touched` says whether it met a wall."""
+def _is_release(case: Case, peak: float) -> bool:
+    """Whether a peak tilt [alpha] is the tilt at release."""
+    if case.initial is None:
+        return False
+    tilt = case.initial.tilt / case.cylinder.alpha
+    return abs(peak - tilt) <= _SAME_TILT * tilt
+
+
+def _models_differ(view: CaseView, row: Any) -> bool:
+    """Whether half of what ends an agreement lies between the models of recess and flat ground by then."""
+    traces = view.traces
+    models = [traces.get(str(Run(None, support))) for support in ("recess", "flat")]
+    if not row.diverged or row.reference not in traces or models[0] is None or models[1] is None:
+        return True
+    pair = make_pair(view.case.cylinder, models[0], models[1], until=view.divergence(row))
+    return bool((abs(pair.tilt_difference) > 0.5 * AGREEMENT).any())
+
+
+def reason(row: Any, length: float, *, touched: bool = False, models_differ: bool = True) -> str:
+    """Return why a run diverges from its reference, see `Finding`.
+
+    Parameters
+    ----------
+    row : namedtuple
+        Of the summary.
+    length : float
+        Of the run [s].
+    touched : bool, optional
+        Whether the run met a wall.
+    models_differ : bool, optional
+        Whether the models of recess and flat ground differ by then: else it is not for the support.
+    """
     against_recess = row.reference_support == "recess"
-    if row.support == "flat" and against_recess:
+    if row.support == "flat" and against_recess and models_differ:
         return "support"
     if row.support == "ring" and row.reference_support != "ring" and (against_recess or touched):
         return "walls"

@@ -39,8 +39,12 @@ _WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
     "friction_needed": lambda fact: (
         f"a joint holds the rim{_at(fact)}, where the friction of the case would let it slip"
         if math.isnan(fact.size)
-        else f"the rim would slip{_at(fact)}, for {_s(fact.duration)} in all: it needs a friction of "
-        f"{fact.size:.3g}, where there is {fact.bound:g}"
+        else f"the rim would slip{_at(fact)}, for {_s(fact.duration)} in all: "
+        + (
+            "no friction suffices"  # where the ground would have to pull
+            if math.isinf(fact.size)
+            else f"it needs a friction of {fact.size:.3g}, where there is {fact.bound:g}"
+        )
     ),
     "wall_contact": lambda fact: f"the cylinder touched a wall{_from(fact)}",
     "energy": lambda fact: (
