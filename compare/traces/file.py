@@ -112,7 +112,7 @@ def listed(names: Sequence[str]) -> str:
 
     Examples
     --------
-    >>> listed(["strain", "force"]), listed(["strain"] * 20)[-30:]
+    >>> listed(["strain", "force"]), listed(["strain"] * 20)[-26:]
     ('strain, force', 'strain, strain and 10 more')
     """
     short = [name if len(name) <= _LONGEST else f"{name[: _LONGEST - 3]}..." for name in names]

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
-import re
 from pathlib import Path
 from typing import Any
 
@@ -12,14 +10,13 @@ import numpy as np
 import pandas as pd
 import pytest
 from browser import complaints, needs_chromium
+from fragility_example import LEVELS, MOTIONS, made_up
 from showing import shows_itself
 
 from rockwobble.compare import Fragility, fragility, synthetic_motions
-from rockwobble.compare.metrics.order_statistics import Interval
 from rockwobble.compare.storage.manifest import Manifest, read_manifests, read_results
 from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.result import KIND, fragility_of, manifest_of, stored_fragility
-from rockwobble.compare.studies.fragility.tables import margin_of
 from rockwobble.models import Cylinder
 from rockwobble.models.records import p695
 from rockwobble.reports.cli import fragility as command
@@ -31,8 +28,6 @@ from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.registry import stored_page
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-LEVELS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
-MOTIONS = 15
 SMALL = [
     "--synthetic",
     "8",
@@ -53,59 +48,6 @@ def call(*arguments: str) -> int:
     code = ended.value.code
     assert isinstance(code, int)
     return code
-
-
-def described(support: str, engine: str | None = None, own: str = "") -> dict[str, object]:
-    return {"support": support, "engine": engine, "own_model": own, "run": None, "of": []}
-
-
-METHODS = {
-    "recess model": (1.0, described("recess")),
-    "flat-ground model": (1.1, described("flat")),
-    "planar x": (1.5, described("planar")),
-    "mujoco recess": (1.0, described("recess", "mujoco", "recess model")),
-    "mujoco flat": (1.1, described("flat", "mujoco", "flat-ground model")),
-    "mujoco ring": (1.05, described("ring", "mujoco")),
-    "pybullet recess": (1.02, described("recess", "pybullet", "recess model")),
-}
-
-
-def made_up(cylinders: tuple[str, ...] = ("pier", "tower")) -> Fragility:
-    """Motions of a capacity each, a known factor higher by each method."""
-    random = np.random.default_rng(8)
-    runs, points = [], []
-    for cylinder in cylinders:
-        capacity = np.exp(random.normal(np.log(3.0), 0.4, MOTIONS))
-        for motion in range(MOTIONS):
-            for step, level in enumerate(LEVELS):
-                place = {"cylinder": cylinder, "motion": f"m{motion}", "step": step}
-                wide = dict.fromkeys(("peak_velocity", "pga", "pgv", "sa"), level * (1.0 + 0.05 * motion))
-                points.append(
-                    {**place, "scale": level, "peak_acceleration": level, **wide, "sa_mean": np.nan}
-                )
-                for method, (factor, _) in METHODS.items():
-                    fell = level >= factor * capacity[motion]
-                    outcome = "overturned" if fell else "completed"
-                    runs.append(
-                        {**place, "method": method, "peak_tilt": 8.0 if fell else 0.5, "outcome": outcome}
-                    )
-    about = {
-        "cylinders": {name: {"semidiagonal": 6.0, "tan_alpha": 0.2} for name in cylinders},
-        "motions": MOTIONS,
-        "methods": {name: own for name, (_, own) in METHODS.items()},
-        "measure": "peak_acceleration",
-        "levels": list(LEVELS),
-        "scales": None,
-        "period": 1.0,
-        "friction": 1.0,
-        "limits": ["uplift", "0.5 alpha", "overturned"],
-        "margin": 0.1,
-        "resamples": 100,
-        "seed": 0,
-        "source": "made up",
-        "inputs": "",
-    }
-    return fragility_of(pd.DataFrame(runs).assign(contact_lost=np.nan), pd.DataFrame(points), about)
 
 
 @pytest.fixture(scope="module")
@@ -143,63 +85,6 @@ def test_a_pair_the_other_way_round_is_turned(found):
     assert (turned["method"], turned["against"]) == ("planar x", "recess model")
     for name in ("ratio", "ratio_low", "ratio_high", "dispersion_difference"):
         assert turned[name] == pytest.approx(straight[name], rel=1e-9)
-
-
-def test_the_words_are_those_of_the_tables(found):
-    words = " ".join(fragility_page(found, Manifest(kind=KIND)).markdown().split())
-    row = next(r for r in main_contrasts(found)["planar"] if r["cylinder"] == "all")
-    ends = f"{row['ratio']:.2f} ({row['ratio_low']:.2f} to {row['ratio_high']:.2f})"
-    assert f"planar x against recess model: {ends}, not equivalent." in words
-    assert "mujoco recess against recess model: 1.00 (1.00 to 1.00), equivalent within 0 %." in words
-    assert "in a ring, whose walls have no top" in words
-    assert "15 motions: made up, each scaled to 6 levels" in words
-    # all uplift at the lowest level
-    assert "| pier | recess model | < 1.5 |" in words
-
-
-@pytest.mark.parametrize(
-    ("ends", "words"),
-    [
-        ((0.97, 1.04), "equivalent within 4 %"),
-        ((1.0, 1.9), "undecided at 10 %: the interval reaches 90 %"),
-        ((1.0, np.inf), "undecided at 10 %: the interval has no end"),
-        ((1.2, 1.9), "not equivalent"),
-    ],
-)
-def test_a_sentence_calls_equivalent_what_its_table_does(found, ends, words):
-    ratio = Interval(value=1.0, low=ends[0], high=ends[1])
-    row = {**ratio.columns("ratio"), "within": margin_of(ratio), "verdict": ratio.about_one(0.1)}
-    table = found.contrasts.assign(**row)
-    page = fragility_page(dataclasses.replace(found, contrasts=table), Manifest(kind=KIND)).markdown()
-    said = re.findall(r"^- (.+) against (.+): \d\.\d\d \(.*?\), (.*)\.$", page, re.M)
-    assert len(said) > 3
-    assert {verdict for *_, verdict in said} == {words}
-
-
-def by_one_method(found: Fragility, **changes: Any) -> str:
-    runs = found.runs[(found.runs["method"] == "recess model") & (found.runs["cylinder"] == "pier")]
-    points = found.points[found.points["cylinder"] == "pier"]
-    about = {**found.about, "methods": {"recess model": METHODS["recess model"][1]}}
-    about["cylinders"] = {"pier": {"semidiagonal": 6.0, "tan_alpha": 0.2}}
-    one = fragility_of(runs.assign(**changes), points, about)
-    return " ".join(fragility_page(one, Manifest(kind=KIND)).markdown().split())
-
-
-def test_one_method_is_not_asked_whether_it_agrees(found):
-    words = by_one_method(found)
-    fit = found.fits.set_index(["cylinder", "method", "limit"]).loc["pier", "recess model", "overturned"]
-    assert "overturns a cylinder? pier; 15 motions" in words
-    ends = f"{fit['median']:.3g} ({fit['median_low']:.3g} to {fit['median_high']:.3g})"
-    assert f"**Median overturning intensity [-] (95 % interval): {ends} by recess model.**" in words
-    for nothing in ("do methods agree", "Ratios of the median", "All methods", "equivalent"):
-        assert nothing not in words
-
-
-def test_without_overturning_no_curve_is_spoken_of(found):
-    words = by_one_method(found, outcome="completed", peak_tilt=0.5)
-    assert "**Nothing overturns at these intensities.**" in words
-    assert "Nothing overturns, so there is no curve." in words
-    assert "No curve is contradicted" not in words
 
 
 def test_the_curves_have_bands_and_counts_in_a_panel_for_each_support(found):

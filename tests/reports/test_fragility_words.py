@@ -1,0 +1,81 @@
+"""Sentences of the page of a fragility: they say what its tables hold, and nothing of what there is not."""
+
+from __future__ import annotations
+
+import dataclasses
+import re
+from typing import Any
+
+import numpy as np
+import pytest
+from fragility_example import METHODS, made_up
+
+from rockwobble.compare import Fragility
+from rockwobble.compare.metrics.order_statistics import Interval
+from rockwobble.compare.storage.manifest import Manifest
+from rockwobble.compare.studies.fragility.questions import main_contrasts
+from rockwobble.compare.studies.fragility.result import KIND, fragility_of
+from rockwobble.compare.studies.fragility.tables import margin_of
+from rockwobble.reports.pages.fragility import fragility_page
+
+
+@pytest.fixture(scope="module")
+def found() -> Fragility:
+    return made_up()
+
+
+def test_the_words_are_those_of_the_tables(found):
+    words = " ".join(fragility_page(found, Manifest(kind=KIND)).markdown().split())
+    row = next(r for r in main_contrasts(found)["planar"] if r["cylinder"] == "all")
+    ends = f"{row['ratio']:.2f} ({row['ratio_low']:.2f} to {row['ratio_high']:.2f})"
+    assert f"planar x against recess model: {ends}, not equivalent." in words
+    assert "mujoco recess against recess model: 1.00 (1.00 to 1.00), equivalent within 0 %." in words
+    assert "in a ring, whose walls have no top" in words
+    assert "15 motions: made up, each scaled to 6 levels" in words
+    # all uplift at the lowest level
+    assert "| pier | recess model | < 1.5 |" in words
+
+
+@pytest.mark.parametrize(
+    ("ends", "words"),
+    [
+        ((0.97, 1.04), "equivalent within 4 %"),
+        ((1.0, 1.9), "undecided at 10 %: the interval reaches 90 %"),
+        ((1.0, np.inf), "undecided at 10 %: the interval has no end"),
+        ((1.2, 1.9), "not equivalent"),
+    ],
+)
+def test_a_sentence_calls_equivalent_what_its_table_does(found, ends, words):
+    ratio = Interval(value=1.0, low=ends[0], high=ends[1])
+    row = {**ratio.columns("ratio"), "within": margin_of(ratio), "verdict": ratio.about_one(0.1)}
+    table = found.contrasts.assign(**row)
+    page = fragility_page(dataclasses.replace(found, contrasts=table), Manifest(kind=KIND)).markdown()
+    said = re.findall(r"^- (.+) against (.+): \d\.\d\d \(.*?\), (.*)\.$", page, re.M)
+    assert len(said) > 3
+    assert {verdict for *_, verdict in said} == {words}
+
+
+def by_one_method(found: Fragility, **changes: Any) -> str:
+    runs = found.runs[(found.runs["method"] == "recess model") & (found.runs["cylinder"] == "pier")]
+    points = found.points[found.points["cylinder"] == "pier"]
+    about = {**found.about, "methods": {"recess model": METHODS["recess model"][1]}}
+    about["cylinders"] = {"pier": {"semidiagonal": 6.0, "tan_alpha": 0.2}}
+    one = fragility_of(runs.assign(**changes), points, about)
+    return " ".join(fragility_page(one, Manifest(kind=KIND)).markdown().split())
+
+
+def test_one_method_is_not_asked_whether_it_agrees(found):
+    words = by_one_method(found)
+    fit = found.fits.set_index(["cylinder", "method", "limit"]).loc["pier", "recess model", "overturned"]
+    assert "overturns a cylinder? pier; 15 motions" in words
+    ends = f"{fit['median']:.3g} ({fit['median_low']:.3g} to {fit['median_high']:.3g})"
+    assert f"**Median overturning intensity [-] (95 % interval): {ends} by recess model.**" in words
+    for nothing in ("do methods agree", "Ratios of the median", "All methods", "equivalent"):
+        assert nothing not in words
+
+
+def test_without_overturning_no_curve_is_spoken_of(found):
+    words = by_one_method(found, outcome="completed", peak_tilt=0.5)
+    assert "**Nothing overturns at these intensities.**" in words
+    assert "Nothing overturns, so there is no curve." in words
+    assert "No curve is contradicted" not in words
