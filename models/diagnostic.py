@@ -48,10 +48,10 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
     }
 )
 # code: why, as its detail says it
-REASONS: Mapping[str, frozenset[str]] = MappingProxyType(
+REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "unsettled": frozenset({"fails", "still_changes", "no_later", "no_closer"}),
-        "not_extrapolated": frozenset({"fails", "diverged", "no_closer"}),
+        "unsettled": ("fails", "still_changes", "no_later", "no_closer"),
+        "not_extrapolated": ("fails", "diverged", "no_closer"),
     }
 )
 _SEPARATOR = ", "
@@ -123,7 +123,7 @@ class Diagnostic(Brief):
             raise ValueError(f"code must be one of {', '.join(CODES)}, got {self.code!r}")
         reasons = REASONS.get(self.code)
         if reasons and self.detail not in reasons:
-            raise ValueError(f"detail must be one of {', '.join(sorted(reasons))}, got {self.detail!r}")
+            raise ValueError(f"detail must be one of {', '.join(reasons)}, got {self.detail!r}")
 
     @property
     def meaning(self) -> str:
