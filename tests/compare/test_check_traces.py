@@ -47,7 +47,7 @@ def test_traces_of_an_engine_hold(monkeypatch: pytest.MonkeyPatch, engine: str) 
     monkeypatch.setattr(bench, "ENGINES", (engine,))
     monkeypatch.setattr(traces, "simulate_run", once)
     findings = list(traces.check(made()))
-    assert len(findings) == 35
+    assert len(findings) == 36
     assert not [f"{f.name}: {f.value}" for f in findings if f.failed]
 
 

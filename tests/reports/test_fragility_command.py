@@ -233,7 +233,7 @@ def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words)
         (["--model", "none"], "at least one method, got none"),
         (["--model", "foo"], "a reduced model must be one of recess"),
         (["--levels", "1,2", "--cloud", "1"], "got both"),
-        (["--levels", "2,1"], "levels must be positive and increase, got 2.0, 1.0"),
+        (["--levels", "2,1"], "--levels must be positive, finite and increasing, got [2.0, 1.0]"),
         (["--margin", "0"], "margin must be positive"),
     ],
 )
