@@ -24,11 +24,16 @@ def refused(capsys: pytest.CaptureFixture[str], *arguments: str) -> str:
     return printed.err
 
 
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is not refused, though it must be, writes here and not where the tests are run."""
+    monkeypatch.chdir(tmp_path)
+
+
 @pytest.mark.parametrize("command", WITH_OUT)
 def test_an_empty_folder_name_is_not_the_current_folder(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], command: str
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str
 ) -> None:
-    monkeypatch.chdir(tmp_path)
     needed = ["somewhere"] if command == "report" else []
     assert "--out must not be empty, got ''" in refused(capsys, command, *needed, "--out", "")
     assert list(tmp_path.iterdir()) == []
