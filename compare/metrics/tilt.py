@@ -23,8 +23,8 @@ def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
 def outcome_of(trace: Trace) -> str:
     """Return the outcome of a run for a study: the walls of a ring have no top, and hold what has overturned.
 
-    One that leans on a wall beyond its balance at the end of its run counts as overturned: after it the ground
-    is still, as where a fall is decided.
+    One that leans on a wall beyond its balance at the end of its run counts as overturned: after it the
+    ground is still, as where a fall is decided.
     """
     leans = trace.run.support == "ring" and len(trace.tilt) and trace.tilt[-1] > trace.case.cylinder.alpha
     return "overturned" if leans and trace.outcome != "failed" else trace.outcome
