@@ -7,7 +7,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 import pandas as pd
@@ -63,7 +62,6 @@ class Comparison(Shown):
     [('free response', 'flat-ground model'), ('free response', 'recess model')]
     """
 
-    _figures: ClassVar[str] = "comparison.tilt"
     summary: pd.DataFrame
     cases: Mapping[str, Case]
     traces: Mapping[tuple[str, str], Trace]

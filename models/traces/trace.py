@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -105,7 +105,6 @@ class Trace(Shown):
     ((1501,), (1501, 2))
     """
 
-    _figures: ClassVar[str] = "runs.trace"
     case: Case
     run: Run
     version: str

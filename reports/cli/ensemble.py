@@ -13,8 +13,8 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.results import show_and_write
-from ..console.terminal import command_line, interruptible, user_input
+from ..console.results import show_and_save
+from ..console.terminal import interruptible, user_input
 from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible
@@ -102,10 +102,6 @@ def ensemble(
                 for line in describe(case)[:1] if motions else describe(case):
                     print(line)
                 print(f"Members: {len(motions) or members}, {_source(synthetic, p695, perturbation)}")
-        from rockwobble.compare.studies.ensemble.study import manifest_of
-
-        from ..pages.ensemble import ensemble_page
-
         with user_input(), shown_progress() as tell:
             found = rw.ensemble(
                 stated,
@@ -117,10 +113,7 @@ def ensemble(
                 resume=out,
                 source=_source(synthetic, p695, perturbation) if suite is None else f"cases of {suite}",
             )
-        manifest = manifest_of(found, command_line())
-        tables = found.tables
-        sheets = {f"{name}.csv": table.to_csv(index=False).encode() for name, table in tables.items()}
-        show_and_write(out, ensemble_page(found, manifest), manifest, tables, sheets)
+        show_and_save(found, out)
 
 
 def _refuse_ignored(context: typer.Context, synthetic: float | None, far_field: float | None) -> None:

@@ -10,22 +10,15 @@ from rockwobble.compare.metrics.distributions import (
     largest_share_unseen,
     least_significant_count,
 )
-from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.compare.studies.ensemble.study import stored_ensemble
 
 from ..figures.ensemble import main_pairs, pictures
 from .page import Page
 
 
-def ensemble_page(found: Ensemble, manifest: Manifest) -> Page:
+def page_of(found: Ensemble) -> Page:
     """Return the page of an ensemble."""
-    values = {**ensemble_values(found), "about": manifest}
+    values = {**ensemble_values(found), "about": found.manifest}
     return Page(name="ensemble", template="ensemble", values=values, pictures=pictures(found))
-
-
-def stored_page(results: Results) -> Page:
-    """Return the page of the ensemble that is stored."""
-    return ensemble_page(stored_ensemble(results), results.manifest)
 
 
 def ensemble_values(found: Ensemble) -> dict[str, object]:
@@ -41,7 +34,7 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         row["only"], row["only_there"] = row["overturned"] - both, row["against_overturned"] - both
         row["neither"] = row["count"] - both - row["only"] - row["only_there"]
     return {
-        "facts": found.about,
+        "facts": found.facts,
         "count": found.members["member"].nunique(),
         "methods": methods,
         "contrasts": rows,

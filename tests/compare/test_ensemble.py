@@ -11,9 +11,8 @@ from rockwobble import reduced
 from rockwobble.compare import ensemble, far_field_motions, perturbed_copies, sweep, synthetic_motions
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
-from rockwobble.compare.storage.manifest import made_now, read_results, write_results
 from rockwobble.compare.studies.ensemble import members as ensemble_members
-from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of, stored_ensemble
+from rockwobble.compare.studies.ensemble.study import Ensemble, ensemble_of
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, Trace
 
 ROUNDING = 1e-12
@@ -113,18 +112,18 @@ def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
     monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
     found = ensemble(CASE, runs=[], size=8, workers=1)
     shuffled = found.members.sample(frac=1.0, random_state=1)
-    assert ensemble_of(shuffled, found.about).contrasts.loc[0, "ratio_95_low"] == 1.0
+    assert ensemble_of(shuffled, found.facts).contrasts.loc[0, "ratio_95_low"] == 1.0
     with pytest.raises(ValueError, match="one run by each method"):
-        ensemble_of(pd.concat([found.members, found.members[:1]]), found.about)
+        ensemble_of(pd.concat([found.members, found.members[:1]]), found.facts)
 
 
 def test_a_stored_ensemble_comes_back_with_the_same_bits(tmp_path):
     found = ensemble(CASE, runs=[], size=3, workers=1)
-    write_results(tmp_path, made_now(KIND, about=found.about), {"members": found.members})
-    again = stored_ensemble(read_results(tmp_path, KIND))
+    found.save(tmp_path)
+    again = Ensemble.load(tmp_path)
     assert again.contrasts.equals(found.contrasts)
     assert again.methods.equals(found.methods)
-    assert again.about == found.about
+    assert again.facts == found.facts
 
 
 def test_a_failed_run_is_no_member_that_stands():
@@ -134,9 +133,9 @@ def test_a_failed_run_is_no_member_that_stands():
     members.loc[recess, "outcome"] = ["overturned", "overturned", "completed", "failed"]
     # the last is how far it came before it failed: no peak
     members.loc[recess, "peak_tilt"] = [8.0, 8.0, 0.3, 0.4]
-    again = ensemble_of(members, found.about)
+    again = ensemble_of(members, found.facts)
     assert again.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
-    turned = ensemble_of(members, {**found.about, "methods": {"flat-ground model": "", "recess model": ""}})
+    turned = ensemble_of(members, {**found.facts, "methods": {"flat-ground model": "", "recess model": ""}})
     assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
     assert again.methods.loc[0, ["runs", "rocked", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
 
@@ -147,7 +146,7 @@ def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monk
     again = ensemble(CASE, runs=[], size=3, workers=1, resume=tmp_path)
     assert first.members.equals(again.members)
     assert first.contrasts.equals(again.contrasts)
-    assert first.about == again.about
+    assert first.facts == again.facts
     assert {
         len(pd.read_parquet(path)) for path in (tmp_path / "finished" / "ensemble").glob("*.parquet")
     } == {1}
@@ -155,7 +154,7 @@ def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monk
 
 def test_every_input_is_in_the_hash_of_an_ensemble():
     hashes = [
-        ensemble(CASE, runs=[], workers=1, **options).about["inputs"]
+        ensemble(CASE, runs=[], workers=1, **options).facts["inputs"]
         for options in ({"size": 2}, {"size": 3}, {"size": 2, "seed": 1}, {"size": 2, "models": [RECESS]})
     ]
     assert len(set(hashes)) == 4

@@ -11,14 +11,14 @@ import pytest
 from rich.console import Console
 
 from rockwobble.compare import Ensemble
-from rockwobble.compare.storage.manifest import Manifest, read_manifests
+from rockwobble.compare.storage.manifest import read_manifests
 from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of
 from rockwobble.models import Run
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.ensemble import pictures, ratio_span, ratio_ticks
 from rockwobble.reports.figures.picture import Line, Text
-from rockwobble.reports.pages.ensemble import ensemble_page
+from rockwobble.reports.pages.ensemble import page_of
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.registry import stored_page
 
@@ -75,12 +75,12 @@ def made_up(factor: float = 1.1, model: str = "recess model", engine: str = "muj
 def said(found: Ensemble, width: int = 100_000) -> str:
     """Return the page as a terminal shows it."""
     console = Console(file=io.StringIO(), width=width, force_terminal=True, no_color=True)
-    ensemble_page(found, Manifest(kind=KIND, command="rockwobble ensemble")).show(console)
+    page_of(found.made_by("rockwobble ensemble")).show(console)
     return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]
 
 
 def test_tables_say_what_overturns_instead_of_its_tilt():
-    words = ensemble_page(made_up(), Manifest(kind=KIND)).markdown()
+    words = page_of(made_up().made_by()).markdown()
     # of ten the median is between the fifth and the sixth, of which 95 % exclude the largest two on each side
     assert "| mujoco recess | 10 | 10 | 2 | 0 | 0.605 | 0.272 | ∞ | 0.194 | ∞ |" in words
     assert "| mujoco recess | recess model | 9 | 9 | 0 | 1.100 | 1.100 | 1.100 | 1.100 | ∞ |" in words
@@ -106,7 +106,7 @@ def test_what_is_told_apart_may_be_equivalent_and_what_is_not_need_not():
     # the first five: so few bound no median, and nothing overturns
     found = made_up()
     few = found.members[found.members["member"].isin([f"record {i}" for i in range(1, 6)])]
-    unsure = said(ensemble_of(few, found.about))
+    unsure = said(ensemble_of(few, found.facts))
     assert "Undecided: mujoco recess with recess model." in unsure
     assert "1.100 (0.000 to ∞)" in unsure
     assert "No peaks are told apart (p below 0.05), which does not make them the same." in unsure
@@ -152,7 +152,7 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
         pd.read_csv(tmp_path / "members.csv")["peak_tilt"].to_numpy(), rel=1e-12
     )
     (manifest,) = read_manifests(tmp_path)
-    assert (manifest.kind, manifest.seeds) == (KIND, {"ensemble": 0})
+    assert (manifest.kind, manifest.seeds) == (KIND, {"seed": 0})
     assert stored_page(KIND, tmp_path).files() == {
         name: (tmp_path / name).read_bytes() for name in manifest.pages
     }

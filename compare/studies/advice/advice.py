@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -68,7 +68,6 @@ class Advice(Shown):
     seed : int
     """
 
-    _figures: ClassVar[str] = "advice"
     case: Case
     support: str
     friction_given: bool

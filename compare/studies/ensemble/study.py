@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, cast
+from typing import cast
 
 import pandas as pd
 
 from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
-from rockwobble.models.shown import Shown
 
 from ...metrics.tilt import outcome_of
 from ...runs.choice import default_runs, require_runnable
@@ -20,7 +20,9 @@ from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_a
 from ...runs.labels import run_labels
 from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Manifest, Results, made_now
+from ...storage.manifest import Number
+from ...storage.manifest import Results as Stored
+from ...storage.results import Results
 from .members import perturbed_copies
 from .tables import contrast_table, method_table
 
@@ -28,12 +30,12 @@ KIND = "ensemble"
 MODELS = (Run(None, "recess"), Run(None, "flat"))
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Ensemble(Shown):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Ensemble(Results, kind=KIND):
     """Peak tilts of many members by several methods.
 
-    Parameters
-    ----------
+    Tables
+    ------
     members : DataFrame
         One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
         overturned), outcome (see `outcome_of`), diagnostics (their codes), wall_time [s].
@@ -46,9 +48,9 @@ class Ensemble(Shown):
         One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high, its
         verdict, masked (members that failed by one of them), and both probabilities corrected for the number
         of pairs (Holm) in columns _adjusted.
-    about : mapping
-        What the tables do not hold: what the members are, the range of their sizes and slendernesses, the
-        model of the support of each method, the seed, and the hash of all inputs.
+
+    Its facts are what the members are, the range of their sizes and slendernesses, the model of the support
+    of each method, the seed, and the hash of all inputs.
 
     Examples
     --------
@@ -61,21 +63,27 @@ class Ensemble(Shown):
     ([5, 5], (10, 6))
     """
 
-    _figures: ClassVar[str] = "ensemble"
-    members: pd.DataFrame
-    methods: pd.DataFrame
-    contrasts: pd.DataFrame
-    about: Mapping[str, object]
+    def headline(self) -> dict[str, Number]:
+        """Return the median ratio of each two methods."""
+        return {
+            f"{row['method']} / {row['against']}, median ratio": row["ratio"]
+            for row in self.contrasts.to_dict("records")
+        }
 
-    @property
-    def tables(self) -> dict[str, pd.DataFrame]:
-        """The tables by name."""
-        return {"members": self.members, "methods": self.methods, "contrasts": self.contrasts}
+    def sheets(self) -> dict[str, bytes]:
+        """Return the tables as CSV."""
+        return {f"{name}.csv": table.to_csv(index=False).encode() for name, table in self.tables.items()}
+
+    @classmethod
+    def of_stored(cls, stored: Stored) -> Ensemble:
+        """Return the ensemble of the stored members: what is concluded from them is computed anew."""
+        found = ensemble_of(stored.table("members"), stored.manifest.about)
+        return dataclasses.replace(found, manifest=stored.manifest)
 
     def _said(self) -> dict[str, str]:
         runs = self.methods[["runs", "overturned", "failed"]].sum()
         return {
-            "members": f"{self.members['member'].nunique()}, {self.about.get('members', '')}",
+            "members": f"{self.members['member'].nunique()}, {self.facts.get('members', '')}",
             "overturned": f"{runs['overturned']} of {runs['runs']} runs",
             "methods": ", ".join(self.methods["method"]),
             "failed": str(runs["failed"]),
@@ -168,34 +176,14 @@ def _held_against(run: Run) -> str:
 
 
 def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
-    """Return the ensemble of a table of members, and of what `Ensemble.about` says of them."""
+    """Return the ensemble of a table of members, and of what `Ensemble.facts` says of them."""
     methods = cast("Mapping[str, str]", about["methods"])
-    return Ensemble(
-        members=members,
-        methods=method_table(members, methods),
-        contrasts=contrast_table(members, methods),
-        about=about,
-    )
-
-
-def manifest_of(found: Ensemble, command: str = "") -> Manifest:
-    """Return the manifest of an ensemble, with the median ratio of each two methods as headline."""
-    return made_now(
-        KIND,
-        inputs=str(found.about["inputs"]),
-        command=command,
-        seeds={"ensemble": cast("int", found.about["seed"])},
-        headline={
-            f"{row['method']} / {row['against']}, median ratio": row["ratio"]
-            for row in found.contrasts.to_dict("records")
-        },
-        about=found.about,
-    )
-
-
-def stored_ensemble(results: Results) -> Ensemble:
-    """Return the ensemble that is stored in a folder."""
-    return ensemble_of(results.table("members"), results.manifest.about)
+    tables = {
+        "members": members,
+        "methods": method_table(members, methods),
+        "contrasts": contrast_table(members, methods),
+    }
+    return Ensemble(tables=tables, facts=about)
 
 
 def _range(members: Sequence[Case], name: str) -> dict[str, float]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar
+from typing import Any
 
 import pandas as pd
 
@@ -67,7 +67,6 @@ class Fragility(Shown):
     [{'method': 'recess model', 'runs': 18, 'exceeded': 10}]
     """
 
-    _figures: ClassVar[str] = "fragility"
     runs: pd.DataFrame
     points: pd.DataFrame
     counts: pd.DataFrame

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 import pandas as pd
@@ -61,7 +60,6 @@ class OverturningSpectrum(Shown):
         Finest step of that search [-].
     """
 
-    _figures: ClassVar[str] = "spectrum"
     tan_alpha: float
     motion: GroundMotion
     gravity: float

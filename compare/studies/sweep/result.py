@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
 
 import pandas as pd
 
@@ -30,7 +29,6 @@ class Sweep(Shown):
         The plan: its kind, the number of runs, and the axes of a grid or its cases and methods.
     """
 
-    _figures: ClassVar[str] = "runs.sweep"
     table: pd.DataFrame
     about: Mapping[str, object]
 

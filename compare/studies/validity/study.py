@@ -7,7 +7,6 @@ import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
 
 import pandas as pd
 
@@ -42,7 +41,6 @@ class Validity(Shown):
         What the motions of the ensemble are.
     """
 
-    _figures: ClassVar[str] = "validity.pictures"
     tables: Mapping[str, pd.DataFrame]
     records: str
 
