@@ -29,6 +29,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from rockwobble.models.support import SUPPORTS
+
 from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
@@ -70,7 +72,7 @@ class _DartStepper:
         self._scene, self._step, self._settings = scene, scene.time_step, settings
         # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if scene.support == "recess" else 0.0
+        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
         self._dart: DartScene = build(scene, settings)
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._kept = settings.depth  # depth at which the rim is kept just now [m]

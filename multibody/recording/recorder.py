@@ -9,6 +9,8 @@ from dataclasses import fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.models.support import SUPPORTS
+
 from ..kinematics import Kinematics, kinematics, rim, rolling_momentum, tilt_of, unwrap, unwrap_twist
 from ..protocol import Scene, Steps, Wall
 from ..scene.guard import energy_scale, first_breach
@@ -238,7 +240,7 @@ class Recorder:
             rate = max(float(state.tilt_rate[stop]), 1e-3)
             self.end_time = float(time[stop] + max(0.5 * math.pi - state.tilt[stop], 0.0) / rate)
         breach = first_breach(
-            state, gained, self._scene.body, self._scene.gravity, self._scene.support == "recess", wall,
+            state, gained, self._scene.body, self._scene.gravity, SUPPORTS[self._scene.support].guided, wall,
             self.energy.largest,
         )  # fmt: skip
         if breach is not None and breach.index < stop:

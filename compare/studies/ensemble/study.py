@@ -15,7 +15,7 @@ from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
 
 from ...metrics.tilt import outcome_of
-from ...runs.choice import default_runs, require_runnable
+from ...runs.choice import default_runs, require_runnable, support_of
 from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
 from ...runs.labels import run_labels
 from ...runs.progress import ProgressCallback
@@ -165,14 +165,14 @@ def ensemble(
         results = simulate_all(jobs, workers=workers, progress=progress, cache=cache)
     table = _members(jobs, results)
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
-    about |= {"methods": {label: _held_against(run) for label, run in methods.items()}}
+    about |= {"methods": {label: _compared_with(run) for label, run in methods.items()}}
     about |= {"inputs": fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])}
     return ensemble_of(table, about)
 
 
-def _held_against(run: Run) -> str:
-    """Return the label of the model that an engine's run is held against: a ring against the recess model."""
-    return str(Run(None, "flat" if run.support == "flat" else "recess")) if run.engine else ""
+def _compared_with(run: Run) -> str:
+    """Return the label of the model of an engine's own support, or the recess model."""
+    return str(Run(None, support_of(run).compared_with[-1])) if run.engine else ""
 
 
 def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
