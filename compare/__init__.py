@@ -39,12 +39,8 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .runs.task import IncompleteError as IncompleteError
     from .storage.files import replace_files as replace_files
     from .storage.manifest import require_writable as require_writable
-    from .studies.ensemble.members import far_field_motions as far_field_motions
-    from .studies.ensemble.members import perturbed_copies as perturbed_copies
-    from .studies.ensemble.members import synthetic_motions as synthetic_motions
-    from .studies.ensemble.members import with_motions as with_motions
-    from .studies.ensemble.study import Ensemble as Ensemble
-    from .studies.ensemble.study import ensemble as ensemble
+    from .studies.ensemble import Ensemble as Ensemble
+    from .studies.ensemble import ensemble as ensemble
     from .studies.fragility.intensity import MEASURES as MEASURES
     from .studies.fragility.limits import LIMITS as LIMITS
     from .studies.fragility.result import Fragility as Fragility
@@ -80,13 +76,7 @@ _MODULES = {
     "runs.task": ("IncompleteError",),
     "storage.files": ("replace_files",),
     "storage.manifest": ("require_writable",),
-    "studies.ensemble.members": (
-        "far_field_motions",
-        "perturbed_copies",
-        "synthetic_motions",
-        "with_motions",
-    ),
-    "studies.ensemble.study": ("Ensemble", "ensemble"),
+    "studies.ensemble": ("Ensemble", "ensemble"),
     "studies.fragility.intensity": ("MEASURES",),
     "studies.fragility.limits": ("LIMITS",),
     "studies.fragility.result": ("Fragility",),

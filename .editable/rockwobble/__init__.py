@@ -25,11 +25,16 @@ if TYPE_CHECKING:
         Suite,
         Trace,
         el_centro_1940,
+        far_field_motions,
         p695_far_field,
+        perturbed_copies,
         pulse,
         read_record,
+        read_records,
         read_suite,
         shipped_suites,
+        synthetic_motions,
+        with_motions,
     )
 
     __version__: str
@@ -48,18 +53,23 @@ __all__ = [
     "compare",  # the module, which may be called; to a type checker its function `compare`
     "el_centro_1940",
     "ensemble",
+    "far_field_motions",
     "fragility",
     "models",
     "multibody",
     "p695_far_field",
+    "perturbed_copies",
     "pulse",
     "read_record",
+    "read_records",
     "read_suite",
     "reduced",
     "reports",
     "shipped_suites",
     "simulate",
     "sweep",
+    "synthetic_motions",
+    "with_motions",
 ]
 _PARTS = ("compare", "models", "multibody", "reduced", "reports")
 _OF_COMPARE = ("Comparison", "External", "ensemble", "fragility", "simulate", "sweep")

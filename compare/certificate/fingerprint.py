@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from rockwobble import multibody, reduced
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
+from rockwobble.models.members import perturbed
 
-from ..studies.ensemble.members import perturbed
 from .short_cases import G, ShortCase, short_cases
 from .verdict import SAME, Entry, Sample, compare_entries
 

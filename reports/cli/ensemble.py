@@ -76,7 +76,7 @@ def ensemble(
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.compare.studies.ensemble.members import require_perturbation
+            from rockwobble.models.members import require_perturbation
 
             rc.require_writable(out)
             refuse_options_of_engines(context, engine)
@@ -135,9 +135,9 @@ def _motions(
         raise ValueError("the members are made-up ground motions or those of FEMA P-695, got both options")
     uplift = case.gravity * case.cylinder.tan_alpha
     if far_field is not None:
-        return rc.far_field_motions(peak=far_field * uplift)
+        return rw.far_field_motions(peak=far_field * uplift)
     if synthetic is not None:
-        return rc.synthetic_motions(members, peak=synthetic * uplift, seed=seed)
+        return rw.synthetic_motions(members, peak=synthetic * uplift, seed=seed)
     return []
 
 

@@ -8,12 +8,23 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import ensemble, far_field_motions, perturbed_copies, sweep, synthetic_motions
+from rockwobble.compare import ensemble, sweep
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
-from rockwobble.compare.studies.ensemble import members as ensemble_members
-from rockwobble.compare.studies.ensemble.study import Ensemble, ensemble_of
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, Trace
+from rockwobble.compare.studies.ensemble import Ensemble, ensemble_of
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    Run,
+    Suite,
+    Trace,
+    far_field_motions,
+    perturbed_copies,
+    synthetic_motions,
+)
+from rockwobble.models.records import p695
 
 ROUNDING = 1e-12
 RECESS = Run(None, "recess")
@@ -164,7 +175,7 @@ def test_far_field_motions_have_their_peak_and_their_names(monkeypatch):
     def made_up(pair: int) -> GroundMotion:
         return GroundMotion([[0.0, 0.0], [float(pair), 0.0]], 0.01, f"pair {pair}")
 
-    monkeypatch.setattr(ensemble_members, "p695_far_field", made_up)
+    monkeypatch.setattr(p695, "p695_far_field", made_up)
     motions = far_field_motions(peak=3.0)
     assert [motion.peak for motion in motions] == pytest.approx([3.0] * 22, abs=ROUNDING)
     assert [motion.name for motion in motions] == [f"pair {pair}" for pair in range(1, 23)]

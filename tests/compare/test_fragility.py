@@ -11,13 +11,13 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import Fragility, IncompleteError, fragility, synthetic_motions
+from rockwobble.compare import Fragility, IncompleteError, fragility
 from rockwobble.compare.runs import execution
 from rockwobble.compare.studies.fragility import runs as running
 from rockwobble.compare.studies.fragility.islands import incremental, islands
 from rockwobble.compare.studies.fragility.limits import exceeded, require_limits
 from rockwobble.compare.studies.fragility.result import fragility_of
-from rockwobble.models import Case, Cylinder, Run
+from rockwobble.models import Case, Cylinder, Run, synthetic_motions
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
 LEVELS = (1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.5, 8.0)

@@ -12,7 +12,7 @@ from rich.console import Console
 
 from rockwobble.compare import Ensemble
 from rockwobble.compare.storage.manifest import read_manifests
-from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of
+from rockwobble.compare.studies.ensemble import KIND, ensemble_of
 from rockwobble.models import Run
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main

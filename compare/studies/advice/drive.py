@@ -9,14 +9,13 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940
+from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940, perturbed_copies
 from rockwobble.models.number_checks import require_one_of
 
 from ...metrics.distributions import Contrast, contrast
 from ...runs.choice import require_runnable
 from ...runs.execution import SAMPLE_STEP, simulate_run
 from ...runs.progress import ProgressCallback, Stages
-from ..ensemble.members import perturbed_copies
 from .advice import OTHER, Advice
 from .members import COPIES, VELOCITY, member_rows, other_records
 from .scales import planar_runs, scan_scales

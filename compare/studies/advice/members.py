@@ -10,12 +10,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, GroundMotion, Trace
+from rockwobble.models import Case, GroundMotion, Trace, far_field_motions, synthetic_motions
 from rockwobble.models.records import p695
 
 from ...metrics.order_statistics import quantile_interval, share_interval
 from ...traces.pair import is_release
-from ..ensemble.members import far_field_motions, synthetic_motions
 from ..fragility.intensity import largest_resultant, velocity
 
 Array = NDArray[np.float64]

@@ -59,8 +59,7 @@ class Fragility(Shown):
     --------
     >>> import rockwobble as rw
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    >>> from rockwobble.compare import synthetic_motions
-    >>> shaking = synthetic_motions(6, peak=1.0, seed=1)
+    >>> shaking = rw.synthetic_motions(6, peak=1.0, seed=1)
     >>> found = rw.fragility(pier, shaking, methods=["recess"], levels=[2, 4, 8], resamples=20, workers=1)
     >>> overturned = found.fits[found.fits["limit"] == "overturned"]
     >>> overturned[["method", "runs", "exceeded"]].to_dict("records")

@@ -51,8 +51,7 @@ def motions_of(
     ValueError
         If two sources are asked for, or one cannot be read.
     """
-    from rockwobble.compare.studies.ensemble.members import recorded_far_field
-    from rockwobble.compare.studies.fragility.motions import read_records
+    from rockwobble.models.records.p695 import recorded_far_field
 
     if p695 + (records is not None) + (synthetic is not None) > 1:
         raise ValueError("the motions are those of --p695, of --records or --synthetic, got more than one")
@@ -61,9 +60,9 @@ def motions_of(
     if p695:
         return recorded_far_field(), "far-field pairs of FEMA P-695"
     if records is not None:
-        return read_records(records, units=units), f"records of {records.name}"
+        return rw.read_records(records, units=units), f"records of {records.name}"
     count = DEFAULT_COUNT if synthetic is None else synthetic
-    return rc.synthetic_motions(count, peak=1.0, seed=seed), f"made-up ground motions, seed {seed}"
+    return rw.synthetic_motions(count, peak=1.0, seed=seed), f"synthetic ground motions, seed {seed}"
 
 
 def methods_of(

@@ -9,7 +9,7 @@ import pandas as pd
 
 from ....metrics.distributions import log_ratios
 from ....metrics.order_statistics import quantile_interval
-from ...ensemble.tables import contrast_row, pairs
+from ...ensemble import contrast_row, pairs
 from ..motions import EL_CENTRO
 from ..records import FLAT, HALVED, PERTURBED, RECESS
 from .numbers import Array, Numbers, Tables, column, largest, quantile, reached
