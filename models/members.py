@@ -11,13 +11,13 @@ from .case import Case
 from .ground_motion import GroundMotion
 
 # a copy further off is another problem, and a factor could change its sign
-_MOST = 0.1
+MOST_PERTURBED = 0.1
 
 
 def require_perturbation(perturbation: float) -> None:
     """Refuse a relative standard deviation of copies that is out of range."""
-    if not 0.0 < perturbation <= _MOST:
-        raise ValueError(f"perturbation must be above 0 and at most {_MOST:g}, got {perturbation!r}")
+    if not 0.0 < perturbation <= MOST_PERTURBED:
+        raise ValueError(f"perturbation must be above 0 and at most {MOST_PERTURBED:g}, got {perturbation!r}")
 
 
 def perturbed_copies(case: Case, count: int, *, perturbation: float, seed: int) -> list[Case]:

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import pandas as pd
@@ -29,6 +29,7 @@ from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Number
 from ..storage.manifest import Results as Stored
 from ..storage.results import Results
+from .plans import Copies
 
 KIND = "ensemble"
 MODELS = (Run(None, "recess"), Run(None, "flat"))
@@ -62,7 +63,7 @@ class Ensemble(Results, kind=KIND):
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> case = rw.Case(pier, rw.el_centro_1940(), duration=15.0)
     >>> both = [rw.Run(None, "recess"), rw.Run(None, "flat")]
-    >>> found = rw.ensemble(case, runs=[], models=both, size=5, workers=1)
+    >>> found = rw.ensemble(case, runs=[], models=both, copies=5, workers=1)
     >>> list(found.methods["runs"]), found.members.shape
     ([5, 5], (10, 6))
     """
@@ -99,35 +100,29 @@ def ensemble(
     *,
     runs: Iterable[Run] | None = None,
     models: Sequence[Run] = MODELS,
-    size: int = 20,
-    perturbation: float = 0.01,
-    seed: int = 0,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
     source: str = "cases",
+    **options: Any,
 ) -> Ensemble:
     """Run many members by each method, and hold their peak tilts against each other, member by member.
 
     Parameters
     ----------
     case_or_members : Case, Suite or sequence of Case
-        One case is run as `size` perturbed copies, see `perturbed_copies`; several are the members,
-        such as one body under many records.
+        One case is run as perturbed copies, see `perturbed_copies`; several are the members, such as one
+        body under many records.
     runs : iterable of Run, optional
         Default: those of the suite, else every installed engine with supports "recess" and "flat".
     models : sequence of Run, optional
         Reduced models. The first is named first in every contrast.
-    size : int, optional
-        Number of perturbed copies.
-    perturbation : float, optional
-        Their relative standard deviation.
-    seed : int, optional
-        Of the perturbations.
     workers, progress, resume
         As in `compare`.
     source : str, optional
         What the members are, for people, where there are several cases.
+    **options
+        Of the copies, see `Copies`: copies (20), perturbation (0.01), seed (0).
 
     Returns
     -------
@@ -144,13 +139,15 @@ def ensemble(
     --------
     >>> from rockwobble.models import Cylinder, el_centro_1940
     >>> case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
-    >>> found = ensemble(case, runs=[], size=5, workers=1)
+    >>> found = ensemble(case, runs=[], copies=5, workers=1)
     >>> found.methods[["method", "runs", "failed"]].values.tolist()
     [['recess model', 5, 0], ['flat-ground model', 5, 0]]
     """
-    about: dict[str, object] = {"seed": seed}
+    plan = Copies(**options)
+    about: dict[str, object] = {"seed": plan.seed}
     if isinstance(case_or_members, Case):
-        members = perturbed_copies(case_or_members, size, perturbation=perturbation, seed=seed)
+        perturbation = plan.perturbation
+        members = perturbed_copies(case_or_members, plan.copies, perturbation=perturbation, seed=plan.seed)
         about |= {"members": f"perturbed copies of {case_or_members.name}, {100.0 * perturbation:g} %"}
         about |= {"perturbation": perturbation}
     else:

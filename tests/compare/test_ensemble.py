@@ -68,7 +68,7 @@ def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():
 def test_a_ring_is_held_against_the_recess_model(monkeypatch):
     monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
     runs = [Run("mujoco", support) for support in ("recess", "flat", "ring")]
-    methods = ensemble(CASE, runs=runs, size=2, workers=1).methods.set_index("method")
+    methods = ensemble(CASE, runs=runs, copies=2, workers=1).methods.set_index("method")
     assert methods["own_model"].to_dict() == {
         "recess model": "",
         "flat-ground model": "",
@@ -90,7 +90,7 @@ def test_failed_runs_are_counted_and_named(monkeypatch):
         return made_up(job, job.case.initial.tilt)
 
     monkeypatch.setattr(execution, "run_job", simulate)
-    found = ensemble(CASE, runs=[], size=4, workers=1)
+    found = ensemble(CASE, runs=[], copies=4, workers=1)
     methods = found.methods.set_index("method")
     assert methods["failed"].to_dict() == {"recess model": 0, "flat-ground model": 1}
     assert methods.loc["flat-ground model", "failed_members"] == "release #2"
@@ -121,7 +121,7 @@ def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
 
 def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
     monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
-    found = ensemble(CASE, runs=[], size=8, workers=1)
+    found = ensemble(CASE, runs=[], copies=8, workers=1)
     shuffled = found.members.sample(frac=1.0, random_state=1)
     assert ensemble_of(shuffled, found.facts).contrasts.loc[0, "ratio_95_low"] == 1.0
     with pytest.raises(ValueError, match="one run by each method"):
@@ -129,7 +129,7 @@ def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
 
 
 def test_a_stored_ensemble_comes_back_with_the_same_bits(tmp_path):
-    found = ensemble(CASE, runs=[], size=3, workers=1)
+    found = ensemble(CASE, runs=[], copies=3, workers=1)
     found.save(tmp_path)
     again = Ensemble.load(tmp_path)
     assert again.contrasts.equals(found.contrasts)
@@ -138,7 +138,7 @@ def test_a_stored_ensemble_comes_back_with_the_same_bits(tmp_path):
 
 
 def test_a_failed_run_is_no_member_that_stands():
-    found = ensemble(CASE, runs=[], size=4, workers=1)
+    found = ensemble(CASE, runs=[], copies=4, workers=1)
     members = found.members
     recess = members["method"] == "recess model"
     members.loc[recess, "outcome"] = ["overturned", "overturned", "stands", "failed"]
@@ -152,9 +152,9 @@ def test_a_failed_run_is_no_member_that_stands():
 
 
 def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):
-    first = ensemble(CASE, runs=[], size=3, workers=1, resume=tmp_path)
+    first = ensemble(CASE, runs=[], copies=3, workers=1, resume=tmp_path)
     monkeypatch.setattr(execution, "run_job", lambda job: pytest.fail("ran again"))
-    again = ensemble(CASE, runs=[], size=3, workers=1, resume=tmp_path)
+    again = ensemble(CASE, runs=[], copies=3, workers=1, resume=tmp_path)
     assert first.members.equals(again.members)
     assert first.contrasts.equals(again.contrasts)
     assert first.facts == again.facts
@@ -166,7 +166,12 @@ def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monk
 def test_every_input_is_in_the_hash_of_an_ensemble():
     hashes = [
         ensemble(CASE, runs=[], workers=1, **options).facts["inputs"]
-        for options in ({"size": 2}, {"size": 3}, {"size": 2, "seed": 1}, {"size": 2, "models": [RECESS]})
+        for options in (
+            {"copies": 2},
+            {"copies": 3},
+            {"copies": 2, "seed": 1},
+            {"copies": 2, "models": [RECESS]},
+        )
     ]
     assert len(set(hashes)) == 4
 
@@ -184,7 +189,7 @@ def test_far_field_motions_have_their_peak_and_their_names(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("options", "message"), [({"size": 1}, "at least 2 members"), ({"perturbation": 0.5}, "perturbation")]
+    ("options", "message"), [({"copies": 1}, "at least 2"), ({"perturbation": 0.5}, "perturbation")]
 )
 def test_bad_input_is_refused(options, message):
     with pytest.raises(ValueError, match=message):

@@ -39,7 +39,7 @@ def ensemble() -> str:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     case = Case(pier, initial=release, duration=1.0, name="release")
-    found = compare.ensemble(case, runs=[], size=8, workers=1)
+    found = compare.ensemble(case, runs=[], copies=8, workers=1)
     return ensemble_page(found.made_by()).html()
 
 

