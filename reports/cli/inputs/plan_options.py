@@ -22,7 +22,7 @@ def takes_options(command: Callable[..., None]) -> Callable[..., None]:
     the plan is made. Two dataclasses may share a field: it is one option, and both get its value.
     """
     own = get_type_hints(command, include_extras=True)
-    stated = {name: kind for name, kind in own.items() if is_dataclass(kind)}
+    stated: dict[str, Any] = {name: kind for name, kind in own.items() if is_dataclass(kind)}
     parameters: dict[str, inspect.Parameter] = {}
     for name, parameter in inspect.signature(command).parameters.items():
         if name in stated:
