@@ -3,7 +3,7 @@
 from .assumptions import Assumptions
 from .bounds import Bounds
 from .case import Case, Run, Suite, run_duration
-from .cylinder import Cylinder
+from .cylinder import Cylinder, WobblingFrame
 from .diagnostic import Diagnostic
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
@@ -28,6 +28,7 @@ __all__ = [
     "Run",
     "Suite",
     "Trace",
+    "WobblingFrame",
     "el_centro_1940",
     "far_field_motions",
     "p695_far_field",

@@ -12,6 +12,8 @@ from .shown import Brief
 class Assumptions(Brief):
     """The demands of a solution on ground and recess, as extrema of the continuous motion.
 
+    In a frame those of base and top of a column, whichever asks for more, each over the weight it carries.
+
     Attributes
     ----------
     breaches : tuple of Diagnostic

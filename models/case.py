@@ -8,7 +8,7 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from .bounds import Bounds
-from .cylinder import Cylinder
+from .cylinder import Cylinder, WobblingFrame
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
 from .number_checks import quoted, require_finite, require_positive
@@ -17,11 +17,12 @@ from .shown import Brief, brief, line
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Case:
-    """One problem: a cylinder, what moves it, and for how long.
+    """One problem: a cylinder or a frame, what moves it, and for how long.
 
     Parameters
     ----------
     cylinder : Cylinder
+        Alone, or the columns of a `WobblingFrame`.
     motion : GroundMotion, optional
         Without it the ground is still.
     initial : InitialState, optional
@@ -31,8 +32,9 @@ class Case:
     gravity : float, optional
         g [m/s^2].
     friction : float, optional
-        Coulomb coefficient of the pair cylinder and ground [-]. Each engine converts it to its own
-        convention; the reduced models assume that it suffices and say where it would not.
+        Coulomb coefficient of the pair cylinder and ground, and of cylinder and slab [-]. Each engine
+        converts it to its own convention; the reduced models assume that it suffices and say where it would
+        not.
     name : str, optional
         For tables, figures and file names. Default: that of the motion, or "free response".
 
@@ -78,6 +80,8 @@ class Case:
     def __repr__(self) -> str:
         cylinder, motion = self.cylinder, self.motion
         facts = [brief(self.name), f"R={cylinder.semidiagonal:g} m", f"tan_alpha={cylinder.tan_alpha:g}"]
+        if isinstance(cylinder, WobblingFrame):
+            facts += [f"slab_mass_ratio={cylinder.slab_mass_ratio:g}"]
         if motion is not None:
             facts += [brief(motion.name)] if motion.name not in ("", self.name) else []
             facts += [f"peak {motion.peak:.4g} m/s^2"]

@@ -1,12 +1,15 @@
-"""The body: a rigid cylinder on its rim, or any body of revolution with a circular base."""
+"""The body: a rigid cylinder on its rim, or any body of revolution; alone, or one of several under a slab."""
 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, fields
+from numbers import Real
+from typing import Any
 
-from .number_checks import require_positive
-from .shown import Brief
+from .number_checks import quoted, require_finite, require_positive
+from .shown import Brief, brief, line
 
 _UNITS = {
     "semidiagonal": "m",
@@ -151,3 +154,81 @@ class Cylinder(Brief):
     def half_height(self) -> float:
         """Half the height of the outline [m]; h of the paper where the body is homogeneous."""
         return self.mass_centre_height if self.height is None else 0.5 * self.height
+
+    @property
+    def slab_mass_ratio(self) -> float:
+        """Mass of the slab over that of the columns under it: none."""
+        return 0.0
+
+
+@dataclass(frozen=True, slots=True, repr=False, init=False)
+class WobblingFrame(Cylinder):
+    """A rigid slab on equal cylinders that rock and wobble together: a deck on piers, a podium.
+
+    It stands where a `Cylinder` stands, and gives the dimensions of one of its columns. The columns
+    make one motion, over which the slab moves twice as far as their mass centres and does not turn:
+    neither their plan nor their number enters the reduced models.
+
+    Parameters
+    ----------
+    cylinder : Cylinder
+        One of the columns, with its mass centre at half its height.
+    slab_mass_ratio : float, optional
+        gamma, mass of the slab over that of all columns [-]; 0 is the cylinder alone.
+    columns : int, optional
+        Number of columns: three or more, or 1 for a slab that is held from turning.
+
+    Raises
+    ------
+    ValueError
+        If the ratio is negative or not finite, the columns are no whole number or too few to carry
+        a slab, or the cylinder is itself a frame or has its mass centre elsewhere.
+
+    Examples
+    --------
+    >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> WobblingFrame(pier, slab_mass_ratio=2.0)
+    WobblingFrame(Cylinder(semidiagonal=6, tan_alpha=0.2), slab_mass_ratio=2, columns=3)
+    """
+
+    slab_mass_ratio: float
+    columns: int
+
+    def __init__(self, cylinder: Cylinder, slab_mass_ratio: float = 1.0, columns: int = 3) -> None:
+        if not isinstance(cylinder, Cylinder) or isinstance(cylinder, WobblingFrame):
+            raise ValueError(  # noqa: TRY004 (bad input)
+                f"cylinder must be a Cylinder, got {quoted(cylinder)}"
+            )
+        if not math.isclose(cylinder.mass_centre_height, cylinder.half_height, rel_tol=1e-12):
+            raise ValueError(
+                f"cylinder must have its mass centre at half its height in a frame, got "
+                f"{cylinder.mass_centre_height:g} of {2.0 * cylinder.half_height:g} m"
+            )
+        ratio = require_finite("slab_mass_ratio", slab_mass_ratio, "")
+        if ratio < 0.0:
+            raise ValueError(f"slab_mass_ratio must not be negative, got {slab_mass_ratio!r}")
+        whole = isinstance(columns, Real) and float(columns).is_integer() and not isinstance(columns, bool)
+        if not whole or columns < 1 or columns == 2:
+            raise ValueError(
+                f"columns must be 3 or more, or 1 under a slab that cannot turn, got {quoted(columns)}"
+            )
+        for field in fields(Cylinder):
+            object.__setattr__(self, field.name, getattr(cylinder, field.name))
+        object.__setattr__(self, "slab_mass_ratio", ratio)
+        object.__setattr__(self, "columns", int(columns))
+
+    def __repr__(self) -> str:
+        ratio = f"slab_mass_ratio={brief(self.slab_mass_ratio)}"
+        return line("WobblingFrame", [repr(self.cylinder), ratio, f"columns={self.columns}"])
+
+    @property
+    def cylinder(self) -> Cylinder:
+        """One of its columns."""
+        return Cylinder(**{field.name: getattr(self, field.name) for field in fields(Cylinder)})
+
+
+def cylinder_of(values: Mapping[str, Any], make: Callable[..., Cylinder] = Cylinder) -> Cylinder:
+    """Return what `make` gives for the values of a cylinder, in a frame where they hold those of a slab."""
+    slab = {name: values[name] for name in ("slab_mass_ratio", "columns") if name in values}
+    cylinder = make(**{name: value for name, value in values.items() if name not in slab})
+    return WobblingFrame(cylinder, **slab) if slab else cylinder

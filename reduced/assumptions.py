@@ -22,7 +22,8 @@ _ROUNDS = 5  # each looks eight times closer, so that a parabola is off by 8^-8 
 class Demands(NamedTuple):
     """Demands of a solution at n times; standing included, where nothing is asked."""
 
-    normal: Array  # (n,) normal force in weights
+    normal: Array  # (n,) least normal force in weights
+    load: Array  # (n,) largest normal force in weights
     friction: Array  # (n,) horizontal over normal force; inf where the normal force is not positive
     moment: Array  # (n,) the restraining one, over the weight [m]
     moving: NDArray[np.bool_]  # (n,)
@@ -67,7 +68,7 @@ def review(
 
     (pull, pulled), (need, needed) = largest(_pull), largest(_need)
     (normal, _), (moment, _) = (
-        largest(lambda found: found.normal),
+        largest(lambda found: found.load),
         largest(lambda found: np.abs(found.moment)),
     )
     if (pull >= 0.0 and not _lost(found).any()) or (need > friction and not slips(found).any()):

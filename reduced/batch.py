@@ -10,7 +10,7 @@ from contextlib import closing
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame
 from rockwobble.models.cpus import in_threads, usable_cpus
 from rockwobble.models.number_checks import quoted
 
@@ -35,6 +35,7 @@ def peak_tilts(
     rtol: float = 1e-7,
     rest_tilt: float = REST_TILT,
     gravity: float = 9.81,
+    slab_mass_ratio: float = 0.0,
     workers: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> NDArray[np.float64]:
@@ -56,6 +57,8 @@ def peak_tilts(
         As in `simulate`.
     gravity : float, optional
         g [m/s^2].
+    slab_mass_ratio : float, optional
+        Mass of the slab over that of all columns [-]: the peaks of a `WobblingFrame`.
     workers : int, optional
         Number of threads; default: that of the cores.
     progress : callable, optional
@@ -79,16 +82,17 @@ def peak_tilts(
     ((1, 2), 0.0)
     """
     sizes, factors = _axis("semidiagonals", semidiagonals), _axis("scales", scales)
+    cylinders = (Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha) for size in sizes)
     bodies = [
         make_problem(
-            Case(Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha), motion, gravity=gravity),
+            Case(WobblingFrame(cylinder, slab_mass_ratio), motion, gravity=gravity),
             support=support,
             plane=plane,
             restitution=restitution,
             rtol=rtol,
             rest_tilt=rest_tilt,
         )
-        for size in sizes
+        for cylinder in cylinders
     ]
     peaks = np.zeros((len(sizes), len(factors)))
     if peaks.size == 0:

@@ -127,7 +127,7 @@ def flat_rhs(
     restoring = (body.g + az) * (b * c - h * s)
     inertial = (b * s + h * c) * a_r
     theta_acceleration = (centrifugal + twisting - restoring - inertial) / body.A
-    Lambda_rate = -b * (b * s + h * c) * omega * tau_rate - s * (h + b * t) * a_t
+    Lambda_rate = -body.mu * b * (b * s + h * c) * omega * tau_rate - s * (h + b * t) * a_t
     # without spin the coupling is none, also at theta = 0 where its coefficient is infinite
     coupling = twist_coupling(body, t, H) * omega * Lambda if Lambda != 0.0 else 0.0
     S_rate = coupling + (b * body.I1 - h * body.I2 * t) / H * a_t
@@ -138,7 +138,7 @@ def flat_rhs(
 def twist_coupling(body: Body, t: float, H: float) -> float:
     """Return N1 [-], the coefficient of theta' Lambda in S'; it tends to infinity as 1/t at upright."""
     b, h, I1, I2, C, E = body.b, body.h, body.I1, body.I2, body.C, body.E
-    polynomial = b * b * I1 + t * (-2.0 * I2 * E + t * (C * (I1 - I2) + I2 * h * h))
+    polynomial = body.mu * b * b * I1 + t * (-2.0 * I2 * E + t * (C * (I1 - I2) + body.mu * I2 * h * h))
     return (1.0 + t * t) / (2.0 * t * H * H) * polynomial
 
 

@@ -2,15 +2,17 @@
 
 The force follows from the acceleration of the mass centre; S is at the radius D - b + |contact| of
 the contact azimuth, so its velocity across that azimuth is D phi' - b tau' and the terms that grow
-without bound towards upright cancel exactly when collected, as they are here.
+without bound towards upright cancel exactly when collected, as they are here. In a frame they are those
+at the base, with the load and the inertia of the share gamma m of the slab; that at the top follows.
 
 ====== ======== =============================================================== ========
 symbol unit     meaning                                                         source
 ====== ======== =============================================================== ========
-F_r    m/s^2    contact force on the cylinder along the contact azimuth, over m (11)
+F_r    m/s^2    contact force on the cylinder along the contact azimuth, over   (11)
+                the mass (1 + gamma) m that it carries
 F_t    m/s^2    the same across it, counter-clockwise                           (11)
 N      m/s^2    the same upwards                                                (11)
-kappa  m^2/s^2  restraining moment along z_world + z_body, over m
+kappa  m^2/s^2  restraining moment along z_world + z_body, over the same
 ====== ======== =============================================================== ========
 """
 
@@ -43,7 +45,7 @@ def contact_force(
     free_twist: bool,
 ) -> tuple[float, float, float, float]:
     """Return F_r, F_t, N and kappa of a state, for the flat-ground model or (S = 0) for the recess."""
-    b, h, C, E = body.b, body.h, body.C, body.E
+    b, h, C, E, nu = body.b, body.h, body.C, body.E, body.nu
     rates = flat_rhs(body, theta, omega, phi, Lambda, 0.0, S, ax, ay, az)
     theta_acceleration, phi_rate, tau_rate, S_rate = rates[1], rates[2], rates[4], rates[5]
     s, c = sin(theta), cos(theta)
@@ -61,19 +63,40 @@ def contact_force(
         # S = M tau', M = (J C - E^2)/H
         tau_acceleration = (S_rate * H + S * H_theta * omega) / (body.J * C - E * E)
     else:
-        kappa = -S_rate / (1.0 + c)
+        kappa = -nu * S_rate / (1.0 + c)
     L_over_B = Lambda / (s * s * H) if Lambda != 0.0 else 0.0
     q = reach * roll / H
     q_1 = 0.5 * sec2 * (b * roll + C * reach) / H - q * H_theta / H
-    F_r = D_1 * theta_acceleration + D_2 * omega * omega - phi_rate * (D * phi_rate - b * tau_rate) + a_r
-    F_t = (
+    outward = D_1 * theta_acceleration + D_2 * omega * omega - phi_rate * (D * phi_rate - b * tau_rate)
+    across = (
         L_over_B * omega * (2.0 * b * t - D * H_theta / H)
         + omega * tau_rate * (0.5 * D_1 * body.I2 * sec2 / H + q_1)
         + (q - b) * tau_acceleration
-        + a_t * (1.0 - reach * reach / H)
     )
-    N = body.g + az + D_2 * theta_acceleration - D_1 * omega * omega
-    return F_r, F_t, N, kappa
+    up = D_2 * theta_acceleration - D_1 * omega * omega
+    F_t = nu * across + a_t * (1.0 - nu * reach * reach / H)
+    return nu * outward + a_r, F_t, body.g + az + nu * up, kappa
+
+
+def top_force(body: Body, base: NDArray[np.float64], ground: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the contact force of a column on the slab, over the weight of its share of the slab.
+
+    The slab has twice the acceleration of the mass centre, which is what the force at the base shows.
+
+    Parameters
+    ----------
+    body : Body
+    base : ndarray, shape (n, 3)
+        Contact force at the base, over the weight that it carries [-].
+    ground : ndarray, shape (n, 3)
+        Ground acceleration [m/s^2].
+
+    Returns
+    -------
+    ndarray, shape (n, 3)
+    """
+    standing = ground / body.g + np.array([0.0, 0.0, 1.0])
+    return np.asarray(standing + 2.0 / body.nu * (base - standing))
 
 
 @kernel

@@ -58,13 +58,13 @@ class Solution(Brief):
 
     def sampled(self) -> Mapping[str, Array]:
         """Return rolling rate, energy, contact force and restraining moment at the samples."""
-        found = self._derive(self.time, self.states)
+        found, top = self._derive(self.time, self.states)
         return {
             "rolling_rate": found[:, forces.ROLLING_RATE],
             "energy": found[:, forces.ENERGY],
             "contact_force": found[:, forces.FORCE_X : forces.FORCE_Z + 1],
             "restraining_moment": found[:, forces.MOMENT],
-        }
+        } | ({} if top is None else {"top_contact_force": top})
 
     def contact_point(self, moving: NDArray[np.bool_]) -> Array:
         """Return the contact point (n, 2) relative to O [m]; NaN at rest."""
@@ -130,18 +130,27 @@ class Solution(Brief):
     def _demands_at(self, times: Array) -> Demands:
         result, azimuth = self.problem.solve(times)
         reached = result.reached
-        derived = self._derive(times[:reached], six_columns(result.samples[:reached], azimuth))
+        derived, top = self._derive(times[:reached], six_columns(result.samples[:reached], azimuth))
         force = derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
-        return Demands(force[:, 2], friction_of(force), derived[:, forces.MOMENT], result.moving[:reached])
+        least, largest, friction = force[:, 2], force[:, 2], friction_of(force)
+        if top is not None:  # whichever end asks for more
+            least, largest = np.minimum(least, top[:, 2]), np.maximum(largest, top[:, 2])
+            friction = np.maximum(friction, friction_of(top))
+        return Demands(least, largest, friction, derived[:, forces.MOMENT], result.moving[:reached])
 
-    def _derive(self, times: Array, states: Array) -> Array:
+    def _derive(self, times: Array, states: Array) -> tuple[Array, Array | None]:
+        """Return the derived quantities (n, 6), and in a frame the force on the slab (n, 3)."""
         problem = self.problem
         ground = ground_at(problem.motion, problem.duration, times)
         if problem.model == "planar":
             ground = in_plane(ground, problem.plane)
-        return forces.derived_quantities(
+        derived = forces.derived_quantities(
             problem.body, np.ascontiguousarray(states), ground, problem.model == "flat"
         )
+        if problem.cylinder.slab_mass_ratio == 0.0:
+            return derived, None
+        base = derived[:, forces.FORCE_X : forces.FORCE_Z + 1]
+        return derived, forces.top_force(problem.body, base, ground)
 
 
 def six_columns(states: Array, azimuth: float) -> Array:

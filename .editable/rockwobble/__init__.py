@@ -24,6 +24,7 @@ if TYPE_CHECKING:
         Run,
         Suite,
         Trace,
+        WobblingFrame,
         el_centro_1940,
         far_field_motions,
         p695_far_field,
@@ -50,6 +51,7 @@ __all__ = [
     "Run",
     "Suite",
     "Trace",
+    "WobblingFrame",
     "compare",  # the module, which may be called; to a type checker its function `compare`
     "el_centro_1940",
     "ensemble",

@@ -1,7 +1,8 @@
-"""Draw the geometry of the recess model: `python docs/figures/geometry.py` writes geometry.svg beside itself.
+"""Draw the geometry: `python docs/figures/geometry.py` writes geometry.svg and frame.svg beside itself.
 
-Left the vertical section through contact point and mass centre, right the view from above. Every point is
-computed from equations (8) and (10), so that the drawing cannot disagree with the equations.
+The recess model: left the vertical section through contact point and mass centre, right the view from above.
+The frame: a section through one row of its columns, with the slab where their tops carry it. Every point is
+computed from equations (8) and (10), so that the drawings cannot disagree with the equations.
 """
 
 from __future__ import annotations
@@ -13,6 +14,8 @@ B, H = 1.0, 2.3  # base radius and half height, of the drawing
 TILT, AZIMUTH = math.radians(21.0), math.radians(40.0)
 CLOSE, WIDE = 66.0, 108.0  # pixels for a unit of length, from the side and from above
 SIDE, ABOVE = (165.0, 385.0), (560.0, 235.0)  # the point O in either view [pixel]
+FRAME = (140.0, 385.0)  # the same of the first column of the frame
+SPACING = 3.1  # of the columns of the frame
 INK, SOFT, BODY, RED, BLUE = "#1b1f23", "#7a828a", "#e9e4d6", "#a63a1e", "#1f5a96"
 
 Point = tuple[float, float]
@@ -20,7 +23,7 @@ Point = tuple[float, float]
 
 def place(origin: Point, x: float, y: float) -> Point:
     """Return the pixel of a point (x right, y up) about `origin`."""
-    scale = CLOSE if origin == SIDE else WIDE
+    scale = WIDE if origin == ABOVE else CLOSE
     return origin[0] + scale * x, origin[1] - scale * y
 
 
@@ -149,20 +152,60 @@ def head(name: str, colour: str) -> str:
     )
 
 
-def figure() -> str:
-    """Return the whole drawing as SVG."""
-    parts = [
+def frame() -> list[str]:
+    """Return the section through three columns and the slab; the thin slab is where they stood."""
+    s, c = math.sin(TILT), math.cos(TILT)
+    base, half, thick = (B * (1 - c), B * s), 1.7, 0.5
+    moved, risen = 2 * (B * (1 - c) + half * s), 2 * (B * s + half * c)
+    found = [line(place(FRAME, -1.6, 0), place(FRAME, 2 * SPACING + 2.9, 0), width=2.2)]
+
+    def slab(along: float, up: float) -> list[Point]:
+        left, right = along - B - 0.15, along + 2 * SPACING + B + 0.15
+        corners = (left, up), (right, up), (right, up + thick), (left, up + thick)
+        return [place(FRAME, *corner) for corner in corners]
+
+    stood = slab(0.0, 2 * half)
+    edges = zip(stood, [*stood[1:], stood[0]], strict=True)
+    found += [line(*edge, colour=SOFT, dash="4 4") for edge in edges]
+    found.append(polygon(slab(moved, risen)))
+    for count in range(3):
+
+        def at(along_base: float, along_axis: float, start: float = count * SPACING) -> Point:
+            x = start + base[0] + along_base * c + along_axis * s
+            return place(FRAME, x, base[1] - along_base * s + along_axis * c)
+
+        low, high, middle = at(B, 0), at(-B, 2 * half), at(0, half)
+        found.append(polygon([at(-B, 0), low, at(B, 2 * half), high]))
+        found += [line(low, high, colour=RED), dot(middle), dot(low, RED), dot(high, RED)]
+        if count == 0:
+            found += [label(middle, "S", shift=(9.0, 2.0)), label(low, "T", shift=(0.0, 20.0))]
+            found.append(label(high, "T′", shift=(-26.0, 4.0)))
+    start, end = stood[2], slab(moved, risen)[2]
+    found += [
+        line(start, end, colour=BLUE, arrow="blue"),
+        label(end, "2 D along the lean, 2 (z − h) up", shift=(-236.0, -10.0), colour=BLUE, plain=True),
+    ]
+    return found
+
+
+def drawing(title: str, parts: list[str]) -> str:
+    """Return a whole drawing as SVG."""
+    whole = [
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 460" '
         'font-family="Georgia, serif" font-size="17">',
-        "<title>The tilted cylinder from the side and from above</title>",
+        f"<title>{title}</title>",
         f"<defs>{head('soft', SOFT)}{head('blue', BLUE)}</defs>",
         '<rect width="760" height="460" fill="#ffffff"/>',
-        *seen_from_the_side(),
-        *seen_from_above(),
+        *parts,
         "</svg>",
     ]
-    return "\n".join(parts) + "\n"
+    return "\n".join(whole) + "\n"
 
 
 if __name__ == "__main__":
-    Path(__file__).with_name("geometry.svg").write_text(figure(), encoding="utf-8")
+    here = Path(__file__)
+    cylinder = drawing(
+        "The tilted cylinder from the side and from above", seen_from_the_side() + seen_from_above()
+    )
+    here.with_name("geometry.svg").write_text(cylinder, encoding="utf-8")
+    here.with_name("frame.svg").write_text(drawing("The tilted frame", frame()), encoding="utf-8")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..bounds import Bounds
 from ..case import Case, Run, Suite
-from ..cylinder import Cylinder
+from ..cylinder import Cylinder, cylinder_of
 from ..ground_motion import GroundMotion
 from ..initial_state import InitialState
 from .errors import located
@@ -113,9 +113,7 @@ def _case(
 
 
 def _cylinder(table: CylinderTable, values: dict[str, float]) -> Cylinder:
-    if table.base_radius is not None:
-        return Cylinder.from_dimensions(**values)
-    return Cylinder(**values)
+    return cylinder_of(values, Cylinder if table.base_radius is None else Cylinder.from_dimensions)
 
 
 def _release(table: ReleaseTable, values: dict[str, float], cylinder: Cylinder) -> InitialState:

@@ -41,7 +41,7 @@ class _Table(BaseModel):
 
 
 class CylinderTable(_Table):
-    """The body: semidiagonal and tan_alpha, or base_radius and height."""
+    """The body: semidiagonal and tan_alpha, or base_radius and height; with a slab, one of its columns."""
 
     semidiagonal: Positives | None = None
     tan_alpha: Positives | None = None
@@ -50,6 +50,8 @@ class CylinderTable(_Table):
     mass_centre_height: Positives | None = None
     transverse_inertia: Positives | None = None
     axial_inertia: Positives | None = None
+    slab_mass_ratio: NotNegatives | None = None
+    columns: Wholes | None = None
 
     @model_validator(mode="after")
     def _one_way_to_say_it(self) -> CylinderTable:

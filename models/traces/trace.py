@@ -1,4 +1,4 @@
-"""The motion of one cylinder, whoever computed or measured it."""
+"""The motion of one cylinder, or of one column of a frame, whoever computed or measured it."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ import numpy as np
 
 from ..assumptions import Assumptions
 from ..case import Case, Run
+from ..cylinder import WobblingFrame
 from ..diagnostic import Diagnostic, joined
 from ..shown import Shown, line
 from . import trace_file
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
 class Trace(Shown):
     """Motion of one cylinder at n samples; positions are relative to O, which moves with the ground.
+
+    In a frame it is that of each of its columns.
 
     What a source does not know is NaN.
 
@@ -48,11 +51,18 @@ class Trace(Shown):
     centre_of_mass : ndarray, shape (n, 3)
         [m]
     energy : ndarray, shape (n,)
-        Relative to the ground, per unit mass, zero standing [m^2/s^2].
+        Relative to the ground, per unit mass, zero standing [m^2/s^2]; in a frame per unit of the mass of a
+        column and twice its share of the slab, which rises twice as far.
     contact_force : ndarray, shape (n, 3)
-        Of the ground, and of walls, on the cylinder, in weights, world axes.
-    friction_needed : ndarray, shape (n,)
-        Horizontal over normal force [-]; inf where the normal force is not positive.
+        Of the ground, and of walls, on the cylinder, in weights, world axes; in a frame the weight of a
+        column and its share of the slab.
+    top_contact_force : ndarray, shape (n, 3)
+        In a frame with a slab, of a column on the slab, in weights of its share of the slab, world axes.
+    friction_needed, top_friction_needed : ndarray, shape (n,)
+        Horizontal over normal force at the base, and at the top of a column of a frame [-]; inf where the
+        normal force is not positive.
+    slab_displacement : ndarray, shape (n, 3)
+        In a frame, of the slab from where it stood, relative to the ground [m].
     restraining_moment : ndarray, shape (n,)
         Kappa of the moment kappa (z_world + z_body) that the recess supplies, over the weight [m]; about the
         vertical, as about the axis, that is 1 + cos(tilt) times kappa.
@@ -138,6 +148,7 @@ class Trace(Shown):
     rolling_rate = Late(1)
     energy = Late(1)
     contact_force = Late(3)
+    top_contact_force = Late(3)
     restraining_moment = Late(1)
     energy_error = Late(1)
     slip = Late(1)
@@ -148,6 +159,22 @@ class Trace(Shown):
     def friction_needed(self) -> Array:
         """Horizontal over normal force (n,) [-]; inf where the normal force is not positive."""
         return friction_of(self.contact_force)
+
+    @property
+    def top_friction_needed(self) -> Array:
+        """Horizontal over normal force at the top of a column of a frame (n,) [-], as at its base."""
+        return friction_of(self.top_contact_force)
+
+    @property
+    def slab_displacement(self) -> Array:
+        """Displacement of the slab of a frame relative to the ground (n, 3) [m].
+
+        The top of a column moves with twice the velocity of its mass centre, as long as neither end slips.
+        """
+        cylinder = self.case.cylinder
+        stood = np.array([0.0, 0.0, cylinder.mass_centre_height])
+        moves = 2.0 if isinstance(cylinder, WobblingFrame) else math.nan
+        return np.asarray(moves * (self.centre_of_mass - stood))
 
     @property
     def contact_offset(self) -> Array:
@@ -216,8 +243,13 @@ class Trace(Shown):
             for field, names in vectors.items()
             for name, part in zip(names, getattr(self, field).T, strict=True)
         }
+        left_out = () if isinstance(self.case.cylinder, WobblingFrame) else trace_file.OF_FRAMES
         return pd.DataFrame(
-            {name: parts[name] if name in parts else getattr(self, name) for name in trace_file.COLUMNS}
+            {
+                name: parts[name] if name in parts else getattr(self, name)
+                for name in trace_file.COLUMNS
+                if name not in left_out
+            }
         )
 
     def to_plain(self) -> dict[str, Any]:

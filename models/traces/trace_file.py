@@ -11,7 +11,7 @@ import numpy as np
 
 from ..assumptions import Assumptions
 from ..case import Case, Run
-from ..cylinder import Cylinder
+from ..cylinder import cylinder_of
 from ..diagnostic import Diagnostic
 from ..ground_motion import GroundMotion
 from ..initial_state import InitialState
@@ -37,6 +37,12 @@ COLUMNS = {
     "force_x": ("weights", "contact force on the cylinder"),
     "force_y": ("weights", "likewise"),
     "force_z": ("weights", "likewise, up"),
+    "top_force_x": (
+        "weights",
+        "of a frame: contact force of a column on its share of the slab",
+    ),
+    "top_force_y": ("weights", "likewise"),
+    "top_force_z": ("weights", "likewise, up"),
     "friction_needed": ("", "horizontal over normal force; infinite where the normal force is not positive"),
     "restraining_moment": ("m", "of the recess: kappa in kappa (z_world + z_body), over the weight"),
     "energy": ("m2/s2", "relative to the ground, per unit mass, zero standing"),
@@ -55,10 +61,12 @@ VECTORS = {
     "contact_point": ("contact_x", "contact_y"),
     "centre_of_mass": ("centre_x", "centre_y", "centre_z"),
     "contact_force": ("force_x", "force_y", "force_z"),
+    "top_contact_force": ("top_force_x", "top_force_y", "top_force_z"),
 }
+OF_FRAMES = VECTORS["top_contact_force"]  # columns that only the trace of a frame has
 _FIELDS = ("time", "tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 _LATE = (
-    *("rolling_rate", "energy", "contact_force", "restraining_moment"),
+    *("rolling_rate", "energy", "contact_force", "top_contact_force", "restraining_moment"),
     *("energy_error", "slip", "wall_contact", "wall_impulse"),
 )
 NUMBERS = (
@@ -95,7 +103,7 @@ def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
         "extrema": np.array(facts["extrema"], dtype=float).reshape(-1, 4),
         "passes": pd.DataFrame(passes),
         "source": Known(
-            {name: array(name) for name in _LATE},
+            {name: array(name) for name in _LATE if set(VECTORS.get(name, (name,))) <= set(samples.columns)},
             None if held is None else Assumptions(**held | {"breaches": _diagnostics(held["breaches"])}),
         ),
     }
@@ -130,7 +138,7 @@ def case_from_plain(given: Mapping[str, Any]) -> Case:
     """Return the case that `case_to_plain` was given."""
     motion, initial = given["motion"], given["initial"]
     fields = {
-        "cylinder": Cylinder(**given["cylinder"]),
+        "cylinder": cylinder_of(given["cylinder"]),
         "motion": motion and GroundMotion(**motion),
         "initial": initial and InitialState(**initial),
     }

@@ -19,6 +19,8 @@ def require_able(engine: Engine, name: str, case: Case, support: str) -> None:
     if support not in supports:
         allowed = f"one of {', '.join(supports)}" if len(supports) > 1 else supports[0]
         raise ValueError(f"support must be {allowed} in {name}, got {support!r}")
+    if case.cylinder.slab_mass_ratio > 0.0:
+        raise ValueError(f"{name} cannot carry the slab of a frame, got {case.cylinder!r}")
     if not engine.uplifts and (case.initial is None or case.initial.tilt == 0.0):
         raise ValueError(
             f"{name} cannot uplift a cylinder that stands: give a release with a tilt, got a start at rest"

@@ -1,7 +1,8 @@
 """The equations of motion and the contact force against Newton and Euler, in vectors.
 
 The reference works in 40 digits: what is compared is the rounding of the code alone, also next to the
-upright where the equations are badly conditioned.
+upright where the equations are badly conditioned. Every other problem is a frame: there the column and
+its share of the slab are bodies of their own.
 """
 
 from typing import Any, NamedTuple
@@ -9,12 +10,12 @@ from typing import Any, NamedTuple
 import mpmath as mp
 import numpy as np
 import pytest
-from newton_euler import Motion, State, Vector, kinetic_energy, newton_euler, vector
+from newton_euler import Motion, Slab, State, Vector, kinetic_energy, newton_euler, vector
 
-from rockwobble.models import Cylinder
+from rockwobble.models import Cylinder, WobblingFrame
 from rockwobble.reduced.body import Body, body_of
 from rockwobble.reduced.equations import energy, flat_rhs, planar_rhs, recess_rhs
-from rockwobble.reduced.forces import contact_force, derived_quantities
+from rockwobble.reduced.forces import contact_force, derived_quantities, top_force
 
 AGREEMENT = 1e-12  # relative to the terms of each sum; measured 4e-14, and 4e-16 without twist
 DIGITS = 40
@@ -28,18 +29,20 @@ class Momenta(NamedTuple):
     C: Any
 
 
-def quadratic_form(body: Body, theta: Any) -> Momenta:
+def quadratic_form(body: Body, share: float, theta: Any) -> Momenta:
+    """Return it for a column and its share of the slab, per unit of the mass that gravity works on."""
+
     def kinetic(phi_rate: int, tau_rate: int) -> Any:
         state = State(theta, mp.mpf(0), mp.mpf(0), mp.mpf(phi_rate), mp.mpf(tau_rate - phi_rate))
-        return kinetic_energy(body, state)
+        return kinetic_energy(body, state, share) / (1 + 2 * mp.mpf(share))
 
     B, C = 2 * kinetic(1, 0), 2 * kinetic(0, 1)
     return Momenta(B, (B + C) / 2 - kinetic(1, 1), C)
 
 
-def momenta(body: Body, theta: Any, phi_rate: Any, tau_rate: Any) -> tuple[Any, Any]:
+def momenta(body: Body, share: float, theta: Any, phi_rate: Any, tau_rate: Any) -> tuple[Any, Any]:
     """Return Lambda = B phi' - G tau' and S = (C - G^2/B) tau'."""
-    B, G, C = quadratic_form(body, theta)
+    B, G, C = quadratic_form(body, share, theta)
     return B * phi_rate - G * tau_rate, (C - G * G / B) * tau_rate
 
 
@@ -47,6 +50,8 @@ class Sample(NamedTuple):
     """A random state, as the code under test takes it."""
 
     body: Body
+    column: Body  # alone
+    slab: Slab
     theta: float
     omega: float
     phi: float
@@ -66,17 +71,20 @@ def sample(seed: int, *, twisting: bool) -> Sample:
             "axial_inertia": transverse * random.uniform(0.05, 1.95),
         }
     cylinder = Cylinder(semidiagonal=size, tan_alpha=10.0 ** random.uniform(-1.3, 0.7), **inertias)
-    body = body_of(cylinder, gravity)
+    column = body_of(cylinder, gravity)
     rate = np.sqrt(gravity / size)
-    theta = random.uniform(0.01, 1.4) if seed % 2 else 10.0 ** random.uniform(-6.0, -1.0)
+    theta = random.uniform(0.01, 1.4) if seed % 4 < 2 else 10.0 ** random.uniform(-6.0, -1.0)
     # in a near pass phi' goes with 1/theta
     phi_rate = random.uniform(-2.0, 2.0) * rate * min(1.0, 0.1 / theta) / min(1.0, 10.0 * theta)
     tau_rate = random.uniform(-1.0, 1.0) * rate if twisting else 0.0
     with mp.workdps(DIGITS):
-        Lambda, S = momenta(body, mp.mpf(theta), mp.mpf(phi_rate), mp.mpf(tau_rate))
+        share = 10.0 ** random.uniform(-2.0, 2.0) if seed % 2 else 0.0
+        Lambda, S = momenta(column, share, mp.mpf(theta), mp.mpf(phi_rate), mp.mpf(tau_rate))
     ax, ay, az = random.uniform(-1.0, 1.0, 3) * gravity
     return Sample(
-        body,
+        body_of(WobblingFrame(cylinder, share), gravity),
+        column,
+        Slab(mp.mpf(share), []),
         theta,
         random.uniform(-1.0, 1.0) * rate,
         random.uniform(-7.0, 7.0),
@@ -89,26 +97,31 @@ def sample(seed: int, *, twisting: bool) -> Sample:
 def state_of(given: Sample) -> State:
     """Return the state that the rounded momenta stand for."""
     theta = mp.mpf(given.theta)
-    B, G, C = quadratic_form(given.body, theta)
+    B, G, C = quadratic_form(given.column, given.slab.share, theta)
     tau_rate = mp.mpf(given.S) / (C - G * G / B)
     phi_rate = (mp.mpf(given.Lambda) + G * tau_rate) / B
     return State(theta, mp.mpf(given.omega), mp.mpf(given.phi), phi_rate, tau_rate - phi_rate)
 
 
-def momenta_rates(body: Body, state: State, motion: Motion) -> tuple[Any, Any]:
+def momenta_rates(given: Sample, state: State, motion: Motion) -> tuple[Any, Any]:
     """Return Lambda' and S' from the accelerations of the angles."""
 
     def after(time: Any, index: int) -> Any:
         theta = state.theta + time * state.theta_rate
         phi_rate = state.phi_rate + time * motion.phi
         tau_rate = state.phi_rate + state.psi_rate + time * (motion.phi + motion.psi)
-        return momenta(body, theta, phi_rate, tau_rate)[index]
+        return momenta(given.column, given.slab.share, theta, phi_rate, tau_rate)[index]
 
     # central difference: 1e-12 of the tilt leaves 1e-24, in arithmetic of 80 digits
     with mp.workdps(2 * DIGITS):
         step = state.theta * mp.mpf(10) ** -12 / (1 + abs(state.theta_rate) + abs(state.phi_rate))
         rates = [(after(step, i) - after(-step, i)) / (2 * step) for i in range(2)]
     return rates[0], rates[1]
+
+
+def carried(given: Sample) -> Any:
+    """Return the mass that the base carries, over that of the column."""
+    return 1 + given.slab.share
 
 
 def polar(force: Vector, phi: float) -> Vector:
@@ -150,8 +163,8 @@ def test_recess(seed: int) -> None:
     body = given.body
     with mp.workdps(DIGITS):
         state = state_of(given)
-        motion = newton_euler(body, state, vector(*given.ground), recess=True)
-        Lambda_rate, _ = momenta_rates(body, state, motion)
+        motion = newton_euler(given.column, state, vector(*given.ground), True, given.slab)
+        Lambda_rate, _ = momenta_rates(given, state, motion)
         scale = scales_of(given, state)
         found = recess_rhs(body, given.theta, given.omega, given.phi, given.Lambda, *given.ground)
         assert_close(
@@ -162,7 +175,7 @@ def test_recess(seed: int) -> None:
         found = contact_force(
             body, given.theta, given.omega, given.phi, given.Lambda, 0.0, *given.ground, False
         )
-        expected = (*polar(motion.force, given.phi), motion.moment)
+        expected = (part / carried(given) for part in (*polar(motion.force, given.phi), motion.moment))
         assert_close(found, expected, (scale.force, scale.force, scale.force, scale.moment))
 
 
@@ -172,9 +185,9 @@ def test_rolling(seed: int) -> None:
     body = given.body
     with mp.workdps(DIGITS):
         state = state_of(given)
-        motion = newton_euler(body, state, vector(*given.ground), recess=False)
+        motion = newton_euler(given.column, state, vector(*given.ground), False, given.slab)
         assert motion.moment == 0
-        Lambda_rate, S_rate = momenta_rates(body, state, motion)
+        Lambda_rate, S_rate = momenta_rates(given, state, motion)
         tau_rate = state.phi_rate + state.psi_rate
         scale = scales_of(given, state)
         found = flat_rhs(body, given.theta, given.omega, given.phi, given.Lambda, 0.3, given.S, *given.ground)
@@ -195,7 +208,7 @@ def test_rolling(seed: int) -> None:
         )
         assert_close(
             found,
-            (*polar(motion.force, given.phi), mp.mpf(0)),
+            (*(part / carried(given) for part in polar(motion.force, given.phi)), mp.mpf(0)),
             (scale.force, scale.force, scale.force, scale.moment),
         )
 
@@ -213,7 +226,7 @@ def test_planar(seed: int) -> None:
                 mp.mpf(0),
                 mp.mpf(0),
             )
-            motion = newton_euler(given.body, state, vector(along, 0, vertical), recess=True)
+            motion = newton_euler(given.column, state, vector(along, 0, vertical), True, given.slab)
             found = planar_rhs(given.body, given.theta, direction, along, vertical)
             assert_close((found,), (motion.theta,), (scales_of(given, state).theta,))
 
@@ -224,7 +237,8 @@ def test_energy(seed: int) -> None:
     body = given.body
     with mp.workdps(DIGITS):
         state = state_of(given)
-        kinetic = kinetic_energy(body, state)
+        share = given.slab.share
+        kinetic = kinetic_energy(given.column, state, share) / (1 + 2 * share)
         potential = body.g * (body.b * mp.sin(state.theta) - body.h * (1 - mp.cos(state.theta)))
         found = energy(body, given.theta, given.omega, given.Lambda, given.S)
         assert_close((found,), (kinetic + potential,), (kinetic + body.g * (body.b + body.h) * state.theta,))
@@ -238,8 +252,8 @@ def test_force_in_world_axes_over_the_weight(seed: int, free_twist: bool) -> Non
     found = derived_quantities(given.body, states, np.array([given.ground, given.ground]), free_twist)
     with mp.workdps(DIGITS):
         state = state_of(given)
-        motion = newton_euler(given.body, state, vector(*given.ground), recess=not free_twist)
-        weight, scale = mp.mpf(given.body.g), scales_of(given, state)
+        motion = newton_euler(given.column, state, vector(*given.ground), not free_twist, given.slab)
+        weight, scale = given.body.g * carried(given), scales_of(given, state)
         assert_close(
             tuple(found[0, 2:]),
             tuple(component / weight for component in (*motion.force, motion.moment)),
@@ -247,5 +261,40 @@ def test_force_in_world_axes_over_the_weight(seed: int, free_twist: bool) -> Non
         )
         assert_close((found[0, 0],), (state.phi_rate,), (abs(state.phi_rate),))
         # a body that stands goes with the ground
-        standing = vector(*given.ground) / weight + vector(0, 0, 1)
+        standing = vector(*given.ground) / mp.mpf(given.body.g) + vector(0, 0, 1)
         assert_close(tuple(found[1]), (0, 0, *standing, 0), (1,) * 6)
+
+
+@pytest.mark.parametrize("seed", range(401, 411, 2))
+def test_force_on_the_slab(seed: int) -> None:
+    given = sample(seed, twisting=True)
+    states = np.array([[given.theta, given.omega, given.phi, given.Lambda, 0.3, given.S]])
+    ground = np.array([given.ground])
+    base = derived_quantities(given.body, states, ground, True)[:, 2:5]
+    found = top_force(given.body, base, ground)
+    with mp.workdps(DIGITS):
+        state = state_of(given)
+        motion = newton_euler(given.column, state, vector(*given.ground), False, given.slab)
+        scale = scales_of(given, state).force / given.body.g
+        assert_close(tuple(found[0]), tuple(motion.top / given.slab.share / given.body.g), (scale,) * 3)
+
+
+def test_a_free_slab_turns_the_less_the_wider_the_columns_stand() -> None:
+    """On a plan of finite size the slab turns, because its columns touch it off their axes."""
+    given = sample(7, twisting=False)
+    share, column = mp.mpf(1), given.column
+    corners = [(mp.cos(angle), mp.sin(angle)) for angle in (0.3, 2.4, 4.5)]
+    with mp.workdps(DIGITS):
+        state = state_of(given)
+        turns, errors = [], []
+        for width in (1e2, 1e3):
+            reach = width * column.b
+            places = [vector(reach * x, reach * y, 0) for x, y in corners]
+            middle = sum(places) / 3
+            free = Slab(share, [place - middle for place in places], share * 3 * mp.mpf(reach) ** 2 / 2)
+            motion = newton_euler(column, state, vector(*given.ground), True, free)
+            guided = newton_euler(column, state, vector(*given.ground), True, Slab(share, []))
+            turns.append(float(max(abs(motion.slab_turn))))
+            errors.append(float(abs(motion.theta - guided.theta)))
+    assert turns[0] / turns[1] == pytest.approx(100.0, rel=0.1)  # as 1/width^2
+    assert errors[0] > 5.0 * errors[1] > 0.0

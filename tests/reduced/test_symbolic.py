@@ -22,7 +22,7 @@ from rockwobble.reduced import equations
 from rockwobble.reduced.body import Body
 
 time = sp.Symbol("time")
-b, h, R, I1, I2, g = sp.symbols("b h R I1 I2 g", positive=True)
+b, h, R, I1, I2, g, gamma = sp.symbols("b h R I1 I2 g gamma", positive=True)
 theta, phi = sp.Function("theta")(time), sp.Function("phi")(time)
 ground = [sp.Function(f"u_{axis}")(time) for axis in "xyz"]  # displacement
 tilt, omega, azimuth, rate, L = sp.symbols("tilt omega azimuth rate L")  # theta, theta', phi, phi', B phi'
@@ -31,8 +31,11 @@ STATE = (tilt, omega, azimuth, L, a_x, a_y, a_z)
 QUARTER = {tilt: sp.Symbol("quarter_tilt"), azimuth: sp.Symbol("quarter_azimuth")}  # tangents
 
 
-def energies() -> tuple[Any, Any]:
-    """Return the kinetic and the potential energy per unit mass, from (8), (10), (13)-(15) and (17)."""
+def energies(share: Any) -> tuple[Any, Any]:
+    """Return the kinetic and the potential energy per unit mass, from (8), (10), (13)-(15) and (17).
+
+    Those of a slab of `share` masses are added, at the highest point of the top.
+    """
     azimuthal = sp.rot_axis3(-phi)
     tilting = sp.rot_axis2(-theta)
     rotation = azimuthal * tilting * azimuthal.T  # (5), (6), where the third angle psi is -phi
@@ -40,11 +43,16 @@ def energies() -> tuple[Any, Any]:
     base = b * (1 - sp.cos(theta)) * e_x + b * sp.sin(theta) * e_z  # (10)
     centre = sp.Matrix(ground) + base + h * rotation[:, 2]  # (11)
     velocity = centre.diff(time)
+    # the circle that the top rolls on keeps its place on the slab, as that at the base does on the ground
+    highest = base + 2 * h * rotation[:, 2] - b * (sp.cos(theta) * e_x - sp.sin(theta) * e_z)
+    slab = sp.Matrix(ground) + highest + b * e_x
+    slab_velocity = slab.diff(time)
     spin = rotation.T * rotation.diff(time)  # skew: the angular velocity (14) in body axes
     # short before they are squared
     angular_velocity = sp.Matrix([reduced(each, phi, theta) for each in (spin[2, 1], spin[0, 2], spin[1, 0])])
-    kinetic = (velocity.dot(velocity) + angular_velocity.dot(sp.diag(I1, I1, I2) * angular_velocity)) / 2
-    return reduced(kinetic, phi, theta), g * centre[2]
+    translation = velocity.dot(velocity) + share * slab_velocity.dot(slab_velocity)
+    kinetic = (translation + angular_velocity.dot(sp.diag(I1, I1, I2) * angular_velocity)) / 2
+    return reduced(kinetic, phi, theta), g * (centre[2] + share * slab[2])
 
 
 def reduced(expression: Any, *angles: Any) -> Any:
@@ -69,10 +77,16 @@ def plain(expression: Any) -> Any:
     return expression
 
 
+@pytest.fixture(scope="module", params=[0, gamma], ids=["cylinder", "frame"])
+def share(request: pytest.FixtureRequest) -> Any:
+    """Return the mass of the slab over that of the columns."""
+    return request.param
+
+
 @pytest.fixture(scope="module")
-def paper() -> tuple[Any, Any]:
+def paper(share: Any) -> tuple[Any, Any]:
     """Return the kinetic and the potential energy."""
-    return energies()
+    return energies(share)
 
 
 @pytest.fixture(scope="module")
@@ -139,8 +153,8 @@ def is_nonzero_somewhere(expression: Any) -> bool:
     return bool(expression.xreplace(point) != 0)
 
 
-def constants(transverse: Any = None, axial: Any = None) -> Body:
-    """Return the constants of the code for a cylinder of symbols."""
+def constants(transverse: Any = None, axial: Any = None, share: Any = 0) -> Body:
+    """Return the constants of the code for a cylinder or frame of symbols."""
     cylinder = types.SimpleNamespace(
         base_radius=b,
         mass_centre_height=h,
@@ -149,6 +163,7 @@ def constants(transverse: Any = None, axial: Any = None) -> Body:
         tan_alpha=b / h,
         transverse_inertia=transverse,
         axial_inertia=axial,
+        slab_mass_ratio=share,
     )
     body: Body = on_symbols(body_module.body_of)(cylinder, g)
     return body
@@ -166,6 +181,7 @@ def recess_residuals(body: Body, motion: tuple[Any, Any]) -> list[Any]:
     return [equation.xreplace(found) for equation in motion]
 
 
+@pytest.mark.parametrize("share", [0], indirect=True, ids=["cylinder"])
 def test_equations_18_and_19_follow_from_the_energies(motion: tuple[Any, Any]) -> None:
     s, c = sp.sin(tilt), sp.cos(tilt)
     a_r = a_x * sp.cos(azimuth) + a_y * sp.sin(azimuth)
@@ -187,34 +203,37 @@ def test_equations_18_and_19_follow_from_the_energies(motion: tuple[Any, Any]) -
     assert vanishes(motion[1] - equation_19)
 
 
-def test_recess_equations_are_lagranges(motion: tuple[Any, Any]) -> None:
-    assert on_symbols(equations.recess_rhs)(constants(I1, I2), *STATE)[0] == omega
-    for residual in recess_residuals(constants(I1, I2), motion):
+def test_recess_equations_are_lagranges(motion: tuple[Any, Any], share: Any) -> None:
+    body = constants(I1, I2, share)
+    assert on_symbols(equations.recess_rhs)(body, *STATE)[0] == omega
+    for residual in recess_residuals(body, motion):
         assert not is_nonzero_somewhere(residual)  # one point: the changed ones below are not zero there
         assert vanishes(residual)
 
 
 @pytest.mark.parametrize("factor", [sp.Rational(101, 100), -1])
 @pytest.mark.parametrize("name", ["b", "h", "A", "J", "C", "E", "p2", "sin_alpha", "cos_alpha"])
-def test_a_changed_coefficient_is_seen(name: str, factor: Any, motion: tuple[Any, Any]) -> None:
-    body = constants(I1, I2)
+def test_a_changed_coefficient_is_seen(name: str, factor: Any, motion: tuple[Any, Any], share: Any) -> None:
+    body = constants(I1, I2, share)
     changed = body._replace(**{name: factor * getattr(body, name)})
     assert any(is_nonzero_somewhere(residual) for residual in recess_residuals(changed, motion))
 
 
 @pytest.mark.parametrize("direction", [1, -1])
-def test_planar_equation_is_lagranges(motion: tuple[Any, Any], direction: int) -> None:
-    acceleration = on_symbols(equations.planar_rhs)(constants(I1, I2), tilt, direction, a_x, a_z)
+def test_planar_equation_is_lagranges(motion: tuple[Any, Any], share: Any, direction: int) -> None:
+    acceleration = on_symbols(equations.planar_rhs)(constants(I1, I2, share), tilt, direction, a_x, a_z)
     planar = motion[0].subs({rate: 0, a_y: 0, azimuth: 0 if direction == 1 else sp.pi})
     assert vanishes(planar.subs(theta_2, acceleration))
 
 
-def test_energy_is_that_of_the_paper(paper: tuple[Any, Any]) -> None:
+def test_energy_is_that_of_the_paper(paper: tuple[Any, Any], share: Any) -> None:
     kinetic, potential = (plain(part) for part in paper)
-    body = constants(I1, I2)
+    body = constants(I1, I2, share)
     phi_rate = on_symbols(equations.recess_rhs)(body, *STATE)[2]
     found = on_symbols(equations.energy)(body, tilt, omega, L, 0.0)
-    assert vanishes((kinetic + potential - potential.subs(tilt, 0)).subs(rate, phi_rate) - found)
+    assert vanishes(
+        (kinetic + potential - potential.subs(tilt, 0)).subs(rate, phi_rate) - (1 + 2 * share) * found
+    )
 
 
 def test_constants_of_a_homogeneous_cylinder() -> None:

@@ -1,0 +1,89 @@
+"""The wobbling frame as a value: it stands where a cylinder stands."""
+
+from __future__ import annotations
+
+import pickle
+from typing import Any
+
+import pytest
+
+from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame, read_suite
+from rockwobble.models.traces.trace_file import case_from_plain
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2, axial_inertia=1.1)
+SUITE = """
+[[cases]]
+name = "pier"
+cylinder = { base_radius = 1, height = 10, slab_mass_ratio = [0, 4], columns = COUNT }
+release = { tilt_over_alpha = 0.5 }
+duration = 4
+"""
+
+
+def test_a_frame_has_the_dimensions_of_its_columns() -> None:
+    frame = WobblingFrame(PIER, slab_mass_ratio=2.0, columns=4)
+    for name in ("semidiagonal", "tan_alpha", "alpha", "base_radius", "mass_centre_height", "half_height"):
+        assert getattr(frame, name) == getattr(PIER, name)
+    assert (frame.cylinder, frame.slab_mass_ratio, frame.columns) == (PIER, 2.0, 4)
+    assert (frame.axial_inertia, frame.transverse_inertia) == (1.1, None)
+
+
+def test_a_frame_is_a_value() -> None:
+    frame = WobblingFrame(PIER, 2.0)
+    assert frame == WobblingFrame(PIER, slab_mass_ratio=2, columns=3) != WobblingFrame(PIER, 2.0, 4)
+    assert PIER != WobblingFrame(PIER, 0.0) != PIER
+    assert len({frame, pickle.loads(pickle.dumps(frame)), frame.cylinder, PIER}) == 2
+    with pytest.raises(AttributeError):
+        frame.columns = 5  # type: ignore[misc]
+
+
+def test_its_repr_makes_it_again() -> None:
+    frame = WobblingFrame(PIER, 0.25, 5)
+    assert eval(repr(frame)) == frame
+    assert "slab_mass_ratio=0.25" in repr(Case(frame, duration=1.0))
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({"slab_mass_ratio": -0.1}, "slab_mass_ratio"),
+        ({"slab_mass_ratio": float("nan")}, "slab_mass_ratio"),
+        ({"slab_mass_ratio": float("inf")}, "slab_mass_ratio"),
+        ({"columns": 0}, "columns"),
+        ({"columns": 2}, "columns"),
+        ({"columns": 3.5}, "columns"),
+        ({"columns": True}, "columns"),
+        ({"cylinder": WobblingFrame(PIER)}, "cylinder"),
+        ({"cylinder": Cylinder(semidiagonal=6.0, tan_alpha=0.2, height=8.0)}, "mass centre"),
+    ],
+)
+def test_what_is_no_frame_is_refused_in_a_line(given: dict[str, Any], named: str) -> None:
+    with pytest.raises(ValueError, match=named) as refused:
+        WobblingFrame(**{"cylinder": PIER, **given})
+    assert "\n" not in str(refused.value)
+
+
+def test_a_case_of_a_frame_comes_back_from_plain_values() -> None:
+    frame = WobblingFrame(PIER, 0.5, 1)
+    plain = {"cylinder": {**dict.fromkeys(("height", "transverse_inertia")), "semidiagonal": 6.0,
+                          "tan_alpha": 0.2, "axial_inertia": 1.1, "slab_mass_ratio": 0.5, "columns": 1},
+             "motion": None, "initial": None, "duration": 2.0, "gravity": 9.81, "friction": 1.0,
+             "name": "a"}  # fmt: skip
+    assert case_from_plain(plain).cylinder == frame
+
+
+def test_a_suite_file_holds_frames(tmp_path: Any) -> None:
+    path = tmp_path / "frame.suite.toml"
+    path.write_text(SUITE.replace("COUNT", "4"))
+    found = [case.cylinder for case in read_suite(path).cases]
+    pier = Cylinder.from_dimensions(base_radius=1.0, height=10.0)
+    assert found == [WobblingFrame(pier, ratio, 4) for ratio in (0.0, 4.0)]
+    path.write_text(SUITE.replace("COUNT", "2"))
+    with pytest.raises(ValueError, match=r"cases\[0\].cylinder: columns"):
+        read_suite(path)
+
+
+def test_a_case_takes_a_frame() -> None:
+    case = Case(WobblingFrame(PIER), initial=InitialState(0.1), duration=1.0)
+    assert case.cylinder.slab_mass_ratio == 1.0
+    assert PIER.slab_mass_ratio == 0.0

@@ -1,0 +1,189 @@
+"""The wobbling frame in the reduced models: closed forms, limits, and the slab on top."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from rockwobble import reduced
+from rockwobble.models import Case, Cylinder, InitialState, Trace, WobblingFrame, el_centro_1940
+from rockwobble.models.traces.trace_source import friction_of
+from rockwobble.reduced.body import body_of
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+SQUAT = Cylinder(semidiagonal=2.0, tan_alpha=0.8, transverse_inertia=1.1, axial_inertia=0.7)
+THREE_DECIMALS = 0.5e-3  # of the published limits [deg]
+ROUNDING = 1e-14  # relative, of some ten operations
+TIGHT = {"rtol": 1e-11}
+INTEGRATED = 1e-8  # relative, what a tolerance of 1e-11 leaves in a swing
+# of its maximum; a central difference of 2e-4 s leaves h^2/12 times the fourth derivative: measured 7e-5
+DIFFERENCE = 5e-4
+
+
+def shaken(ratio: float, support: str = "recess", **options: float) -> Trace:
+    case = Case(WobblingFrame(PIER, ratio), el_centro_1940(vertical=True), duration=8.0)
+    return reduced.simulate(case, support=support, **options)
+
+
+@pytest.mark.parametrize(
+    ("ratio", "turn"), [(0.0, 182.660), (0.5, 183.202), (1.0, 183.338), (2.0, 183.435), (20.0, 183.550)]
+)
+def test_angle_of_turn_in_the_limit_of_vanishing_spin(ratio: float, turn: float) -> None:
+    frame = WobblingFrame(PIER, ratio)
+    assert math.degrees(reduced.limiting_angle_of_turn(frame)) == pytest.approx(turn, abs=THREE_DECIMALS)
+    release = InitialState(0.5 * frame.alpha, rolling_rate=1e-15)
+    assert math.degrees(reduced.angle_of_turn(frame, release)) == pytest.approx(turn, abs=THREE_DECIMALS)
+
+
+@pytest.mark.parametrize("tan_alpha", [0.1, 0.2, 0.5])
+@pytest.mark.parametrize("ratio", [0.0, 0.5, 3.0, 100.0])
+def test_a_frame_of_boxes_is_the_planar_rocking_frame(ratio: float, tan_alpha: float) -> None:
+    """p^2 = (3 g/4 R)(1 + 2 gamma)/(1 + 3 gamma), and its restitution by moment of momentum."""
+    R, alpha = 3.0, math.atan(tan_alpha)
+    box = Cylinder(semidiagonal=R, tan_alpha=tan_alpha, transverse_inertia=R * R / 3.0, axial_inertia=0.1)
+    frame = WobblingFrame(box, ratio)
+    p2 = 0.75 * 9.81 / R * (1.0 + 2.0 * ratio) / (1.0 + 3.0 * ratio)
+    assert body_of(frame, 9.81).p2 == pytest.approx(p2, rel=ROUNDING)
+    r = (1.0 - 1.5 * math.sin(alpha) ** 2 + 3.0 * ratio * math.cos(2.0 * alpha)) / (1.0 + 3.0 * ratio)
+    assert reduced.restitution_from_momentum(frame) == pytest.approx(r, rel=ROUNDING)
+
+
+@pytest.mark.parametrize("ratio", [0.0, 0.7, 20.0])
+@pytest.mark.parametrize("column", [PIER, SQUAT])
+def test_restitution_is_that_of_impulses_on_column_and_slab(column: Cylinder, ratio: float) -> None:
+    """Both bodies by themselves: unknown are the rate after and the impulses at the new contacts."""
+    b, h = column.base_radius, column.mass_centre_height
+    inertia = body_of(column, 1.0).I1
+    # column: momentum along and up, moment about its mass centre; slab: momentum along and up, velocity twice
+    # that of the mass centre: (h, b) at a tilt rate of 1 before, (h, -b) after
+    columns = [
+        [-h, b, -inertia, -2.0 * ratio * h, 2.0 * ratio * b],  # the rate after
+        [1.0, 0.0, -h, 0.0, 0.0],  # impulses at the base, on the column
+        [0.0, 1.0, b, 0.0, 0.0],
+        [1.0, 0.0, h, -1.0, 0.0],  # at the top, on the column
+        [0.0, 1.0, -b, 0.0, -1.0],
+    ]
+    before = np.array([-h, -b, -inertia, -2.0 * ratio * h, -2.0 * ratio * b])
+    after = float(np.linalg.solve(np.transpose(columns), before)[0])
+    assert reduced.restitution_from_momentum(WobblingFrame(column, ratio)) == pytest.approx(
+        max(after, 0.0), rel=1e-12, abs=1e-15
+    )
+
+
+def test_under_a_heavy_slab_a_column_is_a_link_without_mass() -> None:
+    heavy = 1e9  # relative error of the limit
+    body = body_of(WobblingFrame(PIER, heavy), 9.81)
+    assert body.p2 == pytest.approx(9.81 / (2.0 * PIER.semidiagonal), rel=2.0 / heavy)
+    limit = math.pi / math.cos(PIER.alpha)
+    assert reduced.limiting_angle_of_turn(WobblingFrame(PIER, heavy)) == pytest.approx(limit, rel=2.0 / heavy)
+
+
+@pytest.mark.parametrize("options", [{}, {"support": "flat"}, {"plane": 0.3, "restitution": "momentum"}])
+def test_without_a_slab_a_frame_is_the_cylinder_to_the_bit(options: dict[str, object]) -> None:
+    runs = [
+        reduced.simulate(Case(body, el_centro_1940(), duration=12.0), **options)  # type: ignore[arg-type]
+        for body in (PIER, WobblingFrame(PIER, 0.0))
+    ]
+    for name in ("tilt", "rolling_angle", "energy", "contact_force", "restraining_moment"):
+        assert np.array_equal(*(getattr(run, name) for run in runs), equal_nan=True), name
+    assert runs[0].assumptions == runs[1].assumptions
+    assert np.isnan(runs[0].top_contact_force).all()
+    assert np.isnan(runs[0].slab_displacement).all()
+
+
+@pytest.mark.parametrize("ratio", [0.3, 1.0, 10.0])
+@pytest.mark.parametrize("column", [PIER, SQUAT])
+def test_free_response_is_the_quadrature(column: Cylinder, ratio: float) -> None:
+    frame = WobblingFrame(column, ratio)
+    release = InitialState(0.5 * frame.alpha, rolling_rate=0.2)
+    exact = reduced.free_response(frame, release)
+    trace = reduced.simulate(Case(frame, initial=release, duration=1.2 * exact.period), **TIGHT)
+    assert trace.extrema[2, 0] == pytest.approx(exact.period, rel=INTEGRATED)
+    assert trace.passes.angle_of_turn[0] == pytest.approx(exact.angle_of_turn, rel=INTEGRATED)
+    assert trace.passes.minimum_tilt[0] == pytest.approx(exact.minimum_tilt, rel=1e-6)  # a pass magnifies
+    assert trace.energy[0] == pytest.approx(exact.energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("ratio", [0.3, 10.0])
+def test_steady_wobble_and_planar_rocking_keep_their_periods(ratio: float) -> None:
+    frame = WobblingFrame(PIER, ratio)
+    tilt = 0.4 * frame.alpha
+    steady = InitialState(tilt, rolling_rate=reduced.steady_wobble_rate(frame, tilt))
+    trace = reduced.simulate(Case(frame, initial=steady, duration=4.0), **TIGHT)
+    assert np.abs(trace.tilt - tilt).max() < INTEGRATED * tilt
+    period = reduced.rocking_period(frame, tilt)
+    planar = reduced.simulate(Case(frame, initial=InitialState(tilt), duration=1.1 * period), **TIGHT)
+    assert planar.extrema[4, 0] == pytest.approx(period, rel=INTEGRATED)
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+def test_energy_is_conserved_and_no_slab_makes_the_same_motion(support: str) -> None:
+    # squat, so that the twist of flat ground matters
+    frame, release = WobblingFrame(SQUAT, 2.0), InitialState(0.3, rolling_rate=0.8)
+    case = Case(frame, initial=release, duration=6.0)
+    trace = reduced.simulate(case, support=support, **TIGHT)
+    assert len(trace.passes) > 2
+    assert np.ptp(trace.energy) < INTEGRATED * trace.energy[0]
+    alone = reduced.simulate(Case(SQUAT, initial=release, duration=6.0), support=support, **TIGHT)
+    assert np.abs(alone.tilt - trace.tilt).max() > 0.1
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+def test_force_on_the_slab_is_what_its_motion_takes(support: str) -> None:
+    """Newton's law of the slab, from its displacement alone."""
+    h = 2e-4
+    trace = shaken(1.0, support, sample_step=h, **TIGHT)
+    ground = el_centro_1940(vertical=True)
+    at = np.arange(len(ground.acceleration)) * ground.time_step
+    shaking = np.column_stack([np.interp(trace.time, at, column) for column in ground.acceleration.T])
+    moves = trace.slab_displacement
+    acceleration = (moves[2:] - 2.0 * moves[1:-1] + moves[:-2]) / h**2
+    force = (acceleration + shaking[1:-1]) / 9.81 + [0.0, 0.0, 1.0]
+    smooth = (trace.tilt > 0.02 * PIER.alpha)[1:-1]  # at passes and uplifts it bends within h
+    error = np.abs(force - trace.top_contact_force[1:-1])[smooth]
+    assert error.max() < DIFFERENCE * np.abs(force).max()
+    assert smooth.sum() > 10_000
+
+
+def test_assumptions_are_those_of_the_end_that_asks_for_more() -> None:
+    trace = shaken(0.05, sample_step=1e-3)
+    held = trace.assumptions
+    assert held is not None
+    moving = trace.tilt > 0.0
+    base, top = trace.friction_needed[moving].max(), trace.top_friction_needed[moving].max()
+    assert top > 1.05 * base  # a light slab slides first
+    assert held.largest_friction_needed == pytest.approx(top, rel=1e-2)  # samples miss the maximum itself
+    least = min(trace.contact_force[moving, 2].min(), trace.top_contact_force[moving, 2].min())
+    assert held.least_normal_force == pytest.approx(least, abs=1e-2)
+    assert np.array_equal(trace.top_friction_needed, friction_of(trace.top_contact_force))
+
+
+def test_displacement_of_the_slab() -> None:
+    trace = shaken(2.0)
+    b, h, theta = PIER.base_radius, PIER.mass_centre_height, trace.tilt
+    lean = 2.0 * (h * np.sin(theta) + b * (1.0 - np.cos(theta)))
+    assert np.hypot(*trace.slab_displacement[:, :2].T) == pytest.approx(lean, rel=1e-12)
+    rise = 2.0 * (b * np.sin(theta) - h * (1.0 - np.cos(theta)))
+    assert trace.slab_displacement[:, 2] == pytest.approx(rise, abs=1e-14 * h)
+
+
+def test_peak_tilts_are_those_of_single_runs() -> None:
+    motion = el_centro_1940()
+    for options in ({}, {"plane": 0.0}, {"support": "flat"}):
+        found = reduced.peak_tilts([4.0, 6.0], 0.2, motion, [1.0], slab_mass_ratio=1.5, **options)
+        for size, peak in zip([4.0, 6.0], found[:, 0], strict=True):
+            frame = WobblingFrame(Cylinder(semidiagonal=size, tan_alpha=0.2), 1.5)
+            single = reduced.simulate(Case(frame, motion), rtol=1e-7, **options)
+            assert peak == single.peak_tilt
+
+
+def test_the_trace_of_a_frame_comes_back_from_its_file(tmp_path: Path) -> None:
+    trace = shaken(1.0)
+    trace.save(tmp_path / "frame.parquet")
+    again = Trace.load(tmp_path / "frame.parquet")
+    assert again.case.cylinder == trace.case.cylinder
+    for name in ("top_contact_force", "slab_displacement", "contact_force", "energy"):
+        assert np.array_equal(getattr(again, name), getattr(trace, name)), name
