@@ -31,7 +31,7 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "reference_engine": ("", 'what the run is held against: an engine, or "reduced"'),
     "reference_support": ("", "its support"),
     "time_step": ("s", "time step of the engine"),
-    "outcome": ("", "how the run ended: rest, completed, overturned or failed"),
+    "outcome": ("", "how the run ended: stands, overturned or failed"),
     "reference_outcome": ("", "how the reference ended"),
     "diagnostics": ("", "codes of what ended or limits the run: see `rockwobble.models.diagnostic`"),
     "peak_tilt": ("alpha", "largest tilt of the run"),

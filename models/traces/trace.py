@@ -63,8 +63,9 @@ class Trace(Shown):
         summed over time so far, per unit mass [m/s].
     peak_tilt : float
         Largest tilt of the continuous motion [rad]; pi/2 if overturned, NaN if failed.
-    outcome : {"rest", "completed", "overturned", "failed"}
-        "rest": standing at the end; "completed": still in motion at the end.
+    outcome : {"stands", "overturned", "failed"}
+    rests : bool
+        Whether it stands still at the end.
     facts, diagnostics : tuple of Diagnostic
         What ended or limits the motion; the latter with breaches of the model's assumptions.
     uplift_time, uplift_direction : float
@@ -72,7 +73,7 @@ class Trace(Shown):
     passes : DataFrame
         Tilt minima between two maxima of one motion: time [s], minimum_tilt [rad], angle_of_turn [rad] from
         maximum to maximum, resolved [bool].
-    rests : ndarray, shape (r, 2)
+    rest_intervals : ndarray, shape (r, 2)
         When it came to rest after it had moved, and when it uplifted again; NaN if it did not [s].
     extrema : ndarray, shape (k, 4)
         Turning points of the tilt: time [s], tilt [rad], rolling angle [rad], 1 for a maximum and -1 for
@@ -100,7 +101,7 @@ class Trace(Shown):
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> trace = rw.simulate(rw.Case(pier, rw.el_centro_1940(), duration=15.0))
     >>> trace.outcome, round(trace.peak_tilt / pier.alpha, 4), len(trace.passes)
-    ('completed', 0.243, 18)
+    ('stands', 0.243, 18)
     >>> trace.tilt.shape, trace.contact_point.shape
     ((1501,), (1501, 2))
     """
@@ -123,7 +124,8 @@ class Trace(Shown):
     source: Source
     passes: pd.DataFrame = field(default_factory=no_passes)
     facts: tuple[Diagnostic, ...] = ()
-    rests: Array = field(default_factory=lambda: np.empty((0, 2)))
+    rests: bool = False
+    rest_intervals: Array = field(default_factory=lambda: np.empty((0, 2)))
     extrema: Array = field(default_factory=lambda: np.empty((0, 4)))
     settings: Mapping[str, Any] = field(default_factory=dict)
     time_step: float = math.nan
@@ -228,7 +230,7 @@ class Trace(Shown):
             "settings": dict(self.settings),
             "facts": self.facts,
             "assumptions": self.assumptions,
-            "rests": self.rests,
+            "rest_intervals": self.rest_intervals,
             "extrema": self.extrema,
             "passes": {name: self.passes[name].to_numpy() for name in self.passes.columns},
         }

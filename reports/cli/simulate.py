@@ -109,7 +109,7 @@ def _results(job: rc.Job, trace: rw.Trace) -> tuple[Manifest, dict[str, bytes]]:
         "run": job.label,
         "case": case | {"motion": motion and {"name": motion.name, "time_step": motion.time_step}},
         "result": {
-            name: value for name, value in found.items() if name not in ("rests", "extrema", "passes")
+            key: value for key, value in found.items() if key not in ("rest_intervals", "extrema", "passes")
         },
         "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},
     }

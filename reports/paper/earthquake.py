@@ -188,13 +188,13 @@ def statements(data: Shaken) -> list[Statement]:
         "peak": trace.peak_tilt / CYLINDER.alpha,
         "last_tilt": float(trace.tilt[-1]) / CYLINDER.alpha,
         "last_away": displacement(float(trace.tilt[-1])),
-        "rests": trace.outcome == "rest",
+        "rests": trace.rests,
         "passes": len(trace.passes),
         "away": away,
         "twist": twist,
     }
     smooth = verdict_of(*(test(strong, weak) for test in tests.values()))
-    back = verdict_of(trace.outcome in ("rest", "completed"), away < RESIDUAL, twist == 0.0)
+    back = verdict_of(trace.outcome == "stands", away < RESIDUAL, twist == 0.0)
     found = [
         ("abrupt", abrupt, verdict_of(strong.abrupt > 0, 2 * strong.abrupt > strong.passes)),
         ("smooth", both | counts | {"neighbours": len(data.neighbours), "until": data.strong_end}, smooth),

@@ -150,10 +150,10 @@ def test_overturning_is_likely_near_or_far(fell, lowest, chances, grade):
 
 
 def test_engines_and_intensities_have_grades_and_the_worst_counts():
-    assert grade_engine("completed", "earlier", differs=False) == "bad"
+    assert grade_engine("stands", "earlier", differs=False) == "bad"
     assert grade_engine("failed", "earlier", differs=False) == "care"
     assert grade_engine("overturned", "later", differs=True) == "care"
-    assert grade_engine("completed", "in time", differs=False) == "good"
+    assert grade_engine("stands", "in time", differs=False) == "good"
     assert grade_intensity(1.0, 1.0, SENSITIVE) == "good"
     assert grade_intensity(1.0, 1.0, math.inf) == grade_intensity(0.1, 1.0, 1.0) == "care"
     assert overall(["good", "bad", "care"]) == "bad"

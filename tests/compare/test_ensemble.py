@@ -68,7 +68,7 @@ def test_a_ring_is_held_against_the_recess_model(monkeypatch):
     }
 
 
-def made_up(job: Job, peak: float, outcome: str = "completed") -> Trace:
+def made_up(job: Job, peak: float, outcome: str = "stands") -> Trace:
     """Return a run that has another peak and outcome than it came to."""
     return dataclasses.replace(reduced.simulate(job.case, sample_step=1.0), peak_tilt=peak, outcome=outcome)
 
@@ -131,7 +131,7 @@ def test_a_failed_run_is_no_member_that_stands():
     found = ensemble(CASE, runs=[], size=4, workers=1)
     members = found.members
     recess = members["method"] == "recess model"
-    members.loc[recess, "outcome"] = ["overturned", "overturned", "completed", "failed"]
+    members.loc[recess, "outcome"] = ["overturned", "overturned", "stands", "failed"]
     # the last is how far it came before it failed: no peak
     members.loc[recess, "peak_tilt"] = [8.0, 8.0, 0.3, 0.4]
     again = ensemble_of(members, found.about)

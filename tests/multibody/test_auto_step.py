@@ -26,7 +26,7 @@ def test_the_error_is_as_estimated(
     run, exact = run_release(
         engine, support, tan_alpha, duration=2.0, time_step="auto", step_tolerance=0.0002
     )
-    assert run.outcome == "completed"
+    assert run.outcome == "stands"
     assert run.settled_until == 2.0
     error = float(np.abs(run.tilt - exact.tilt).max())
     assert error < ESTIMATE * run.error_estimate
@@ -47,7 +47,7 @@ def test_the_step_scales_with_size() -> None:
     assert run.time_step == pytest.approx(0.1 * COARSEST / 2)
 
 
-def made(tilt: Any, *, passes: tuple[float, ...] = (), outcome: str = "completed") -> Trace:
+def made(tilt: Any, *, passes: tuple[float, ...] = (), outcome: str = "stands") -> Trace:
     """Return a trace with that tilt and nothing else to speak of."""
     import pandas as pd
 
@@ -139,7 +139,7 @@ def test_a_divergence_that_stays_is_where_agreement_ends() -> None:
 def test_failed_steps_are_passed_over() -> None:
     fails = made([0.1], outcome="failed")
     run, steps = search(lambda step: fails if step > 0.9 * COARSEST else np.full(50, 0.1))
-    assert run.outcome == "completed"
+    assert run.outcome == "stands"
     assert len(steps) == 3
     run, _ = search(lambda step: fails)
     assert run.outcome == "failed"

@@ -68,7 +68,7 @@ def test_a_shaken_run_extrapolates(engine: str, solve_forced: Callable[..., Any]
     assert [(fact.code, fact.bound) for fact in run.facts] == [("extrapolated", 2.0)]
 
 
-def made(tilt: Any, *, angle: Any = None, outcome: str = "completed", **more: Any) -> Trace:
+def made(tilt: Any, *, angle: Any = None, outcome: str = "stands", **more: Any) -> Trace:
     """Return a trace with that tilt and nothing else to speak of."""
     n = len(tilt)
     zeros, points = np.zeros(n), np.zeros((n, 3))

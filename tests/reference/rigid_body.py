@@ -166,7 +166,7 @@ def highest(h: float, tilt: float, rate: float, tilt_new: float, rate_new: float
 def integrate_arrays(
     P: Array, alpha: float, record: Array, dt: float, duration: float, y: Array, rest: float, rtol: float
 ) -> tuple[int, float, float, int]:
-    """Return 0 rest, 1 completed, 2 overturned or 3 too many steps; peak, time of uplift, number of rests."""
+    """Return 0 at rest, 1 in motion, 2 overturned, 3 too many steps; peak, uplift time, number of rests."""
     b, h, I1, _, g, _ = P
     p2 = g * math.hypot(b, h) / (I1 + h * h + b * b)
     p, least = math.sqrt(p2), g * (b * math.sin(rest * alpha) - 2.0 * h * math.sin(0.5 * rest * alpha) ** 2)
@@ -253,4 +253,4 @@ def integrate(given: Problem, *, rtol: float = 1e-12, rest: float = 1e-8) -> Res
     status, peak, uplift, rests = integrate_arrays(
         P, body.alpha, record, motion.time_step, motion.duration, y, rest, rtol
     )
-    return Result(("rest", "completed", "overturned", "failed")[status], peak, uplift, rests)
+    return Result(("stands", "stands", "overturned", "failed")[status], peak, uplift, rests)

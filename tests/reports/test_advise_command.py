@@ -148,7 +148,7 @@ ENGINE = {
     "label": "mujoco recess",
     "version": "4.0.0",
     "time_step": 1e-4,
-    "outcome": "completed",
+    "outcome": "stands",
     "diagnostics": "",
     "peak_tilt": 0.25,
     "agreement": 20.0,

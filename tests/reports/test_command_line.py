@@ -230,7 +230,7 @@ def test_simulate_a_reduced_model(folder, in_this_process, capsys):
     # the default parser of older pandas is off by a rounding
     pd.testing.assert_frame_equal(samples, kept, rtol=1e-15, atol=0.0)
     about = json.loads(Path("rockwobble-simulate/manifest.json").read_text())["about"]
-    assert about["result"]["outcome"] == "completed"
+    assert about["result"]["outcome"] == "stands"
     assert about["case"]["initial"]["rolling_rate"] == 0.5
 
 
@@ -404,7 +404,7 @@ def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path):
     for name, errors in said.items():
         assert b"Traceback" not in errors, name
     for name in codes:
-        assert Trace.load(tmp_path / name / "run.parquet").outcome == "completed"
+        assert Trace.load(tmp_path / name / "run.parquet").outcome == "stands"
 
 
 def test_a_run_that_cannot_take_its_first_step_is_one_line_and_exit_code_1(folder, in_this_process, capsys):

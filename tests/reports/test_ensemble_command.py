@@ -54,7 +54,7 @@ def made_up(factor: float = 1.1, model: str = "recess model", engine: str = "muj
             "member": f"record {i + 1}",
             "method": method,
             "peak_tilt": peak,
-            "outcome": "overturned" if peak == FALLEN else "completed",
+            "outcome": "overturned" if peak == FALLEN else "stands",
             "diagnostics": "",
             "wall_time": 1.0,
         }

@@ -125,7 +125,7 @@ def _reduced(condition: Condition, run: Run, trace: Trace) -> Verdict:
         if len(turns):
             exact = reduced.angle_of_turn(case.cylinder, case.initial, gravity=case.gravity)
             errors["exact_turn"] = abs(float(turns[0]) / exact - 1.0)
-    if case.motion is None and trace.outcome == "completed":
+    if case.motion is None and trace.outcome == "stands" and not trace.rests:
         errors["energy"] = _energy_error(trace) * FINE / _ENERGY
     worst = max(errors, key=lambda each: errors[each])
     if errors[worst] > FINE:

@@ -14,8 +14,7 @@ from rockwobble.models.shown import Shown
 from ...storage.manifest import Results
 
 KIND = "sweep"
-# of a grid, whose runs are known by their peaks alone: no uplift, and uplift without overturning; of a trace
-_OUTCOMES = ("stood", "rest", "rocked", "completed", "overturned", "failed")
+_OUTCOMES = ("stands", "overturned", "failed")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -48,8 +47,9 @@ class Sweep(Shown):
     def summary(self) -> pd.DataFrame:
         """Return one row for each part: how many runs ended how, and their peak tilts.
 
-        Columns: `keys`, runs, a count for each outcome that there is, and in alpha median, in which an
-        overturned run is infinite, and largest, of those that do not overturn.
+        Columns: `keys`, runs, a count for each outcome that there is, no_uplift (how many of them stood still
+        throughout), and in alpha median, in which an overturned run is infinite, and largest, of those that
+        do not overturn.
         """
         rows, outcomes = [], self.outcomes
         for key, own in self.table.groupby(self.keys, sort=False):
@@ -59,6 +59,7 @@ class Sweep(Shown):
                     **dict(zip(self.keys, key, strict=True)),
                     "runs": len(own),
                     **{name: int((own["outcome"] == name).sum()) for name in outcomes},
+                    "no_uplift": int((peaks == 0.0).sum()),
                     "median": peaks.mask(fell, math.inf).median(),
                     "largest": peaks[~fell].max(),
                 }
