@@ -80,8 +80,8 @@ def simulate(
     -------
     Trace
         A numerical failure is an outcome with its diagnostics, not an exception. A run that ends while the
-        cylinder falls, or rises with the energy to pass its balance, is carried on over still ground: one
-        that overturns ends there, later than asked for, and one whose tilt turns back ends as asked for.
+        cylinder moves is followed over still ground to the next maximum of the tilt, which counts for the
+        peak; one that overturns ends there, later than asked for.
         The contact force is a mean over 65 steps (a Hann window about the sample), from the change of the
         engine's velocity: in a single step contact may be lost or carry twice the load.
 
@@ -199,7 +199,8 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         centre_of_mass=np.column_stack([table["x"], table["y"], table["z"]]) * scale.length,
         peak_tilt=_peak(recorder, outcome, rows),
         outcome=outcome,
-        rests=outcome == "stands" and (recorder.uplift is None or recorder.rests.resting),
+        rests=outcome == "stands" and recorder.resting,
+        followed_until=recorder.followed_until * scale.time,
         uplift_time=uplift_time * scale.time,
         uplift_direction=uplift_direction,
         source=Known(sampled),

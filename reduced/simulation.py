@@ -63,8 +63,9 @@ def simulate(
     Returns
     -------
     Trace
-        A numerical failure is an outcome with its diagnostics, not an exception. A run that ends in the
-        middle of a fall is followed, over still ground, until it is decided: an overturned one ends there.
+        A numerical failure is an outcome with its diagnostics, not an exception. A run that ends while the
+        cylinder moves is followed over still ground to the next maximum of the tilt, which counts for the
+        peak; one that overturns ends there, later than asked for.
 
     Raises
     ------
@@ -165,6 +166,7 @@ def _trace(
         outcome=outcome,
         uplift_time=result.uplift_time,
         uplift_direction=result.uplift_direction + azimuth,
+        followed_until=result.followed_until,
         source=solution,
         passes=solution.passes(),
         facts=tuple(_facts(problem, result)),

@@ -215,10 +215,10 @@ def external_row(
     for name, part in (("uplift_time", verdict.uplift_time), ("uplift_direction", verdict.uplift_direction)):
         if part is not None:
             row[f"{name}_difference"] = part.size
-    covered = (reference.time >= trial.time[0]) & (reference.time <= trial.time[-1])
-    largest = float(np.max(reference.tilt[covered], initial=0.0))
-    if np.max(reference.tilt[~covered], initial=0.0) > largest:  # the file does not reach the peak
-        row["peak_tilt_difference"] = (trial.peak_tilt - largest) / case.cylinder.alpha
+    tilts = np.vstack([np.column_stack([reference.time, reference.tilt]), reference.extrema[:, :2]])
+    covered = (tilts[:, 0] >= trial.time[0]) & (tilts[:, 0] <= trial.time[-1])
+    largest = float(np.max(tilts[covered, 1], initial=0.0))
+    row["peak_tilt_difference"] = (trial.peak_tilt - largest) / case.cylinder.alpha
     return row | verdict.columns()
 
 

@@ -72,10 +72,15 @@ class Trace(Shown):
         Distance slipped so far [m], time in contact with walls so far [s], size of the force of the walls
         summed over time so far, per unit mass [m/s].
     peak_tilt : float
-        Largest tilt of the continuous motion [rad]; pi/2 if overturned, NaN if failed.
+        Largest tilt of the continuous motion that the record causes [rad], a swing that goes on when the run
+        ends included; pi/2 if overturned, NaN if failed.
     outcome : {"stands", "overturned", "failed"}
     rests : bool
         Whether it stands still at the end.
+    followed_until : float
+        When the tilt of one that moves at the end of the run was at its next maximum, or it came to rest or
+        overturned, over still ground [s]: of that time only the peak is kept, and all of an overturning. NaN
+        if there was nothing to follow: it stands still, or has had a maximum since the ground keeps still.
     facts, diagnostics : tuple of Diagnostic
         What ended or limits the motion; the latter with breaches of the model's assumptions.
     uplift_time, uplift_direction : float
@@ -134,6 +139,7 @@ class Trace(Shown):
     passes: pd.DataFrame = field(default_factory=no_passes)
     facts: tuple[Diagnostic, ...] = ()
     rests: bool = False
+    followed_until: float = math.nan
     rest_intervals: Array = field(default_factory=lambda: np.empty((0, 2)))
     extrema: Array = field(default_factory=lambda: np.empty((0, 4)))
     settings: Mapping[str, Any] = field(default_factory=dict)
@@ -311,6 +317,10 @@ class Trace(Shown):
             "uplift": "none" if math.isnan(self.uplift_time) else f"{self.uplift_time:.4g} s",
             "passes": str(len(self.passes)),
         }
+        if self.outcome == "stands" and not self.rests:
+            found["outcome"] += ", moving"
+            if not math.isnan(self.followed_until):
+                found["outcome"] += f", followed to {self.followed_until:.4g} s"
         if self.facts:
             found["diagnostics"] = joined(fact.code for fact in self.facts)
         return found

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -72,7 +73,7 @@ _LATE = (
 NUMBERS = (
     *("version", "outcome", "rests", "peak_tilt", "uplift_time", "uplift_direction", "time_step"),
     *("wall_time", "step_count", "contact_resolution", "residual_displacement", "error_estimate"),
-    "settled_until",
+    *("settled_until", "followed_until"),
 )
 
 
@@ -86,7 +87,12 @@ def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
 
     if "rest_intervals" not in facts:  # of up to 0.2: "rest" is an outcome, and rests are the intervals
         word = facts["outcome"]
-        facts = {**facts, "rests": word == "rest", "rest_intervals": facts["rests"]}
+        facts = {
+            **facts,
+            "rests": word == "rest",
+            "rest_intervals": facts["rests"],
+            "followed_until": math.nan,
+        }
         facts["outcome"] = "stands" if word in ("rest", "completed") else word
     held = facts["assumptions"]
     passes = {

@@ -98,7 +98,8 @@ class Recorder:
         self.failure = ""  # code of the diagnostic that ended the run
         self.warnings: list[str] = []
         self.end_time = math.inf
-        self.undecided = False  # whether it falls after the end, and nobody knows how far
+        self.followed_until = math.nan  # when it was at its next maximum, or at rest, after the end [s]
+        self.undecided = False  # whether neither, nor the ground, came in time
 
     @property
     def table(self) -> Array:
@@ -109,6 +110,11 @@ class Recorder:
     def end(self) -> float:
         """Time of the last sample asked for [s]."""
         return float(self._samples[-1])
+
+    @property
+    def resting(self) -> bool:
+        """Whether it stands still at the last step analysed."""
+        return self.uplift is None or self.rests.resting
 
     def last_value(self, name: str) -> float:
         """Field of `COLUMNS` at the last step analysed."""

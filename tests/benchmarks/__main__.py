@@ -14,6 +14,7 @@ SCRIPTS = (
     "agreement_times",
     "certified_releases",
     "convergence",
+    "cut_records",
     "engine_extremes",
     "engine_settings",
     "engine_versions",
