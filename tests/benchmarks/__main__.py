@@ -12,6 +12,7 @@ from pathlib import Path
 TESTS = Path(__file__).resolve().parents[1]
 SCRIPTS = (
     "agreement_times",
+    "boundary_gaps",
     "certified_releases",
     "convergence",
     "engine_extremes",

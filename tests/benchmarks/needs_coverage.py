@@ -48,7 +48,7 @@ def coverage(
         with stages.stage(f"tan alpha {row['tan_alpha']:g}, {row['intensity']:g} g tan alpha"):
             for size in np.exp(random.uniform(*map(math.log, sizes), draws)):
                 cylinder = Cylinder(semidiagonal=float(size), tan_alpha=row["tan_alpha"])
-                motion = motions[random.integers(len(motions))]
+                motion = motions[int(random.integers(len(motions)))]
                 motion = motion.scaled(row["intensity"] * GRAVITY * row["tan_alpha"] / motion.peak)
                 run = reduced.simulate(Case(cylinder, motion, friction=AMPLE), rtol=1e-7)
                 if run.peak_tilt > 0.0 and run.outcome not in ("overturned", "failed"):

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pandas as pd
-from benchmarks.needs_coverage import coverage
 
+from benchmarks.needs_coverage import coverage
 from rockwobble.models import el_centro_1940
 
 
