@@ -30,6 +30,14 @@ SearchStep = Annotated[
     float,
     options.method("Finest step of the search for the lowest intensity that overturns, in g tan alpha."),
 ]
+Probes = Annotated[
+    int,
+    options.method(
+        "Random intensities that are run below each lowest until none of them overturns: so many bound the "
+        "share that does. They take most of the time; 0 draws none.",
+        callback=options.whole(0),
+    ),
+]
 Support = Annotated[str, options.method("Of the model in three dimensions: recess or flat.")]
 
 
@@ -49,6 +57,7 @@ def spectrum(
     intensities: Intensities = 100,
     support: Support = "recess",
     search_step: SearchStep = 0.015,
+    probes: Probes = 500,
     out: options.Out = Path("rockwobble-spectrum"),
 ) -> None:
     """Map the peak tilt over size and intensity, in 3D and by planar analysis of each component.
@@ -121,6 +130,7 @@ def spectrum(
                 support=support,
                 gravity=gravity,
                 search_step=search_step,
+                probes=probes,
                 progress=tell,
             )
         tables = tables_of(found)

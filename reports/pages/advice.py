@@ -17,11 +17,6 @@ from ..figures.advice import GROUPS, SHORT, advice_pictures
 from .page import Page
 from .words.criteria import CRITERIA
 
-# the largest tilt in a ring over that of the recess model: least and largest median over 22 records, and what
-# one record of twenty exceeds; `records` of published/validity/limits.parquet
-RING = {"ring_least": 0.53, "ring_largest": 1.02, "ring_95": 1.72}
-# [weights] more than any soft ground would give: 99 % of the time in motion asks for less than two
-ARTEFACT = 10.0
 GRADE_WORDS = {"good": "sound", "care": "care", "bad": "fails"}
 
 
@@ -82,8 +77,6 @@ def advice_values(facts: Mapping[str, Any]) -> dict[str, Any]:
             for topic in facts["grades"]
             if topic in CRITERIA
         ],
-        "ring": RING,
-        "artefact": ARTEFACT,
         "tolerance": CHECK_RTOL,
         "nudge": NUDGE,
     }

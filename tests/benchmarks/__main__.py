@@ -12,6 +12,7 @@ from pathlib import Path
 TESTS = Path(__file__).resolve().parents[1]
 SCRIPTS = (
     "agreement_times",
+    "boundary_gaps",
     "certified_releases",
     "convergence",
     "cut_records",
@@ -21,6 +22,7 @@ SCRIPTS = (
     "ensemble_intervals",
     "false_alarms",
     "fragility_coverage",
+    "needs_coverage",
     "ring_losses",
     "run_overhead",
     "scene_cost",

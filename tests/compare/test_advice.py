@@ -184,7 +184,9 @@ def test_the_lowest_of_a_release_is_searched_from_still_ground():
 
 
 def test_advice_and_spectrum_uplift_at_the_same_factor(advice):
-    spectrum = overturning_spectrum(0.2, SHORT, semidiagonals=[6.0], intensities=[1.0, 2.0], search_step=1.0)
+    spectrum = overturning_spectrum(
+        0.2, SHORT, semidiagonals=[6.0], intensities=[1.0, 2.0], search_step=1.0, probes=0
+    )
     unit = intensity_unit(0.2, SHORT, 9.81)
     for series, found in advice.lowest.items():
         assert found.start == pytest.approx(unit * spectrum.searched_from[series], rel=1e-12)

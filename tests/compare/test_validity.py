@@ -19,9 +19,9 @@ from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.validity import study
 from rockwobble.compare.studies.validity.extent import FULL, LARGEST_PEAK, QUICK
 from rockwobble.compare.studies.validity.limits import LIMITS, limits_of
-from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts, vertical
+from rockwobble.compare.studies.validity.limits.distributions import FEWEST, cells, contrasts, vertical
 from rockwobble.compare.studies.validity.limits.engine import damping
-from rockwobble.compare.studies.validity.limits.needs import friction
+from rockwobble.compare.studies.validity.limits.needs import friction, needs
 from rockwobble.compare.studies.validity.limits.numbers import first_failing, reached, up_to
 from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case, source_of
 from rockwobble.compare.studies.validity.parts import PARTS, part_named
@@ -167,14 +167,41 @@ def test_a_cell_is_of_records_signed_and_knows_who_overturns(tables: Tables) -> 
     assert found["copy_ratio"] == pytest.approx(1.0)
 
 
+def test_needs_are_by_slenderness_and_intensity_and_of_enough_motions(tables: Tables) -> None:
+    def cell(tan_alpha: float, size: float, intensity: float, largest: float, standing: int) -> pd.DataFrame:
+        shares = np.where(np.arange(10) < standing, np.arange(1, 11) / 10.0, math.nan)
+        return pd.DataFrame(
+            {
+                "motion": [f"record {n}" for n in range(10)],
+                "recess": 0.5, "flat": 0.5, "copy": 0.5, "least_normal": 1.0 - shares,
+                "friction": 2.0 * largest * shares * tan_alpha, "moment": largest * shares,
+            }
+        ).assign(tan_alpha=tan_alpha, semidiagonal=size, intensity=intensity)  # fmt: skip
+
+    peaks = pd.concat(
+        [
+            cell(0.1, 4.0, 2.0, 0.05, FEWEST),
+            cell(0.1, 8.0, 2.0, 0.06, FEWEST),
+            cell(0.1, 8.0, 5.0, 0.2, FEWEST - 1),
+            cell(0.4, 8.0, 2.0, 0.3, FEWEST),
+        ]
+    )
+    found = needs({**tables, "peaks": peaks}).set_index(["tan_alpha", "intensity"])
+    assert list(found.index) == [(0.1, 2.0), (0.4, 2.0)]
+    # nine in ten of the size that needs most
+    assert found["moment"].to_list() == pytest.approx([0.9 * 0.06, 0.9 * 0.3])
+    assert found["friction"].to_list() == pytest.approx([1.8 * 0.06, 1.8 * 0.3])
+    assert found[["sizes", "motions"]].to_numpy().tolist() == [[2, 20], [1, 10]]
+
+
 def test_the_vertical_component_counts_what_it_alone_overturns() -> None:
     fell = 0.5 * math.pi / math.atan(0.2)
     recess, other = [0.5] * 8 + [0.5, fell, fell], [0.55] * 8 + [fell, 0.5, fell]
     table = pd.DataFrame({"tan_alpha": 0.2, "recess": recess, "vertical": other, "copy": recess})
     found = vertical({"peaks": table})
     assert (found["cells"], found["vertical_compared"]) == (11.0, 10.0)  # twice overturned there is no ratio
-    assert (found["vertical_05"], found["vertical_95"]) == (0.0, math.inf)
-    assert found["vertical_half"] == pytest.approx(1.1)
+    assert (found["vertical_apart"], found["copy_apart"]) == (10.0, 0.0)  # each changes by a tenth, or falls
+    assert found["vertical_least"] == found["vertical_largest"] == pytest.approx(1.1)
 
 
 def test_a_friction_that_slips_at_one_release_does_not_hold() -> None:
