@@ -1,7 +1,7 @@
 """The problem, with no mechanics: bodies, ground motions, initial states, cases and runs."""
 
 from .assumptions import Assumptions
-from .bounds import Bounds
+from .bounds import AGREEMENT, Bounds
 from .case import Case, Run, Suite, run_duration
 from .cylinder import Cylinder
 from .diagnostic import Diagnostic
@@ -15,6 +15,7 @@ from .suites.file import read_suite, shipped_suites
 from .traces.trace import Trace
 
 __all__ = [
+    "AGREEMENT",
     "Assumptions",
     "Bounds",
     "Case",

@@ -22,7 +22,6 @@ from .words.criteria import CRITERIA
 RING = {"ring_least": 0.53, "ring_largest": 1.02, "ring_95": 1.72}
 # [weights] more than any soft ground would give: 99 % of the time in motion asks for less than two
 ARTEFACT = 10.0
-GRADE_WORDS = {"good": "sound", "care": "care", "bad": "fails"}
 
 
 def advice_page(tables: Mapping[str, pd.DataFrame], manifest: Manifest) -> Page:
@@ -69,18 +68,13 @@ def advice_values(facts: Mapping[str, Any]) -> dict[str, Any]:
         **facts,
         "given": moved(facts["peak"]) if facts["moves"] and not facts["overturned"] else None,
         "groups": groups,
+        "spread": [group for group in groups if not math.isnan(group["friction_95"])],
         "here": next((row for row in facts["planar"] if row["scale"] == 1.0), None),
         "planar_lowest": min(known) if known else math.nan,
         "space": facts["lowest"].get("3d"),
         "meanings": [CODES[code][1] for code in facts["failure"]],
         "criteria": [
-            {
-                "topic": topic,
-                "grade": GRADE_WORDS[facts["grades"][topic]],
-                **dict(zip(("sound", "care", "fails"), CRITERIA[topic], strict=True)),
-            }
-            for topic in facts["grades"]
-            if topic in CRITERIA
+            {"topic": topic, "grade": grade, **CRITERIA[topic]} for topic, grade in facts["grades"].items()
         ],
         "ring": RING,
         "artefact": ARTEFACT,

@@ -112,11 +112,12 @@ def test_answers_count_what_falls_and_leave_out_what_failed(advice):
     assert stands.min() <= found["peak_tilt_50"] <= stands.max()
 
 
-@pytest.mark.parametrize(("missing", "grade"), [(0.0, "good"), (BROKEN, "care"), (BROKEN * 1.01, "bad")])
+@pytest.mark.parametrize(("missing", "grade"), [(0.0, "satisfied"), (BROKEN, "caution"), (BROKEN * 1.01, "not satisfied")])
 def test_short_lacks_want_care_and_long_ones_rule_the_model_out(missing, grade):
     assert grade_share(missing) == grade
-    assert grade_share(missing, slides=True) == "bad"
-    assert grade_share(0.0, asked=False) == "care"
+    assert grade_share(missing, slides=True) == "not satisfied"
+    assert grade_share(0.0, asked=False) == "caution"
+    assert grade_share(missing, tested=False) == (grade if missing else "not tested")
 
 
 @pytest.mark.parametrize(
@@ -136,28 +137,34 @@ def test_trust_turns_on_what_comes_before_the_largest_tilt(methods, data, peak, 
 @pytest.mark.parametrize(
     ("fell", "lowest", "chances", "grade"),
     [
-        (True, 1.0, [0.0], "bad"),
-        (False, 9.0, [0.0, UNSAFE * 1.01], "bad"),
-        (False, 9.0, [UNSAFE], "care"),
-        (False, NEAR * 0.99, [0.0], "care"),
-        (False, NEAR, [0.0], "good"),
-        (False, math.nan, [], "good"),
-        (False, math.nan, [math.nan, 0.5], "bad"),  # a group whose members all failed hides no other
+        (True, 1.0, [0.0], "not satisfied"),
+        (False, 9.0, [0.0, UNSAFE * 1.01], "not satisfied"),
+        (False, 9.0, [UNSAFE], "caution"),
+        (False, NEAR * 0.99, [0.0], "caution"),
+        (False, NEAR, [0.0], "satisfied"),
+        (False, math.nan, [], "satisfied"),
+        (False, math.nan, [math.nan, 0.5], "not satisfied"),  # a group whose members all failed hides no other
     ],
 )
 def test_overturning_is_likely_near_or_far(fell, lowest, chances, grade):
-    assert grade_overturning(fell, lowest, chances) == grade
+    assert grade_overturning(fell, lowest, chances, tested=True) == grade
+    untested = grade_overturning(fell, lowest, chances, tested=False)
+    assert untested == ("not tested" if grade == "satisfied" else grade)
 
 
 def test_engines_and_intensities_have_grades_and_the_worst_counts():
-    assert grade_engine("completed", "earlier", differs=False) == "bad"
-    assert grade_engine("failed", "earlier", differs=False) == "care"
-    assert grade_engine("overturned", "later", differs=True) == "care"
-    assert grade_engine("completed", "in time", differs=False) == "good"
-    assert grade_intensity(1.0, 1.0, SENSITIVE) == "good"
-    assert grade_intensity(1.0, 1.0, math.inf) == grade_intensity(0.1, 1.0, 1.0) == "care"
-    assert overall(["good", "bad", "care"]) == "bad"
-    assert overall([]) == "good"
+    assert grade_engine("completed", "earlier", differs=True) == "not satisfied"
+    assert grade_engine("failed", "earlier", differs=False) == "not tested"
+    assert grade_engine("overturned", "much later", differs=True) == "caution"
+    assert grade_engine("completed", "later", differs=False) == "satisfied"
+    for divergence in ("much later", "too little motion"):
+        assert grade_engine("completed", divergence, differs=False) == "not tested"
+    assert grade_intensity(1.0, 1.0, SENSITIVE) == "satisfied"
+    assert grade_intensity(1.0, 1.0, math.inf) == grade_intensity(0.1, 1.0, 1.0) == "caution"
+    assert grade_intensity(math.nan, 1.0, math.nan) == "not tested"
+    assert overall(["satisfied", "not satisfied", "caution", "not tested"]) == "not satisfied"
+    assert overall(["not tested", "caution"]) == "caution"
+    assert overall(["satisfied", "not tested"]) == overall([]) == "not tested"
 
 
 def test_scales_hold_what_single_runs_give():
@@ -265,7 +272,7 @@ def test_a_fall_that_the_record_does_not_see_is_a_fall_in_all_that_is_run():
     for found in (cut, followed):
         assert found.overturned
         assert found.answers.set_index("group").loc["copies", "chance"] == 1.0
-        assert found.grades["overturning"] == "bad"
+        assert found.grades["overturning"] == "not satisfied"
         # all above half of it overturn, by the exact step of the search or less
         assert found.lowest["3d"].factor == pytest.approx(0.506, abs=0.01)
     ends = [found.facts()["peak_time"] for found in (cut, followed)]

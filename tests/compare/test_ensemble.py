@@ -80,20 +80,20 @@ def test_failed_runs_are_counted_and_named(monkeypatch):
         return made_up(job, job.case.initial.tilt)
 
     monkeypatch.setattr(execution, "run_job", simulate)
-    found = ensemble(CASE, runs=[], size=4, workers=1)
+    found = ensemble(CASE, runs=[], size=7, workers=1)
     methods = found.methods.set_index("method")
     assert methods["failed"].to_dict() == {"recess model": 0, "flat-ground model": 1}
     assert methods.loc["flat-ground model", "failed_members"] == "release #2"
-    assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [3, "release #2"]
-    assert len(found.members) == 8
-    # of three members that do not differ; what failed has no part in the counts and quantiles of its method
-    assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [3, 1.0]
-    assert methods.loc["flat-ground model", ["runs", "rocked", "overturned"]].tolist() == [4, 3, 0]
+    assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [6, "release #2"]
+    assert len(found.members) == 14
+    # of six members that do not differ; what failed has no part in the counts and quantiles of its method
+    assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [6, 1.0]
+    assert methods.loc["flat-ground model", ["runs", "rocked", "overturned"]].tolist() == [7, 6, 0]
     assert math.isfinite(methods.loc["flat-ground model", "peak_median"])
 
 
 def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
-    cases = [dataclasses.replace(CASE, name=name) for name in "ab"]
+    cases = [dataclasses.replace(CASE, name=name) for name in "abcdef"]
     # past its balance at the end: what that is called is the matter of who ran it
     runs = {
         "recess model": made_up(Job(case=cases[0], run=RECESS), 1.5 * PIER.alpha),
@@ -103,9 +103,9 @@ def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
     found = ensemble(cases, runs=[], workers=1)
     for method, run in runs.items():
         rows = found.members[found.members["method"] == method]
-        assert rows["outcome"].tolist() == [run.outcome] * 2
-        assert rows["peak_tilt"].tolist() == pytest.approx([run.peak_tilt / PIER.alpha] * 2, abs=ROUNDING)
-    assert found.methods["overturned"].tolist() == [0, 2]
+        assert rows["outcome"].tolist() == [run.outcome] * 6
+        assert rows["peak_tilt"].tolist() == pytest.approx([run.peak_tilt / PIER.alpha] * 6, abs=ROUNDING)
+    assert found.methods["overturned"].tolist() == [0, 6]
     assert found.methods["peak_median"].tolist() == [pytest.approx(1.5, abs=ROUNDING), math.inf]
 
 

@@ -14,6 +14,7 @@ from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.shown import Shown
 
+from ...metrics.order_statistics import stated
 from ...metrics.tilt import outcome_of
 from ...runs.choice import default_runs, require_runnable
 from ...runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
@@ -186,7 +187,9 @@ def manifest_of(found: Ensemble, command: str = "") -> Manifest:
         command=command,
         seeds={"ensemble": cast("int", found.about["seed"])},
         headline={
-            f"{row['method']} / {row['against']}, median ratio": row["ratio"]
+            f"{row['method']} / {row['against']}, median ratio": stated(
+                row["ratio"], row["compared"], ratio=True
+            )
             for row in found.contrasts.to_dict("records")
         },
         about=found.about,
