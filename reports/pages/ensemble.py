@@ -32,9 +32,10 @@ def stored_page(results: Results) -> Page:
 def ensemble_values(found: Ensemble) -> dict[str, object]:
     """Return the values of the template of an ensemble."""
     contrasts, methods = found.contrasts, found.methods.to_dict("records")
-    rows, main = contrasts.to_dict("records"), main_pairs(found)
-    for row in (*rows, *main):
-        row["ratio"] = stated(row["ratio"], row["compared"], ratio=True)
+    rows, main = (
+        [{**row, "ratio": stated(row["ratio"], row["compared"], ratio=True)} for row in each]
+        for each in (contrasts.to_dict("records"), main_pairs(found))
+    )
     # those that matter first, then the others by their probability
     ordered = main + (contrasts.sort_values("ratio_p").to_dict("records") if rows else [])
     every = {(row["method"], row["against"]): row for row in ordered}

@@ -12,6 +12,7 @@ import pytest
 from showing import shows_itself
 
 from rockwobble import reduced
+from rockwobble.compare.metrics.distributions import contrast
 from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.studies.advice import drive
 from rockwobble.compare.studies.advice.advice import Advice
@@ -27,7 +28,7 @@ from rockwobble.compare.studies.advice.grades import (
     grade_share,
     overall,
 )
-from rockwobble.compare.studies.advice.members import demands_of, other_records, peak_velocity
+from rockwobble.compare.studies.advice.members import demands_of, other_records, peak_velocity, ratios_of
 from rockwobble.compare.studies.advice.scales import FACTORS, planar_chances, planar_runs, scan_scales
 from rockwobble.compare.studies.advice.trust import trust_of
 from rockwobble.compare.studies.spectrum.series import intensity_unit, uplift_factor
@@ -112,7 +113,9 @@ def test_answers_count_what_falls_and_leave_out_what_failed(advice):
     assert stands.min() <= found["peak_tilt_50"] <= stands.max()
 
 
-@pytest.mark.parametrize(("missing", "grade"), [(0.0, "satisfied"), (BROKEN, "caution"), (BROKEN * 1.01, "not satisfied")])
+@pytest.mark.parametrize(
+    ("missing", "grade"), [(0.0, "satisfied"), (BROKEN, "caution"), (BROKEN * 1.01, "not satisfied")]
+)
 def test_short_lacks_want_care_and_long_ones_rule_the_model_out(missing, grade):
     assert grade_share(missing) == grade
     assert grade_share(missing, slides=True) == "not satisfied"
@@ -143,7 +146,12 @@ def test_trust_turns_on_what_comes_before_the_largest_tilt(methods, data, peak, 
         (False, NEAR * 0.99, [0.0], "caution"),
         (False, NEAR, [0.0], "satisfied"),
         (False, math.nan, [], "satisfied"),
-        (False, math.nan, [math.nan, 0.5], "not satisfied"),  # a group whose members all failed hides no other
+        (
+            False,
+            math.nan,
+            [math.nan, 0.5],
+            "not satisfied",
+        ),  # a group whose members all failed hides no other
     ],
 )
 def test_overturning_is_likely_near_or_far(fell, lowest, chances, grade):
@@ -249,6 +257,59 @@ def test_a_cylinder_at_rest_needs_nothing():
     assert found.grades == {}
     assert facts["uplift_factor"] == pytest.approx(uplift_factor(SHORT, 0.2, 9.81) / 0.3)
     assert plain_json.loads(plain_json.dumps(facts))["moves"] is False
+
+
+def test_shaking_a_little_off_is_weaker_and_stronger(advice):
+    # the peak as large as the factor: two steps of twelve for each factor of two either way
+    table = pd.DataFrame({"series": "3d", "factor": FACTORS, "peak_tilt": 0.1 * PIER.alpha * FACTORS})
+    low, high = dataclasses.replace(advice, scales=table).beside
+    assert (low, high) == (pytest.approx(0.1 * 2.0 ** (-1 / 6)), pytest.approx(0.1 * 2.0 ** (1 / 6)))
+    falls = table.assign(peak_tilt=np.where(FACTORS > 1.1, 0.5 * math.pi, table["peak_tilt"]))
+    assert dataclasses.replace(advice, scales=falls).beside[1] == math.inf
+    assert dataclasses.replace(advice, scales=falls).grades["intensity"] == "caution"
+
+
+def test_copies_that_are_one_run_are_one(advice):
+    members = advice.members.copy()
+    copies = members["group"] == "copies"
+    one = members[copies].iloc[0]
+    numbers = ["peak_tilt", "friction", "moment", "force", "slip", "lost"]
+    members.loc[copies, numbers] = one[numbers].to_numpy(float)
+    found = dataclasses.replace(advice, members=members)
+    row = found.answers.set_index("group").loc["copies"]
+    assert (row["single"], row["runs"], row["failed"], row["overturned"]) == (True, 20, 0, 0)
+    assert np.isnan(row[["chance", "chance_low", "chance_high", "peak_tilt_50"]].to_numpy(float)).all()
+    assert found.facts()["form"] is None
+    # all at rest, or all overturned, are runs of their own
+    members.loc[copies, numbers] = 0.0
+    assert not dataclasses.replace(advice, members=members).answers["single"].any()
+    members.loc[copies, "peak_tilt"] = 0.5 * math.pi / PIER.alpha
+    members.loc[copies, "friction"] = np.linspace(0.2, 0.3, copies.sum())
+    assert not dataclasses.replace(advice, members=members).answers["single"].any()
+
+
+def test_nothing_is_graded_that_nothing_was_run_for():
+    up = el_centro_1940(vertical=True).acceleration[:800] * [0.0, 0.0, 7.0]
+    found = advise(Case(PIER, GroundMotion(up, 0.01, "up")), count=20)
+    assert (found.moves, found.lowest, found.copies_differ) == (True, {}, False)
+    grades = found.grades
+    for topic in ("overturning", "intensity", "engine"):
+        assert grades[topic] == "not tested"
+    assert grades["contact"] == "caution"  # as given it is lost
+    assert found.facts()["bound"] == pytest.approx(0.1 * found.peak)
+
+
+def test_ratios_of_overturned_copies_are_counts():
+    peaks = np.linspace(0.1, 0.3, 20)
+    fell, stands = np.arange(20) < 15, np.zeros(20, dtype=bool)
+    most = ratios_of(contrast(peaks, peaks, stands, fell))
+    assert math.isnan(most["ratio"])  # 0: fifteen overturn there alone
+    assert [most[name] for name in ("members", "count", "higher", "lower")] == [20, 20, 0, 15]
+    assert (most["overturned"], most["against_overturned"]) == (0, 15)
+    both = ratios_of(contrast(2.0 * peaks, peaks, fell, fell))
+    assert (both["count"], both["higher"]) == (5, 5)
+    assert math.isnan(both["ratio"])  # of five
+    assert ratios_of(contrast(2.0 * peaks, peaks, stands, stands))["ratio"] == pytest.approx(2.0)
 
 
 def test_what_only_the_vertical_moves_needs_no_recess() -> None:

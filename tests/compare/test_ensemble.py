@@ -14,7 +14,7 @@ from rockwobble.compare.runs.execution import Job
 from rockwobble.compare.storage.manifest import made_now, read_results, write_results
 from rockwobble.compare.studies.ensemble import members as ensemble_members
 from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of, stored_ensemble
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, Trace
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, Trace, el_centro_1940
 
 ROUNDING = 1e-12
 RECESS = Run(None, "recess")
@@ -45,6 +45,21 @@ def test_copies_are_perturbed_by_the_stated_size():
     assert np.std(rates) == pytest.approx(0.01, rel=4.0 / math.sqrt(800.0))
     assert abs(np.corrcoef(tilts, rates)[0, 1]) < 4.0 / math.sqrt(400.0)
     assert len({case.name for case in members}) == 400
+
+
+def test_each_component_of_a_copied_record_has_a_factor_of_its_own():
+    motion = el_centro_1940(vertical=True)
+    copies = perturbed_copies(Case(PIER, motion), 400, perturbation=0.01, seed=5)
+    given = motion.acceleration
+    factors = np.empty((400, 2))
+    for row, copy in zip(factors, copies, strict=True):
+        made = copy.motion.acceleration
+        row[:] = made[200, :2] / given[200, :2]
+        np.testing.assert_allclose(made, given * [*row, 1.0], rtol=ROUNDING)  # the vertical as it is
+    # the standard deviation of 400 draws is known to 1/sqrt(800)
+    assert np.std(factors, axis=0) == pytest.approx([0.01, 0.01], rel=4.0 / math.sqrt(800.0))
+    assert np.mean(factors, axis=0) == pytest.approx([1.0, 1.0], abs=4.0 * 0.01 / math.sqrt(400.0))
+    assert abs(np.corrcoef(*factors.T)[0, 1]) < 4.0 / math.sqrt(400.0)
 
 
 def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():

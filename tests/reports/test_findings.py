@@ -191,7 +191,10 @@ def test_a_motion_below_the_bound_agrees_within_a_tenth_of_its_peak():
         tolerance=2.3e-6, agreement_time=50.0, diverged=False, left_tolerance=True, within_tolerance_until=9.0
     )
     text = said(**vars(small))
-    assert "within a tenth of the peak (2\u00a0×\u00a010⁻⁶ alpha) of the recess model until 9.0 s of the run" in text
+    assert (
+        "within a tenth of the peak (2\u00a0×\u00a010⁻⁶ alpha) of the recess model until 9.0 s of the run"
+        in text
+    )
     assert "a tenth of the peak (2\u00a0×\u00a010⁻⁶ alpha) until 9.0 s" in headline(table(small), LENGTH)
 
 
