@@ -22,7 +22,6 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .comparison.result import Comparison as Comparison
     from .comparison.result import describe_case as describe_case
     from .comparison.summary import SUMMARY_COLUMNS as SUMMARY_COLUMNS
-    from .metrics.agreement import AGREEMENT as AGREEMENT
     from .metrics.contact import TILTED as TILTED
     from .runs.choice import default_runs as default_runs
     from .runs.choice import missing_engines as missing_engines
@@ -59,7 +58,6 @@ _MODULES = {
     "comparison.error_budget": ("LARGEST_SHARE", "WORTH_EXPLAINING", "ErrorBudget", "findings"),
     "comparison.result": ("Comparison", "describe_case"),
     "comparison.summary": ("SUMMARY_COLUMNS",),
-    "metrics.agreement": ("AGREEMENT",),
     "metrics.contact": ("TILTED",),
     "runs.choice": (
         "default_runs",

@@ -1,7 +1,7 @@
 """The problem, with no mechanics: bodies, ground motions, initial states, cases and runs."""
 
 from .assumptions import Assumptions
-from .bounds import Bounds
+from .bounds import AGREEMENT, Bounds
 from .case import Case, Run, Suite, run_duration
 from .cylinder import Cylinder, WobblingFrame
 from .diagnostic import Diagnostic
@@ -18,6 +18,7 @@ from .synthetic import synthetic_motions
 from .traces.trace import Trace
 
 __all__ = [
+    "AGREEMENT",
     "Assumptions",
     "Bounds",
     "Case",

@@ -7,7 +7,8 @@ limit is the engine extrapolated to a time step of zero, own the reduced model o
 (see `own_model`) or, where that goes through upright itself, planar motion with the loss of a base that
 lands flat. The three are signed traces of the tilt, and add up exactly.
 Tilt itself is never negative, so it folds where a motion goes past upright; as long as two motions agree
-within 1 % of alpha they are on the same side of that fold, which is why the budget ends with the agreement.
+within the tolerance of `tolerance_of` they are on the same side of that fold, which is why the budget ends
+with the agreement.
 """
 
 from __future__ import annotations

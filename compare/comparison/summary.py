@@ -10,13 +10,13 @@ import numpy as np
 from rockwobble.models import Case, Trace
 from rockwobble.models.diagnostic import joined
 
-from ..metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
+from ..metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass, tolerance_of
 from ..metrics.contact import contact_rms
 from ..metrics.energy import energy_loss
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
 from ..metrics.turning import direction_difference, first_unresolved_pass, turn_difference
 from ..runs.labels import REDUCED
-from ..traces.pair import make_pair
+from ..traces.pair import make_pair, start_of
 from ..traces.trajectory import measurement
 from .error_budget import BUDGET_COLUMNS, ErrorBudget
 from .external.difference import allowance as noise_allowance
@@ -61,10 +61,16 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "engine_version": ("", "version of the engine"),
     "run": ("", "label of the run, as in the files of samples and in the figures"),
     "reference": ("", "label of the reference"),
-    "predicted_by": ("", "what ends the agreement there: a pass, growth or model form; empty: nothing"),
+    "predicted_by": ("", "what ends it within the tolerance: a pass, growth, model form; empty: nothing"),
+    "reference_uplift_time": ("s", "uplift or release of the reference; 0 where it stays at rest"),
+    "tolerance": ("alpha", "the smaller of 1 % of alpha and a tenth of the peak tilt, for the next five"),
+    "within_tolerance_until": ("s", "time of the run of the first tilt difference above it, or of the end"),
+    "left_tolerance": ("", "whether there was such a difference"),
+    "predicted_until": ("s", "time of the run of the predicted one, from the reduced models alone"),
     "divergence": (
         "",
-        "in time: within a factor of 2 of the prediction; later, earlier, or after it touched a wall",
+        "in time: within a factor of 2 of that prediction; later, much later: more than ten times, which "
+        "tests nothing; earlier, after it touched a wall, or too little motion to test anything",
     ),
     "estimated_error": (
         "alpha",
@@ -90,6 +96,7 @@ def summary_row(
     trial: Trace,
     *,
     prediction: Prediction,
+    within: Prediction | None = None,
     estimated_error: float = math.nan,
     budget: ErrorBudget | None = None,
     until: float | None = None,
@@ -108,6 +115,8 @@ def summary_row(
     trial : Trace
     prediction : Prediction
         Predicted agreement time of the two.
+    within : Prediction, optional
+        The same for the tolerance of `tolerance_of`. Default: `prediction`.
     estimated_error : float, optional
         Error of the run that the prediction rests on [alpha].
     budget : ErrorBudget, optional
@@ -124,6 +133,8 @@ def summary_row(
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
     broken = "failed" in (trial.outcome, reference.outcome)
     agreement = agreement_time(whole, broken=broken, allowance=allowance)
+    tolerance, within = tolerance_of(reference, trial), within or prediction
+    close = agreement_time(whole, tolerance=tolerance, broken=broken, allowance=allowance)
     direction = direction_difference(reference, trial)
     turned_until = min(agreement.end, first_unresolved_pass(trial, start=whole.start))
     row = {
@@ -153,8 +164,13 @@ def summary_row(
         "contact_resolution": trial.contact_resolution,
         "closest_pass": closest_pass(reference, agreement) / alpha,
         "engine_version": trial.version,
-        "predicted_by": prediction.reason,
-        "divergence": _divergence(trial, agreement, prediction),
+        "predicted_by": within.reason,
+        "reference_uplift_time": whole.start,
+        "tolerance": tolerance,
+        "within_tolerance_until": close.end,
+        "left_tolerance": close.diverged,
+        "predicted_until": within.length + (whole.start if within.reason else 0.0),
+        "divergence": _divergence(trial, close, within),
         "estimated_error": estimated_error,
         **no_verdict(),
     }
@@ -179,12 +195,10 @@ def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
 
 def _divergence(trial: Trace, agreement: Agreement, prediction: Prediction) -> str:
     found = verdict(agreement.length, agreement.diverged, prediction.length, prediction.reason)
+    if found != "earlier":
+        return found if agreement.tested else "too little motion"
     # no reduced model knows of walls, so none predicts what they do
-    return (
-        "after it touched a wall"
-        if found == "earlier" and trial.first("wall_contact") <= agreement.end
-        else found
-    )
+    return "after it touched a wall" if trial.first("wall_contact") <= agreement.end else found
 
 
 def external_row(
@@ -232,6 +246,9 @@ def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
         "diverged": True,
         "agreed_passes": 0,
         "reference_wall_time": reference.wall_time,
+        "reference_uplift_time": start_of(reference),
+        "within_tolerance_until": start_of(reference),
+        "left_tolerance": True,
         "engine_version": "",
         "predicted_by": "",
         "divergence": "",

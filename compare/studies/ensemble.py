@@ -19,7 +19,7 @@ from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
 from rockwobble.models.diagnostic import joined
 
 from ..metrics.distributions import Array, Contrast, Flags, adjusted, contrast, log_ratios
-from ..metrics.order_statistics import Interval, quantile_interval
+from ..metrics.order_statistics import Interval, quantile_interval, stated
 from ..metrics.tilt import outcome_of
 from ..runs.choice import default_runs, require_runnable, support_of
 from ..runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
@@ -71,7 +71,9 @@ class Ensemble(Results, kind=KIND):
     def headline(self) -> dict[str, Number]:
         """Return the median ratio of each two methods."""
         return {
-            f"{row['method']} / {row['against']}, median ratio": row["ratio"]
+            f"{row['method']} / {row['against']}, median ratio": stated(
+                row["ratio"], row["compared"], ratio=True
+            )
             for row in self.contrasts.to_dict("records")
         }
 

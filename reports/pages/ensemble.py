@@ -10,6 +10,7 @@ from rockwobble.compare.metrics.distributions import (
     largest_share_unseen,
     least_significant_count,
 )
+from rockwobble.compare.metrics.order_statistics import FEWEST, stated
 
 from ..figures.ensemble import main_pairs, pictures
 from .page import Page
@@ -24,8 +25,10 @@ def page_of(found: Ensemble) -> Page:
 def ensemble_values(found: Ensemble) -> dict[str, object]:
     """Return the values of the template of an ensemble."""
     contrasts, methods = found.contrasts, found.methods.to_dict("records")
-    rows = contrasts.to_dict("records")
-    main = main_pairs(found)
+    rows, main = (
+        [{**row, "ratio": stated(row["ratio"], row["compared"], ratio=True)} for row in each]
+        for each in (contrasts.to_dict("records"), main_pairs(found))
+    )
     # those that matter first, then the others by their probability
     ordered = main + (contrasts.sort_values("ratio_p").to_dict("records") if rows else [])
     every = {(row["method"], row["against"]): row for row in ordered}
@@ -51,5 +54,6 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         "power": POWER,
         "significance": SIGNIFICANCE,
         "fewest": least_significant_count(),
+        "fewest_members": FEWEST,
         "unseen": largest_share_unseen(int(contrasts["count"].min())) if rows else 1.0,
     }

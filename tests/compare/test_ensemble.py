@@ -20,6 +20,7 @@ from rockwobble.models import (
     Run,
     Suite,
     Trace,
+    el_centro_1940,
     far_field_motions,
     perturbed_copies,
     synthetic_motions,
@@ -57,6 +58,21 @@ def test_copies_are_perturbed_by_the_stated_size():
     assert len({case.name for case in members}) == 400
 
 
+def test_each_component_of_a_copied_record_has_a_factor_of_its_own():
+    motion = el_centro_1940(vertical=True)
+    copies = perturbed_copies(Case(PIER, motion), 400, perturbation=0.01, seed=5)
+    given = motion.acceleration
+    factors = np.empty((400, 2))
+    for row, copy in zip(factors, copies, strict=True):
+        made = copy.motion.acceleration
+        row[:] = made[200, :2] / given[200, :2]
+        np.testing.assert_allclose(made, given * [*row, 1.0], rtol=ROUNDING)  # the vertical as it is
+    # the standard deviation of 400 draws is known to 1/sqrt(800)
+    assert np.std(factors, axis=0) == pytest.approx([0.01, 0.01], rel=4.0 / math.sqrt(800.0))
+    assert np.mean(factors, axis=0) == pytest.approx([1.0, 1.0], abs=4.0 * 0.01 / math.sqrt(400.0))
+    assert abs(np.corrcoef(*factors.T)[0, 1]) < 4.0 / math.sqrt(400.0)
+
+
 def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():
     first, again, other = (synthetic_motions(3, peak=4.0, seed=s, duration=5.0) for s in (1, 1, 2))
     assert np.array_equal(first[2].acceleration, again[2].acceleration)
@@ -90,20 +106,20 @@ def test_failed_runs_are_counted_and_named(monkeypatch):
         return made_up(job, job.case.initial.tilt)
 
     monkeypatch.setattr(execution, "run_job", simulate)
-    found = ensemble(CASE, runs=[], copies=4, workers=1)
+    found = ensemble(CASE, runs=[], copies=7, workers=1)
     methods = found.methods.set_index("method")
     assert methods["failed"].to_dict() == {"recess model": 0, "flat-ground model": 1}
     assert methods.loc["flat-ground model", "failed_members"] == "release #2"
-    assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [3, "release #2"]
-    assert len(found.members) == 8
-    # of three members that do not differ; what failed has no part in the counts and quantiles of its method
-    assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [3, 1.0]
-    assert methods.loc["flat-ground model", ["runs", "rocked", "overturned"]].tolist() == [4, 3, 0]
+    assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [6, "release #2"]
+    assert len(found.members) == 14
+    # of six members that do not differ; what failed has no part in the counts and quantiles of its method
+    assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [6, 1.0]
+    assert methods.loc["flat-ground model", ["runs", "rocked", "overturned"]].tolist() == [7, 6, 0]
     assert math.isfinite(methods.loc["flat-ground model", "peak_median"])
 
 
 def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
-    cases = [dataclasses.replace(CASE, name=name) for name in "ab"]
+    cases = [dataclasses.replace(CASE, name=name) for name in "abcdef"]
     # past its balance at the end: what that is called is the matter of who ran it
     runs = {
         "recess model": made_up(Job(case=cases[0], run=RECESS), 1.5 * PIER.alpha),
@@ -113,9 +129,9 @@ def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
     found = ensemble(cases, runs=[], workers=1)
     for method, run in runs.items():
         rows = found.members[found.members["method"] == method]
-        assert rows["outcome"].tolist() == [run.outcome] * 2
-        assert rows["peak_tilt"].tolist() == pytest.approx([run.peak_tilt / PIER.alpha] * 2, abs=ROUNDING)
-    assert found.methods["overturned"].tolist() == [0, 2]
+        assert rows["outcome"].tolist() == [run.outcome] * 6
+        assert rows["peak_tilt"].tolist() == pytest.approx([run.peak_tilt / PIER.alpha] * 6, abs=ROUNDING)
+    assert found.methods["overturned"].tolist() == [0, 6]
     assert found.methods["peak_median"].tolist() == [pytest.approx(1.5, abs=ROUNDING), math.inf]
 
 

@@ -97,6 +97,18 @@ def test_contact_points_count_only_where_both_are_tilted(cylinder, make_trace, t
     assert contact_rms(make_pair(cylinder, reference, trial)) == pytest.approx(expected, rel=ROUNDING)
 
 
+def test_contact_points_count_from_5_per_cent_of_the_peak_of_the_reference(cylinder, make_trace, time):
+    high, angle = 0.3 * cylinder.alpha, 2.0 * time
+    # then at 10 % of that peak: below 5 % of alpha, and of the trial's own peak; at last at 4 % of it
+    share = np.where(time < 4.0, 1.0, np.where(time < 8.0, 0.1, 0.04))
+    reference = make_trace(time, high * share, rolling_angle=angle)
+    trial = make_trace(
+        time, high * np.where(time < 4.0, 3.0, share), rolling_angle=angle + 0.3 * (time >= 4.0)
+    )
+    expected = 2.0 * math.sin(0.15) * math.sqrt(0.5)  # in half of the samples that count
+    assert contact_rms(make_pair(cylinder, reference, trial)) == pytest.approx(expected, rel=ROUNDING)
+
+
 def test_contact_points_that_are_not_known_are_masked(cylinder, make_trace, time):
     tilt = np.full_like(time, 0.3 * cylinder.alpha)
     known = np.where(time < 1.0, np.nan, 2.0 * time)

@@ -42,7 +42,18 @@ def row(**values):
         "uplift_time_difference": 0.004,
         "uplift_direction_difference": -0.5,
     }
-    return SimpleNamespace(**(common | no_verdict() | AGREES | values))
+    values = common | no_verdict() | AGREES | values
+    until = 1.7 if values["diverged"] else 0.0  # the uplift, where a length counts from it
+    return SimpleNamespace(
+        **{
+            "reference_uplift_time": 1.7,
+            "tolerance": 0.01,
+            "left_tolerance": values["diverged"],
+            "within_tolerance_until": values["agreement_time"] + until,
+            "predicted_until": values["predicted_agreement_time"],
+        }
+        | values
+    )
 
 
 def said(given, end=math.nan):
@@ -54,6 +65,7 @@ def said(given, end=math.nan):
             reference_uplifted=True,
             reason=reason(given, 8.0),
             bound=within(given),
+            passes=3,
             end=end,
         )
     )
@@ -76,7 +88,7 @@ def test_what_agrees_is_said_to_agree():
 def test_a_trajectory_that_is_called_a_model_is_none():
     assert "recess model stays within 1 % of alpha of the recess model" in said(row(run="recess model"))
     against = said(row(reference="clay model", reference_engine="clay model"))
-    assert "within 1 % of alpha of clay model for" in against
+    assert "within 1 % of alpha of clay model for the whole run" in against
 
 
 def test_what_was_not_compared_is_said():
@@ -108,7 +120,7 @@ def test_a_mistake_stands_in_the_headline_and_what_is_left_without_it():
     )
     words = said(row(**WRONG))
     assert "The azimuth differs by 10.0 deg (rms while the tilts agree), from 2.80 s on." in words
-    assert words.endswith("Without it, the tilt follows the model for 8.0 s.")
+    assert words.endswith("Without it, the tilt follows the model until 9.7 s.")
     left = external_sentences(row(**WRONG, differs_without_mistake=("tilt", "path")))
     assert left.endswith("Without it, the tilt follows the model for 8.0 s, but it differs in tilt and path.")
     other = external_sentences(

@@ -99,7 +99,7 @@ def test_a_sweep_counts_each_part(swept):
     assert words.count("| El Centro 1940 | recess |") == 2
     words = swept["cases"].markdown()
     assert "4 runs: 2 cases, 2 runs of each." in words
-    assert "| flat-ground model | 2 | 2 | 0 | 0.500 | 0.500 |" in words
+    assert "| flat-ground model | 2 | 2 | 0 | – | 0.500 |" in words
 
 
 def test_a_map_has_a_cell_for_each_run_or_says_of_how_many(monkeypatch):

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from rockwobble.models import Case, Trace
+from rockwobble.models import AGREEMENT, Case, Trace
 
 from ...traces.motion import Motion
 from ...traces.trajectory import measurement
@@ -82,5 +82,5 @@ def _agreement(model: Motion, case: Case, support: str) -> float:
         other = dataclasses.replace(case, initial=start)
     copy = ours(other, support)
     count = min(len(copy.tilt), len(model.tilt))
-    beyond = np.flatnonzero(np.abs(copy.tilt[:count] - model.tilt[:count]) > 0.01 * case.cylinder.alpha)
+    beyond = np.flatnonzero(np.abs(copy.tilt[:count] - model.tilt[:count]) > AGREEMENT * case.cylinder.alpha)
     return float(model.time[beyond[0]] if len(beyond) else model.time[-1])

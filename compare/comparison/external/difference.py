@@ -13,9 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.models import Cylinder
+from rockwobble.models import AGREEMENT, Cylinder
 
-from ...metrics.agreement import AGREEMENT
 from ...metrics.contact import TILTED
 from ...traces.motion import Motion, on_samples_of
 

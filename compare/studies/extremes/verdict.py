@@ -29,7 +29,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.models import Case, Diagnostic, Run, Trace
+from rockwobble.models import AGREEMENT, Case, Diagnostic, Run, Trace
 from rockwobble.models.diagnostic import FAILURES, joined
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
@@ -40,7 +40,7 @@ from ...runs.execution import simulate_run
 from ...traces.pair import make_pair
 from .conditions import Condition, without_spin
 
-FINE = 0.01  # of alpha, or of the angle of turn: what ends an agreement everywhere else
+FINE = AGREEMENT  # of alpha, or of the angle of turn
 # relative to the energy that balances the cylinder on its rim
 _ENERGY = 1e-5
 _TIGHT, _REFERENCE = 1e-12, 1e-10  # tolerances

@@ -10,6 +10,7 @@ import pandas as pd
 
 from rockwobble.models.shown import Shown
 
+from ...metrics.order_statistics import stated
 from ...storage.manifest import Results
 
 KIND = "sweep"
@@ -46,8 +47,8 @@ class Sweep(Shown):
         """Return one row for each part: how many runs ended how, and their peak tilts.
 
         Columns: `keys`, runs, a count for each outcome that there is, no_uplift (how many of them stood still
-        throughout), and in alpha median, in which an overturned run is infinite, and largest, of those that
-        do not overturn.
+        throughout), and in alpha median, in which an overturned run is infinite, NaN of fewer than six, and
+        largest, of those that do not overturn.
         """
         rows, outcomes = [], self.outcomes
         for key, own in self.table.groupby(self.keys, sort=False):
@@ -58,7 +59,7 @@ class Sweep(Shown):
                     "runs": len(own),
                     **{name: int((own["outcome"] == name).sum()) for name in outcomes},
                     "no_uplift": int((peaks == 0.0).sum()),
-                    "median": peaks.mask(fell, math.inf).median(),
+                    "median": stated(peaks.mask(fell, math.inf).median(), int(peaks.notna().sum())),
                     "largest": peaks[~fell].max(),
                 }
             )

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable
+import shlex
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, fields
 from functools import wraps
 from typing import Annotated, Any, get_type_hints
@@ -159,6 +160,15 @@ def given_options(context: typer.Context) -> list[str]:
     """Return the options that the user gave, by the names of their parameters."""
     sources = {name: context.get_parameter_source(name) for name in context.params}
     return [name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"]
+
+
+def restated(context: typer.Context, command: str, *, also: Collection[str] = ()) -> str:
+    """Return the line of another command on the problem that the user gave; `also`: more of its options."""
+    parts = ["rockwobble", command]
+    for name in given_options(context):
+        if name in PROBLEM or name in also:
+            parts += [f"--{name.replace('_', '-')}", str(context.params[name])]
+    return shlex.join(parts)
 
 
 def refuse(context: typer.Context, names: set[str], why: str) -> None:

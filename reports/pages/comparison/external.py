@@ -8,6 +8,7 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
+from rockwobble.models import AGREEMENT
 
 from ...figures.comparison.view import rows_of
 from ..table import Row
@@ -50,7 +51,8 @@ def mistakes(row: Any) -> list[str]:
 
 def within(row: Any) -> str:
     """Return what agreement of the tilts means for a run."""
-    return sentence(WORDS, "within", row.tilt_bound)
+    noise = row.tilt_bound - AGREEMENT if row.support == EXTERNAL else 0.0
+    return sentence(WORDS, "within", row.tolerance, noise, AGREEMENT)
 
 
 def scope(row: Any) -> str:

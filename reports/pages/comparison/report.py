@@ -99,7 +99,7 @@ def _case(view: CaseView) -> dict[str, object]:
         "lines": describe(view.case),
         "headline": headline(rows, length),
         "findings": [*finding_sentences(view), *budget_sentences(rows), *divergence_sentences(rows)],
-        "rows": main_rows(rows),
+        "rows": main_rows(rows, length),
         "external": external_rows(rows),
         "numbers": numbers,
         "columns": columns,
