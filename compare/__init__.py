@@ -53,8 +53,8 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .studies.sweep.result import Sweep as Sweep
     from .studies.sweep.study import read_sweep as read_sweep
     from .studies.sweep.study import sweep as sweep
-    from .traces.pair import Pair as Pair
-    from .traces.pair import make_pair as make_pair
+    from .metrics.pair import Pair as Pair
+    from .metrics.pair import make_pair as make_pair
     from .traces.trajectory import External as External
     from .traces.trajectory import read_trajectory as read_trajectory
 
@@ -94,7 +94,7 @@ _MODULES = {
     "studies.sweep.grid": ("Grid",),
     "studies.sweep.result": ("Sweep",),
     "studies.sweep.study": ("read_sweep", "sweep"),
-    "traces.pair": ("Pair", "make_pair"),
+    "metrics.pair": ("Pair", "make_pair"),
     "traces.trajectory": ("External", "read_trajectory"),
 }
 __all__ = sorted(name for names in _MODULES.values() for name in names)

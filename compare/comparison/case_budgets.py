@@ -11,7 +11,7 @@ from rockwobble.models import Case, Run, Trace
 from ..metrics.agreement import Agreement, agreement_time
 from ..runs.choice import own_model, references_of
 from ..runs.execution import Job
-from ..traces.pair import make_pair
+from ..metrics.pair import make_pair
 from .error_budget import ErrorBudget, error_budget
 from .prediction import landings
 from .refinement import Refined, Simulate, limits

@@ -10,7 +10,7 @@ from rockwobble.models import Case, Trace
 
 from ..metrics.agreement import agreement_time
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
-from ..traces.pair import make_pair
+from ..metrics.pair import make_pair
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -16,7 +16,7 @@ from ..metrics.energy import energy_loss
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
 from ..metrics.turning import direction_difference, first_unresolved_pass, turn_difference
 from ..runs.labels import REDUCED
-from ..traces.pair import make_pair
+from ..metrics.pair import make_pair
 from ..traces.trajectory import measurement
 from .error_budget import BUDGET_COLUMNS, ErrorBudget
 from .external.difference import allowance as noise_allowance

@@ -13,7 +13,7 @@ import numpy as np
 
 from rockwobble.models import Trace
 
-from ..traces.pair import Pair
+from .pair import Pair
 
 # tilt difference that ends the agreement, in units of alpha
 AGREEMENT = 0.01

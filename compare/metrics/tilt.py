@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Trace
 
-from ..traces.pair import Pair
+from .pair import Pair
 
 
 def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:

@@ -19,7 +19,7 @@ from rockwobble.compare.runs.scheduler import run_tasks
 from rockwobble.compare.runs.task import Lost
 from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case
 from rockwobble.compare.studies.validity.rings import has_room, losses, release_of
-from rockwobble.compare.traces.pair import make_pair
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.models import Case, Run, Trace
 
 from .console import options_of, tell

@@ -7,7 +7,7 @@ import pytest
 
 from rockwobble.compare.comparison.prediction import close_pass
 from rockwobble.compare.metrics.agreement import agreed_passes, agreement_time, closest_pass
-from rockwobble.compare.traces.pair import make_pair
+from rockwobble.compare.metrics.pair import make_pair
 
 SAMPLE = 0.01  # an agreement time is known to one sample
 

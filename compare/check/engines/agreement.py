@@ -23,7 +23,7 @@ from ...metrics.energy import energy_loss
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import own_model
 from ...runs.execution import Job
-from ...traces.pair import is_release, make_pair
+from ...metrics.pair import is_release, make_pair
 from ..bench import Bench, why
 from ..finding import Bound, Finding, at_most, not_run
 from . import own_bounds

@@ -27,7 +27,7 @@ from ...metrics.tilt import rms
 from ...runs.choice import require_runnable
 from ...runs.execution import Job
 from ...runs.run_settings import at_step
-from ...traces.pair import is_release
+from ...metrics.pair import is_release
 from ..bench import Array, Bench, why
 from ..finding import Bound, Finding, at_most, not_run
 from .suspects import suspect

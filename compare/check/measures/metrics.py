@@ -22,7 +22,7 @@ from ...metrics.contact import contact_rms
 from ...metrics.energy import energy_loss
 from ...metrics.tilt import tilt_rms, tilt_rms_relative
 from ...metrics.turning import direction_difference, first_unresolved_pass, turn_difference
-from ...traces.pair import Pair, make_pair
+from ...metrics.pair import Pair, make_pair
 from ..bench import Array, Bench
 from ..finding import Bound, Finding, worst_of
 from ..problems import PIER

@@ -11,7 +11,7 @@ import pandas as pd
 from rockwobble.models import Case, Trace
 
 from ...traces.motion import motion_of
-from ...traces.pair import start_of
+from ...metrics.pair import start_of
 from ...traces.trajectory import external_motion, measurement
 from .difference import Difference, Part, difference
 from .explanation import Explanation, explain

@@ -14,7 +14,7 @@ from rockwobble.models import Case, GroundMotion, Trace
 from rockwobble.models.records import p695
 
 from ...metrics.order_statistics import quantile_interval, share_interval
-from ...traces.pair import is_release
+from ...metrics.pair import is_release
 from ..ensemble.members import far_field_motions, synthetic_motions
 from ..fragility.intensity import largest_resultant, velocity
 

@@ -12,7 +12,7 @@ from rockwobble.models import Case, GroundMotion, p695_far_field
 from rockwobble.models.number_checks import require_positive
 from rockwobble.models.records import p695
 
-from ...traces.pair import is_release
+from ...metrics.pair import is_release
 
 # of the Kanai-Tajimi filter, firm soil: K. Kanai 1957, H. Tajimi 1960
 _GROUND_FREQUENCY, _GROUND_DAMPING = 5.0 * math.pi, 0.6

@@ -37,7 +37,7 @@ from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 from ...comparison.prediction import time_scale
 from ...runs.choice import own_model, require_runnable
 from ...runs.execution import simulate_run
-from ...traces.pair import make_pair
+from ...metrics.pair import make_pair
 from .conditions import Condition, without_spin
 
 FINE = 0.01  # of alpha, or of the angle of turn: what ends an agreement everywhere else

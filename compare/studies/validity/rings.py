@@ -15,7 +15,7 @@ from rockwobble.multibody.scene.ring_geometry import clearance_needed
 from rockwobble.multibody.scene.ring_settings import take_ring
 
 from ...runs.execution import simulate_run
-from ...traces.pair import FloatArray
+from ...metrics.pair import FloatArray
 from .extent import Extent
 from .motions import AMPLE, EL_CENTRO, REFERENCE_SIZE, shaken_case
 from .part import Inputs, Part, Row

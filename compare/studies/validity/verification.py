@@ -12,7 +12,7 @@ from rockwobble.multibody import DEFAULT_ENGINE
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import SUPPORTS, own_model
 from ...runs.execution import simulate_run
-from ...traces.pair import make_pair
+from ...metrics.pair import make_pair
 from .extent import Extent
 from .free_response import next_maximum
 from .motions import release_case

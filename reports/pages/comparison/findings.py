@@ -13,7 +13,7 @@ from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
 from rockwobble.compare.metrics.agreement import AGREEMENT
 from rockwobble.compare.runs.labels import REDUCED
-from rockwobble.compare.traces.pair import make_pair
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 from rockwobble.models import Case, Run
 from rockwobble.models.diagnostic import parted
