@@ -25,8 +25,8 @@ from rockwobble.models.shown import Brief
 from rockwobble.multibody.time_step.extrapolated import to_zero_step
 
 from ..metrics.agreement import Agreement
-from ..metrics.tilt import rms
 from ..metrics.pair import start_of
+from ..metrics.tilt import rms
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import External, read_trajectory
-from rockwobble.compare.traces.trajectory import measurement
+from rockwobble.compare.external.trajectory import measurement
 from rockwobble.models import Case, Cylinder, InitialState
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -124,7 +124,7 @@ def test_a_signed_tilt_leans_to_the_other_side(save):
 def test_a_mass_centre_alone_tells_the_pose_of_a_cylinder_in_a_recess(save, response):
     x, y, z = 100.0 * response.centre_of_mass.T
     trajectory = read_trajectory(save(columns(response, **{"x [cm]": x, "y [cm]": y, "z [cm]": z})), RELEASE)
-    assert measurement(trajectory).poses.told == ("path",)
+    assert measurement(trajectory).poses.given == ("path",)
     assert trajectory.tilt == pytest.approx(response.tilt, abs=ROUNDING)
     assert trajectory.rolling_angle == pytest.approx(response.rolling_angle, abs=ROUNDING)
     assert "tilt and azimuth are those of a cylinder in a recess" in notes(trajectory)
@@ -172,7 +172,7 @@ def test_the_noise_is_told_by_the_samples(save, response, share):
 
 def test_columns_that_are_not_read_are_said(save):
     trajectory = read_trajectory(save(GOOD.replace("azimuth", "heading")), RELEASE)
-    assert measurement(trajectory).poses.told == ("tilt",)
+    assert measurement(trajectory).poses.given == ("tilt",)
     assert "columns not read: heading [deg]" in notes(trajectory)
 
 

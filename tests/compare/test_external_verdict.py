@@ -12,7 +12,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import Comparison, compare, read_trajectory
-from rockwobble.compare.comparison.external.verdict import VERDICT_COLUMNS, judge, lists_in_words
+from rockwobble.compare.external.verdict import VERDICT_COLUMNS, judge, lists_in_words
 from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

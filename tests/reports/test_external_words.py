@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 
-from rockwobble.compare.comparison.external.verdict import no_verdict
+from rockwobble.compare.external.verdict import no_verdict
 from rockwobble.reports.pages.comparison.external import (
     external_rows,
     external_sentences,

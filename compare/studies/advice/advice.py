@@ -18,8 +18,8 @@ from rockwobble.multibody.scene.ring_geometry import rim_overhang
 
 from ...comparison.prediction import Prediction
 from ...metrics.distributions import Contrast
-from ...metrics.tilt import overturned
 from ...metrics.pair import is_release
+from ...metrics.tilt import overturned
 from ..spectrum.series import SPATIAL, uplift_factor
 from .grades import Grade, grade_engine, grade_intensity, grade_overturning, grade_share, overall
 from .members import COPIES, answers, fall_of

@@ -17,8 +17,8 @@ from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 from ...comparison.driver import compare
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale
 from ...metrics.agreement import agreement_time
-from ...runs.execution import simulate_run
 from ...metrics.pair import make_pair
+from ...runs.execution import simulate_run
 
 # A trace is lost where the copies are spread over half of the peak tilt. A percent of alpha, the limit of
 # agreement between methods, would be exceeded by the percent that the copies differ by itself.

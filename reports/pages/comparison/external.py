@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
+from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 
 from ...figures.comparison.view import rows_of
 from ..table import Row

@@ -14,7 +14,7 @@ from rockwobble.compare import findings as unexplained
 from rockwobble.compare.metrics.agreement import AGREEMENT
 from rockwobble.compare.runs.labels import REDUCED
 from rockwobble.compare.metrics.pair import make_pair
-from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
+from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 from rockwobble.models import Case, Run
 from rockwobble.models.diagnostic import parted
 
