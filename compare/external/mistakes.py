@@ -36,6 +36,7 @@ ALIKE = 1.5  # rocking repeats itself: of offsets whose misfit is at most this t
 SMALLEST_RATE, LARGEST_RATE = 2.5e-3, 0.15  # by which a rate that is named differs from 1
 # what is left of the tilt difference in the right time scale: another tilt or spin at release leaves a fifth
 SAME_MOTION = 0.1
+FEWEST_FITTED = 3  # samples of a window
 NO_MISFIT = 10.0  # of what is not there: more than any tilt [rad]
 # an axis is meant where the fit comes so close to it, and the rest is another difference [rad]
 NAMED_WITHIN = math.radians(1.5)
@@ -102,6 +103,11 @@ class Mistake:
     code: str
     concerns: str
     value: float = math.nan
+
+    @property
+    def changes_tilt(self) -> bool:
+        """Whether tilts differ by it; horizontal axes, azimuth and the path beside a tilt change none."""
+        return self.code == "y_up" or self.concerns not in ("azimuth", "path", "axes")
 
     @property
     def words(self) -> str:
@@ -326,17 +332,16 @@ def _azimuth_explained(
 
 def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
     """Yield offsets and rates of the clock, as the tilts tell them."""
-    step = float(np.median(np.diff(motion.time)))
     for offset in fitted_offsets(reference, motion):
         # a clock that is off by less than a sample cannot be told from what a model and noise make of samples
-        if abs(offset) > max(step, SHORTEST_DELAY * reference.time_scale):
+        if abs(offset) > max(motion.step, SHORTEST_DELAY * reference.time_scale):
             mistake = Mistake(code="time_offset", concerns="time", value=offset)
             yield Change(mistake=mistake, motion=partial(Motion.clocked, offset=offset))
     if reference.is_free:
-        for rate in fitted_rates(reference, motion):
-            if abs(rate - 1.0) > SMALLEST_RATE:
-                mistake = Mistake(code="time_scale", concerns="time", value=rate)
-                yield Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
+        rate = fitted_rate(reference, motion)
+        if abs(rate - 1.0) > SMALLEST_RATE:
+            mistake = Mistake(code="time_scale", concerns="time", value=rate)
+            yield Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
 
 
 def fitted_offsets(reference: Reference, motion: Motion) -> list[float]:
@@ -347,38 +352,30 @@ def fitted_offsets(reference: Reference, motion: Motion) -> list[float]:
     tried = np.arange(-largest, largest + 0.5 * step, step)
     for window in WINDOWS:
         model = _beginning(reference, window)
-        if len(model.time) < 3:
-            continue
         misfits = np.array([_misfit(model, motion, float(offset)) for offset in tried])
         inner = np.flatnonzero((misfits[1:-1] <= misfits[:-2]) & (misfits[1:-1] <= misfits[2:])) + 1
-        if not len(inner):
+        # what leaves half of the motion is no fit
+        if not len(inner) or misfits[inner].min() > 0.5 * math.sqrt(float(np.mean(model.tilt**2))):
             continue
         highest = float(model.tilt.max())
         near = inner[misfits[inner] <= 3.0 * misfits[inner].min() + 0.02 * highest]
-        misfit = partial(_misfit, model, motion)
-        best = [_refined(misfit, float(tried[at]), step) for at in near]
-        least = min(value for value, _ in best)
-        alike = [offset for value, offset in best if value <= ALIKE * least + 1e-3 * highest]
-        offset = min(alike, key=abs)
+        best = [_refined(partial(_misfit, model, motion), float(tried[at]), step) for at in near]
+        enough = ALIKE * min(best)[0] + 1e-3 * highest
+        offset = min((offset for value, offset in best if value <= enough), key=abs)
         # the windows are there because one of them may be misled
         if offset and all(abs(offset - other) > 1e-3 * reference.time_scale for other in found):
             found.append(offset)
     return sorted(found, key=abs)
 
 
-def fitted_rates(reference: Reference, motion: Motion) -> list[float]:
-    """Return factors by which a free motion is slower than the reference, fitted in longer windows."""
-    rate, width, found = 1.0, LARGEST_RATE, []
+def fitted_rate(reference: Reference, motion: Motion) -> float:
+    """Return the factor by which a free motion is slower than the reference, fitted in longer windows."""
+    rate, width = 1.0, LARGEST_RATE
     for window in (*WINDOWS, math.inf):
-        model = _beginning(reference, window)
-        if len(model.time) < 3:
-            break
-        tried = rate + width * np.linspace(-1.0, 1.0, 41)
-        misfits = [_misfit(model, motion, 0.0, float(one)) for one in tried]
-        rate, width = float(tried[int(np.argmin(misfits))]), 0.3 * width
-        _, fitted = _refined(partial(_misfit, model, motion, 0.0), rate, width)
-        found.append(fitted)
-    return found
+        misfit = partial(_misfit, _beginning(reference, window), motion, 0.0)
+        rate = float(min(rate + width * np.linspace(-1.0, 1.0, 41), key=misfit))
+        width *= 0.3
+    return _refined(misfit, rate, width)[1]
 
 
 def _beginning(reference: Reference, window: float) -> Motion:
@@ -392,7 +389,7 @@ def _misfit(model: Motion, motion: Motion, offset: float, slower: float = 1.0) -
     time = (model.time - offset) * slower
     begin, end = int(time.searchsorted(motion.time[0])), int(time.searchsorted(motion.time[-1], side="right"))
     # most of the window must be there, or a few samples that agree by chance decide
-    if end - begin < 0.5 * len(time):
+    if end - begin < max(0.5 * len(time), FEWEST_FITTED):
         return NO_MISFIT
     apart = np.interp(time[begin:end], motion.time, motion.tilt) - model.tilt[begin:end]
     return math.sqrt(float(apart @ apart) / len(apart))
@@ -401,10 +398,9 @@ def _misfit(model: Motion, motion: Motion, offset: float, slower: float = 1.0) -
 def _refined(misfit: Callable[[float], float], centre: float, width: float) -> tuple[float, float]:
     """Least misfit near a minimum, and where it is, by finer and finer steps."""
     least = math.inf
-    for _ in range(6):
-        found = [(misfit(float(tried)), float(tried)) for tried in centre + width * np.linspace(-1.0, 1.0, 9)]
-        least, centre = min(found)
-        width *= 0.3
+    for _ in range(5):
+        least, centre = min((misfit(float(x)), float(x)) for x in centre + width * np.linspace(-1.0, 1.0, 7))
+        width /= 3.0
     return least, centre
 
 

@@ -25,6 +25,7 @@ MEDIAN_OF_NORMAL = 0.6745
 FEWEST_SCATTERED = 12  # samples without which their scatter is not known
 FITTED_SAMPLES = 7  # of the polynomial through a maximum of the tilt
 SAME_TIME = 1e-9  # samples at one time up to rounding [s]
+SAME_STEP = 1e-6  # relative
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -49,6 +50,11 @@ class Motion:
     path: Array | None = None
     noise: float = 0.0
     path_noise: float = 0.0
+
+    @property
+    def step(self) -> float:
+        """Usual time between two samples [s]."""
+        return float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.0
 
     def turned(self, angle: float, *, mirrored: bool = False) -> Motion:
         """Return the motion turned by `angle` [rad] counter-clockwise, with y reversed first if mirrored."""
@@ -81,10 +87,11 @@ def motion_at(time: Array, tilt: Array, azimuth: Array | None, path: Array | Non
 
 
 def on_samples_of(reference: Motion, motion: Motion) -> tuple[Motion, Motion]:
-    """Return both at the samples of the reference, as far as the motion reaches: reference, motion."""
-    finite = np.isfinite(reference.tilt)
-    within = (reference.time >= motion.time[0] - SAME_TIME) & (reference.time <= motion.time[-1] + SAME_TIME)
-    time = reference.time[within & finite]
+    """Return both at the samples of the sparser, as far as both reach: reference, motion."""
+    sparser = motion if motion.step > (1.0 + SAME_STEP) * reference.step else reference
+    first, last = (pick(reference.time[at], motion.time[at]) for pick, at in ((max, 0), (min, -1)))
+    within = (sparser.time >= first - SAME_TIME) & (sparser.time <= last + SAME_TIME)
+    time = sparser.time[within & np.isfinite(sparser.tilt)]
     return reference.at(time), motion.at(time)
 
 

@@ -100,9 +100,10 @@ class Table:
             at = int(np.argmin(holds))
             raise ValueError(f"{self.name}, line {self.lines[at]}: {reason(at)}")
 
-    def complete(self, column: str) -> Array:
-        """Return a column that must have a value in each sample."""
-        self.require(~np.isnan(self.values[column]), lambda _: f"{column} is missing")
+    def complete(self, column: str, where: Mask | None = None) -> Array:
+        """Return a column that must have a value in each sample, or `where` (n,) is true."""
+        known = ~np.isnan(self.values[column])
+        self.require(known if where is None else known | ~where, lambda _: f"{column} is missing")
         return self.values[column]
 
 

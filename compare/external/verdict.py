@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -220,6 +221,12 @@ def first_passage(trace: Trace, tilt: float) -> float:
     # from rest the growth begins at the uplift, not at the sample before it
     begin = max(float(trace.time[at - 1]), trace.uplift_time if before == 0.0 else 0.0)
     return begin + (float(trace.time[at]) - begin) * float((np.cbrt(tilt) - before) / (after - before))
+
+
+def mistakes_of(row: Any) -> tuple[Mistake, ...]:
+    """Return the likely mistakes of a row of the summary, a named tuple."""
+    columns = zip(row.likely_mistake, row.likely_mistake_in, row.likely_mistake_value, strict=True)
+    return tuple(Mistake(code=code, concerns=part, value=value) for code, part, value in columns)
 
 
 def numbers_of(row: Row) -> dict[str, float]:

@@ -2,8 +2,8 @@
 
     python check.py CASE TRAJECTORY.csv [--label "my code 1.2"] [--out result.json]
 
-CASE is a folder under cases/; README.md says what a trajectory file may hold. Exit code 0: satisfied, or caution
-where not every criterion could be judged; 1: not satisfied; 2: not tested, because the file cannot be judged.
+CASE is a folder under cases/; README.md says what a trajectory file may hold. Exit code 0: satisfied, or
+caution where not every criterion could be judged; 1: not satisfied; 2: not tested, the file cannot be judged.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rockwobble.compare.external.difference import Reference
 from rockwobble.compare.external.mistakes import Explanation, Mistake, corrected, explanations, readings
@@ -88,13 +89,13 @@ def read_motion(run: Run, values: Values) -> Motion | None:
     return Motion(time=values["time"], tilt=pose.tilt, lean=pose.lean, path=pose.position)
 
 
-def through(x: Array, X: Array, Y: Array) -> Array:
+def through(x: Array, X: Array, Y: NDArray[Any]) -> NDArray[Any]:
     """Return the cubic through the four nearest of evenly spaced samples; NaN outside them."""
     at = (x - X[0]) * (len(X) - 1) / (X[-1] - X[0])
     first = np.clip(np.floor(at).astype(int) - 1, 0, len(X) - 4)
     a, b, c, d = (at - first - k for k in range(4))
     weights = enumerate((-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0))
-    total: Array = sum(weight * Y[first + k] for k, weight in weights)
+    total: NDArray[Any] = sum(weight * Y[first + k] for k, weight in weights)
     return np.where((at > -1e-6) & (at < len(X) - 1 + 1e-6), total, np.nan)
 
 
@@ -108,7 +109,7 @@ def exceeds(time: Array, value: Array, level: float, power: float) -> float:
 
 
 def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
-    """Return a quantity of reference.json; NaN where the motion does not tell it, inf where it does not happen."""
+    """Return a quantity of reference.json; NaN where it is not known, inf where it does not happen."""
     name, _, digits = quantity.rpartition("_")
     if digits.isdigit() and name in ("turn", "period", "maximum"):  # of the first so many tilt maxima
         found = [one for _, one in zip(range(int(digits)), maxima(motion), strict=False)]
@@ -199,7 +200,8 @@ class Case:
     def difference(self, one: dict[str, Any], name: str, motion: Motion) -> float:
         """Return the root mean square difference from the reference in the window of a criterion."""
         run, known = self.runs[name], self.known[name]
-        assert known is not None
+        assert known is not None  # a case that compares traces has them
+        assert known.lean is not None
         low, high = (edge * run.get("time_unit", 1.0) for edge in one["window"])
         inside = (motion.time >= low - 1e-9) & (motion.time <= high + 1e-9)
         time = motion.time[inside]
@@ -279,9 +281,8 @@ def judged(case: Case, path: Path) -> Judgement:
     for name, table in tables.items():
         steps = np.diff(table.values["time"], prepend=-math.inf)
         table.require(steps > 0.0, lambda _: "time must rise")
-        for column, values in table.values.items():
-            upright = table.values["tilt"] == 0.0 if column == "azimuth" else False
-            table.require(np.isfinite(values) | upright, lambda _, column=column: f"{column} is missing")
+        for column in table.values:
+            table.complete(column, where=table.values["tilt"] != 0.0 if column == "azimuth" else None)
         motion = read_motion(case.runs[name], table.values)
         assert motion is not None
         motions[name] = motion
@@ -339,7 +340,9 @@ def main() -> int:
         "criteria": criteria,
         "columns_not_read": found.columns_not_read,
         "likely_mistakes": [mistake.words for mistake in found.mistakes],
-        "likely_mistake_codes": [mistake.code for mistake in found.mistakes],
+        "mistakes": [
+            {**asdict(one), "value": None if math.isnan(one.value) else one.value} for one in found.mistakes
+        ],
         "check": "2",
         "reference_sha256": case.digest,
     }

@@ -27,12 +27,12 @@ BAD = {
     "# table 3\n" + GOOD.replace("3,2\n", "much,2\n"): "line 5: tilt [deg] must be a number, got 'much'",
     GOOD.replace("3,2\n", ",2\n"): "line 4: tilt is missing",
     GOOD.replace("3,2\n", "3,\n"): "line 4: azimuth must be given where the tilt is 0.05236 rad",
-    GOOD.replace("3,2\n", "357,2\n"): "tilt must be between -pi and pi, got 6.231 rad; is it in degrees, or",
+    GOOD.replace("3,2\n", "357,2\n"): "tilt must be between -pi and pi, got 6.231 rad",
     GOOD.replace("0,1,0", "0,120,0"): "line 2: it must not lie at the start, got a tilt of 2.094 rad",
     GOOD.replace("0.0", ""): "line 3: samples must be at most 0.39 s apart for this cylinder, got 1 s",
     f"{TURN}\n0,0,0,0,1\n0.01,0,0,0,1\n0.02,0,0,0,1\n": (
-        "line 2: the quaternion is turned by 180 deg about the axis at the start, where it must be near 0; "
-        "are its numbers in the order qx, qy, qz, qw?"
+        "line 2: the quaternion must not be turned about the axis at the start, got 180 deg; likely mistake: "
+        "the quaternion has its scalar last"
     ),
     f"{TURN}\n0,0,1,0,0\n0.01,0,1,0,0\n0.02,0,1,0,0\n": "the quaternion holds the cylinder upside down",
     "time,x [mm],y [mm],z [mm]\n0,0,0,5.88\n0.01,0,0,5.88\n0.02,0,0,5.88\n": (
@@ -46,7 +46,7 @@ BAD = {
     GOOD.replace("tilt [deg]", "lean [deg]"): "must have tilt where it has azimuth, got no tilt",
     GOOD.replace("time [s]", "t"): "must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x",
     GOOD.replace("azimuth", "tilt"): "must have each column once, got tilt twice",
-    GOOD.split("0.01")[0]: "must hold at least three samples, got 1",
+    GOOD.split("0.01")[0]: "must hold at least 3 samples, got 1",
     f"{TURN}\n0,1,0,0,0\n0.01,2,0,0,0\n0.02,1,0,0,0\n": "line 3: a quaternion must have the length 1, got 2",
     f"{TURN},tilt [rad],azimuth [rad]\n0,1,0,0,0,0,0\n.01,.99875,.04998,0,0,.1,0\n.02,0,0,0,1,.1,0\n": (
         "line 4: tilt and quaternion must agree, got tilts of 0.1 and 0 rad"

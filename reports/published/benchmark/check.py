@@ -2,8 +2,8 @@
 
     python check.py CASE TRAJECTORY.csv [--label "my code 1.2"] [--out result.json]
 
-CASE is a folder under cases/; README.md says what a trajectory file may hold. Exit code 0: satisfied, or caution
-where not every criterion could be judged; 1: not satisfied; 2: not tested, because the file cannot be judged.
+CASE is a folder under cases/; README.md says what a trajectory file may hold. Exit code 0: satisfied, or
+caution where not every criterion could be judged; 1: not satisfied; 2: not tested, the file cannot be judged.
 """
 
 from __future__ import annotations
@@ -89,9 +89,10 @@ class Table:
             at = int(np.argmin(holds))
             raise ValueError(f"{self.name}, line {self.lines[at]}: {reason(at)}")
 
-    def complete(self, column: str) -> Array:
-        """Return a column that must have a value in each sample."""
-        self.require(~np.isnan(self.values[column]), lambda _: f"{column} is missing")
+    def complete(self, column: str, where: Mask | None = None) -> Array:
+        """Return a column that must have a value in each sample, or `where` (n,) is true."""
+        known = ~np.isnan(self.values[column])
+        self.require(known if where is None else known | ~where, lambda _: f"{column} is missing")
         return self.values[column]
 
 
@@ -237,6 +238,7 @@ MEDIAN_OF_NORMAL = 0.6745
 FEWEST_SCATTERED = 12  # samples without which their scatter is not known
 FITTED_SAMPLES = 7  # of the polynomial through a maximum of the tilt
 SAME_TIME = 1e-9  # samples at one time up to rounding [s]
+SAME_STEP = 1e-6  # relative
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -261,6 +263,11 @@ class Motion:
     path: Array | None = None
     noise: float = 0.0
     path_noise: float = 0.0
+
+    @property
+    def step(self) -> float:
+        """Usual time between two samples [s]."""
+        return float(np.median(np.diff(self.time))) if len(self.time) > 1 else 0.0
 
     def turned(self, angle: float, *, mirrored: bool = False) -> Motion:
         """Return the motion turned by `angle` [rad] counter-clockwise, with y reversed first if mirrored."""
@@ -293,10 +300,11 @@ def motion_at(time: Array, tilt: Array, azimuth: Array | None, path: Array | Non
 
 
 def on_samples_of(reference: Motion, motion: Motion) -> tuple[Motion, Motion]:
-    """Return both at the samples of the reference, as far as the motion reaches: reference, motion."""
-    finite = np.isfinite(reference.tilt)
-    within = (reference.time >= motion.time[0] - SAME_TIME) & (reference.time <= motion.time[-1] + SAME_TIME)
-    time = reference.time[within & finite]
+    """Return both at the samples of the sparser, as far as both reach: reference, motion."""
+    sparser = motion if motion.step > (1.0 + SAME_STEP) * reference.step else reference
+    first, last = (pick(reference.time[at], motion.time[at]) for pick, at in ((max, 0), (min, -1)))
+    within = (sparser.time >= first - SAME_TIME) & (sparser.time <= last + SAME_TIME)
+    time = sparser.time[within & np.isfinite(sparser.tilt)]
     return reference.at(time), motion.at(time)
 
 
@@ -632,6 +640,7 @@ ALIKE = 1.5  # rocking repeats itself: of offsets whose misfit is at most this t
 SMALLEST_RATE, LARGEST_RATE = 2.5e-3, 0.15  # by which a rate that is named differs from 1
 # what is left of the tilt difference in the right time scale: another tilt or spin at release leaves a fifth
 SAME_MOTION = 0.1
+FEWEST_FITTED = 3  # samples of a window
 NO_MISFIT = 10.0  # of what is not there: more than any tilt [rad]
 # an axis is meant where the fit comes so close to it, and the rest is another difference [rad]
 NAMED_WITHIN = math.radians(1.5)
@@ -922,17 +931,16 @@ def _azimuth_explained(
 
 def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
     """Yield offsets and rates of the clock, as the tilts tell them."""
-    step = float(np.median(np.diff(motion.time)))
     for offset in fitted_offsets(reference, motion):
         # a clock that is off by less than a sample cannot be told from what a model and noise make of samples
-        if abs(offset) > max(step, SHORTEST_DELAY * reference.time_scale):
+        if abs(offset) > max(motion.step, SHORTEST_DELAY * reference.time_scale):
             mistake = Mistake(code="time_offset", concerns="time", value=offset)
             yield Change(mistake=mistake, motion=partial(Motion.clocked, offset=offset))
     if reference.is_free:
-        for rate in fitted_rates(reference, motion):
-            if abs(rate - 1.0) > SMALLEST_RATE:
-                mistake = Mistake(code="time_scale", concerns="time", value=rate)
-                yield Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
+        rate = fitted_rate(reference, motion)
+        if abs(rate - 1.0) > SMALLEST_RATE:
+            mistake = Mistake(code="time_scale", concerns="time", value=rate)
+            yield Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
 
 
 def fitted_offsets(reference: Reference, motion: Motion) -> list[float]:
@@ -943,38 +951,30 @@ def fitted_offsets(reference: Reference, motion: Motion) -> list[float]:
     tried = np.arange(-largest, largest + 0.5 * step, step)
     for window in WINDOWS:
         model = _beginning(reference, window)
-        if len(model.time) < 3:
-            continue
         misfits = np.array([_misfit(model, motion, float(offset)) for offset in tried])
         inner = np.flatnonzero((misfits[1:-1] <= misfits[:-2]) & (misfits[1:-1] <= misfits[2:])) + 1
-        if not len(inner):
+        # what leaves half of the motion is no fit
+        if not len(inner) or misfits[inner].min() > 0.5 * math.sqrt(float(np.mean(model.tilt**2))):
             continue
         highest = float(model.tilt.max())
         near = inner[misfits[inner] <= 3.0 * misfits[inner].min() + 0.02 * highest]
-        misfit = partial(_misfit, model, motion)
-        best = [_refined(misfit, float(tried[at]), step) for at in near]
-        least = min(value for value, _ in best)
-        alike = [offset for value, offset in best if value <= ALIKE * least + 1e-3 * highest]
-        offset = min(alike, key=abs)
+        best = [_refined(partial(_misfit, model, motion), float(tried[at]), step) for at in near]
+        enough = ALIKE * min(best)[0] + 1e-3 * highest
+        offset = min((offset for value, offset in best if value <= enough), key=abs)
         # the windows are there because one of them may be misled
         if offset and all(abs(offset - other) > 1e-3 * reference.time_scale for other in found):
             found.append(offset)
     return sorted(found, key=abs)
 
 
-def fitted_rates(reference: Reference, motion: Motion) -> list[float]:
-    """Return factors by which a free motion is slower than the reference, fitted in longer windows."""
-    rate, width, found = 1.0, LARGEST_RATE, []
+def fitted_rate(reference: Reference, motion: Motion) -> float:
+    """Return the factor by which a free motion is slower than the reference, fitted in longer windows."""
+    rate, width = 1.0, LARGEST_RATE
     for window in (*WINDOWS, math.inf):
-        model = _beginning(reference, window)
-        if len(model.time) < 3:
-            break
-        tried = rate + width * np.linspace(-1.0, 1.0, 41)
-        misfits = [_misfit(model, motion, 0.0, float(one)) for one in tried]
-        rate, width = float(tried[int(np.argmin(misfits))]), 0.3 * width
-        _, fitted = _refined(partial(_misfit, model, motion, 0.0), rate, width)
-        found.append(fitted)
-    return found
+        misfit = partial(_misfit, _beginning(reference, window), motion, 0.0)
+        rate = float(min(rate + width * np.linspace(-1.0, 1.0, 41), key=misfit))
+        width *= 0.3
+    return _refined(misfit, rate, width)[1]
 
 
 def _beginning(reference: Reference, window: float) -> Motion:
@@ -988,7 +988,7 @@ def _misfit(model: Motion, motion: Motion, offset: float, slower: float = 1.0) -
     time = (model.time - offset) * slower
     begin, end = int(time.searchsorted(motion.time[0])), int(time.searchsorted(motion.time[-1], side="right"))
     # most of the window must be there, or a few samples that agree by chance decide
-    if end - begin < 0.5 * len(time):
+    if end - begin < max(0.5 * len(time), FEWEST_FITTED):
         return NO_MISFIT
     apart = np.interp(time[begin:end], motion.time, motion.tilt) - model.tilt[begin:end]
     return math.sqrt(float(apart @ apart) / len(apart))
@@ -997,10 +997,9 @@ def _misfit(model: Motion, motion: Motion, offset: float, slower: float = 1.0) -
 def _refined(misfit: Callable[[float], float], centre: float, width: float) -> tuple[float, float]:
     """Least misfit near a minimum, and where it is, by finer and finer steps."""
     least = math.inf
-    for _ in range(6):
-        found = [(misfit(float(tried)), float(tried)) for tried in centre + width * np.linspace(-1.0, 1.0, 9)]
-        least, centre = min(found)
-        width *= 0.3
+    for _ in range(5):
+        least, centre = min((misfit(float(x)), float(x)) for x in centre + width * np.linspace(-1.0, 1.0, 7))
+        width /= 3.0
     return least, centre
 
 
@@ -1224,13 +1223,13 @@ def read_motion(run: Run, values: Values) -> Motion | None:
     return Motion(time=values["time"], tilt=pose.tilt, lean=pose.lean, path=pose.position)
 
 
-def through(x: Array, X: Array, Y: Array) -> Array:
+def through(x: Array, X: Array, Y: NDArray[Any]) -> NDArray[Any]:
     """Return the cubic through the four nearest of evenly spaced samples; NaN outside them."""
     at = (x - X[0]) * (len(X) - 1) / (X[-1] - X[0])
     first = np.clip(np.floor(at).astype(int) - 1, 0, len(X) - 4)
     a, b, c, d = (at - first - k for k in range(4))
     weights = enumerate((-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0))
-    total: Array = sum(weight * Y[first + k] for k, weight in weights)
+    total: NDArray[Any] = sum(weight * Y[first + k] for k, weight in weights)
     return np.where((at > -1e-6) & (at < len(X) - 1 + 1e-6), total, np.nan)
 
 
@@ -1244,7 +1243,7 @@ def exceeds(time: Array, value: Array, level: float, power: float) -> float:
 
 
 def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
-    """Return a quantity of reference.json; NaN where the motion does not tell it, inf where it does not happen."""
+    """Return a quantity of reference.json; NaN where it is not known, inf where it does not happen."""
     name, _, digits = quantity.rpartition("_")
     if digits.isdigit() and name in ("turn", "period", "maximum"):  # of the first so many tilt maxima
         found = [one for _, one in zip(range(int(digits)), maxima(motion), strict=False)]
@@ -1335,7 +1334,8 @@ class Case:
     def difference(self, one: dict[str, Any], name: str, motion: Motion) -> float:
         """Return the root mean square difference from the reference in the window of a criterion."""
         run, known = self.runs[name], self.known[name]
-        assert known is not None
+        assert known is not None  # a case that compares traces has them
+        assert known.lean is not None
         low, high = (edge * run.get("time_unit", 1.0) for edge in one["window"])
         inside = (motion.time >= low - 1e-9) & (motion.time <= high + 1e-9)
         time = motion.time[inside]
@@ -1415,9 +1415,8 @@ def judged(case: Case, path: Path) -> Judgement:
     for name, table in tables.items():
         steps = np.diff(table.values["time"], prepend=-math.inf)
         table.require(steps > 0.0, lambda _: "time must rise")
-        for column, values in table.values.items():
-            upright = table.values["tilt"] == 0.0 if column == "azimuth" else False
-            table.require(np.isfinite(values) | upright, lambda _, column=column: f"{column} is missing")
+        for column in table.values:
+            table.complete(column, where=table.values["tilt"] != 0.0 if column == "azimuth" else None)
         motion = read_motion(case.runs[name], table.values)
         assert motion is not None
         motions[name] = motion
@@ -1475,7 +1474,9 @@ def main() -> int:
         "criteria": criteria,
         "columns_not_read": found.columns_not_read,
         "likely_mistakes": [mistake.words for mistake in found.mistakes],
-        "likely_mistake_codes": [mistake.code for mistake in found.mistakes],
+        "mistakes": [
+            {**asdict(one), "value": None if math.isnan(one.value) else one.value} for one in found.mistakes
+        ],
         "check": "2",
         "reference_sha256": case.digest,
     }
