@@ -75,7 +75,8 @@ def test_a_turn_that_comes_with_a_pass_is_none_of_the_axes():
 
     def fits(reference, other):
         found = fitted_frames(model(reference), other, start=0.0, end=4.0)
-        return [(fit.code, fit.value) for fit in found]
+        mistakes = [fit.change("azimuth").mistake for fit in found]
+        return [(mistake.code, mistake.value) for mistake in mistakes]
 
     assert fits(lean, motion(TILT, azimuth + angle)) == [("turned", pytest.approx(25.0))]
     assert fits(lean, motion(TILT, azimuth + angle * (TIME > 1.0))) == []

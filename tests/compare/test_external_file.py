@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pandas as pd
@@ -8,6 +9,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import External, read_trajectory
+from rockwobble.compare.external.mistakes import Mistake
 from rockwobble.compare.external.trajectory import measurement
 from rockwobble.models import Case, Cylinder, InitialState
 
@@ -31,8 +33,7 @@ BAD = {
     GOOD.replace("0,1,0", "0,120,0"): "line 2: it must not lie at the start, got a tilt of 2.094 rad",
     GOOD.replace("0.0", ""): "line 3: samples must be at most 0.39 s apart for this cylinder, got 1 s",
     f"{TURN}\n0,0,0,0,1\n0.01,0,0,0,1\n0.02,0,0,0,1\n": (
-        "line 2: the quaternion must not be turned about the axis at the start, got 180 deg; likely mistake: "
-        "the quaternion has its scalar last"
+        "line 2: the quaternion must not be turned about the axis at the start, got 180 deg"
     ),
     f"{TURN}\n0,0,1,0,0\n0.01,0,1,0,0\n0.02,0,1,0,0\n": "the quaternion holds the cylinder upside down",
     "time,x [mm],y [mm],z [mm]\n0,0,0,5.88\n0.01,0,0,5.88\n0.02,0,0,5.88\n": (
@@ -64,6 +65,36 @@ def test_whatever_is_wrong_with_a_file_is_one_line_with_its_number(save, text):
         read_trajectory(save(text), RELEASE)
     assert BAD[text] in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def y_up(run):
+    x, y, z = run.centre_of_mass.T
+    return {"x": x, "y": z, "z": -y}
+
+
+# files that cannot be read as they are, and the mistake without which they can
+UNREADABLE = {
+    "time_unit": lambda run: {"time": 1e3 * run.time, "tilt [rad]": run.tilt},
+    "angle_unit": lambda run: {"time": run.time, "tilt [rad]": np.degrees(run.tilt)},
+    "length_unit": lambda run: {
+        "time": run.time,
+        **dict(zip("xyz", 1e3 * run.centre_of_mass.T, strict=True)),
+    },
+    "z_reversed": lambda run: {
+        "time": run.time,
+        **dict(zip("xyz", (run.centre_of_mass * [1, 1, -1]).T, strict=True)),
+    },
+    "y_up": lambda run: {"time": run.time, **y_up(run)},
+}
+
+
+@pytest.mark.parametrize("code", UNREADABLE)
+def test_the_mistake_without_which_a_file_is_readable_is_named(save, response, code):
+    values = {"time_unit": 1e3, "angle_unit": math.degrees(1.0), "length_unit": 1e3}
+    concerns = {"angle_unit": "tilt"}.get(code, "path")
+    words = Mistake(code=code, concerns=concerns, value=values.get(code, math.nan)).words
+    with pytest.raises(ValueError, match=f"; likely mistake: {re.escape(words)}$"):
+        read_trajectory(save(pd.DataFrame(UNREADABLE[code](response))), RELEASE)
 
 
 @pytest.mark.parametrize("mark", [";", "\t"])

@@ -709,6 +709,11 @@ class Mistake:
     value: float = math.nan
 
     @property
+    def changes_tilt(self) -> bool:
+        """Whether tilts differ by it; horizontal axes, azimuth and the path beside a tilt change none."""
+        return self.code == "y_up" or self.concerns not in ("azimuth", "path", "axes")
+
+    @property
     def words(self) -> str:
         """The mistake in words."""
         value, concerns = self.value, self.concerns
@@ -1168,7 +1173,7 @@ FALLEN = 1.5  # [rad]: what fell ends early
 ENOUGH = 4.0  # a mistake that is named reduces the error so many times
 EXPLAINED_RUNS = 3  # of the worst runs, for whose mistakes all are tried
 # differences that are explained: tilt [alpha] and azimuth [rad]
-EXPLAINED_TILT, EXPLAINED_AZIMUTH = 1e-3, 3e-3
+EXPLAINED_TILT, EXPLAINED_AZIMUTH = 3e-3, 1e-2
 LEAST_LEAN = 0.05  # share of the largest tilt above which an azimuth is compared
 Run = dict[str, Any]  # of case.json
 Motions = dict[str, Motion]
