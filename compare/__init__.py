@@ -22,7 +22,11 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .comparison.result import Comparison as Comparison
     from .comparison.result import describe_case as describe_case
     from .comparison.summary import SUMMARY_COLUMNS as SUMMARY_COLUMNS
+    from .external.trajectory import External as External
+    from .external.trajectory import read_trajectory as read_trajectory
     from .metrics.contact import TILTED as TILTED
+    from .metrics.pair import Pair as Pair
+    from .metrics.pair import make_pair as make_pair
     from .runs.choice import default_runs as default_runs
     from .runs.choice import missing_engines as missing_engines
     from .runs.choice import own_model as own_model
@@ -48,10 +52,6 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .studies.sweep.result import Sweep as Sweep
     from .studies.sweep.study import read_sweep as read_sweep
     from .studies.sweep.study import sweep as sweep
-    from .traces.pair import Pair as Pair
-    from .traces.pair import make_pair as make_pair
-    from .traces.trajectory import External as External
-    from .traces.trajectory import read_trajectory as read_trajectory
 
 _MODULES = {
     "comparison.driver": ("compare",),
@@ -82,8 +82,8 @@ _MODULES = {
     "studies.sweep.grid": ("Grid",),
     "studies.sweep.result": ("Sweep",),
     "studies.sweep.study": ("read_sweep", "sweep"),
-    "traces.pair": ("Pair", "make_pair"),
-    "traces.trajectory": ("External", "read_trajectory"),
+    "metrics.pair": ("Pair", "make_pair"),
+    "external.trajectory": ("External", "read_trajectory"),
 }
 __all__ = sorted(name for names in _MODULES.values() for name in names)
 

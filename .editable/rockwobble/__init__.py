@@ -6,7 +6,7 @@ Every name is imported when it is first used, so that `import rockwobble` costs 
 >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 >>> trace = rw.simulate(rw.Case(pier, rw.el_centro_1940(), duration=5.0))
 >>> trace.outcome
-'completed'
+'stands'
 """
 
 import importlib

@@ -9,9 +9,9 @@ from collections.abc import Mapping, Sequence
 from rockwobble.models import Case, Run, Trace
 
 from ..metrics.agreement import Agreement, agreement_time, tolerance_of
+from ..metrics.pair import make_pair
 from ..runs.choice import own_model, references_of
 from ..runs.execution import Job
-from ..traces.pair import make_pair
 from .error_budget import ErrorBudget, error_budget
 from .prediction import landings
 from .refinement import Refined, Simulate, limits

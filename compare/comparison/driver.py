@@ -10,6 +10,8 @@ import pandas as pd
 
 from rockwobble.models import AGREEMENT, Case, Run, Suite, Trace
 
+from ..external.trajectory import External, read_trajectories
+from ..external.verdict import Row
 from ..metrics.agreement import tolerance_of
 from ..runs.choice import (
     default_runs,
@@ -22,10 +24,8 @@ from ..runs.labels import labels_beside_references
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import require_writable
 from ..storage.provenance import package_versions
-from ..traces.trajectory import External, read_trajectories
 from .case_budgets import case_budgets
 from .error_budget import ErrorBudget
-from .external.verdict import Row
 from .prediction import Prediction, Simulate, estimated_error, measured_error, predict
 from .result import KIND, Comparison
 from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
@@ -68,7 +68,7 @@ def compare(
         call with the same inputs, after whatever ended the first, repeats none that is there.
     external : iterable of External, str or Path, optional
         CSV files of trajectories of this case from a shake table or another code, each one more run; what
-        they may hold is said in `rockwobble.compare.traces.file`. With them, `runs` may be empty.
+        they may hold is said in `rockwobble.compare.external.table`. With them, `runs` may be empty.
     budget : bool, optional
         Whether to repeat each run at finer time steps, as far as traces agree, and split its difference
         into model form, numerics and what stays unexplained: see `ErrorBudget`. Takes some seven times

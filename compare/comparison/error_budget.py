@@ -26,8 +26,8 @@ from rockwobble.models.shown import Brief
 from rockwobble.multibody.time_step.extrapolated import to_zero_step
 
 from ..metrics.agreement import Agreement
+from ..metrics.pair import start_of
 from ..metrics.tilt import rms
-from ..traces.pair import start_of
 
 Array = NDArray[np.float64]
 

@@ -10,9 +10,9 @@ import pandas as pd
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.traces.trace_file import case_from_plain, case_to_plain
 
+from ..external.verdict import lists_of_file
 from ..storage.manifest import Results
 from .error_budget import ErrorBudget
-from .external.verdict import lists_of_file
 
 ABOUT = "comparison.json"
 _SEPARATOR = "\n"  # in no name of a case or a run: these are single lines

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from rockwobble.models import Case, Trace
 
 from ..metrics.agreement import agreement_time
+from ..metrics.pair import make_pair
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
-from ..traces.pair import make_pair
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -27,8 +27,8 @@ from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 
 from ..metrics.agreement import agreement_time, tolerance_of
+from ..metrics.pair import FloatArray, is_release, make_pair, start_of
 from ..metrics.tilt import rms
-from ..traces.pair import FloatArray, is_release, make_pair, start_of
 from .error_budget import ErrorBudget
 
 # a prediction is in time if the measured agreement time is within this factor of it, either way

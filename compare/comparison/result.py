@@ -15,11 +15,11 @@ from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Shown
 
+from ..external.verdict import lists_in_words
 from ..runs.execution import case_inputs
 from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Manifest, made_now, read_results, write_results
 from .error_budget import ErrorBudget
-from .external.verdict import lists_in_words
 from .file import ABOUT, load_fields, plain_fields
 from .matrix import agreement_matrix
 

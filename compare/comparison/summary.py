@@ -7,20 +7,18 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rockwobble.models import Case, Trace
+from rockwobble.models import AGREEMENT, Case, Trace
 from rockwobble.models.diagnostic import joined
 
+from ..external.verdict import VERDICT_COLUMNS, Row, judge, no_verdict
 from ..metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass, tolerance_of
 from ..metrics.contact import contact_rms
 from ..metrics.energy import energy_loss
+from ..metrics.pair import make_pair, start_of
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
 from ..metrics.turning import direction_difference, first_unresolved_pass, turn_difference
 from ..runs.labels import REDUCED
-from ..traces.pair import make_pair, start_of
-from ..traces.trajectory import measurement
 from .error_budget import BUDGET_COLUMNS, ErrorBudget
-from .external.difference import allowance as noise_allowance
-from .external.verdict import VERDICT_COLUMNS, Row, judge, no_verdict
 from .prediction import Prediction, close_pass, verdict
 
 # name: (unit, meaning); the order is that of the table
@@ -212,8 +210,8 @@ def external_row(
 ) -> Row:
     """Return the row of an external trajectory: nothing is known of its steps and errors.
 
-    Its uplift is compared as its samples show it: see `external.uplift_difference`. Its peak is compared with
-    that of the reference while the file lasts.
+    Its uplift is compared as its samples show it: see `external.verdict.uplift_differences`. Its peak is
+    compared with that of the reference while the file lasts.
     """
     verdict = judge(trial, reference, case)
     row = summary_row(
@@ -224,7 +222,7 @@ def external_row(
         trial,
         prediction=close_pass(reference, trial.contact_resolution, case.length),
         until=until,
-        allowance=noise_allowance(measurement(trial).poses.noise, case.cylinder.alpha),
+        allowance=verdict.difference.tilt.bound - AGREEMENT,
     )
     for name, part in (("uplift_time", verdict.uplift_time), ("uplift_direction", verdict.uplift_direction)):
         if part is not None:

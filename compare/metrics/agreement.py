@@ -13,7 +13,7 @@ import numpy as np
 
 from rockwobble.models import AGREEMENT, Trace
 
-from ..traces.pair import Pair
+from .pair import Pair
 
 # share of the peak tilt: motions that stay below 1 % of alpha agree within that whatever they do
 PEAK_SHARE = 0.1

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble.models import Trace
 
 from ..runs.choice import support_of
-from ..traces.pair import Pair
+from .pair import Pair
 
 
 def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:

@@ -8,8 +8,8 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import compare, read_trajectory
-from rockwobble.compare.comparison.external.uplift_difference import first_passage, uplift_differences
-from rockwobble.compare.traces.uplift import uplift
+from rockwobble.compare.external.trajectory import uplift
+from rockwobble.compare.external.verdict import first_passage, uplift_differences
 from rockwobble.models import Case, Cylinder, el_centro_1940
 
 BODIES = [

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rockwobble.compare.metrics.contact import contact_rms
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.metrics.turning import direction_difference, first_unresolved_pass, turn_difference
-from rockwobble.compare.traces.pair import make_pair
 
 ROUNDING = 1e-12
 

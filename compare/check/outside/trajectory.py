@@ -11,8 +11,8 @@ import numpy as np
 
 from rockwobble.models import AGREEMENT, Case, Trace
 
-from ...traces.motion import Motion
-from ...traces.trajectory import measurement
+from ...external.motion import Motion
+from ...external.trajectory import measurement, own_samples
 from ..finding import Finding
 from .model import NEVER, TOLERANCE, held, left_out, ours
 from .motion import apart, rises
@@ -39,7 +39,10 @@ def check_trajectory(
     ValueError
         If its file tells no tilt.
     """
-    finding, given, case = partial(held, tolerance), _own_samples(trajectory), trajectory.case
+    source = measurement(trajectory)
+    if "tilt" not in source.poses.given:
+        raise ValueError(f"{source.given.path.name} must have tilt, or qw, qx, qy and qz")
+    finding, given, case = partial(held, tolerance), own_samples(trajectory), trajectory.case
     model, alpha = ours(case, support), case.cylinder.alpha
     if case.initial is None:
         seen = [rises(one, _LEVEL * alpha) for one in (given, model)]
@@ -61,15 +64,6 @@ def check_trajectory(
         yield left_out(layer, f"checks of the layer {layer}", "the model", note)
     for layer, note in NEVER.items():
         yield left_out(layer, f"checks of the layer {layer}", "the model", note)
-
-
-def _own_samples(trajectory: Trace) -> Motion:
-    source = measurement(trajectory)
-    poses = source.poses
-    if "tilt" not in poses.told:
-        raise ValueError(f"{source.given.path.name} must have tilt, or qw, qx, qy and qz")
-    lean = poses.axis[:, 0] + 1j * poses.axis[:, 1] if "azimuth" in poses.told else None
-    return Motion(time=poses.time, tilt=poses.tilt, lean=lean)
 
 
 def _agreement(model: Motion, case: Case, support: str) -> float:

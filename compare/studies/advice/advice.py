@@ -19,8 +19,8 @@ from rockwobble.multibody.scene.ring_geometry import rim_overhang
 from ...comparison.prediction import Prediction
 from ...metrics.agreement import tolerance_of
 from ...metrics.distributions import Contrast
+from ...metrics.pair import is_release
 from ...metrics.tilt import overturned
-from ...traces.pair import is_release
 from ..spectrum.series import SPATIAL, uplift_factor
 from .grades import (
     Grade,

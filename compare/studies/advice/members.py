@@ -15,7 +15,7 @@ from rockwobble.models.records import p695
 
 from ...metrics.distributions import Contrast
 from ...metrics.order_statistics import Interval, quantile_interval, share_interval, stated
-from ...traces.pair import is_release
+from ...metrics.pair import is_release
 from ..fragility.intensity import largest_resultant, velocity
 
 Array = NDArray[np.float64]

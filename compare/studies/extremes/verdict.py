@@ -35,9 +35,9 @@ from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 
 from ...comparison.prediction import time_scale
+from ...metrics.pair import make_pair
 from ...runs.choice import own_model, require_runnable
 from ...runs.execution import simulate_run
-from ...traces.pair import make_pair
 from .conditions import Condition, without_spin
 
 FINE = AGREEMENT  # of alpha, or of the angle of turn

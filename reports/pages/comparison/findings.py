@@ -11,16 +11,16 @@ import pandas as pd
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
+from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.runs.labels import REDUCED
-from rockwobble.compare.traces.pair import make_pair
-from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.diagnostic import parted
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
 from ..words.diagnostics import counted, failure, remarks
 from ..words.sentences import sentence, the
-from .external import external_sentences, scope, within
+from .external import explains_divergence, external_sentences, scope, within
 
 WORDS = "comparison/findings.md.j2"
 _LISTED = 10
@@ -145,7 +145,7 @@ def reason(row: Any, length: float, *, touched: bool = False, models_differ: boo
         return "support"
     if row.support == "ring" and row.reference_support != "ring" and (against_recess or touched):
         return "walls"
-    if row.support == EXTERNAL and row.likely_mistake:
+    if row.support == EXTERNAL and explains_divergence(row):
         return "mistake"
     predicted = row.predicted_until
     by_pass = row.predicted_by == "pass" and row.support != EXTERNAL and predicted < length
@@ -188,7 +188,7 @@ def headline(rows: pd.DataFrame, length: float) -> str:
         groups = [[index] for index in of_support.index] if single else [list(of_support.index)]
         parts += [sentence(WORDS, "followed", _group(of_support.loc[group], length)) for group in groups]
         diverged = diverged or any(
-            row.left_tolerance and not (single and row.likely_mistake) for row in rows_of(of_support)
+            row.left_tolerance and not (single and explains_divergence(row)) for row in rows_of(of_support)
         )
     if not parts:
         return "No run could be compared."

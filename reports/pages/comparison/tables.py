@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.compare import SUMMARY_COLUMNS
-from rockwobble.compare.comparison.external.verdict import lists_in_words
+from rockwobble.compare.external.verdict import lists_in_words
 from rockwobble.models import Run
 
 from ...figures.comparison.view import own_rows, rows_of
