@@ -63,7 +63,16 @@ def row(**values: Any) -> Any:
         "uplift_time_difference": 0.004,
         "uplift_direction_difference": -0.5,
     }
-    return SimpleNamespace(**(common | no_verdict() | AGREES | values))
+    values = common | no_verdict() | AGREES | values
+    until = 1.7 if values["diverged"] else 0.0  # the uplift, where a length counts from it
+    tolerances = {
+        "reference_uplift_time": 1.7,
+        "tolerance": 0.01,
+        "left_tolerance": values["diverged"],
+        "within_tolerance_until": values["agreement_time"] + until,
+        "predicted_until": values["predicted_agreement_time"],
+    }
+    return SimpleNamespace(**(tolerances | values))
 
 
 def page(given: Any, end: float = math.nan) -> str:
@@ -75,6 +84,7 @@ def page(given: Any, end: float = math.nan) -> str:
             reference_uplifted=True,
             reason=reason(given, 8.0),
             bound=within(given),
+            passes=3,
             end=end,
         )
     )
