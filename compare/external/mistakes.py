@@ -340,8 +340,13 @@ def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
     if reference.is_free:
         rate = fitted_rate(reference, motion)
         if abs(rate - 1.0) > SMALLEST_RATE:
-            mistake = Mistake(code="time_scale", concerns="time", value=rate)
-            yield Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
+            yield in_time_scale(rate)
+
+
+def in_time_scale(rate: float) -> Change:
+    """Return what takes back that a motion is slower by a factor."""
+    mistake = Mistake(code="time_scale", concerns="time", value=rate)
+    return Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
 
 
 def fitted_offsets(reference: Reference, motion: Motion) -> list[float]:

@@ -13,10 +13,9 @@ import hashlib
 import json
 import math
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +23,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.compare.external.difference import Reference
-from rockwobble.compare.external.mistakes import Explanation, Mistake, corrected, explanations, readings
+from rockwobble.compare.external.mistakes import (
+    Change,
+    Explanation,
+    Mistake,
+    corrected,
+    explanations,
+    in_time_scale,
+    readings,
+)
 from rockwobble.compare.external.motion import Motion, maxima, motion_at, pose_of
 from rockwobble.compare.external.table import Array, Table, Values, listed, read_tables
 
@@ -247,13 +254,25 @@ class Case:
         )
         yield from explanations(values, partial(read_motion, run), facts)
 
+    def candidates(self, tables: Mapping[str, Table], names: Sequence[str]) -> Iterator[tuple[Change, ...]]:
+        """Yield what explains the difference of some runs, then what may explain that of all."""
+        rates = []
+        for name in names:
+            for one in self.explanations(name, tables[name].values):
+                rates += [
+                    own.value for own in one.mistakes if own.code == "time_scale" and len(one.mistakes) == 1
+                ]
+                yield one.changes
+        if rates:  # a spin that does not go with the size changes that of each run a little
+            yield (in_time_scale(sum(rates) / len(rates)),)
+        # of peaks alone nothing but units can be told
+        yield from ((change,) for change in readings(tables[names[0]].values))
+
     def mistakes(self, tables: Mapping[str, Table], motions: Motions) -> tuple[Mistake, ...]:
         """Return the fewest mistakes without which the case is passed, or as much better."""
         enough = min(1.0, self.score(motions) / ENOUGH)
         worst = sorted(motions, key=lambda name: -self.score({name: motions[name]}))[:EXPLAINED_RUNS]
-        explained = (one.changes for name in worst for one in self.explanations(name, tables[name].values))
-        # of peaks alone nothing but units can be told
-        for changes in chain(explained, ((change,) for change in readings(tables[worst[0]].values))):
+        for changes in self.candidates(tables, worst):
             runs = {
                 name: corrected(table.values, partial(read_motion, self.runs[name]), changes)
                 for name, table in tables.items()

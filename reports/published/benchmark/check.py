@@ -18,7 +18,6 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -944,8 +943,13 @@ def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
     if reference.is_free:
         rate = fitted_rate(reference, motion)
         if abs(rate - 1.0) > SMALLEST_RATE:
-            mistake = Mistake(code="time_scale", concerns="time", value=rate)
-            yield Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
+            yield in_time_scale(rate)
+
+
+def in_time_scale(rate: float) -> Change:
+    """Return what takes back that a motion is slower by a factor."""
+    mistake = Mistake(code="time_scale", concerns="time", value=rate)
+    return Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
 
 
 def fitted_offsets(reference: Reference, motion: Motion) -> list[float]:
@@ -1386,13 +1390,25 @@ class Case:
         )
         yield from explanations(values, partial(read_motion, run), facts)
 
+    def candidates(self, tables: Mapping[str, Table], names: Sequence[str]) -> Iterator[tuple[Change, ...]]:
+        """Yield what explains the difference of some runs, then what may explain that of all."""
+        rates = []
+        for name in names:
+            for one in self.explanations(name, tables[name].values):
+                rates += [
+                    own.value for own in one.mistakes if own.code == "time_scale" and len(one.mistakes) == 1
+                ]
+                yield one.changes
+        if rates:  # a spin that does not go with the size changes that of each run a little
+            yield (in_time_scale(sum(rates) / len(rates)),)
+        # of peaks alone nothing but units can be told
+        yield from ((change,) for change in readings(tables[names[0]].values))
+
     def mistakes(self, tables: Mapping[str, Table], motions: Motions) -> tuple[Mistake, ...]:
         """Return the fewest mistakes without which the case is passed, or as much better."""
         enough = min(1.0, self.score(motions) / ENOUGH)
         worst = sorted(motions, key=lambda name: -self.score({name: motions[name]}))[:EXPLAINED_RUNS]
-        explained = (one.changes for name in worst for one in self.explanations(name, tables[name].values))
-        # of peaks alone nothing but units can be told
-        for changes in chain(explained, ((change,) for change in readings(tables[worst[0]].values))):
+        for changes in self.candidates(tables, worst):
             runs = {
                 name: corrected(table.values, partial(read_motion, self.runs[name]), changes)
                 for name, table in tables.items()
