@@ -30,7 +30,7 @@ Form = Callable[[Trace], Table]
 
 @cache
 def traces(name: str, *, larger: float = 0.0, gravity: float = G, rtol: float = 1e-9) -> dict[str, Trace]:
-    """Every run of a case by the reduced model, perhaps of a body that is larger by a share or with another g."""
+    """Every run of a case by the reduced model, perhaps of a body larger by a share or with another g."""
     found = {}
     for run, (case, support) in cases_of(PUBLISHED / "cases" / name).items():
         body = case.cylinder

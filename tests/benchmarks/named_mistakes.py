@@ -1,8 +1,8 @@
 """Mistakes of a trajectory as `rockwobble compare --trajectory` and the benchmark's check.py name them.
 
-Synthetic files of the case turn-recess, a release in a recess: the right one, and one for each mistake. check.py
-is given all three runs; compare the fastest, released at the azimuth 0. Ends with 1 where one of both does not
-name what was done to the file.
+Synthetic files of the case turn-recess, a release in a recess: the right one, and one for each mistake.
+check.py is given all three runs; compare the fastest, released at the azimuth 0. Ends with 1 where one of
+both does not name what was done to the file.
 """
 
 from __future__ import annotations
