@@ -1379,15 +1379,12 @@ class Case:
 
     def candidates(self, tables: Mapping[str, Table], names: Sequence[str]) -> Iterator[tuple[Change, ...]]:
         """Yield what explains the difference of some runs, then what may explain that of all."""
-        rates = []
-        for name in names:
-            for one in self.explanations(name, tables[name].values):
-                rates += [
-                    own.value for own in one.mistakes if own.code == "time_scale" and len(one.mistakes) == 1
-                ]
-                yield one.changes
+        found = [one for name in names for one in self.explanations(name, tables[name].values)]
+        alone = [one.mistakes[0] for one in found if len(one.mistakes) == 1]
+        rates = [mistake.value for mistake in alone if mistake.code == "time_scale"]
         if rates:  # a spin that does not go with the size changes that of each run a little
             yield (in_time_scale(sum(rates) / len(rates)),)
+        yield from (one.changes for one in found)
         # of peaks alone nothing but units can be told
         yield from ((change,) for change in readings(tables[names[0]].values))
 
