@@ -211,3 +211,12 @@ def maxima(motion: Motion) -> Iterator[tuple[float, float, float]]:
             turned = np.angle(motion.lean[near] * np.conj(motion.lean[i]))
             azimuth = float(np.angle(motion.lean[i]) + np.polyval(np.polyfit(time, turned, degree), best))
         yield float(motion.time[i] + best * unit), float(np.polyval(fit, best)), azimuth
+
+
+def exceeds(time: Array, value: Array, level: float, power: float) -> float:
+    """Return when a value first exceeds a level [s], inf if never; its root is linear between samples."""
+    i = int(np.argmax(value > level))
+    if i == 0:
+        return float(time[0]) if value[0] > level else math.inf
+    low, high = np.maximum(value[i - 1 : i + 1], 0.0) ** (1.0 / power)
+    return float(time[i - 1] + (time[i] - time[i - 1]) * (level ** (1.0 / power) - low) / (high - low))

@@ -16,7 +16,7 @@ from ..metrics.contact import TILTED
 from ..metrics.pair import start_of
 from .difference import Difference, Part, Reference
 from .mistakes import Explanation, Mistake, explanations
-from .motion import Motion, motion_at
+from .motion import Motion, exceeds, motion_at
 from .table import Values
 from .trajectory import external_motion, measurement, trajectory_of
 
@@ -185,7 +185,7 @@ def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None
     stands, blur = source.poses.stands, CONFIDENCE * source.poses.noise
     seen = source.first_lean
     passed = [first_passage(reference, tilt) for tilt in (stands - blur, stands, stands + blur)]
-    if not (seen > 0.0 and passed[1] > 0.0):
+    if not (seen > 0.0 and 0.0 < passed[1] < math.inf):
         return None, None
     early, middle, late = passed
     # a tilt that the model only just reaches may be missed: until its largest, nobody knows
@@ -209,17 +209,13 @@ def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None
 
 
 def first_passage(trace: Trace, tilt: float) -> float:
-    """Return when a trace leans first by this tilt [s]; NaN if never. Its cube root is linear in between."""
-    beyond = np.flatnonzero(trace.tilt > tilt)
-    if not len(beyond):
-        return math.nan
-    at = int(beyond[0])
-    if at == 0:
-        return float(trace.time[0])
-    before, after = np.cbrt(trace.tilt[at - 1 : at + 1])
-    # from rest the growth begins at the uplift, not at the sample before it
-    begin = max(float(trace.time[at - 1]), trace.uplift_time if before == 0.0 else 0.0)
-    return begin + (float(trace.time[at]) - begin) * float((np.cbrt(tilt) - before) / (after - before))
+    """Return when a trace leans first by this tilt [s]; inf if never."""
+    time = trace.time.copy()
+    before = int(np.argmax(trace.tilt > tilt)) - 1
+    if before >= 0 and trace.tilt[before] == 0.0:
+        # from rest the growth begins at the uplift, not at the sample before it
+        time[before] = max(time[before], trace.uplift_time)
+    return exceeds(time, trace.tilt, tilt, 3.0)
 
 
 def mistakes_of(row: Any) -> tuple[Mistake, ...]:

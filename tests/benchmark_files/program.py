@@ -13,10 +13,9 @@ import hashlib
 import json
 import math
 import sys
-from collections.abc import Iterator, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from functools import partial
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -24,8 +23,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.compare.external.difference import Reference
-from rockwobble.compare.external.mistakes import Explanation, Mistake, corrected, explanations, readings
-from rockwobble.compare.external.motion import Motion, maxima, motion_at, pose_of
+from rockwobble.compare.external.mistakes import (
+    Change,
+    Explanation,
+    Mistake,
+    corrected,
+    explanations,
+    in_time_scale,
+    readings,
+)
+from rockwobble.compare.external.motion import Motion, exceeds, maxima, motion_at, pose_of
 from rockwobble.compare.external.table import Array, Table, Values, listed, read_tables
 
 LEVELS = ("exact", "good", "pass")
@@ -59,13 +66,11 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Judgement:
-    """What is said of a file: a level, or "rejected" and why."""
+    """What is said of a file."""
 
-    verdict: str
-    reason: str = ""
-    outcomes: tuple[Outcome, ...] = ()
-    mistakes: tuple[Mistake, ...] = ()
-    columns_not_read: tuple[str, ...] = ()
+    outcomes: tuple[Outcome, ...]
+    mistakes: tuple[Mistake, ...]
+    columns_not_read: tuple[str, ...]
 
     @property
     def judged(self) -> int:
@@ -73,11 +78,16 @@ class Judgement:
         return sum(bool(one.run) for one in self.outcomes)
 
     @property
+    def verdict(self) -> str:
+        """The lowest level of what was judged; without criteria the file is rejected."""
+        levels = ("rejected", *LEVELS, "fail")
+        return max((one.level for one in self.outcomes if one.run), key=levels.index, default="rejected")
+
+    @property
     def grade(self) -> str:
         """The verdict as a grade."""
-        if self.verdict in ("fail", "rejected"):
-            return {"fail": "not satisfied", "rejected": "not tested"}[self.verdict]
-        return "satisfied" if self.judged == len(self.outcomes) else "caution"
+        passed = "satisfied" if self.judged == len(self.outcomes) else "caution"
+        return {"fail": "not satisfied", "rejected": "not tested"}.get(self.verdict, passed)
 
 
 def read_motion(run: Run, values: Values) -> Motion | None:
@@ -97,15 +107,6 @@ def through(x: Array, X: Array, Y: NDArray[Any]) -> NDArray[Any]:
     weights = enumerate((-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0))
     total: NDArray[Any] = sum(weight * Y[first + k] for k, weight in weights)
     return np.where((at > -1e-6) & (at < len(X) - 1 + 1e-6), total, np.nan)
-
-
-def exceeds(time: Array, value: Array, level: float, power: float) -> float:
-    """Return when a value first exceeds a level; its root of that power is linear between samples."""
-    i = int(np.argmax(value > level))
-    if i == 0:
-        return float(time[0]) if value[0] > level else math.inf
-    low, high = np.maximum(value[i - 1 : i + 1], 0.0) ** (1.0 / power)
-    return float(time[i - 1] + (time[i] - time[i - 1]) * (level ** (1.0 / power) - low) / (high - low))
 
 
 def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
@@ -247,13 +248,22 @@ class Case:
         )
         yield from explanations(values, partial(read_motion, run), facts)
 
+    def candidates(self, tables: Mapping[str, Table], names: Sequence[str]) -> Iterator[tuple[Change, ...]]:
+        """Yield what explains the difference of some runs, then what may explain that of all."""
+        found = [one for name in names for one in self.explanations(name, tables[name].values)]
+        alone = [one.mistakes[0] for one in found if len(one.mistakes) == 1]
+        rates = [mistake.value for mistake in alone if mistake.code == "time_scale"]
+        if rates:  # a spin that does not go with the size changes that of each run a little
+            yield (in_time_scale(sum(rates) / len(rates)),)
+        yield from (one.changes for one in found)
+        # of peaks alone nothing but units can be told
+        yield from ((change,) for change in readings(tables[names[0]].values))
+
     def mistakes(self, tables: Mapping[str, Table], motions: Motions) -> tuple[Mistake, ...]:
         """Return the fewest mistakes without which the case is passed, or as much better."""
         enough = min(1.0, self.score(motions) / ENOUGH)
         worst = sorted(motions, key=lambda name: -self.score({name: motions[name]}))[:EXPLAINED_RUNS]
-        explained = (one.changes for name in worst for one in self.explanations(name, tables[name].values))
-        # of peaks alone nothing but units can be told
-        for changes in chain(explained, ((change,) for change in readings(tables[worst[0]].values))):
+        for changes in self.candidates(tables, worst):
             runs = {
                 name: corrected(table.values, partial(read_motion, self.runs[name]), changes)
                 for name, table in tables.items()
@@ -293,12 +303,12 @@ def judged(case: Case, path: Path) -> Judgement:
         raise ValueError(
             f"the file does not give {', '.join(sorted(missing))}, which this case needs{unknown}"
         )
-    verdict = max((one.level for one in outcomes if one.run), key=(*LEVELS, "fail").index)
-    mistakes = case.mistakes(tables, motions) if verdict != "exact" else ()
+    found = Judgement(outcomes, (), ignored)
+    mistakes = case.mistakes(tables, motions) if found.verdict != "exact" else ()
     short = [one.name for one in outcomes if one.unit in ("alpha", "b") and one.error == math.inf]
     if short and not mistakes and all(motion.tilt.max() < FALLEN for motion in motions.values()):
         raise ValueError(f"the samples do not cover the window of {', '.join(short)}")
-    return Judgement(verdict, "", outcomes, mistakes, ignored)
+    return replace(found, mistakes=mistakes)
 
 
 def main() -> int:
@@ -310,23 +320,22 @@ def main() -> int:
     parser.add_argument("--label", default="", help="who made it: name, version and settings of the code")
     parser.add_argument("--out", type=Path, default=Path("result.json"))
     given = parser.parse_args()
-    case = Case(cases[given.case])
+    case, reason = Case(cases[given.case]), ""
     try:
         found = judged(case, given.trajectory)
     except ValueError as error:
-        found = Judgement("rejected", str(error))
+        found, reason = Judgement((), (), ()), str(error)
     asked = len(case.accept["criteria"])
     print(f"{given.case}: {found.verdict} ({found.grade}), judged {found.judged} of {asked} criteria")
-    notes = [found.reason] if found.reason else []
-    notes += [f"columns not read: {listed(found.columns_not_read)}"] if found.columns_not_read else []
+    notes = [reason, f"columns not read: {listed(found.columns_not_read)}" * bool(found.columns_not_read)]
     for one in found.outcomes:
         limits = "exact {:.2g}, good {:.2g}, pass {:.2g}".format(*one.bounds)
         value = f" {one.error:.3g} {one.unit} (run {one.run}; {limits})" if one.run else ""
         notes.append(f"{one.name}: {one.level}{value}")
     notes += [f"likely mistake: {mistake.words}" for mistake in found.mistakes]
-    print("\n".join(f"  {note}" for note in notes))
+    print(*(f"  {note}" for note in notes if note), sep="\n")
     criteria = [
-        {**asdict(one), "level": one.level, "error": one.error if one.error < math.inf else None}
+        asdict(one) | {"level": one.level, "error": one.error if one.error < math.inf else None}
         for one in found.outcomes
     ]
     result = {
@@ -336,12 +345,12 @@ def main() -> int:
         "verdict": found.verdict,
         "grade": found.grade,
         "judged": [found.judged, asked],
-        "reason": found.reason,
+        "reason": reason,
         "criteria": criteria,
         "columns_not_read": found.columns_not_read,
         "likely_mistakes": [mistake.words for mistake in found.mistakes],
         "mistakes": [
-            {**asdict(one), "value": None if math.isnan(one.value) else one.value} for one in found.mistakes
+            asdict(one) | {"value": None if math.isnan(one.value) else one.value} for one in found.mistakes
         ],
         "check": "2",
         "reference_sha256": case.digest,

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 from benchmark_files.conftest import SINGLE, SPIN, Judge
+from benchmark_files.definitions import G
 from benchmark_files.submission import (
     Table,
     cases_of,
@@ -28,8 +29,8 @@ Form = Callable[[Trace], Table]
 
 
 @cache
-def traces(name: str, *, larger: float = 0.0, rtol: float = 1e-9) -> dict[str, Trace]:
-    """Every run of a case by the reduced model, perhaps of a body that is larger by a share."""
+def traces(name: str, *, larger: float = 0.0, gravity: float = G, rtol: float = 1e-9) -> dict[str, Trace]:
+    """Every run of a case by the reduced model, perhaps of a body larger by a share or with another g."""
     found = {}
     for run, (case, support) in cases_of(PUBLISHED / "cases" / name).items():
         body = case.cylinder
@@ -38,7 +39,7 @@ def traces(name: str, *, larger: float = 0.0, rtol: float = 1e-9) -> dict[str, T
         scaled = {key: value * factors.get(key, (1.0 + larger) ** 2) for key, value in shape.items()}
         size = body.semidiagonal * (1.0 + larger)
         other = dataclasses.replace(body, semidiagonal=size, **scaled)
-        given = dataclasses.replace(case, cylinder=other)
+        given = dataclasses.replace(case, cylinder=other, gravity=gravity)
         step = min(spacing(case), 0.01)
         found[run] = reduced.simulate(given, support=support, rtol=rtol, sample_step=step)
     return found
@@ -116,6 +117,14 @@ def test_a_body_one_percent_too_large_fails_and_is_recognised(judge: Judge, name
     assert 1.0 <= 100.0 * (judged.mistakes["time_scale"] ** 2 - 1.0) <= 1.2
     # times go with the root of the size
     assert 0.95 < judged.errors["period_1"] / (np.sqrt(1.01) - 1.0) < 1.3
+
+
+def test_another_gravity_is_recognised_as_another_time_scale(judge: Judge) -> None:
+    judged = judge("turn-recess", sparse(tables("turn-recess", tilt_and_azimuth, gravity=10.0)))
+    assert judged.verdict == "fail"
+    assert list(judged.mistakes) == ["time_scale"]
+    # as above
+    assert 1.0 <= (judged.mistakes["time_scale"] ** -2 - 1.0) / (10.0 / 9.81 - 1.0) <= 1.2
 
 
 def test_under_shaking_a_body_one_percent_too_large_fails_and_no_mistake_explains_it(judge: Judge) -> None:

@@ -23,6 +23,7 @@ SCRIPTS = (
     "false_alarms",
     "fragility_coverage",
     "needs_coverage",
+    "named_mistakes",
     "ring_losses",
     "run_overhead",
     "scene_cost",

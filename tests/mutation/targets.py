@@ -148,7 +148,7 @@ GROUPS = (
             "compare/comparison/prediction.py",
             "compare/comparison/summary.py",
             "compare/metrics/tilt.py",
-            "compare/traces/pair.py",
+            "compare/metrics/pair.py",
             "compare/metrics/turning.py",
         ),
         layers=("metrics", "conserved", "agreement", "baseline", "studies"),

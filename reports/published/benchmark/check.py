@@ -18,7 +18,6 @@ import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from functools import partial
-from itertools import chain
 from pathlib import Path
 from typing import Any
 
@@ -426,6 +425,15 @@ def maxima(motion: Motion) -> Iterator[tuple[float, float, float]]:
         yield float(motion.time[i] + best * unit), float(np.polyval(fit, best)), azimuth
 
 
+def exceeds(time: Array, value: Array, level: float, power: float) -> float:
+    """Return when a value first exceeds a level [s], inf if never; its root is linear between samples."""
+    i = int(np.argmax(value > level))
+    if i == 0:
+        return float(time[0]) if value[0] > level else math.inf
+    low, high = np.maximum(value[i - 1 : i + 1], 0.0) ** (1.0 / power)
+    return float(time[i - 1] + (time[i] - time[i - 1]) * (level ** (1.0 / power) - low) / (high - low))
+
+
 # of the length of the agreement, where the tilts diverge: towards its end the azimuths do already
 BEFORE_DIVERGENCE = 0.8
 # of the azimuth [rad]
@@ -627,6 +635,12 @@ def _part(time: Array, size: float, bound: float, beyond: Mask) -> Part:
 
 DEGREES = math.degrees(1.0)
 LENGTH_FACTORS = (1e3, 1e2, 1e-2, 1e-3)
+# what stands where qw, qx, qy and qz should; where z is reversed the axis of the body points down
+QUATERNION_ORDERS = {
+    "quaternion_scalar_last": ("qz", "qw", "qx", "qy"),
+    "quaternion_inverse": ("qw", "-qx", "-qy", "-qz"),
+    "z_reversed": ("-qx", "qw", "qz", "-qy"),
+}
 # how much more motion must agree without the mistake, and how far it must lean while it does, in bounds
 MORE_MOTION, LEANING = 4.0, 5.0
 # how long it must agree, over the time scale of rocking, or up to the end
@@ -767,10 +781,6 @@ class Explanation:
         """The likely mistakes."""
         return tuple(change.mistake for change in self.changes)
 
-    def corrected(self, values: Values, read: Read) -> Motion | None:
-        """Return the motion of columns without the mistakes."""
-        return corrected(values, read, self.changes)
-
 
 def corrected(values: Values, read: Read, changes: Sequence[Change]) -> Motion | None:
     """Return the motion of columns after some changes."""
@@ -787,16 +797,54 @@ def changed(motion: Motion, changes: Sequence[Change]) -> Motion:
     return motion
 
 
+def readings(values: Values) -> Iterator[Change]:
+    """Yield the mistakes in units, order and vertical axis of columns that change the pose."""
+
+    def in_unit(code: str, concerns: str, names: Sequence[str], factor: float) -> Change:
+        def taken_back(given: Values) -> Values:
+            return given | {name: given[name] / factor for name in names}
+
+        return Change(mistake=Mistake(code=code, concerns=concerns, value=factor), values=taken_back)
+
+    def in_order(code: str, concerns: str, signed: dict[str, str]) -> Change:
+        def taken_back(given: Values) -> Values:
+            known = {name: own for name, own in signed.items() if name in given}
+            return given | {
+                name: -given[own[1:]] if own[0] == "-" else given[own] for name, own in known.items()
+            }
+
+        return Change(mistake=Mistake(code=code, concerns=concerns), values=taken_back)
+
+    by_position = not {"qw", "tilt"} & set(values)
+    if "qw" in values:
+        for code, own in QUATERNION_ORDERS.items():
+            yield in_order(code, "quaternion", dict(zip(QUATERNION, own, strict=True)))
+    elif by_position:
+        yield in_order("z_reversed", "path", {"z": "-z"})
+        for factor in LENGTH_FACTORS:
+            yield in_unit("length_unit", "path", POSITION, factor)
+    else:
+        for names in (("tilt", "azimuth"), ("azimuth",), ("tilt",)):
+            if set(names) <= set(values):
+                for factor in (DEGREES, 1.0 / DEGREES):
+                    yield in_unit("angle_unit", " and ".join(names), names, factor)
+    if "qw" in values or by_position:
+        yield in_order("y_up", "axes", {"y": "-z", "z": "y", "qy": "-qz", "qz": "qy"})
+    for factor in (1e3, 1e-3):
+        yield in_unit("time_unit", "time", ("time",), factor)
+
+
 def explanations(values: Values, read: Read, reference: Reference) -> Iterator[Explanation]:
     """Yield what explains that columns differ from a reference, the likeliest first.
 
     The last explains the least, maybe nothing; there is none where the columns tell no motion.
     """
+    search = _Search(values=values, read=read, reference=reference)
     motion = read(values)
     if motion is None:
         return
-    for changes, other in _tilt_explained(values, read, reference, motion):
-        for more, frame, turned in _azimuth_explained(values, read, reference, changes, other):
+    for changes, other in search.tilt_explained(motion):
+        for more, frame, turned in search.azimuth_explained(changes, other):
             of_axes = _path_explained(reference, turned, frame)
             if frame != Frame() and frame not in (change.frame for change in of_axes):
                 of_axes = (frame.change("azimuth"), *of_axes)
@@ -804,134 +852,81 @@ def explanations(values: Values, read: Read, reference: Reference) -> Iterator[E
             yield Explanation(changes=(*changes, *more, *of_axes), left=left)
 
 
-def readings(values: Values) -> Iterator[Change]:
-    """Yield the mistakes in units, order and vertical axis of columns."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Search:
+    """The columns whose difference from a reference is to be explained."""
 
-    def scaled(factor: float, names: Sequence[str], given: Values) -> Values:
-        return {name: value / factor if name in names else value for name, value in given.items()}
+    values: Values
+    read: Read
+    reference: Reference
 
-    def named(signed: Sequence[str], names: Sequence[str], given: Values) -> Values:
-        taken = {
-            name: -given[own[1:]] if own[0] == "-" else given[own]
-            for name, own in zip(names, signed, strict=True)
-            if name in given
-        }
-        return given | taken
+    def tilt_explained(self, motion: Motion) -> Iterator[tuple[tuple[Change, ...], Motion]]:
+        """Yield changes with which the tilt follows the reference, fewest first; last none at all."""
+        before = self.reference.difference(motion)
+        if before.tilt.differs:
+            otherwise = [(one, self.read(one.values(self.values))) for one in readings(self.values)]
+            alone = [((change,), other) for change, other in otherwise if other is not None]
+            clocks = [((clock,), clock.motion(motion)) for clock in _clocks(self.reference, motion)]
+            yield from self._following(before, [*alone, *clocks])
+            both = [
+                ((*changes, clock), clock.motion(other))
+                for changes, other in alone
+                for clock in _clocks(self.reference, other)
+            ]
+            yield from self._following(before, both)
+        yield (), motion
 
-    def units(code: str, concerns: str, factors: Sequence[float], names: Sequence[str]) -> Iterator[Change]:
-        for factor in factors:
-            mistake = Mistake(code=code, concerns=concerns, value=factor)
-            yield Change(mistake=mistake, values=partial(scaled, factor, names))
+    def _following(
+        self, before: Difference, tried: Sequence[tuple[tuple[Change, ...], Motion]]
+    ) -> Iterator[tuple[tuple[Change, ...], Motion]]:
+        """Yield those that follow the reference, the closest first."""
+        found = [(changes, motion, self.reference.difference(motion)) for changes, motion in tried]
+        for changes, motion, after in sorted(found, key=lambda one: one[2].tilt.size):
+            by_rate = any(change.mistake.code == "time_scale" for change in changes)
+            if self._follows(before, after, motion, by_rate=by_rate):
+                first, frame, _ = next(self.azimuth_explained(changes, motion))
+                # two motions that differ may have tilts that agree longer by chance, but not azimuths, too
+                if after.azimuth is None or not after.azimuth.differs or first or frame != Frame():
+                    yield changes, motion
+            elif by_rate:
+                # whose motion is another one, and no offset makes it the same
+                return
 
-    def order(code: str, concerns: str, names: Sequence[str], signed: Sequence[str]) -> Change:
-        return Change(mistake=Mistake(code=code, concerns=concerns), values=partial(named, signed, names))
+    def _follows(self, before: Difference, after: Difference, motion: Motion, *, by_rate: bool) -> bool:
+        """Whether the tilts agree over so much more motion that chance is no reason."""
+        alpha, scale = self.reference.alpha, self.reference.time_scale
+        if after.agreed_peak < LEANING * after.tilt.bound * alpha:
+            return False
+        # over as much of the run as was compared before
+        to_the_end = not after.tilt.differs and after.compared >= 0.5 * before.compared
+        if by_rate:
+            noise = (1.0 + 3.0 / math.sqrt(2.0 * len(motion.time))) * motion.noise / alpha
+            return to_the_end and after.tilt.size <= math.hypot(SAME_MOTION * before.tilt.size, noise)
+        long_enough = to_the_end or after.length >= LONG * scale
+        return long_enough and after.agreed_motion >= MORE_MOTION * before.agreed_motion
 
-    if "qw" in values:
-        yield order("quaternion_scalar_last", "quaternion", QUATERNION, ("qz", "qw", "qx", "qy"))
-        yield order("quaternion_inverse", "quaternion", QUATERNION, ("qw", "-qx", "-qy", "-qz"))
-        # the axis of the body points down: half a turn about its x
-        yield order("z_reversed", "quaternion", QUATERNION, ("-qx", "qw", "qz", "-qy"))
-    elif "tilt" in values:
-        for names in (("tilt", "azimuth"), ("azimuth",), ("tilt",)):
-            if set(names) <= set(values):
-                yield from units("angle_unit", " and ".join(names), (DEGREES, 1.0 / DEGREES), names)
-    else:
-        yield order("z_reversed", "path", ("z",), ("-z",))
-        yield from units("length_unit", "path", LENGTH_FACTORS, POSITION)
-    if {"qw", "x"} & set(values):
-        order_of = dict(zip((*POSITION, *QUATERNION[1:]), ("x", "-z", "y", "qx", "-qz", "qy"), strict=True))
-        yield order("y_up", "axes", list(order_of), list(order_of.values()))
-    yield from units("time_unit", "time", (1e3, 1e-3), ("time",))
-
-
-Explained = tuple[tuple[Change, ...], Motion]
-
-
-def _tilt_explained(values: Values, read: Read, reference: Reference, motion: Motion) -> Iterator[Explained]:
-    """Yield changes with which the tilt follows the reference, fewest first; last none at all."""
-    before = reference.difference(motion)
-    if before.tilt.differs:
-        read_otherwise = [
-            (change, other)
-            for change in readings(values)
-            if (other := read(change.values(values))) is not None
-        ]
-        alone = [((change,), other) for change, other in read_otherwise]
-        alone += [((clock,), clock.motion(motion)) for clock in _clocks(reference, motion)]
-        yield from _following(values, read, reference, before, alone)
-        both = [
-            ((change, clock), clock.motion(other))
-            for change, other in read_otherwise
-            for clock in _clocks(reference, other)
-        ]
-        yield from _following(values, read, reference, before, both)
-    yield (), motion
-
-
-def _following(
-    values: Values,
-    read: Read,
-    reference: Reference,
-    before: Difference,
-    tried: Sequence[Explained],
-) -> Iterator[Explained]:
-    """Yield those that follow the reference, the closest first."""
-    found = [(changes, motion, reference.difference(motion)) for changes, motion in tried]
-    for changes, motion, after in sorted(found, key=lambda one: one[2].tilt.size):
-        by_rate = any(change.mistake.code == "time_scale" for change in changes)
-        if _keeps_rate(before, after, motion, reference) if by_rate else _follows(before, after, reference):
-            first, frame, _ = next(_azimuth_explained(values, read, reference, changes, motion))
-            # two motions that differ may have tilts that agree longer by chance, but not azimuths, too
-            if after.azimuth is None or not after.azimuth.differs or first or frame != Frame():
-                yield changes, motion
-        elif by_rate:
-            # whose motion is another one, and no offset makes it the same
-            return
-
-
-def _follows(before: Difference, after: Difference, reference: Reference) -> bool:
-    """Whether the tilts agree over so much more motion that chance is no reason."""
-    long_enough = after.length >= LONG * reference.time_scale or _to_the_end(before, after)
-    leans = after.agreed_peak >= LEANING * after.tilt.bound * reference.alpha
-    return long_enough and leans and after.agreed_motion >= MORE_MOTION * before.agreed_motion
-
-
-def _keeps_rate(before: Difference, after: Difference, motion: Motion, reference: Reference) -> bool:
-    """Whether the tilts of a free motion agree to the end in another time scale, up to noise."""
-    leans = after.agreed_peak >= LEANING * after.tilt.bound * reference.alpha
-    noise = (1.0 + 3.0 / math.sqrt(2.0 * len(motion.time))) * motion.noise / reference.alpha
-    return (
-        leans
-        and _to_the_end(before, after)
-        and after.tilt.size <= math.hypot(SAME_MOTION * before.tilt.size, noise)
-    )
-
-
-def _to_the_end(before: Difference, after: Difference) -> bool:
-    """Whether the tilts agree to the end, over as much of the run as was compared before."""
-    return not after.tilt.differs and after.compared >= 0.5 * before.compared
-
-
-def _azimuth_explained(
-    values: Values, read: Read, reference: Reference, changes: tuple[Change, ...], motion: Motion
-) -> Iterator[tuple[tuple[Change, ...], Frame, Motion]]:
-    """Yield columns read otherwise, or axes, with which the azimuth follows; last none at all."""
-    found = reference.difference(motion)
-    part = found.azimuth
-    if part is not None and part.differs:
-        fits = fitted_frames(reference, motion, start=found.start, end=found.covered)
-        frames = [fit for fit in fits if explains(part, reference.difference(fit.apply(motion)).azimuth)]
-        own = [] if changes and changes[0].mistake.concerns != "time" else list(readings(values))
-        for concerned in ("quaternion", "azimuth"):
-            for change in own:
-                if change.mistake.concerns != concerned:
-                    continue
-                other = corrected(values, read, (*changes, change))
-                if other is not None and explains(part, reference.difference(other).azimuth):
-                    yield (change,), Frame(), other
-            if concerned == "quaternion":
-                yield from (((), frame, motion) for frame in frames)
-    yield (), Frame(), motion
+    def azimuth_explained(
+        self, changes: tuple[Change, ...], motion: Motion
+    ) -> Iterator[tuple[tuple[Change, ...], Frame, Motion]]:
+        """Yield columns read otherwise, or axes, with which the azimuth follows; last none at all."""
+        found = self.reference.difference(motion)
+        part = found.azimuth
+        if part is not None and part.differs:
+            tried: list[tuple[tuple[Change, ...], Frame, Motion | None]] = []
+            # columns are read otherwise once
+            if all(change.mistake.concerns == "time" for change in changes):
+                own = [
+                    one for one in readings(self.values) if one.mistake.concerns in ("quaternion", "azimuth")
+                ]
+                tried = [((one,), Frame(), corrected(self.values, self.read, (*changes, one))) for one in own]
+            fits = fitted_frames(self.reference, motion, start=found.start, end=found.covered)
+            tried += [((), fit, motion) for fit in fits]
+            for more, frame, other in tried:
+                if other is not None:
+                    left = self.reference.difference(frame.apply(other))
+                    if explains(part, left.azimuth):
+                        yield more, frame, other
+        yield (), Frame(), motion
 
 
 def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
@@ -944,8 +939,13 @@ def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
     if reference.is_free:
         rate = fitted_rate(reference, motion)
         if abs(rate - 1.0) > SMALLEST_RATE:
-            mistake = Mistake(code="time_scale", concerns="time", value=rate)
-            yield Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
+            yield in_time_scale(rate)
+
+
+def in_time_scale(rate: float) -> Change:
+    """Return what takes back that a motion is slower by a factor."""
+    mistake = Mistake(code="time_scale", concerns="time", value=rate)
+    return Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
 
 
 def fitted_offsets(reference: Reference, motion: Motion) -> list[float]:
@@ -1094,36 +1094,36 @@ def _minima(tilt: Array) -> NDArray[np.intp]:
     return np.flatnonzero((tilt[1:-1] <= tilt[:-2]) & (tilt[1:-1] < tilt[2:])) + 1
 
 
-# x, y, z of a path as they should be
-VERTICALS: dict[str, Callable[[Array], Array]] = {
-    "": lambda path: path,
-    "z_reversed": lambda path: path * np.array([1.0, 1.0, -1.0]),
-    "y_up": lambda path: np.column_stack([path[:, 0], -path[:, 2], path[:, 1]]),
-}
-PathTrial = tuple[Frame, str, float, bool]  # axes, vertical, unit, another origin
-
-
 def _path_explained(reference: Reference, motion: Motion, axes: Frame) -> tuple[Change, ...]:
     """Return the fewest changes that explain a path; what is wrong with the axes of the lean is expected."""
     before = reference.difference(motion)
     part = before.path
-    if part is None or not (part.differs or axes != Frame()):
+    if motion.path is None or part is None or not (part.differs or axes != Frame()):
         return ()
     expected = (Frame(), axes)
     fits = fitted_frames(reference, _with_lean_of_path(motion), start=before.start, end=before.covered)
+    own = [
+        _of_path(one)
+        for one in readings(dict.fromkeys(POSITION, motion.time))
+        if one.mistake.code != "time_unit"
+    ]
+    pairs = [pair for pair in itertools.combinations(own, 2) if len({one.mistake.code for one in pair}) == 2]
+    read_otherwise = [(), *((one,) for one in own), *pairs]
 
-    def count(one: PathTrial) -> float:
-        frame, vertical, unit, moved = one
+    def count(trial: tuple[Frame, tuple[Change, ...], bool]) -> float:
+        frame, changes, moved = trial
         # a constant offset has three numbers to fit: it comes after what has none
-        return (frame not in expected) + bool(vertical) + (unit != 1.0) + 1.5 * moved
+        return (frame not in expected) + len(changes) + 1.5 * moved
 
     frames = dict.fromkeys((*expected, *fits))
-    tried = sorted(itertools.product(frames, VERTICALS, (1.0, *LENGTH_FACTORS), (False, True)), key=count)
+    tried = sorted(itertools.product(frames, read_otherwise, (False, True)), key=count)
     for _, alike in itertools.groupby(tried, key=count):
         passing: list[tuple[float, tuple[Change, ...]]] = []
-        for trial in alike:
-            concerns = "axes" if trial[0] == axes else "path"
-            changes = _path_changes(reference, motion, before.covered, trial, concerns)
+        for frame, changes, moved in alike:
+            turn = [frame.change("axes" if frame == axes else "path")] if frame != Frame() else []
+            # y up is no horizontal axis
+            changes = tuple(sorted((*turn, *changes), key=lambda one: one.mistake.code != "y_up"))
+            changes += (_origin(reference, changed(motion, changes), before.covered),) if moved else ()
             left = reference.difference(changed(motion, changes)).path
             if left is not None and not left.differs and (explains(part, left) or not part.differs):
                 passing.append((left.size, changes))
@@ -1132,32 +1132,32 @@ def _path_explained(reference: Reference, motion: Motion, axes: Frame) -> tuple[
     return ()
 
 
-def _path_changes(
-    reference: Reference, motion: Motion, end: float, trial: PathTrial, concerns: str
-) -> tuple[Change, ...]:
-    frame, vertical, unit, moved = trial
+def _of_path(reading: Change) -> Change:
+    """Return the change of a path alone that a reading of its columns is."""
+    mistake = replace(reading.mistake, concerns="path")
 
-    def of_path(mistake: Mistake, change: Callable[[Array], Array], noise: float = 1.0) -> Change:
-        def taken_back(given: Motion) -> Motion:
-            assert given.path is not None
-            return replace(given, path=change(given.path), path_noise=noise * given.path_noise)
+    def taken_back(motion: Motion) -> Motion:
+        assert motion.path is not None
+        columns = reading.values(dict(zip(POSITION, motion.path.T, strict=True)))
+        noise = motion.path_noise / (mistake.value if mistake.code == "length_unit" else 1.0)
+        return replace(motion, path=np.column_stack([columns[name] for name in POSITION]), path_noise=noise)
 
-        return Change(mistake=mistake, motion=taken_back)
+    return Change(mistake=mistake, motion=taken_back)
 
-    changes = [of_path(Mistake(code=vertical, concerns="path"), VERTICALS[vertical])] if vertical else []
-    if frame != Frame():
-        changes.append(frame.change(concerns))
-    if unit != 1.0:
-        mistake = Mistake(code="length_unit", concerns="path", value=unit)
-        changes.append(of_path(mistake, lambda path: path / unit, 1.0 / unit))
-    if moved:
-        wanted, own = on_samples_of(reference.motion, changed(motion, changes))
-        assert wanted.path is not None
-        assert own.path is not None
-        origin = np.median((own.path - wanted.path)[wanted.time <= end + SAME_TIME], axis=0)
-        mistake = Mistake(code="origin", concerns="path", value=float(np.linalg.norm(origin)))
-        changes.append(of_path(mistake, lambda path: path - origin))
-    return tuple(changes)
+
+def _origin(reference: Reference, motion: Motion, end: float) -> Change:
+    """Return what takes back that a path is counted from elsewhere."""
+    wanted, own = on_samples_of(reference.motion, motion)
+    assert wanted.path is not None
+    assert own.path is not None
+    origin = np.median((own.path - wanted.path)[wanted.time <= end + SAME_TIME], axis=0)
+
+    def taken_back(given: Motion) -> Motion:
+        assert given.path is not None
+        return replace(given, path=given.path - origin)
+
+    mistake = Mistake(code="origin", concerns="path", value=float(np.linalg.norm(origin)))
+    return Change(mistake=mistake, motion=taken_back)
 
 
 def _with_lean_of_path(motion: Motion) -> Motion:
@@ -1198,13 +1198,11 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Judgement:
-    """What is said of a file: a level, or "rejected" and why."""
+    """What is said of a file."""
 
-    verdict: str
-    reason: str = ""
-    outcomes: tuple[Outcome, ...] = ()
-    mistakes: tuple[Mistake, ...] = ()
-    columns_not_read: tuple[str, ...] = ()
+    outcomes: tuple[Outcome, ...]
+    mistakes: tuple[Mistake, ...]
+    columns_not_read: tuple[str, ...]
 
     @property
     def judged(self) -> int:
@@ -1212,11 +1210,16 @@ class Judgement:
         return sum(bool(one.run) for one in self.outcomes)
 
     @property
+    def verdict(self) -> str:
+        """The lowest level of what was judged; without criteria the file is rejected."""
+        levels = ("rejected", *LEVELS, "fail")
+        return max((one.level for one in self.outcomes if one.run), key=levels.index, default="rejected")
+
+    @property
     def grade(self) -> str:
         """The verdict as a grade."""
-        if self.verdict in ("fail", "rejected"):
-            return {"fail": "not satisfied", "rejected": "not tested"}[self.verdict]
-        return "satisfied" if self.judged == len(self.outcomes) else "caution"
+        passed = "satisfied" if self.judged == len(self.outcomes) else "caution"
+        return {"fail": "not satisfied", "rejected": "not tested"}.get(self.verdict, passed)
 
 
 def read_motion(run: Run, values: Values) -> Motion | None:
@@ -1236,15 +1239,6 @@ def through(x: Array, X: Array, Y: NDArray[Any]) -> NDArray[Any]:
     weights = enumerate((-b * c * d / 6.0, a * c * d / 2.0, -a * b * d / 2.0, a * b * c / 6.0))
     total: NDArray[Any] = sum(weight * Y[first + k] for k, weight in weights)
     return np.where((at > -1e-6) & (at < len(X) - 1 + 1e-6), total, np.nan)
-
-
-def exceeds(time: Array, value: Array, level: float, power: float) -> float:
-    """Return when a value first exceeds a level; its root of that power is linear between samples."""
-    i = int(np.argmax(value > level))
-    if i == 0:
-        return float(time[0]) if value[0] > level else math.inf
-    low, high = np.maximum(value[i - 1 : i + 1], 0.0) ** (1.0 / power)
-    return float(time[i - 1] + (time[i] - time[i - 1]) * (level ** (1.0 / power) - low) / (high - low))
 
 
 def measured(quantity: str, motion: Motion, run: Run, wanted: float) -> float:
@@ -1386,13 +1380,22 @@ class Case:
         )
         yield from explanations(values, partial(read_motion, run), facts)
 
+    def candidates(self, tables: Mapping[str, Table], names: Sequence[str]) -> Iterator[tuple[Change, ...]]:
+        """Yield what explains the difference of some runs, then what may explain that of all."""
+        found = [one for name in names for one in self.explanations(name, tables[name].values)]
+        alone = [one.mistakes[0] for one in found if len(one.mistakes) == 1]
+        rates = [mistake.value for mistake in alone if mistake.code == "time_scale"]
+        if rates:  # a spin that does not go with the size changes that of each run a little
+            yield (in_time_scale(sum(rates) / len(rates)),)
+        yield from (one.changes for one in found)
+        # of peaks alone nothing but units can be told
+        yield from ((change,) for change in readings(tables[names[0]].values))
+
     def mistakes(self, tables: Mapping[str, Table], motions: Motions) -> tuple[Mistake, ...]:
         """Return the fewest mistakes without which the case is passed, or as much better."""
         enough = min(1.0, self.score(motions) / ENOUGH)
         worst = sorted(motions, key=lambda name: -self.score({name: motions[name]}))[:EXPLAINED_RUNS]
-        explained = (one.changes for name in worst for one in self.explanations(name, tables[name].values))
-        # of peaks alone nothing but units can be told
-        for changes in chain(explained, ((change,) for change in readings(tables[worst[0]].values))):
+        for changes in self.candidates(tables, worst):
             runs = {
                 name: corrected(table.values, partial(read_motion, self.runs[name]), changes)
                 for name, table in tables.items()
@@ -1432,12 +1435,12 @@ def judged(case: Case, path: Path) -> Judgement:
         raise ValueError(
             f"the file does not give {', '.join(sorted(missing))}, which this case needs{unknown}"
         )
-    verdict = max((one.level for one in outcomes if one.run), key=(*LEVELS, "fail").index)
-    mistakes = case.mistakes(tables, motions) if verdict != "exact" else ()
+    found = Judgement(outcomes, (), ignored)
+    mistakes = case.mistakes(tables, motions) if found.verdict != "exact" else ()
     short = [one.name for one in outcomes if one.unit in ("alpha", "b") and one.error == math.inf]
     if short and not mistakes and all(motion.tilt.max() < FALLEN for motion in motions.values()):
         raise ValueError(f"the samples do not cover the window of {', '.join(short)}")
-    return Judgement(verdict, "", outcomes, mistakes, ignored)
+    return replace(found, mistakes=mistakes)
 
 
 def main() -> int:
@@ -1449,23 +1452,22 @@ def main() -> int:
     parser.add_argument("--label", default="", help="who made it: name, version and settings of the code")
     parser.add_argument("--out", type=Path, default=Path("result.json"))
     given = parser.parse_args()
-    case = Case(cases[given.case])
+    case, reason = Case(cases[given.case]), ""
     try:
         found = judged(case, given.trajectory)
     except ValueError as error:
-        found = Judgement("rejected", str(error))
+        found, reason = Judgement((), (), ()), str(error)
     asked = len(case.accept["criteria"])
     print(f"{given.case}: {found.verdict} ({found.grade}), judged {found.judged} of {asked} criteria")
-    notes = [found.reason] if found.reason else []
-    notes += [f"columns not read: {listed(found.columns_not_read)}"] if found.columns_not_read else []
+    notes = [reason, f"columns not read: {listed(found.columns_not_read)}" * bool(found.columns_not_read)]
     for one in found.outcomes:
         limits = "exact {:.2g}, good {:.2g}, pass {:.2g}".format(*one.bounds)
         value = f" {one.error:.3g} {one.unit} (run {one.run}; {limits})" if one.run else ""
         notes.append(f"{one.name}: {one.level}{value}")
     notes += [f"likely mistake: {mistake.words}" for mistake in found.mistakes]
-    print("\n".join(f"  {note}" for note in notes))
+    print(*(f"  {note}" for note in notes if note), sep="\n")
     criteria = [
-        {**asdict(one), "level": one.level, "error": one.error if one.error < math.inf else None}
+        asdict(one) | {"level": one.level, "error": one.error if one.error < math.inf else None}
         for one in found.outcomes
     ]
     result = {
@@ -1475,12 +1477,12 @@ def main() -> int:
         "verdict": found.verdict,
         "grade": found.grade,
         "judged": [found.judged, asked],
-        "reason": found.reason,
+        "reason": reason,
         "criteria": criteria,
         "columns_not_read": found.columns_not_read,
         "likely_mistakes": [mistake.words for mistake in found.mistakes],
         "mistakes": [
-            {**asdict(one), "value": None if math.isnan(one.value) else one.value} for one in found.mistakes
+            asdict(one) | {"value": None if math.isnan(one.value) else one.value} for one in found.mistakes
         ],
         "check": "2",
         "reference_sha256": case.digest,
