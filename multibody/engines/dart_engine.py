@@ -128,6 +128,9 @@ class _DartStepper:
         excited, gravity, heading = bool(self._scene.components), self._scene.gravity, self._heading
         friction = self._scene.friction
         followed = _LOADED * min(1.0, friction * arm)
+        # where friction gives way before the base opens, the four contacts of a closed base slide: those of
+        # the rim solver take its hundreds of sweeps in every step, for no motion that could follow
+        opens = friction * arm > _OPENING
         turn_x, turn_y = cosine(heading), sine(heading)
         spin_x, spin_y = cosine(0.5 * _SPIN), sine(0.5 * _SPIN)
         target, gain = self._settings.depth, self._settings.depth_gain / self._step
@@ -161,7 +164,7 @@ class _DartStepper:
                 # of a base that slides, friction is all the load
                 load = min(math.hypot(ax, ay) / (gravity + az), friction) * arm
                 # what lies after its landing leans by what it has sunk, and does not open
-                self._use_for(opening=load > _OPENING or (lean > _OPEN and not lies))
+                self._use_for(opening=opens and (load > _OPENING or (lean > _OPEN and not lies)))
                 if lean > _LEANS or load > followed:
                     # a load pushes against the acceleration
                     along = math.atan2(axis_y, axis_x) + heading if lean > _LEANS else math.atan2(-ay, -ax)
