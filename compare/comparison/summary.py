@@ -18,7 +18,7 @@ from ..metrics.turning import direction_difference, first_unresolved_pass, turn_
 from ..runs.labels import REDUCED
 from ..traces.pair import make_pair
 from ..traces.trajectory import measurement
-from .error_budget import BUDGET_COLUMNS, ErrorBudget
+from .error_budget import NO_BUDGET, ErrorBudget
 from .external.difference import allowance as noise_allowance
 from .external.verdict import VERDICT_COLUMNS, Row, judge, no_verdict
 from .prediction import Prediction, close_pass, verdict
@@ -78,6 +78,11 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "limit_error": ("alpha", "uncertainty of the extrapolation"),
     "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
     "finest_step": ("s", "smallest time step that the extrapolation rests on"),
+    "not_split": (
+        "",
+        "why numerics and unexplained are not stated: unresolved_pass, order (below a half) or error (larger "
+        "than both)",
+    ),
     **VERDICT_COLUMNS,
 }
 
@@ -158,7 +163,7 @@ def summary_row(
         "estimated_error": estimated_error,
         **no_verdict(),
     }
-    return row | (dict.fromkeys(BUDGET_COLUMNS, math.nan) if budget is None else budget.columns())
+    return {**row, **(NO_BUDGET if budget is None else budget.columns())}
 
 
 def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:
