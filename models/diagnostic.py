@@ -38,7 +38,7 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "solver": ("steps", "the solver had not converged in some of the steps looked at"),
         "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
         "settled": ("alpha", "error that the time step leaves, by extrapolation"),
-        "unsettled": ("alpha", "change from twice the time step: it has not settled"),
+        "unsettled": ("alpha", "change from twice the time step: it has not settled, or nobody knows"),
         "extrapolated": ("alpha", "error left after extrapolation in the time step, by estimate"),
         "not_extrapolated": ("", "runs at successive time steps do not agree well enough to extrapolate"),
         "side": ("", "it passed through upright itself: the side to which it goes on is undetermined"),
@@ -50,8 +50,8 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
 # code: why, as its detail says it
 REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "unsettled": ("fails", "still_changes", "no_later", "no_closer"),
-        "not_extrapolated": ("fails", "diverged", "no_closer"),
+        "unsettled": ("fails", "still_changes", "no_later", "no_closer", "unresolved_pass", "energy"),
+        "not_extrapolated": ("fails", "diverged", "no_closer", "unresolved_pass", "energy"),
     }
 )
 _SEPARATOR = ", "

@@ -11,7 +11,9 @@ Halving ends without that where it no longer brings the traces closer, which eng
 is not always better), or at the smallest step. The run that is kept is the last that was an improvement.
 
 The estimate of the remaining error is Richardson's: with differences d1 and then d2 of successive
-halvings, the order is p = log2(d1/d2), and what is left of the finer one d2/(2^p - 1).
+halvings, the order is p = log2(d1/d2), and what is left of the finer one d2/(2^p - 1). Near passes mix the
+orders, so p counts as 1 at most. Where a pass is not resolved, or contact makes or takes energy, no number is
+known: the run has not settled.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ from dataclasses import replace
 from rockwobble.models import Diagnostic, Trace
 
 from ..scene.guard import LARGEST_STEP
-from .attempts import Attempt, Closeness, Progress, closeness, part_of, shares
+from .attempts import Attempt, Closeness, Progress, closeness, part_of, shares, unknown_from
 
 AUTO = "auto"
 COARSEST = 4e-4  # [s] at the reference size: four times the default, so that easy cases cost a fourth
@@ -30,7 +32,7 @@ SMALLEST = 6.25e-6  # [s] at the reference size: six halvings; below it rounding
 STEP_TOLERANCE = 1e-3  # of alpha; the default, a tenth of the difference at which traces diverge
 _PUT_OFF = 1.05  # a divergence later by less is no gain
 _CLOSER = 0.9  # a difference reduced by less is no gain
-_ORDERS = 0.5, 2.0  # least and largest order that an estimate relies on
+_ORDERS = 0.5, 1.0  # least and largest order that an estimate relies on
 
 assert COARSEST <= LARGEST_STEP
 
@@ -121,6 +123,9 @@ def _reported(run: Trace, found: list[Closeness], verdict: str, alpha: float) ->
         return run if run.outcome == "failed" else replace(run, facts=(*run.facts, fact))
     last = found[-1]
     error, order = _estimate(found)
+    unknown, code = unknown_from(run)
+    if math.isfinite(unknown):
+        error, verdict = math.nan, verdict or code
     if verdict:
         fact = Diagnostic(code="unsettled", duration=last.until, size=last.difference / alpha, detail=verdict)
     else:

@@ -15,12 +15,16 @@ _UNSETTLED = {
     "still_changes": "it still changes at the smallest step allowed",
     "no_later": "a smaller step does not put off the divergence",
     "no_closer": "a smaller step does not bring it closer",
+    "unresolved_pass": "a pass is left to chance, so that its error is not known",
+    "energy": "contact makes or takes energy, so that its error is not known",
 }
 # why runs at successive steps tell no limit
 _NOT_EXTRAPOLATED = {
     "fails": "a run at a coarser step fails",
     "diverged": "the runs diverge there",
     "no_closer": "the runs do not come closer to one another",
+    "unresolved_pass": "a pass is left to chance there",
+    "energy": "contact makes or takes energy",
 }
 _WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
     "step_budget": lambda fact: (
