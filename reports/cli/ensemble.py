@@ -125,7 +125,7 @@ def ensemble(
 
 def _refuse_ignored(context: typer.Context, synthetic: float | None, far_field: float | None) -> None:
     """Refuse what the members are not made of."""
-    ignored = {"perturbation", "record", "record_x", "record_y", "record_z", "units", "scale"}
+    ignored = {"perturbation", "record", "record_x", "record_y", "record_z", "units", "resample", "scale"}
     for option, peak, more in (("--synthetic", synthetic, set()), ("--p695", far_field, {"members", "seed"})):
         if peak is None:
             continue

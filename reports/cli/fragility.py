@@ -108,6 +108,7 @@ def fragility(
     records: Records = None,
     synthetic: Synthetic = None,
     units: options.Units = None,
+    resample: options.Resample = False,
     measure: MeasureName = "peak_acceleration",
     levels: Levels = None,
     cloud: Cloud = None,
@@ -175,7 +176,7 @@ def fragility(
                 "resamples": resamples,
             }
             require_asked(**asked)
-            motions, source = motions_of(p695, records, synthetic, units, seed)
+            motions, source = motions_of(p695, records, synthetic, units, resample, seed)
             for name, body in bodies.items():
                 size = f"R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}"
                 print(f"{name}: {size}" if cylinder else size)

@@ -40,6 +40,7 @@ def spectrum(
     record_y: options.RecordY = None,
     record_z: options.RecordZ = None,
     units: options.Units = None,
+    resample: options.Resample = False,
     gravity: options.Gravity = 9.81,
     smallest: Smallest = 0.5,
     largest: Largest = 30.0,
@@ -91,6 +92,7 @@ def spectrum(
                 record_y=record_y,
                 record_z=record_z,
                 units=units,
+                resample=resample,
                 gravity=gravity,
             ).case()
             motion = case.motion

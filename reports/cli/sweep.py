@@ -22,7 +22,17 @@ from .inputs.problem import refuse
 _grid = options.panel("Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT")
 # what states a grid: the file of a suite states its own
 _STATED = {
-    *("semidiagonal", "tan_alpha", "scale", "record_x", "record_y", "record_z", "units", "gravity"),
+    *(
+        "semidiagonal",
+        "tan_alpha",
+        "scale",
+        "record_x",
+        "record_y",
+        "record_z",
+        "units",
+        "resample",
+        "gravity",
+    ),
     *("plane", "restitution"),
 }
 
@@ -43,9 +53,9 @@ Models = Annotated[
 ]
 RecordsX = Annotated[
     list[Path] | None,
-    _grid("East-west component; may be repeated for several records. Default: El Centro 1940."),
+    _grid("East-west component, or zero; may be repeated for several records. Default: El Centro 1940."),
 ]
-RecordsY = Annotated[list[Path] | None, _grid("North-south component of each.")]
+RecordsY = Annotated[list[Path] | None, _grid("North-south component of each, or zero.")]
 RecordsZ = Annotated[list[Path] | None, _grid("Vertical component of each, or of none.")]
 Scheduler = Annotated[
     str | None,
@@ -70,6 +80,7 @@ def sweep(
     record_y: RecordsY = None,
     record_z: RecordsZ = None,
     units: options.Units = None,
+    resample: options.Resample = False,
     gravity: options.Gravity = 9.81,
     model: Models = None,
     plane: options.Plane = None,
@@ -95,7 +106,7 @@ def sweep(
                 semidiagonal,
                 tan_alpha,
                 scale,
-                (record_x, record_y, record_z, units),
+                (record_x, record_y, record_z, units, resample),
                 model,
                 gravity=gravity,
                 plane=plane,

@@ -42,7 +42,7 @@ def cylinders_of(
 
 
 def motions_of(
-    p695: bool, records: Path | None, synthetic: int | None, units: str | None, seed: int
+    p695: bool, records: Path | None, synthetic: int | None, units: str | None, resample: bool, seed: int
 ) -> tuple[list[rw.GroundMotion], str]:
     """Return the ground motions and what they are.
 
@@ -56,12 +56,12 @@ def motions_of(
 
     if p695 + (records is not None) + (synthetic is not None) > 1:
         raise ValueError("the motions are those of --p695, of --records or --synthetic, got more than one")
-    if units is not None and records is None:
-        raise ValueError("--units belongs to --records")
+    if records is None and (lone := "--units" if units is not None else "--resample" if resample else ""):
+        raise ValueError(f"{lone} belongs to --records")
     if p695:
         return recorded_far_field(), "far-field pairs of FEMA P-695"
     if records is not None:
-        return read_records(records, units=units), f"records of {records.name}"
+        return read_records(records, units=units, resample=resample), f"records of {records.name}"
     count = DEFAULT_COUNT if synthetic is None else synthetic
     return rc.synthetic_motions(count, peak=1.0, seed=seed), f"made-up ground motions, seed {seed}"
 
