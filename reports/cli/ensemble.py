@@ -77,6 +77,9 @@ def ensemble(
     with interruptible(out):
         with user_input():
             from rockwobble.compare.studies.ensemble.members import require_perturbation
+            from rockwobble.models.records.plausibility import doubts_of
+
+            from ..pages.words.diagnostics import warnings
 
             rc.require_writable(out)
             refuse_options_of_engines(context, engine)
@@ -87,6 +90,8 @@ def ensemble(
                 stated = rw.read_suite(suite)
                 runs = _runs(engine, support, time_step, stated)
                 print(f"Suite {suite}: {len(stated.cases)} members")
+                for line in warnings(doubts_of(each.motion for each in stated.cases)):
+                    print(line)
             else:
                 _refuse_ignored(context, synthetic, p695)
                 case = problem.case()

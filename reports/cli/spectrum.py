@@ -113,7 +113,8 @@ def spectrum(
             f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(case.cylinder.alpha):.4g} deg), "
             f"{sizes} sizes from R = {smallest:g} to {largest:g} m"
         )
-        print(describe(case)[1])  # the ground: the threshold of uplift is that of all sizes
+        # the ground: the threshold of uplift is that of all sizes
+        print(*describe(case)[1:-1], sep="\n")
         with shown_progress("series") as tell:
             found = overturning_spectrum(
                 tan_alpha,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -145,7 +146,13 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
 
 
 def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
+    from rockwobble.models.records.plausibility import doubts_of
+
+    from ..pages.words.diagnostics import warnings
+
+    motions: Iterable[rw.GroundMotion | None]
     if isinstance(plan, rc.Grid):
+        motions = plan.motions
         ends = [
             rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(plan.semidiagonals), max(plan.semidiagonals))
@@ -157,6 +164,7 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
             f"{len(plan.scales)} scales, {len(plan.motions)} records, models {', '.join(plan.models)}"
         )
     else:
+        motions = [case.motion for case in plan.cases]
         ends = [case.cylinder for case in plan.cases]
         runs = len(plan.cases) * len(plan.runs)
         what = f"{len(plan.cases)} cases, {len(plan.runs)} runs of each"
@@ -170,6 +178,7 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
             )
         ),
         f"Runs: {runs:,} ({what})",
+        *warnings(doubts_of(motions)),
     ]
 
 

@@ -12,6 +12,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
+from rockwobble.models.records.plausibility import doubts_of
 from rockwobble.models.shown import Shown
 
 from ...metrics.tilt import outcome_of
@@ -158,6 +159,7 @@ def ensemble(
     table = _members(jobs, results)
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
     about |= {"methods": {label: _held_against(run) for label, run in methods.items()}}
+    about |= {"doubts": doubts_of(case.motion for case in members)}
     about |= {"inputs": fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])}
     return ensemble_of(table, about)
 
