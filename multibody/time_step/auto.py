@@ -12,8 +12,8 @@ is not always better), or at the smallest step. The run that is kept is the last
 
 The estimate of the remaining error is Richardson's: with differences d1 and then d2 of successive
 halvings, the order is p = log2(d1/d2), and what is left of the finer one d2/(2^p - 1). Near passes mix the
-orders, so p counts as 1 at most. Where a pass is not resolved, or contact makes or takes energy, no number is
-known: the run has not settled.
+orders, so p counts as 1 at most. Only a run that has settled states an error; one with a pass that is not
+resolved, or in which contact makes or takes energy, has not.
 """
 
 from __future__ import annotations
@@ -122,12 +122,12 @@ def _reported(run: Trace, found: list[Closeness], verdict: str, alpha: float) ->
         fact = Diagnostic(code="unsettled", detail=verdict)
         return run if run.outcome == "failed" else replace(run, facts=(*run.facts, fact))
     last = found[-1]
-    error, order = _estimate(found)
     unknown, code = unknown_from(run)
-    if math.isfinite(unknown):
-        error, verdict = math.nan, verdict or code
+    verdict = verdict or (code if math.isfinite(unknown) else "")
     if verdict:
+        error = math.nan
         fact = Diagnostic(code="unsettled", duration=last.until, size=last.difference / alpha, detail=verdict)
     else:
+        error, order = _estimate(found)
         fact = Diagnostic(code="settled", duration=last.until, size=error / alpha, bound=order)
     return replace(run, error_estimate=error, settled_until=last.until, facts=(*run.facts, fact))

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 FACTOR = 2.0  # an estimate that is too small by more misleads
-_LENGTH = 10.0  # [s] at the reference size: some passes
+_LENGTH = 4.0  # [s] at the reference size: some passes, and a minute for the smallest step
 _EXACT = 1e-10  # tolerance of the reduced model: its error is below all that an engine reaches
 _ROUNDING = 1e-6  # of alpha: smaller errors are of rounding, and of no account
 _SAID = ("settled", "unsettled", "extrapolated", "not_extrapolated")
