@@ -74,13 +74,14 @@ def compared(trace: Trace, exact: Trace) -> dict[str, Any]:
     error = np.abs(trace.tilt[:count] - exact.tilt[:count])[kept].max(initial=0.0) / alpha
     facts = [fact.detail or fact.code for fact in trace.diagnostics if fact.code in _SAID]
     others = [fact.code for fact in trace.diagnostics if fact.code not in _SAID]
+    stated = trace.error_estimate / alpha
     return {
         "until": until,
-        "stated": trace.error_estimate / alpha,
+        "stated": stated,
         "error": error,
         "said": ", ".join(facts),
         "beside": ", ".join(others),
-        "too_small": bool(error > FACTOR * max(trace.error_estimate / alpha, _ROUNDING)),
+        "too_small": bool(error > FACTOR * max(stated, _ROUNDING)),  # not where it is NaN
     }
 
 
