@@ -24,13 +24,13 @@ if TYPE_CHECKING:
     import pandas as pd
 
 FACTOR = 2.0  # an estimate that is too small by more misleads
-_LENGTH = 4.0  # [s] at the reference size: some passes, and a minute for the smallest step
+LENGTH = 4.0  # [s] at the reference size: some passes, and a minute for the smallest step
 _EXACT = 1e-10  # tolerance of the reduced model: its error is below all that an engine reaches
 _ROUNDING = 1e-6  # of alpha: smaller errors are of rounding, and of no account
 _SAID = ("settled", "unsettled", "extrapolated", "not_extrapolated")
 
 
-def problems(count: int, seed: int) -> Iterator[tuple[Case, str]]:
+def problems(count: int, seed: int, length: float = LENGTH) -> Iterator[tuple[Case, str]]:
     """Yield problems and their supports: releases of little spin, and El Centro from rest."""
     random = np.random.default_rng(seed)
     for number in range(count):
@@ -42,22 +42,27 @@ def problems(count: int, seed: int) -> Iterator[tuple[Case, str]]:
             scale = random.uniform(1.5, 3.5) * 9.81 * tan_alpha / el_centro_1940().peak
             motion = el_centro_1940().rotated(random.uniform(0.0, math.tau)).scaled(scale)
             # a large cylinder takes longer to come back, a small one has its passes at once
-            case = Case(cylinder, motion, duration=1.5 + _LENGTH * unit, name=name)
+            case = Case(cylinder, motion, duration=1.5 + length * unit, name=name)
         else:
             spin = 10.0 ** random.uniform(-2.5, -0.3) / unit
             release = InitialState(random.uniform(0.2, 0.9) * cylinder.alpha, rolling_rate=spin)
-            case = Case(cylinder, initial=release, duration=_LENGTH * unit, name=name)
+            case = Case(cylinder, initial=release, duration=length * unit, name=name)
         yield case, support
 
 
 def step_errors(
-    count: int, seed: int, *, engine: str = "mujoco", ways: Sequence[str] = WAYS_TO_A_STEP
+    count: int,
+    seed: int,
+    *,
+    length: float = LENGTH,
+    engine: str = "mujoco",
+    ways: Sequence[str] = WAYS_TO_A_STEP,
 ) -> pd.DataFrame:
     """Return one row for each problem and way: case, support, way, until [s], stated, error [alpha], said."""
     import pandas as pd
 
     rows: list[dict[str, Any]] = []
-    for case, support in problems(count, seed):
+    for case, support in problems(count, seed, length):
         exact = reduced.simulate(case, support=support, rtol=_EXACT)
         for way in ways:
             trace = multibody.simulate(case, engine=engine, support=support, time_step=way)  # type: ignore[arg-type]
@@ -92,9 +97,17 @@ def main(arguments: Sequence[str] | None = None) -> int:
     )
     options.add_argument("--seed", type=int, default=1)
     options.add_argument("--count", type=int, default=30, help="of problems, half of them shaken")
+    options.add_argument("--length", type=float, default=LENGTH, help="s at R = 6 m")
     options.add_argument("--engine", default="mujoco")
+    options.add_argument("--way", choices=WAYS_TO_A_STEP, action="append", help="default: both")
     given = options.parse_args(arguments)
-    table = step_errors(given.count, given.seed, engine=given.engine)
+    table = step_errors(
+        given.count,
+        given.seed,
+        length=given.length,
+        engine=given.engine,
+        ways=given.way or WAYS_TO_A_STEP,
+    )
     formats = {
         "case": "", "support": "", "way": "", "until": ".3g", "stated": ".1e", "error": ".1e",
         "too_small": "", "said": "", "beside": "",
