@@ -18,7 +18,7 @@ from ..metrics.pair import make_pair, start_of
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
 from ..metrics.turning import direction_difference, first_unresolved_pass, turn_difference
 from ..runs.labels import REDUCED
-from .error_budget import BUDGET_COLUMNS, ErrorBudget
+from .error_budget import NO_BUDGET, ErrorBudget
 from .prediction import Prediction, close_pass, verdict
 
 # name: (unit, meaning); the order is that of the table
@@ -82,6 +82,11 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "limit_error": ("alpha", "uncertainty of the extrapolation"),
     "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
     "finest_step": ("s", "smallest time step that the extrapolation rests on"),
+    "not_split": (
+        "",
+        "why numerics and unexplained are not stated: unresolved_pass, order (below a half) or error (larger "
+        "than both)",
+    ),
     **VERDICT_COLUMNS,
 }
 
@@ -172,7 +177,7 @@ def summary_row(
         "estimated_error": estimated_error,
         **no_verdict(),
     }
-    return row | (dict.fromkeys(BUDGET_COLUMNS, math.nan) if budget is None else budget.columns())
+    return {**row, **(NO_BUDGET if budget is None else budget.columns())}
 
 
 def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:

@@ -108,7 +108,7 @@ class Trace(Shown):
         Horizontal distance of the base centre from O at the end [m].
     error_estimate, settled_until : float
         Error of the tilt that the time step leaves [rad], and until when traces of successive steps agree
-        [s]; NaN unless the step was sought.
+        [s]; NaN unless the step was sought, the error also where it cannot be known, as of an unsettled run.
 
     Examples
     --------

@@ -61,6 +61,10 @@ def ensemble(
     """
     with interruptible(out):
         with user_input():
+            from rockwobble.models.records.plausibility import doubts_of
+
+            from ..pages.words.diagnostics import warnings
+
             rc.require_writable(out)
             refuse_options_of_engines(context, engine)
             stated: rw.Case | rw.Suite | list[rw.Case]
@@ -71,6 +75,8 @@ def ensemble(
                 stated, source = rw.read_suite(suite), f"cases of {suite}"
                 runs = _runs(engine, support, time_step, stated)
                 print(f"Suite {suite}: {len(stated.cases)} members")
+                for line in warnings(doubts_of(each.motion for each in stated.cases)):
+                    print(line)
             else:
                 stated, source = _members(context, problem, copies, motions, peak)
                 shown = stated if isinstance(stated, rw.Case) else stated[0]
@@ -97,7 +103,7 @@ def _members(
         return problem.case(), f"perturbed copies, {100.0 * copies.perturbation:g} %"
     ignored = {"record", "record_x", "record_y", "record_z", "scale", *_COPIES}
     refuse(context, ignored, f"does not go with {motions.given}: its motions are the members")
-    case = dataclasses.replace(problem, units=None).case()
+    case = dataclasses.replace(problem, units=None, resample=False).case()
     level = 3.0 if peak is None else peak
     found, source = motions.read(copies.seed)
     target = level * case.gravity * case.cylinder.tan_alpha

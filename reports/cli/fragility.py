@@ -133,6 +133,9 @@ def fragility(
         with user_input():
             from rockwobble.compare.studies.fragility.limits import DEFAULT_LIMITS
             from rockwobble.compare.studies.fragility.study import require_asked
+            from rockwobble.models.records.plausibility import doubts_of
+
+            from ..pages.words.diagnostics import warnings
 
             rc.require_writable(out)
             if cylinder:
@@ -164,7 +167,7 @@ def fragility(
             for name, body in bodies.items():
                 size = f"R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}"
                 print(f"{name}: {size}" if cylinder else size)
-            print(f"Motions: {len(motions)}, {source}")
+            print(f"Motions: {len(motions)}, {source}", *warnings(doubts_of(motions)), sep="\n")
         from rockwobble.compare.studies.fragility.result import manifest_of
 
         from ..pages.fragility import count_files, fragility_page

@@ -48,6 +48,7 @@ def spectrum(
     record_y: options.RecordY = None,
     record_z: options.RecordZ = None,
     units: options.Units = None,
+    resample: options.Resample = False,
     gravity: options.Gravity = 9.81,
     smallest: Smallest = 0.5,
     largest: Largest = 30.0,
@@ -100,6 +101,7 @@ def spectrum(
                 record_y=record_y,
                 record_z=record_z,
                 units=units,
+                resample=resample,
                 gravity=gravity,
             ).case()
             motion = case.motion
@@ -120,7 +122,8 @@ def spectrum(
             f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(case.cylinder.alpha):.4g} deg), "
             f"{sizes} sizes from R = {smallest:g} to {largest:g} m"
         )
-        print(describe(case)[1])  # the ground: the threshold of uplift is that of all sizes
+        # the ground: the threshold of uplift is that of all sizes
+        print(*describe(case)[1:-1], sep="\n")
         with shown_progress("series") as tell:
             found = overturning_spectrum(
                 tan_alpha,

@@ -28,6 +28,7 @@ SCRIPTS = (
     "run_overhead",
     "scene_cost",
     "speed",
+    "step_errors",
     "sweep_overhead",
 )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -86,8 +87,6 @@ def search(
     tilt_of: Callable[[float], Any], tolerance: float = 1e-3, **kept: Any
 ) -> tuple[Trace, list[float]]:
     """Find the step of a made-up engine; return the run and the steps that were tried."""
-    from dataclasses import replace
-
     steps: list[float] = []
 
     def attempt(step: float, _: Any) -> Trace:
@@ -99,15 +98,25 @@ def search(
     return find_step(attempt, 1.0, ALPHA, tolerance, None), steps
 
 
+@pytest.mark.parametrize("code", ["unresolved_pass", "energy"])
+def test_what_is_left_to_chance_has_not_settled(code: str) -> None:
+    left = Diagnostic(code=code, time=0.2)
+    run, steps = search(lambda step: replace(made(np.full(50, 0.1)), facts=(left,)))
+    assert len(steps) == 2
+    assert (step_fact(run).code, step_fact(run).detail) == ("unsettled", code)
+    assert np.isnan(run.error_estimate)
+
+
 @pytest.mark.parametrize("order", [1.0, 2.0])
-def test_the_estimate_is_exact_where_the_order_is(order: float) -> None:
+def test_the_estimate_is_that_of_first_order(order: float) -> None:
     shape = np.sin(np.arange(100))
     run, steps = search(lambda step: 0.1 + 10.0 * (step / COARSEST) ** order * 2e-4 * shape, 2e-3)
     # known from the third run on, when the order was measured
     assert len(steps) >= 3
     error = np.abs(run.tilt - 0.1).max()
-    assert run.error_estimate == pytest.approx(error, rel=1e-6)
-    assert step_fact(run).bound == pytest.approx(order, rel=1e-3)
+    # of second order it is three times what is left
+    assert run.error_estimate == pytest.approx((2.0**order - 1.0) * error, rel=1e-6)
+    assert step_fact(run).bound == pytest.approx(1.0, rel=1e-3)
 
 
 def test_halving_ends_where_it_no_longer_helps() -> None:

@@ -46,6 +46,7 @@ GROUPS = (
             "models/records/el_centro.py",
             "models/ground_motion.py",
             "models/records/p695.py",
+            "models/records/plausibility.py",
             "models/pulses.py",
             "models/records/files.py",
             "models/records/units.py",

@@ -263,6 +263,14 @@ WORDS = {
         "it is not extrapolated from 2 s on, but the run at the finest time step: the runs diverge there",
         {"detail": "diverged"},
     ),
+    "large_peak": (
+        "its peak is 1.53e+03 g, more than any record has (5 g): it would be 1.6 g with its numbers in cm/s2",
+        {"size": 1532.0, "bound": 5.0, "detail": "cm/s2"},
+    ),
+    "unlike_components": (
+        "the peaks of its components differ by a factor of 981, y is the larger",
+        {"size": 981.0, "detail": "y"},
+    ),
     "missed_pass": ("2 near passes fell between two samples, first at 2 s", {"size": 2}),
     "note": ("positions are in mm", {"detail": "positions are in mm"}),
 }

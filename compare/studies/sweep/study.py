@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Suite
+from rockwobble.models.records.plausibility import doubts_of
 
 from ...runs.execution import all_makers
 from ...runs.progress import ProgressCallback
@@ -118,7 +119,9 @@ def sweep(
     ) as found:
         by_place = dict(zip(order, found, strict=True))
         table: pd.DataFrame = pd.concat([by_place[place] for place in range(len(chunks))], ignore_index=True)
+        motions = whole.motions if isinstance(whole, Grid) else [case.motion for case in whole.cases]
         about = whole.describe() if isinstance(whole, Grid) else describe_suite(whole)
+        about = {**about, "doubts": doubts_of(motions)}
         if out is not None:
             made = made_now(
                 KIND,

@@ -37,6 +37,7 @@ class Problem:
     record_y: options.RecordY = None
     record_z: options.RecordZ = None
     units: options.Units = None
+    resample: options.Resample = False
     scale: options.Scale = 1.0
     gravity: options.Gravity = 9.81
     friction: options.Friction = 1.0
@@ -113,9 +114,11 @@ class Problem:
         if whole is not None:
             if any(path is not None for path in (x, y, z)):
                 raise ValueError("--record holds all components, got --record-x, -y or -z beside it")
+            if self.resample:
+                raise ValueError("--resample goes with --record-x and --record-y: --record has one time step")
             return rw.read_record(whole, units=self.units).scaled(scale)
         if x is None and y is None:
-            if lone := "--record-z" if z is not None else "--units" if self.units is not None else "":
+            if lone := "--record-z" if z is not None else self._lone_option():
                 raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
             if not still:
                 return rw.el_centro_1940().scaled(scale)
@@ -125,10 +128,13 @@ class Problem:
         if x is None or y is None:
             given, missing = ("--record-y", "--record-x") if x is None else ("--record-x", "--record-y")
             raise ValueError(
-                f"both horizontal components are needed, got {given} without {missing}; one file of all is "
-                "given by --record"
+                f"both horizontal components are needed, got {given} without {missing}: for planar motion "
+                f"give {missing} zero, one file of all by --record"
             )
-        return rw.read_record(x, y, z, units=self.units).scaled(scale)
+        return rw.read_record(x, y, z, units=self.units, resample=self.resample).scaled(scale)
+
+    def _lone_option(self) -> str:
+        return "--units" if self.units is not None else "--resample" if self.resample else ""
 
 
 def states_problem(command: Callable[..., None]) -> Callable[..., None]:

@@ -30,6 +30,7 @@ class ManyMotions:
     ] = None
     synthetic: Annotated[int | None, _motions("So many synthetic motions.", callback=options.whole(2))] = None
     units: options.Units = None
+    resample: options.Resample = False
 
     @property
     def given(self) -> str:
@@ -51,12 +52,14 @@ class ManyMotions:
             raise ValueError(
                 "the motions are those of --p695, of --records or --synthetic, got more than one"
             )
-        if self.units is not None and self.records is None:
-            raise ValueError("--units belongs to --records")
+        lone = "--units" if self.units is not None else "--resample" if self.resample else ""
+        if lone and self.records is None:
+            raise ValueError(f"{lone} belongs to --records")
         if self.p695:
             return recorded_far_field(), "far-field pairs of FEMA P-695"
         if self.records is not None:
-            return rw.read_records(self.records, units=self.units), f"records of {self.records.name}"
+            found = rw.read_records(self.records, units=self.units, resample=self.resample)
+            return found, f"records of {self.records.name}"
         count = DEFAULT_COUNT if self.synthetic is None else self.synthetic
         return rw.synthetic_motions(count, peak=1.0, seed=seed), f"synthetic ground motions, seed {seed}"
 

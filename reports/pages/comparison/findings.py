@@ -224,7 +224,8 @@ def budget_sentences(summary: pd.DataFrame) -> list[str]:
     known = summary[summary["whole_rms"].notna()]
     if not len(known):
         return []
-    worth, found = known[known["whole_rms"] > WORTH_EXPLAINING], unexplained(known)
+    large = known[known["whole_rms"] > WORTH_EXPLAINING]
+    worth, found = large[large["not_split"] == ""], unexplained(known)
     lines = [sentence(WORDS, "unexplained", row) for row in rows_of(found.head(_LISTED))]
     counts = {
         "more": len(found) - _LISTED,
@@ -232,12 +233,16 @@ def budget_sentences(summary: pd.DataFrame) -> list[str]:
         "explained": len(worth) - len(found),
         "cases": worth["case"].nunique(),
         "explained_cases": worth["case"].nunique() - found["case"].nunique(),
-        "small": len(known) - len(worth),
+        "small": len(known) - len(large),
+        "not_split": large.loc[large["not_split"] != "", "not_split"].value_counts().to_dict(),
         "missing": len(summary) - len(known),
         "largest": LARGEST_SHARE,
         "bound": WORTH_EXPLAINING,
     }
-    said = [sentence(WORDS, macro, counts) for macro in ("more_unexplained", "explained", "no_budget")]
+    said = [
+        sentence(WORDS, macro, counts)
+        for macro in ("more_unexplained", "explained", "not_split", "no_budget")
+    ]
     return [*lines, *filter(None, said)]
 
 
