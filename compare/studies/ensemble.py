@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
 from rockwobble.models.diagnostic import joined
+from rockwobble.models.records.plausibility import doubts_of
 
 from ..metrics.distributions import Array, Contrast, Flags, adjusted, contrast, log_ratios
 from ..metrics.order_statistics import Interval, quantile_interval, stated
@@ -169,6 +170,7 @@ def ensemble(
     table = _members(jobs, results)
     about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
     about |= {"methods": {label: _compared_with(run) for label, run in methods.items()}}
+    about |= {"doubts": doubts_of(case.motion for case in members)}
     about |= {"inputs": fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])}
     return ensemble_of(table, about)
 

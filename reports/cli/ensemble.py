@@ -75,8 +75,7 @@ def ensemble(
                 stated, source = rw.read_suite(suite), f"cases of {suite}"
                 runs = _runs(engine, support, time_step, stated)
                 print(f"Suite {suite}: {len(stated.cases)} members")
-                for line in warnings(doubts_of(each.motion for each in stated.cases)):
-                    print(line)
+                shaking = [each.motion for each in stated.cases]
             else:
                 stated, source = _members(context, problem, copies, motions, peak)
                 shown = stated if isinstance(stated, rw.Case) else stated[0]
@@ -87,6 +86,9 @@ def ensemble(
                 for line in describe(shown) if isinstance(stated, rw.Case) else describe(shown)[:1]:
                     print(line)
                 print(f"Members: {count}, {source}")
+                shaking = [] if isinstance(stated, rw.Case) else [each.motion for each in stated]
+            for line in warnings(doubts_of(shaking)):
+                print(line)
         with user_input(), shown_progress() as tell:
             found = rw.ensemble(
                 stated, runs=runs, progress=tell, resume=out, source=source, **dataclasses.asdict(copies)
