@@ -52,8 +52,8 @@ _WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
         f"motion, which shows{_from(fact)}"
     ),
     "undecided": lambda _: (
-        "it ends in motion, and comes to no maximum of its tilt in the time for which that is followed: whether "
-        "it overturns is not decided"
+        "it ends in motion, which comes to no maximum of its tilt in the time for which it is followed: "
+        "whether it overturns is not decided"
     ),
     "solver": lambda fact: (
         f"the solver had not converged in {fact.size:.0f} of the {fact.bound:.0f} steps looked at"
