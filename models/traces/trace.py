@@ -163,6 +163,12 @@ class Trace(Shown):
         return np.asarray(np.hypot(x, y) - self.case.cylinder.base_radius)
 
     @property
+    def peak_time(self) -> float:
+        """Time of the largest tilt, to a sample, or of the swing after the end that is larger [s]."""
+        within = max(self.tilt.max(), self.extrema[:, 1].max(initial=0.0))
+        return self.followed_until if self.peak_tilt > within else float(self.time[self.tilt.argmax()])
+
+    @property
     def residual_twist(self) -> float:
         """Twist at the end, whole turns included [rad]."""
         return float(self.twist[-1]) if len(self.twist) else math.nan
