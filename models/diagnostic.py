@@ -34,7 +34,7 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "friction_needed": ("", "the rim would slip: more friction is needed than there is"),
         "wall_contact": ("", "the cylinder touched a wall"),
         "energy": ("", "contact made (above 0) or took (below 0) of the energy of the motion"),
-        "undecided": ("", "it ends in the middle of a fall that was not decided"),
+        "undecided": ("", "it ends in motion that was followed to no maximum, no rest and no overturning"),
         "solver": ("steps", "the solver had not converged in some of the steps looked at"),
         "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
         "settled": ("alpha", "error that the time step leaves, by extrapolation"),

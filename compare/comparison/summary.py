@@ -32,7 +32,7 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "outcome": ("", "how the run ended: stands, overturned or failed"),
     "reference_outcome": ("", "how the reference ended"),
     "diagnostics": ("", "codes of what ended or limits the run: see `rockwobble.models.diagnostic`"),
-    "peak_tilt": ("alpha", "largest tilt of the run"),
+    "peak_tilt": ("alpha", "largest tilt of the run, and of a swing that goes on when it ends"),
     "reference_peak_tilt": ("alpha", "largest tilt of the reference"),
     "peak_tilt_difference": ("alpha", "run minus reference"),
     "tilt_rms": ("alpha", "root mean square of the tilt difference"),

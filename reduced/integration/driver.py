@@ -94,7 +94,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         uplift = (np.nan, np.nan) if resting else (0.0, initial[2])  # time and direction
         h_next = _FIRST_STEP / body.p
         run = Stage(0.0, initial, initial, h_next, True, resting, initial[0], _FIRST_SAMPLE, 0, COMPLETED)
-        now, index = 0.0, 0
+        now, index, turned = 0.0, 0, np.nan
         end, following, mark = options.duration, False, mark_of(run.y, log)
 
         while run.status == COMPLETED:
@@ -127,7 +127,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                 run, turn, landing = moved(body, options, piece, bounds, index, following, work, wanted, run)
                 now = time_in(piece, run.elapsed)
                 if turn.kind != NO_TURN:
-                    log.extrema.append((begin + turn.at, turn.tilt, turn.angle, turn.kind))
+                    turned = begin + turn.at
+                    log.extrema.append((turned, turn.tilt, turn.angle, turn.kind))
                 if landing.kind != NO_TURN:
                     log.extrema.append((now, landing.tilt, landing.angle, landing.kind))
                 if options.record_steps and now > begin:
@@ -139,7 +140,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
 
         y, status, followed = run.y, run.status, np.nan
         if following:
-            followed = log.extrema[-1][0] if status == TURNED else log.rests[-1][0] if run.resting else now
+            followed = turned if status == TURNED else log.rests[-1][0] if run.resting else now
         if following and status in (COMPLETED, TURNED):
             y, now, status = mark.y, options.duration, COMPLETED
         else:

@@ -127,7 +127,6 @@ def _equivalence(bench: Bench, model: str) -> Finding:
     apart = max(
         tilts_apart(lighter, falling),
         abs(lighter.uplift_time - falling.uplift_time),
-        abs(lighter.peak_tilt - falling.peak_tilt) / PIER.alpha,
     )
     return at_most(
         f"ground that falls with 0.3 g against a gravity of 0.7 g, {model}",

@@ -244,7 +244,7 @@ class Advice(Shown):
             else math.nan,
             "peak": self.peak,
             "peak_deg": math.degrees(trace.peak_tilt),
-            "peak_time": float(trace.time[int(trace.tilt.argmax())]),
+            "peak_time": trace.peak_time,
             "peak_rank": float((known < self.peak).mean()) if len(known) and self.copies_differ else math.nan,
             "in_one_plane": self.moves and not np.any(trace.rolling_rate),
             "released": is_release(case),

@@ -124,7 +124,7 @@ def advise(
         if verification is not None and verification.outcome != "failed":
             methods = verification.agreed_until if verification.diverged else math.inf
         data = spread_from(band, trace.peak_tilt / case.cylinder.alpha)
-        trust = trust_of(methods, data, float(trace.time[int(trace.tilt.argmax())]), float(trace.time[-1]))
+        trust = trust_of(methods, data, trace.peak_time, float(trace.time[-1]))
     return Advice(
         case=case,
         support=support,

@@ -29,6 +29,7 @@ SolverName = Literal["RK45", "DOP853", "LSODA"]
 SOLVERS: tuple[SolverName, ...] = ("RK45", "DOP853", "LSODA")
 # of tilt, its rate, rolling angle and momentum: times the relative tolerance they are the absolute ones
 TOLERANCE_SCALE = np.array([1e-3, 1e-3, 1.0, 1e-3])
+_SWING = 10.0  # of sqrt(R/g): for which a swing is followed past the end
 _AFTER_UPLIFT = 2e-3  # [s]
 _INSTANT = 1e-9  # of motion, for the momentum of a release [s]
 
@@ -65,8 +66,9 @@ def start_of(case: Case, *, compiled: bool) -> Rates:
 def rates_of(case: Case, *, compiled: bool) -> RatesFunction:
     """Return the equations of a case, (t, y) -> y', as plain Python or compiled."""
     motion = case.motion or GroundMotion(np.zeros((2, 2)), case.length)
-    # a sample more than the run is long: the last stage of a solver stands at its end
-    padded = np.vstack([motion.acceleration[:, :2], np.zeros((2, 2))])
+    # still ground for the swing that goes on at the end, and a sample more for the last stage of a solver
+    beyond = math.ceil(_SWING / (motion.time_step * math.sqrt(9.81 / case.cylinder.semidiagonal))) + 2
+    padded = np.vstack([motion.acceleration[:, :2], np.zeros((beyond, 2))])
     # numbers of Python are quicker than those of an array, where nothing compiles
     samples: Array | list[tuple[float, ...]] = padded if compiled else [tuple(row) for row in padded.tolist()]
     per_second, cylinder = 1.0 / motion.time_step, case.cylinder
@@ -142,4 +144,17 @@ def solve(problem: Problem, case: Case, name: SolverName, rates: Rates, rtol: fl
     if problem.name == "turn":  # the release is a maximum itself
         return np.asarray(np.degrees(np.abs(maxima[instants > 0.1][:1, 2] - rates.state[2])))
     peak = max(float(run.y[0].max()), float(maxima[:, 0].max(initial=0.0)))
+    if run.status == 0:  # it moves, and swings on to its next maximum
+        turns_back.terminal = True  # type: ignore[attr-defined]
+        span = rates.end, rates.end + _SWING / math.sqrt(9.81 / case.cylinder.semidiagonal)
+        swing = solve_ivp(
+            rates.function,
+            span,
+            run.y[:, -1],
+            name,
+            events=turns_back,
+            rtol=rtol,
+            atol=rtol * TOLERANCE_SCALE,
+        )
+        peak = max(peak, float(swing.y[0].max()))
     return np.array([min(peak / case.cylinder.alpha, 1.0)])

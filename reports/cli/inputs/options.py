@@ -97,8 +97,8 @@ RollingRate = Annotated[float, _release("Rolling rate at release, in rad/s.")]
 Duration = Annotated[
     float | None,
     _release(
-        "Length of the run, in s; what is falling then is followed over still ground. Default: that of the "
-        "ground motion, 10 s without one."
+        "Length of the run, in s; what moves then is followed over still ground to its next maximum. "
+        "Default: that of the ground motion, 10 s without one."
     ),
 ]
 ALL, NO_ENGINE = "all", "none"  # in place of the names of engines

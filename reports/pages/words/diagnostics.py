@@ -57,7 +57,10 @@ _WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
         f"contact {'made' if fact.size > 0.0 else 'took'} {abs(fact.size):.1e} of the energy of the "
         f"motion, which shows{_from(fact)}"
     ),
-    "undecided": lambda _: "it ends in the middle of a fall, and whether that overturns it is not decided",
+    "undecided": lambda _: (
+        "it ends in motion, which comes to no maximum of its tilt in the time for which it is followed: "
+        "whether it overturns is not decided"
+    ),
     "solver": lambda fact: (
         f"the solver had not converged in {fact.size:.0f} of the {fact.bound:.0f} steps looked at"
     ),
@@ -115,7 +118,7 @@ _MANY: Mapping[str, str] = {
     "unsettled": "did not settle with the time step",
     "not_extrapolated": "could not be extrapolated in the time step to the end",
     "unresolved_pass": "had passes closer to upright than contact resolves",
-    "undecided": "ended in the middle of a fall",
+    "undecided": "ended in motion that was not decided",
     "side": "passed through upright itself",
 }
 

@@ -1,0 +1,136 @@
+"""A swing that goes on when a run ends counts to its next maximum, over still ground."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+from shaken_problems import Problem, problem
+
+from rockwobble import reduced
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+SAME = 1e-7  # of the peak: other ends of steps of a tolerance of 1e-9, over some swings
+LEAST = 1e-8  # rad: tilts that small pass a thousand times in the time that is compared
+MODELS: dict[str, dict[str, Any]] = {
+    "recess": {},
+    "flat": {"support": "flat"},
+    "planar": {"plane": 0.4},
+    "planar with impacts": {"plane": 0.4, "restitution": "momentum"},
+}
+
+
+def cut(seed: int) -> Problem:
+    """A shaken problem whose record ends with a sample that is not zero."""
+    given = problem(seed, sizes=(1.0, 50.0), slenderness=(0.08, 0.6))
+    share = np.random.default_rng(seed).uniform(0.2, 0.6)
+    acceleration = given.motion.acceleration[: round(share * len(given.motion.acceleration))]
+    return given._replace(motion=GroundMotion(acceleration, given.motion.time_step))
+
+
+def solve(given: Problem, model: str, still: float = 0.0, **options: Any) -> Trace:
+    case = Case(given.cylinder, given.motion, duration=given.motion.duration + still)
+    return reduced.simulate(case, **{"rtol": 1e-9, "sample_step": 0.05, **MODELS[model], **options})
+
+
+def largest(trace: Trace) -> float:
+    """The largest tilt while the run lasts."""
+    return float(max(trace.tilt.max(), trace.extrema[:, 1].max(initial=0.0)))
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_still_ground_after_the_record_changes_no_peak(model: str) -> None:
+    higher, later = 0, 0
+    for seed in range(30):
+        given = cut(seed)
+        if given.chatters:
+            continue
+        short, long = (solve(given, model, still) for still in (0.0, 10.0))
+        assert (short.outcome, short.peak_tilt == 0.0) == (long.outcome, long.peak_tilt == 0.0), seed
+        if short.outcome == "overturned" or short.peak_tilt == 0.0:
+            continue
+        assert short.time[-1] == given.motion.duration
+        assert short.peak_tilt == pytest.approx(largest(long), rel=SAME, abs=LEAST), seed
+        higher += largest(short) < 0.98 * short.peak_tilt
+        if not short.rests:
+            later += 1
+            ends = np.array([*long.extrema[long.extrema[:, 3] > 0.0, 0], *long.rest_intervals[:, 0]])
+            end = ends[ends > given.motion.duration].min()
+            assert short.followed_until == pytest.approx(end, rel=SAME), seed
+        for still in (1e-4, 0.1, 1.3):
+            assert solve(given, model, still).peak_tilt == pytest.approx(
+                short.peak_tilt, rel=SAME, abs=LEAST
+            ), seed
+    assert higher > 3
+    assert later > 10
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_a_cell_whose_record_is_cut_is_its_single_run_to_the_bit(model: str) -> None:
+    followed = 0
+    for seed in range(30):
+        given = cut(seed)
+        size, tan_alpha = given.cylinder.semidiagonal, given.cylinder.tan_alpha
+        found = solve(given, model)
+        (peak,) = reduced.peak_tilts([size], tan_alpha, given.motion, [1.0], rtol=1e-9, **MODELS[model])[0]
+        assert peak == found.peak_tilt, seed
+        followed += found.outcome == "stands" and largest(found) < peak
+    assert followed > 3
+
+
+@pytest.mark.parametrize("model", MODELS)
+@pytest.mark.parametrize("tilt_rate", [0.05, -0.05])  # it rises at the end, or passes upright before that
+def test_a_free_response_that_is_cut_has_the_peak_of_its_swing(model: str, tilt_rate: float) -> None:
+    spin = 0.0 if "planar" in model else 0.4
+    start = InitialState(0.3 * PIER.alpha, tilt_rate, 0.4, spin)
+    short, long = (
+        reduced.simulate(Case(PIER, initial=start, duration=duration), rtol=1e-10, **MODELS[model])
+        for duration in (0.2, 20.0)
+    )
+    loses = model == "planar with impacts" and tilt_rate < 0.0
+    assert loses or largest(short) < 0.99 * largest(long)
+    assert short.peak_tilt == pytest.approx(largest(long), rel=SAME)
+    assert short.time[-1] == 0.2
+
+
+def test_what_had_its_maximum_over_still_ground_or_stands_is_not_followed() -> None:
+    released = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=0.1)
+    weak = Case(PIER, el_centro_1940().scaled(0.3))
+    for case in (released, weak):
+        assert math.isnan(reduced.simulate(case).followed_until)
+    assert not reduced.simulate(released).rests
+    assert reduced.simulate(weak).rests
+
+
+def test_all_maxima_on_flat_still_ground_are_alike_whatever_the_twist() -> None:
+    """Lambda and S are functions of the tilt alone: the tilt is an oscillation between two turning points."""
+    twisted = 0
+    for seed in range(30):
+        given = cut(seed)
+        found = solve(given, "flat", 15.0, rtol=1e-11, rest_tilt=0.0)
+        after = found.extrema[found.extrema[:, 0] > given.motion.duration]
+        tops, lows = (after[after[:, 3] == kind, 1] for kind in (1.0, -1.0))
+        if found.outcome != "stands" or len(tops) < 3:
+            continue
+        # a pass multiplies the tolerance
+        assert np.ptp(tops) < 1e-6 * tops[0], seed
+        assert np.ptp(lows) < 1e-5 * tops[0], seed
+        late = found.time > given.motion.duration
+        twisted += np.ptp(found.twist[late]) > 1e-3
+    assert twisted > 10
+
+
+@pytest.mark.parametrize(("size", "tan_alpha", "scale", "end", "peak"), [
+    (24.7, 0.1751, 1.312, 5.42, 0.0668),
+    (4.446, 0.2457, 3.234, 2.94, 0.646),
+])  # fmt: skip
+def test_peaks_of_el_centro_cut_in_the_middle_of_a_swing(
+    size: float, tan_alpha: float, scale: float, end: float, peak: float
+) -> None:
+    # printed with three digits, of an integration over still ground by another code
+    cylinder = Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
+    found = reduced.simulate(Case(cylinder, el_centro_1940().scaled(scale), duration=end))
+    assert found.peak_tilt / cylinder.alpha == pytest.approx(peak, abs=6e-4 * peak + 5e-5)
