@@ -122,7 +122,9 @@ def test_a_mistake_stands_in_the_headline_and_what_is_left_without_it():
     assert "The azimuth differs by 10.0 deg (rms while the tilts agree), from 2.80 s on." in words
     assert words.endswith("Without it, the tilt follows the model until 9.7 s.")
     left = external_sentences(row(**WRONG, differs_without_mistake=("tilt", "path")))
-    assert left.endswith("Without it, the tilt follows the model for 8.0 s, but it differs in tilt and path.")
+    assert left.endswith(
+        "Without it, the tilt follows the model until 9.7 s, but it differs in tilt and path."
+    )
     other = external_sentences(
         row(**WRONG, alternative_mistake=("mirrored",), alternative_mistake_value=(25.0,))
     )
