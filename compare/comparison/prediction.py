@@ -153,8 +153,9 @@ def reproducible_until(own: Trace, copies: Iterable[Trace]) -> float:
 
     Infinite where it does so to its end.
     """
-    ends = [_diverges(own.case, own, copy, tolerance_of(own)) for copy in copies]
-    return min((end for end in ends if end < own.case.length), default=math.inf)
+    pairs = (make_pair(own.case.cylinder, own, copy) for copy in copies)
+    found = [agreement_time(pair, tolerance=tolerance_of(own)) for pair in pairs]
+    return min((each.end for each in found if each.diverged), default=math.inf)
 
 
 def verdict(measured: float, diverged: bool, predicted: float, reason: str) -> str:

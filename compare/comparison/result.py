@@ -16,6 +16,7 @@ from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Shown
 
 from ..external.verdict import lists_in_words
+from ..metrics.order_statistics import stated
 from ..runs.execution import case_inputs
 from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Manifest, made_now, read_results, write_results
@@ -147,7 +148,7 @@ class Comparison(Shown):
         -------
         Manifest
         """
-        relative = self.summary["tilt_rms_relative"]
+        relative, agreed = self.summary["tilt_rms_relative"], self.summary["agreement_time"]
         return made_now(
             KIND,
             inputs=fingerprint([case_inputs(case) for case in self.cases.values()]),
@@ -158,9 +159,9 @@ class Comparison(Shown):
                 "rows": len(self.summary),
                 "diverged": int(self.summary["diverged"].sum()),
                 "failed": int((self.summary["outcome"] == "failed").sum()),
-                "median of the relative RMS": _number(relative.median()),
+                "median of the relative RMS": _number(stated(relative.median(), int(relative.notna().sum()))),
                 "largest relative RMS": _number(relative.max()),
-                "median agreement time [s]": _number(self.summary["agreement_time"].median()),
+                "median agreement time [s]": _number(stated(agreed.median(), len(agreed))),
             },
         )
 

@@ -17,6 +17,8 @@ from .pair import Pair
 
 # share of the peak tilt: motions that stay below 1 % of alpha agree within that whatever they do
 PEAK_SHARE = 0.1
+# so many times the tolerance a tilt has to change by: half of a small peak; less is known to a fifth at best
+TESTING = 5.0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -32,8 +34,8 @@ class Agreement:
     diverged : bool
         Whether there was a divergence.
     tested : bool
-        Whether the tilt of the reference changes within it by more than the tolerance; if it does not,
-        anything that moves no more agrees.
+        Whether the tilt of the reference changes within it by more than `TESTING` tolerances; where it
+        changes by less, anything that moves as little agrees.
     """
 
     length: float
@@ -78,7 +80,7 @@ def agreement_time(
         length=max(0.0, end - pair.start) if diverged else end,
         end=end,
         diverged=diverged,
-        tested=count > 0 and float(np.ptp(agreed)) > tolerance * pair.cylinder.alpha,
+        tested=count > 0 and float(np.ptp(agreed)) > TESTING * tolerance * pair.cylinder.alpha,
     )
 
 

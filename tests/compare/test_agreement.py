@@ -106,9 +106,11 @@ def test_an_agreement_is_tested_by_motion_beyond_the_tolerance(cylinder, make_tr
         trial = make_trace(time, tilt + np.where(time >= leaves, 0.1, 0.0))
         return agreement_time(make_pair(cylinder, reference, trial), tolerance=tolerance)
 
-    # 0.01 alpha is reached at 7 s, 0.001 alpha at 2.5 s
-    assert [agreed(leaves, 0.01).tested for leaves in (0.0, 6.9, 7.1, 20.0)] == [False, False, True, True]
-    assert [agreed(leaves, 0.001).tested for leaves in (2.4, 2.6)] == [False, True]
+    # 5 times 0.002 alpha are reached at 7 s, 5 times 0.0002 alpha at 2.5 s
+    assert [agreed(leaves, 0.002).tested for leaves in (0.0, 6.9, 7.1, 20.0)] == [False, False, True, True]
+    assert [agreed(leaves, 0.0002).tested for leaves in (2.4, 2.6)] == [False, True]
+    lean = make_trace(time, np.full_like(time, 0.3 * cylinder.alpha))  # released, and not yet in motion
+    assert not agreement_time(make_pair(cylinder, lean, lean)).tested
 
 
 def test_a_summary_holds_both_bounds_and_the_time_of_the_run(cylinder, make_trace):

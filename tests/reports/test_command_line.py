@@ -243,6 +243,21 @@ def test_simulate_a_reduced_model(folder, in_this_process, capsys):
     assert about["case"]["initial"]["rolling_rate"] == 0.5
 
 
+def test_simulate_says_from_when_on_its_trace_is_one_of_many(folder, in_this_process, capsys):
+    slender = ["--semidiagonal", "6.0847320541999865", "--tan-alpha", "0.08996054265853794"]
+    given = [*slender, "--scale", "1.28359029043245", "--support", "recess"]
+    assert call("simulate", *given, "--rest-tilt", "1e-9") == 0
+    about = json.loads(Path("rockwobble-simulate/manifest.json").read_text())["about"]["single_trace"]
+    # before its peak, which the sixth digit of the record changes by 0.1 alpha
+    assert 20.0 < about["until"] < 40.0
+    # with what states the problem, and nothing that advise does not know
+    assert set(about["answer"].split()) == {"rockwobble", "advise", *given}
+    words = " ".join(capsys.readouterr().out.split())
+    assert f"From {about['until']:.4g} s on, before its largest tilt, a single trace is not" in words
+    assert call("simulate", "--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2") == 0
+    assert "not reproducible" not in capsys.readouterr().out
+
+
 NOT_TOGETHER = {
     "a ring without an engine": (["--support", "ring"], "support must be one of recess, flat"),
     "a plane with an engine": (

@@ -114,6 +114,8 @@ def test_agreement_to_the_end():
             {"predicted_agreement_time": 30.0, "closest_pass": math.nan},
             "an error of the method and not of chance",
         ),
+        # agreed for a hundred times as long as predicted: that pass is not why
+        ({"predicted_agreement_time": 0.2}, "diverge: the closest pass until then comes within 0.003 alpha"),
         (FLAT, "on flat ground the cylinder may roll out"),
         (FLAT | OWN, "a pass comes closer to upright"),
         (RING, "only where it has rolled out as far as their clearance"),

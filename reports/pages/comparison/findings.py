@@ -11,6 +11,7 @@ import pandas as pd
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
+from rockwobble.compare.comparison.prediction import BEATEN
 from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.runs.labels import REDUCED
@@ -147,9 +148,10 @@ def reason(row: Any, length: float, *, touched: bool = False, models_differ: boo
         return "walls"
     if row.support == EXTERNAL and explains_divergence(row):
         return "mistake"
-    predicted = row.predicted_until
-    by_pass = row.predicted_by == "pass" and row.support != EXTERNAL and predicted < length
-    if by_pass and row.within_tolerance_until >= predicted:
+    by_pass = row.predicted_by == "pass" and row.support != EXTERNAL and row.predicted_until < length
+    start = row.reference_uplift_time
+    agreed, predicted = row.within_tolerance_until - start, row.predicted_until - start
+    if by_pass and predicted <= agreed <= BEATEN * predicted:  # one that was survived for longer left nothing
         return "pass"
     return "near passes" if math.isfinite(row.closest_pass) else ""
 

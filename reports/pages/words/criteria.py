@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from rockwobble.compare.comparison.prediction import BEATEN
+from rockwobble.compare.metrics.agreement import TESTING
 from rockwobble.compare.metrics.order_statistics import FEWEST
 from rockwobble.compare.studies.advice.grades import BROKEN, GRADES, NEAR, SENSITIVE, UNSAFE, Grade
 
@@ -47,7 +48,7 @@ CRITERIA: Mapping[str, Mapping[Grade, str]] = {
         "engine": (
             "it diverges from the model when predicted, or later, and comes to the same end",
             f"no engine was run, or it failed; it agrees more than {BEATEN:g} times as long as predicted; or "
-            "they diverge before the model's tilt changes by more than the tolerance",
+            f"the model's tilt changes by less than {TESTING:g} tolerances until they diverge",
             "it comes to another end, or stays at rest where the model moves",
             "it diverges earlier than half of what is predicted: neither may be trusted",
         ),
