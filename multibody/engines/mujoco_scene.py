@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 from ..protocol import Scene
 from ..scene.friction import body_friction
+from ..scene.ring_geometry import wall_feet, wall_orientations
 from ..scene.ring_settings import RingSettings
-from .mujoco_ring import set_walls
 from .settings.mujoco import MujocoSettings
 
 if TYPE_CHECKING:
@@ -32,7 +32,7 @@ def compile_scene(
     _set_options(spec, scene, settings)
     _set_body(spec, scene)
     if ring is not None:
-        set_walls(spec, ring, scene.body.base_radius)
+        _set_walls(spec, ring, scene.body.base_radius)
     _set_contact(spec, scene, settings, standing, ring)
     for component in set("xyz") - set(scene.components):
         spec.delete(spec.actuator(f"push_{component}"))
@@ -109,6 +109,23 @@ def _set_contact(
         # the damping by the impedance
         damping = settings.friction_damping * impedance / scene.time_step
         pair.solreffriction = [-1.0, -damping]
+
+
+def _set_walls(spec: Any, ring: RingSettings, base_radius: float) -> None:
+    """Replace the walls of the scene file by those of `ring`, which may be more, fewer or elsewhere.
+
+    They are planes, in contact with the cylinder through pairs of their own.
+    """
+    body, wall = spec.body("ring"), spec.find_default("wall")
+    for pair in [pair for pair in spec.pairs if pair.geomname1.startswith("wall")]:
+        spec.delete(pair)
+    for geom in list(body.geoms):
+        spec.delete(geom)
+    feet, turns = wall_feet(ring, base_radius), wall_orientations(ring)
+    for index, (foot, turn) in enumerate(zip(feet, turns, strict=True)):
+        name = f"wall{index:02d}"
+        body.add_geom(wall, name=name, pos=foot, quat=turn)
+        spec.add_pair(wall, geomname1=name, geomname2="cylinder")
 
 
 def _on_ground(pair: Any) -> bool:

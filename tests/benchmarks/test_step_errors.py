@@ -33,7 +33,9 @@ def test_an_error_is_compared_up_to_where_it_is_stated() -> None:
     assert not row["said"]
 
 
-def test_what_states_no_error_says_why(capsys: pytest.CaptureFixture[str], monkeypatch) -> None:
+def test_what_states_no_error_says_why(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
     case, support = next(step_errors.problems(1, seed=3))
     case = dataclasses.replace(case, duration=0.1)
     monkeypatch.setattr(step_errors, "problems", lambda *_: [(case, support)])

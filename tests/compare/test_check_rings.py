@@ -41,7 +41,7 @@ def test_walls_at_the_circle_itself(monkeypatch: pytest.MonkeyPatch) -> None:
     def near(ring: Any, base_radius: float) -> Any:
         return placed(ring, base_radius) / (1.0 + ring.ring_clearance)
 
-    monkeypatch.setattr("rockwobble.multibody.engines.mujoco_ring.wall_feet", near)
+    monkeypatch.setattr("rockwobble.multibody.engines.mujoco_scene.wall_feet", near)
     assert "first contact with a wall, mujoco" in failed(monkeypatch)
 
 

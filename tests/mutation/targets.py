@@ -115,7 +115,6 @@ GROUPS = (
             "multibody/scene/friction.py",
             "multibody/scene/froude.py",
             "multibody/engines/*_engine.py",
-            "multibody/engines/mujoco_ring.py",
             "multibody/engines/mujoco_scene.py",
             "multibody/scene/ring_geometry.py",
             "multibody/scene_of_case.py",

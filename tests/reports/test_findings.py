@@ -22,10 +22,12 @@ from rockwobble.models import (
     el_centro_1940,
 )
 from rockwobble.models.diagnostic import CODES, REASONS
+from rockwobble.reports.console import budget_of_run
 from rockwobble.reports.figures.comparison.view import case_views
 from rockwobble.reports.pages.comparison.external import within
 from rockwobble.reports.pages.comparison.findings import (
     Finding,
+    budget_sentences,
     counted_remarks,
     divergence_sentences,
     finding,
@@ -322,3 +324,39 @@ def test_words_are_joined_counted_and_told_from_failures():
 )
 def test_small_numbers_can_be_read(value, text):
     assert small(value) == text
+
+
+def budgets(*reasons: str) -> pd.DataFrame:
+    """Return a summary whose differences are split where the reason is empty."""
+    rows = [
+        {"case": "one", "run": "a", "reference": "b", "reference_engine": "reduced", "limit_error": 1e-4}
+        | {"whole_rms": 1e-3, "unexplained_share": math.nan if reason else 0.1, "not_split": reason}
+        for reason in reasons
+    ]
+    return pd.DataFrame(rows)
+
+
+def test_a_difference_that_is_not_split_is_neither_explained_nor_unexplained():
+    (line,) = budget_sentences(budgets("order", "order"))
+    assert line.startswith("The difference of 2 rows is not split")
+    explained, line = budget_sentences(budgets("", "unresolved_pass"))
+    assert "in 1 of the 1 rows (100 %)" in explained
+    assert "left to chance" not in explained
+    assert "leaves it to chance" in line
+
+
+@pytest.mark.parametrize("reason", ["unresolved_pass", "order", "error"])
+def test_the_budget_of_a_run_advises_nothing_where_it_is_not_split(monkeypatch, reason):
+    part = pd.Series([1e-3])
+    found = SimpleNamespace(
+        not_split=reason, rms=lambda _: float(part[0]), covered=1.6, steps=(2e-4, 1e-4), order=-1.4
+    )
+    comparison = SimpleNamespace(
+        traces={("case", "model"): SimpleNamespace(run="reference")},
+        summary=table(row(reference="model", diverged=False)),
+        budgets={("case", "run", "model"): found},
+    )
+    monkeypatch.setattr(budget_of_run.rw, "compare", lambda *_, **__: comparison)
+    *parts, last = budget_of_run.budget_of_run(None, None, "reference")
+    assert last.startswith("It is not split")
+    assert not any(line.strip().startswith(("numerics", "unexplained")) for line in parts)
