@@ -52,9 +52,8 @@ STEADY = math.radians(2.0)
 SMALL_LEAN = 1e-3  # such differences, over the largest tilt
 CONFIDENCE = 3.0  # standard deviations of the noise
 OPEN = 0.5  # an angle that is known no better than this is not known [rad]
-SWINGS = (
-    3  # two models that a first pass turned apart are off by the same angle in one swing, by chance in two
-)
+# two models that a first pass turned apart are off by the same angle in one swing, by chance in two
+SWINGS = 3
 FEWEST_LEANING = 8  # samples that lean without which there is no fit of the axes
 
 TURNS = {math.pi: "turned_back"}
