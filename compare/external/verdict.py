@@ -15,7 +15,8 @@ from rockwobble.models import AGREEMENT, Case, Trace
 from ..metrics.contact import TILTED
 from ..metrics.pair import start_of
 from .difference import Difference, Part, Reference
-from .mistakes import Explanation, Mistake, explanations
+from .explanation import Explanation, explanations
+from .mistakes import Mistake
 from .motion import Motion, exceeds, motion_at
 from .table import Values
 from .trajectory import external_motion, measurement, trajectory_of

@@ -146,31 +146,6 @@ def test_a_pass_between_two_samples_is_guessed_by_the_sense_of_the_turning_and_s
     assert trajectory.rolling_angle[-1] == pytest.approx(response.rolling_angle[-1], abs=1e-9)
 
 
-CHANGES = {
-    "early by 0.05 s": (lambda table: table, {"time_offset": -0.05}, "tilt_rms", 1e-3),
-    "turned by 10 deg": (
-        lambda table: table.assign(**{"azimuth [deg]": table["azimuth [deg]"] + 10.0}),
-        {},
-        "contact_rms",
-        0.1,
-    ),
-    "tilt 2 % larger": (
-        lambda table: table.assign(**{"tilt [deg]": 1.02 * table["tilt [deg]"]}),
-        {},
-        "peak_tilt_difference",
-        5e-3,
-    ),
-}
-
-
-@pytest.mark.parametrize("change", CHANGES)
-def test_what_is_wrong_with_a_trajectory_shows(in_recess, save, change):
-    wrong, given, column, least = CHANGES[change]
-    table = wrong(angles(in_recess["shaken"]))
-    engine, external = rows(SHAKEN, save(table), **given)
-    assert abs(external[column]) > abs(engine[column]) + least
-
-
 def test_a_time_offset_takes_back_a_late_clock(in_recess, save):
     table = angles(in_recess["shaken"])
     late = table.assign(**{"time [s]": table["time [s]"] + 3.0})

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from rockwobble.compare.external.difference import AZIMUTH_BOUND, Part, Reference, explains
-from rockwobble.compare.external.mistakes import Frame, fitted_frames, fitted_offsets, fitted_rate
+from rockwobble.compare.external.explanation import fitted_frames, fitted_offsets, fitted_rate
+from rockwobble.compare.external.mistakes import Frame
 from rockwobble.compare.external.motion import Motion
 from rockwobble.models import Cylinder
 

@@ -291,6 +291,14 @@ def test_another_start_is_no_mistake_of_the_file(save, name, change):
     assert verdict(name, save(other_body(name, initial=initial))).mistakes == ()
 
 
+@pytest.mark.parametrize("loss", [0.005, 0.03])  # of the tilt, a second
+@pytest.mark.parametrize("name", ["pier wobbles", "pier passes", "planar"])
+def test_a_motion_that_dies_away_has_no_other_time_scale(save, name, loss):
+    table = samples(name)
+    table["tilt [deg]"] *= np.exp(-loss * table["time"])
+    assert verdict(name, save(table)).mistakes == ()
+
+
 def test_what_is_not_told_is_said_and_not_compared(save):
     alone = verdict("pier shaken", save(samples("pier shaken", "tilt")))
     assert alone.not_compared == alone.not_given == ("azimuth", "path")

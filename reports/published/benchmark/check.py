@@ -641,33 +641,6 @@ QUATERNION_ORDERS = {
     "quaternion_inverse": ("qw", "-qx", "-qy", "-qz"),
     "z_reversed": ("-qx", "qw", "qz", "-qy"),
 }
-# how much more motion must agree without the mistake, and how far it must lean while it does, in bounds
-MORE_MOTION, LEANING = 4.0, 5.0
-# how long it must agree, over the time scale of rocking, or up to the end
-LONG = 3.0
-# windows in which the clock is fitted, over that scale: the first motion agrees best, and may be too little
-WINDOWS = (3.0, 6.0, 12.0)
-SHORTEST_DELAY = 0.01  # an offset of the clock that is named, over the time scale
-LARGEST_DELAY = 0.5  # the largest that is tried, over the length of the run
-FINE = 40.0  # samples of the time scale in the first search of an offset
-ALIKE = 1.5  # rocking repeats itself: of offsets whose misfit is at most this times the least, the smallest
-SMALLEST_RATE, LARGEST_RATE = 2.5e-3, 0.15  # by which a rate that is named differs from 1
-# what is left of the tilt difference in the right time scale: another tilt or spin at release leaves a fifth
-SAME_MOTION = 0.1
-FEWEST_FITTED = 3  # samples of a window
-NO_MISFIT = 10.0  # of what is not there: more than any tilt [rad]
-# an axis is meant where the fit comes so close to it, and the rest is another difference [rad]
-NAMED_WITHIN = math.radians(1.5)
-# a turn of the axes is the same all the time: that of each part of the motion may differ by this angle [rad],
-# and by what noise and other small differences of the lean make of it
-STEADY = math.radians(2.0)
-SMALL_LEAN = 1e-3  # such differences, over the largest tilt
-CONFIDENCE = 3.0  # standard deviations of the noise
-OPEN = 0.5  # an angle that is known no better than this is not known [rad]
-SWINGS = (
-    3  # two models that a first pass turned apart are off by the same angle in one swing, by chance in two
-)
-FEWEST_LEANING = 8  # samples that lean without which there is no fit of the axes
 
 TURNS = {math.pi: "turned_back"}
 MIRRORS = {
@@ -769,19 +742,6 @@ class Change:
 Read = Callable[[Values], Motion | None]  # the motion that columns tell; None where they tell none
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Explanation:
-    """Mistakes that explain a difference all together, if any, and what is left without them."""
-
-    changes: tuple[Change, ...]
-    left: Difference
-
-    @property
-    def mistakes(self) -> tuple[Mistake, ...]:
-        """The likely mistakes."""
-        return tuple(change.mistake for change in self.changes)
-
-
 def corrected(values: Values, read: Read, changes: Sequence[Change]) -> Motion | None:
     """Return the motion of columns after some changes."""
     for change in changes:
@@ -832,6 +792,100 @@ def readings(values: Values) -> Iterator[Change]:
         yield in_order("y_up", "axes", {"y": "-z", "z": "y", "qy": "-qz", "qz": "qy"})
     for factor in (1e3, 1e-3):
         yield in_unit("time_unit", "time", ("time",), factor)
+
+
+def of_path(reading: Change) -> Change:
+    """Return the change of a path alone that a reading of its columns is."""
+    mistake = replace(reading.mistake, concerns="path")
+
+    def taken_back(motion: Motion) -> Motion:
+        assert motion.path is not None
+        columns = reading.values(dict(zip(POSITION, motion.path.T, strict=True)))
+        noise = motion.path_noise / (mistake.value if mistake.code == "length_unit" else 1.0)
+        return replace(motion, path=np.column_stack([columns[name] for name in POSITION]), path_noise=noise)
+
+    return Change(mistake=mistake, motion=taken_back)
+
+
+def in_time_scale(rate: float) -> Change:
+    """Return what takes back that a motion is slower by a factor."""
+    mistake = Mistake(code="time_scale", concerns="time", value=rate)
+    return Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Frame:
+    """Change of a motion into the axes of the reference: y reversed if mirrored, then a turn.
+
+    A turn by beta multiplies the lean by exp(i beta); axes of the other sense, such as x and y exchanged, an
+    azimuth counted clockwise or a mirrored table, conjugate it first. In planar motion both do the same.
+    The angle is counter-clockwise, in (-pi, pi] [rad].
+    """
+
+    angle: float = 0.0
+    mirrored: bool = False
+
+    def apply(self, motion: Motion) -> Motion:
+        """Return the motion in the axes of the reference."""
+        return motion.turned(self.angle, mirrored=self.mirrored)
+
+    def change(self, concerns: str) -> Change:
+        """Return what takes the mistake back in "azimuth", "path", or "axes", which are both."""
+        named = MIRRORS if self.mirrored else TURNS
+        code = named.get(self.angle, "mirrored" if self.mirrored else "turned")
+        value = {"turned": -math.degrees(self.angle), "mirrored": 0.5 * math.degrees(self.angle)}.get(
+            code, math.nan
+        )
+
+        def taken_back(motion: Motion) -> Motion:
+            other = self.apply(motion)
+            if concerns == "azimuth":
+                return replace(motion, lean=other.lean)
+            return replace(motion, path=other.path) if concerns == "path" else other
+
+        mistake = Mistake(code=code, concerns=concerns, value=value)
+        return Change(mistake=mistake, motion=taken_back, frame=self if concerns == "axes" else None)
+
+
+# how much more motion must agree without the mistake, and how far it must lean while it does, in bounds
+MORE_MOTION, LEANING = 4.0, 5.0
+# how long it must agree, over the time scale of rocking, or up to the end
+LONG = 3.0
+# windows in which the clock is fitted, over that scale: the first motion agrees best, and may be too little
+WINDOWS = (3.0, 6.0, 12.0)
+SHORTEST_DELAY = 0.01  # an offset of the clock that is named, over the time scale
+LARGEST_DELAY = 0.5  # the largest that is tried, over the length of the run
+FINE = 40.0  # samples of the time scale in the first search of an offset
+ALIKE = 1.5  # rocking repeats itself: of offsets whose misfit is at most this times the least, the smallest
+SMALLEST_RATE, LARGEST_RATE = 2.5e-3, 0.15  # by which a rate that is named differs from 1
+# what is left of the tilt difference in the right time scale: another tilt or spin at release leaves a fifth
+SAME_MOTION = 0.1
+FEWEST_FITTED = 3  # samples of a window
+NO_MISFIT = 10.0  # of what is not there: more than any tilt [rad]
+# an axis is meant where the fit comes so close to it, and the rest is another difference [rad]
+NAMED_WITHIN = math.radians(1.5)
+# a turn of the axes is the same all the time: that of each part of the motion may differ by this angle [rad],
+# and by what noise and other small differences of the lean make of it
+STEADY = math.radians(2.0)
+SMALL_LEAN = 1e-3  # such differences, over the largest tilt
+CONFIDENCE = 3.0  # standard deviations of the noise
+OPEN = 0.5  # an angle that is known no better than this is not known [rad]
+# two models that a first pass turned apart are off by the same angle in one swing, by chance in two
+SWINGS = 3
+FEWEST_LEANING = 8  # samples that lean without which there is no fit of the axes
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Explanation:
+    """Mistakes that explain a difference all together, if any, and what is left without them."""
+
+    changes: tuple[Change, ...]
+    left: Difference
+
+    @property
+    def mistakes(self) -> tuple[Mistake, ...]:
+        """The likely mistakes."""
+        return tuple(change.mistake for change in self.changes)
 
 
 def explanations(values: Values, read: Read, reference: Reference) -> Iterator[Explanation]:
@@ -929,6 +983,66 @@ class _Search:
         yield (), Frame(), motion
 
 
+def _path_explained(reference: Reference, motion: Motion, axes: Frame) -> tuple[Change, ...]:
+    """Return the fewest changes that explain a path; what is wrong with the axes of the lean is expected."""
+    before = reference.difference(motion)
+    part = before.path
+    if motion.path is None or part is None or not (part.differs or axes != Frame()):
+        return ()
+    expected = (Frame(), axes)
+    fits = fitted_frames(reference, _with_lean_of_path(motion), start=before.start, end=before.covered)
+    own = [
+        of_path(one)
+        for one in readings(dict.fromkeys(POSITION, motion.time))
+        if one.mistake.code != "time_unit"
+    ]
+    pairs = [pair for pair in itertools.combinations(own, 2) if len({one.mistake.code for one in pair}) == 2]
+    read_otherwise = [(), *((one,) for one in own), *pairs]
+
+    def count(trial: tuple[Frame, tuple[Change, ...], bool]) -> float:
+        frame, changes, moved = trial
+        # a constant offset has three numbers to fit: it comes after what has none
+        return (frame not in expected) + len(changes) + 1.5 * moved
+
+    frames = dict.fromkeys((*expected, *fits))
+    tried = sorted(itertools.product(frames, read_otherwise, (False, True)), key=count)
+    for _, alike in itertools.groupby(tried, key=count):
+        passing: list[tuple[float, tuple[Change, ...]]] = []
+        for frame, changes, moved in alike:
+            turn = [frame.change("axes" if frame == axes else "path")] if frame != Frame() else []
+            # y up is no horizontal axis
+            changes = tuple(sorted((*turn, *changes), key=lambda one: one.mistake.code != "y_up"))
+            changes += (_origin(reference, changed(motion, changes), before.covered),) if moved else ()
+            left = reference.difference(changed(motion, changes)).path
+            if left is not None and not left.differs and (explains(part, left) or not part.differs):
+                passing.append((left.size, changes))
+        if passing:
+            return min(passing, key=lambda one: one[0])[1]
+    return ()
+
+
+def _origin(reference: Reference, motion: Motion, end: float) -> Change:
+    """Return what takes back that a path is counted from elsewhere."""
+    wanted, own = on_samples_of(reference.motion, motion)
+    assert wanted.path is not None
+    assert own.path is not None
+    origin = np.median((own.path - wanted.path)[wanted.time <= end + SAME_TIME], axis=0)
+
+    def taken_back(given: Motion) -> Motion:
+        assert given.path is not None
+        return replace(given, path=given.path - origin)
+
+    mistake = Mistake(code="origin", concerns="path", value=float(np.linalg.norm(origin)))
+    return Change(mistake=mistake, motion=taken_back)
+
+
+def _with_lean_of_path(motion: Motion) -> Motion:
+    """Return the motion with the direction of its mass centre for that of its axis."""
+    assert motion.path is not None
+    flat = motion.path[:, 0] + 1j * motion.path[:, 1]
+    return replace(motion, lean=np.sin(motion.tilt) * np.exp(1j * np.angle(flat)))
+
+
 def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
     """Yield offsets and rates of the clock, as the tilts tell them."""
     for offset in fitted_offsets(reference, motion):
@@ -940,12 +1054,6 @@ def _clocks(reference: Reference, motion: Motion) -> Iterator[Change]:
         rate = fitted_rate(reference, motion)
         if abs(rate - 1.0) > SMALLEST_RATE:
             yield in_time_scale(rate)
-
-
-def in_time_scale(rate: float) -> Change:
-    """Return what takes back that a motion is slower by a factor."""
-    mistake = Mistake(code="time_scale", concerns="time", value=rate)
-    return Change(mistake=mistake, motion=partial(Motion.clocked, rate=1.0 / rate))
 
 
 def fitted_offsets(reference: Reference, motion: Motion) -> list[float]:
@@ -1008,40 +1116,6 @@ def _refined(misfit: Callable[[float], float], centre: float, width: float) -> t
     return least, centre
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Frame:
-    """Change of a motion into the axes of the reference: y reversed if mirrored, then a turn.
-
-    A turn by beta multiplies the lean by exp(i beta); axes of the other sense, such as x and y exchanged, an
-    azimuth counted clockwise or a mirrored table, conjugate it first. In planar motion both do the same.
-    The angle is counter-clockwise, in (-pi, pi] [rad].
-    """
-
-    angle: float = 0.0
-    mirrored: bool = False
-
-    def apply(self, motion: Motion) -> Motion:
-        """Return the motion in the axes of the reference."""
-        return motion.turned(self.angle, mirrored=self.mirrored)
-
-    def change(self, concerns: str) -> Change:
-        """Return what takes the mistake back in "azimuth", "path", or "axes", which are both."""
-        named = MIRRORS if self.mirrored else TURNS
-        code = named.get(self.angle, "mirrored" if self.mirrored else "turned")
-        value = {"turned": -math.degrees(self.angle), "mirrored": 0.5 * math.degrees(self.angle)}.get(
-            code, math.nan
-        )
-
-        def taken_back(motion: Motion) -> Motion:
-            other = self.apply(motion)
-            if concerns == "azimuth":
-                return replace(motion, lean=other.lean)
-            return replace(motion, path=other.path) if concerns == "path" else other
-
-        mistake = Mistake(code=code, concerns=concerns, value=value)
-        return Change(mistake=mistake, motion=taken_back, frame=self if concerns == "axes" else None)
-
-
 def fitted_frames(reference: Reference, motion: Motion, *, start: float, end: float) -> list[Frame]:
     """Return the turn and the mirroring that bring the lean of a motion closest to that of the reference.
 
@@ -1092,79 +1166,6 @@ def _off(products: Complex, angle: float, lean: Complex, noise: float, small: fl
 def _minima(tilt: Array) -> NDArray[np.intp]:
     """Return the samples of least tilt: a first pass may hardly be one, and still turn one of two motions."""
     return np.flatnonzero((tilt[1:-1] <= tilt[:-2]) & (tilt[1:-1] < tilt[2:])) + 1
-
-
-def _path_explained(reference: Reference, motion: Motion, axes: Frame) -> tuple[Change, ...]:
-    """Return the fewest changes that explain a path; what is wrong with the axes of the lean is expected."""
-    before = reference.difference(motion)
-    part = before.path
-    if motion.path is None or part is None or not (part.differs or axes != Frame()):
-        return ()
-    expected = (Frame(), axes)
-    fits = fitted_frames(reference, _with_lean_of_path(motion), start=before.start, end=before.covered)
-    own = [
-        _of_path(one)
-        for one in readings(dict.fromkeys(POSITION, motion.time))
-        if one.mistake.code != "time_unit"
-    ]
-    pairs = [pair for pair in itertools.combinations(own, 2) if len({one.mistake.code for one in pair}) == 2]
-    read_otherwise = [(), *((one,) for one in own), *pairs]
-
-    def count(trial: tuple[Frame, tuple[Change, ...], bool]) -> float:
-        frame, changes, moved = trial
-        # a constant offset has three numbers to fit: it comes after what has none
-        return (frame not in expected) + len(changes) + 1.5 * moved
-
-    frames = dict.fromkeys((*expected, *fits))
-    tried = sorted(itertools.product(frames, read_otherwise, (False, True)), key=count)
-    for _, alike in itertools.groupby(tried, key=count):
-        passing: list[tuple[float, tuple[Change, ...]]] = []
-        for frame, changes, moved in alike:
-            turn = [frame.change("axes" if frame == axes else "path")] if frame != Frame() else []
-            # y up is no horizontal axis
-            changes = tuple(sorted((*turn, *changes), key=lambda one: one.mistake.code != "y_up"))
-            changes += (_origin(reference, changed(motion, changes), before.covered),) if moved else ()
-            left = reference.difference(changed(motion, changes)).path
-            if left is not None and not left.differs and (explains(part, left) or not part.differs):
-                passing.append((left.size, changes))
-        if passing:
-            return min(passing, key=lambda one: one[0])[1]
-    return ()
-
-
-def _of_path(reading: Change) -> Change:
-    """Return the change of a path alone that a reading of its columns is."""
-    mistake = replace(reading.mistake, concerns="path")
-
-    def taken_back(motion: Motion) -> Motion:
-        assert motion.path is not None
-        columns = reading.values(dict(zip(POSITION, motion.path.T, strict=True)))
-        noise = motion.path_noise / (mistake.value if mistake.code == "length_unit" else 1.0)
-        return replace(motion, path=np.column_stack([columns[name] for name in POSITION]), path_noise=noise)
-
-    return Change(mistake=mistake, motion=taken_back)
-
-
-def _origin(reference: Reference, motion: Motion, end: float) -> Change:
-    """Return what takes back that a path is counted from elsewhere."""
-    wanted, own = on_samples_of(reference.motion, motion)
-    assert wanted.path is not None
-    assert own.path is not None
-    origin = np.median((own.path - wanted.path)[wanted.time <= end + SAME_TIME], axis=0)
-
-    def taken_back(given: Motion) -> Motion:
-        assert given.path is not None
-        return replace(given, path=given.path - origin)
-
-    mistake = Mistake(code="origin", concerns="path", value=float(np.linalg.norm(origin)))
-    return Change(mistake=mistake, motion=taken_back)
-
-
-def _with_lean_of_path(motion: Motion) -> Motion:
-    """Return the motion with the direction of its mass centre for that of its axis."""
-    assert motion.path is not None
-    flat = motion.path[:, 0] + 1j * motion.path[:, 1]
-    return replace(motion, lean=np.sin(motion.tilt) * np.exp(1j * np.angle(flat)))
 
 
 LEVELS = ("exact", "good", "pass")
