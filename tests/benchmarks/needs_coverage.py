@@ -18,11 +18,10 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.compare.runs.progress import Stages
 from rockwobble.compare.storage.manifest import read_results
-from rockwobble.models import synthetic_motions
 from rockwobble.compare.studies.validity.limits.needs import needs
 from rockwobble.compare.studies.validity.motions import AMPLE, GRAVITY, motion_named, record_names
 from rockwobble.compare.studies.validity.study import KIND, stored_validity
-from rockwobble.models import Case, Cylinder, GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, synthetic_motions
 
 from .console import options_of, tell
 
