@@ -88,9 +88,11 @@ def load_fields(stored: Results) -> ComparisonFields:
         excitation = dict(iter(stored.table("excitation").groupby("case", sort=False)))
         cases = {name: _case(given, excitation.get(name)) for name, given in rest["cases"].items()}
         traces = _traces(rest["traces"], stored.table("traces"), cases)
+        summary = lists_of_file(stored.table("summary"))
         samples = stored.table("budget") if rest["budgets"] else pd.DataFrame()
         return ComparisonFields(
-            summary=lists_of_file(stored.table("summary")),
+            # files of version 0.2 split every difference
+            summary=summary if "not_split" in summary else summary.assign(not_split=""),
             cases=cases,
             traces=traces,
             versions=rest["versions"],
