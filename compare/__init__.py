@@ -22,8 +22,11 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .comparison.result import Comparison as Comparison
     from .comparison.result import describe_case as describe_case
     from .comparison.summary import SUMMARY_COLUMNS as SUMMARY_COLUMNS
-    from .metrics.agreement import AGREEMENT as AGREEMENT
+    from .external.trajectory import External as External
+    from .external.trajectory import read_trajectory as read_trajectory
     from .metrics.contact import TILTED as TILTED
+    from .metrics.pair import Pair as Pair
+    from .metrics.pair import make_pair as make_pair
     from .runs.choice import default_runs as default_runs
     from .runs.choice import missing_engines as missing_engines
     from .runs.choice import own_model as own_model
@@ -39,12 +42,8 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .runs.task import IncompleteError as IncompleteError
     from .storage.files import replace_files as replace_files
     from .storage.manifest import require_writable as require_writable
-    from .studies.ensemble.members import far_field_motions as far_field_motions
-    from .studies.ensemble.members import perturbed_copies as perturbed_copies
-    from .studies.ensemble.members import synthetic_motions as synthetic_motions
-    from .studies.ensemble.members import with_motions as with_motions
-    from .studies.ensemble.study import Ensemble as Ensemble
-    from .studies.ensemble.study import ensemble as ensemble
+    from .studies.ensemble import Ensemble as Ensemble
+    from .studies.ensemble import ensemble as ensemble
     from .studies.fragility.intensity import MEASURES as MEASURES
     from .studies.fragility.limits import LIMITS as LIMITS
     from .studies.fragility.result import Fragility as Fragility
@@ -53,17 +52,12 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .studies.sweep.result import Sweep as Sweep
     from .studies.sweep.study import read_sweep as read_sweep
     from .studies.sweep.study import sweep as sweep
-    from .traces.pair import Pair as Pair
-    from .traces.pair import make_pair as make_pair
-    from .traces.trajectory import External as External
-    from .traces.trajectory import read_trajectory as read_trajectory
 
 _MODULES = {
     "comparison.driver": ("compare",),
     "comparison.error_budget": ("LARGEST_SHARE", "WORTH_EXPLAINING", "ErrorBudget", "findings"),
     "comparison.result": ("Comparison", "describe_case"),
     "comparison.summary": ("SUMMARY_COLUMNS",),
-    "metrics.agreement": ("AGREEMENT",),
     "metrics.contact": ("TILTED",),
     "runs.choice": (
         "default_runs",
@@ -80,13 +74,7 @@ _MODULES = {
     "runs.task": ("IncompleteError",),
     "storage.files": ("replace_files",),
     "storage.manifest": ("require_writable",),
-    "studies.ensemble.members": (
-        "far_field_motions",
-        "perturbed_copies",
-        "synthetic_motions",
-        "with_motions",
-    ),
-    "studies.ensemble.study": ("Ensemble", "ensemble"),
+    "studies.ensemble": ("Ensemble", "ensemble"),
     "studies.fragility.intensity": ("MEASURES",),
     "studies.fragility.limits": ("LIMITS",),
     "studies.fragility.result": ("Fragility",),
@@ -94,8 +82,8 @@ _MODULES = {
     "studies.sweep.grid": ("Grid",),
     "studies.sweep.result": ("Sweep",),
     "studies.sweep.study": ("read_sweep", "sweep"),
-    "traces.pair": ("Pair", "make_pair"),
-    "traces.trajectory": ("External", "read_trajectory"),
+    "metrics.pair": ("Pair", "make_pair"),
+    "external.trajectory": ("External", "read_trajectory"),
 }
 __all__ = sorted(name for names in _MODULES.values() for name in names)
 

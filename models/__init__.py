@@ -1,20 +1,24 @@
 """The problem, with no mechanics: bodies, ground motions, initial states, cases and runs."""
 
 from .assumptions import Assumptions
-from .bounds import Bounds
+from .bounds import AGREEMENT, Bounds
 from .case import Case, Run, Suite, run_duration
 from .cylinder import Cylinder, WobblingFrame
 from .diagnostic import Diagnostic
 from .ground_motion import GroundMotion
 from .initial_state import InitialState
+from .members import perturbed_copies, with_motions
 from .pulses import pulse
 from .records.el_centro import el_centro_1940
 from .records.files import read_record
-from .records.p695 import p695_far_field
+from .records.folder import read_records
+from .records.p695 import far_field_motions, p695_far_field
 from .suites.file import read_suite, shipped_suites
+from .synthetic import synthetic_motions
 from .traces.trace import Trace
 
 __all__ = [
+    "AGREEMENT",
     "Assumptions",
     "Bounds",
     "Case",
@@ -27,12 +31,17 @@ __all__ = [
     "Trace",
     "WobblingFrame",
     "el_centro_1940",
+    "far_field_motions",
     "p695_far_field",
+    "perturbed_copies",
     "pulse",
     "read_record",
+    "read_records",
     "read_suite",
     "run_duration",
     "shipped_suites",
+    "synthetic_motions",
+    "with_motions",
 ]
 
 

@@ -1,4 +1,4 @@
-"""Bounds on the differences between the engine runs of a suite and the reduced models."""
+"""Bounds on differences of motions: what ends an agreement, and what a suite asks of its runs."""
 
 from __future__ import annotations
 
@@ -7,6 +7,8 @@ from dataclasses import dataclass, fields
 from .number_checks import require_one_of, require_positive
 from .shown import Brief
 
+# tilt difference that ends an agreement [alpha]
+AGREEMENT = 0.01
 REFERENCES = ("own", "recess", "flat")
 
 

@@ -15,7 +15,7 @@ from .number_checks import quoted, require_finite, require_positive
 from .shown import Brief, brief, line
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
+@dataclass(frozen=True, slots=True, repr=False)
 class Case:
     """One problem: a cylinder or a frame, what moves it, and for how long.
 
@@ -93,6 +93,11 @@ class Case:
     def length(self) -> float:
         """Length of the run [s]: `duration`, or that of the motion."""
         return run_duration(self.motion, self.duration)
+
+    @property
+    def is_release(self) -> bool:
+        """Whether it starts tilted."""
+        return self.initial is not None and self.initial.tilt > 0.0
 
 
 def run_duration(motion: GroundMotion | None, duration: float | None) -> float:

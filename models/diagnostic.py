@@ -38,10 +38,13 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
         "solver": ("steps", "the solver had not converged in some of the steps looked at"),
         "unresolved_pass": ("passes", "passes are closer to upright than contact resolves"),
         "settled": ("alpha", "error that the time step leaves, by extrapolation"),
-        "unsettled": ("alpha", "change from twice the time step: it has not settled"),
+        "unsettled": ("alpha", "change from twice the time step: it has not settled, or nobody knows"),
         "extrapolated": ("alpha", "error left after extrapolation in the time step, by estimate"),
         "not_extrapolated": ("", "runs at successive time steps do not agree well enough to extrapolate"),
         "side": ("", "it passed through upright itself: the side to which it goes on is undetermined"),
+        # what makes a record of the ground improbable
+        "large_peak": ("g", "no record has such a peak: is its unit another?"),
+        "unlike_components": ("", "peaks of components differ as only units do"),
         # what an external trajectory leaves open
         "note": ("", "how the file was read"),
         "missed_pass": ("passes", "passes fell between two samples"),
@@ -50,8 +53,10 @@ CODES: Mapping[str, tuple[str, str]] = MappingProxyType(
 # code: why, as its detail says it
 REASONS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
-        "unsettled": ("fails", "still_changes", "no_later", "no_closer"),
-        "not_extrapolated": ("fails", "diverged", "no_closer"),
+        "large_peak": ("m/s2", "cm/s2"),
+        "unlike_components": ("x", "y", "z"),
+        "unsettled": ("fails", "still_changes", "no_later", "no_closer", "unresolved_pass", "energy"),
+        "not_extrapolated": ("fails", "diverged", "no_closer", "unresolved_pass", "energy"),
     }
 )
 _SEPARATOR = ", "
@@ -97,8 +102,8 @@ class Diagnostic(Brief):
         bound of "settled" and "extrapolated" is the order of convergence, that of "unresolved_pass" the tilt
         that is resolved [rad].
     detail : str
-        What an engine or a file says, word for word, not for decisions; of "unsettled" and "not_extrapolated"
-        one of `REASONS`.
+        What an engine or a file says, word for word, not for decisions; of the codes in `REASONS` one of
+        those.
 
     Raises
     ------

@@ -71,6 +71,15 @@ class GroundMotion:
         samples, peak = f"{count} samples of {self.time_step:g} s", f"peak {self.peak:.4g} m/s^2"
         return line("GroundMotion", [brief(self.name), samples, f"{components} components", peak])
 
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, GroundMotion):
+            return NotImplemented
+        own, others = (self.time_step, self.name), (other.time_step, other.name)
+        return own == others and np.array_equal(self.acceleration, other.acceleration)
+
+    def __hash__(self) -> int:
+        return hash((self.time_step, self.name, self.acceleration.tobytes()))
+
     def __reduce__(self) -> tuple[Any, ...]:
         # a copy or a worker process must not get a writable array
         return GroundMotion, (self.acceleration, self.time_step, self.name)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import dataclasses
 import html
-import importlib
 from collections.abc import Iterable, Mapping, Sequence, Sized
-from typing import TYPE_CHECKING, Any, ClassVar
+from importlib.metadata import entry_points
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+_DRAWERS = "rockwobble.figures"  # group of entry points: who draws registers there
 LONGEST = 110  # characters of a repr: a line
 _FEW, _MOST = 3, 70  # items, and characters of one fact, that are shown themselves
 
@@ -75,7 +76,6 @@ class Shown:
     """A result, which says its main facts on a line, in a notebook as a table, and plots itself."""
 
     __slots__ = ()
-    _figures: ClassVar[str]  # the module of rockwobble.reports.figures that draws it
 
     def _said(self) -> Mapping[str, str]:
         """Return the main facts in words and numbers, by name."""
@@ -105,14 +105,7 @@ class Shown:
         ValueError
             If there is no such part, or nothing to draw.
         """
-        # by name: a result does not depend on who draws it
-        figures = importlib.import_module(f"rockwobble.reports.figures.{self._figures}")
-        names = []
-        for picture in figures.pictures(self):
-            if part in (None, picture.name):
-                drawn: Figure = importlib.import_module("rockwobble.reports.figures.svg").figure(picture)
-                return drawn
-            names.append(picture.name)
-        if not names:
-            raise ValueError(f"there is nothing to draw of {self!r}")
-        raise ValueError(f"the figures are {', '.join(names)}, got {part!r}")
+        for entry in entry_points(group=_DRAWERS):
+            drawn: Figure = entry.load()(self, part)
+            return drawn
+        raise ValueError("figures are drawn by rockwobble.reports, which is not installed here")

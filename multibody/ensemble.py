@@ -76,7 +76,7 @@ def simulate_many(
     >>> starts = [InitialState(share * pier.alpha, rolling_rate=0.3) for share in (0.2, 0.4, 0.6)]
     >>> cases = [Case(pier, initial=start, duration=1.0, name=f"start {n}") for n, start in enumerate(starts)]
     >>> [run.outcome for run in simulate_many(cases)]
-    ['completed', 'completed', 'completed']
+    ['stands', 'stands', 'stands']
     """
     if workers is not None and (type(workers) is not int or workers < 1):
         raise ValueError(f"workers must be a positive whole number, got {workers!r}")

@@ -80,8 +80,8 @@ def simulate(
     -------
     Trace
         A numerical failure is an outcome with its diagnostics, not an exception. A run that ends while the
-        cylinder falls, or rises with the energy to pass its balance, is carried on over still ground: one
-        that overturns ends there, later than asked for, and one whose tilt turns back ends as asked for.
+        cylinder moves is followed over still ground to the next maximum of the tilt, which counts for the
+        peak; one that overturns ends there, later than asked for.
         The contact force is a mean over 65 steps (a Hann window about the sample), from the change of the
         engine's velocity: in a single step contact may be lost or carry twice the load.
 
@@ -98,7 +98,7 @@ def simulate(
     >>> release = InitialState(tilt=pier.alpha / 2, rolling_rate=0.5)
     >>> run = simulate(Case(pier, initial=release, duration=1.0))
     >>> run.outcome, len(run.time)
-    ('completed', 101)
+    ('stands', 101)
     """
     run = Run(engine, support, time_step, **settings)
     unit_time = froude_scale(case.cylinder.semidiagonal, case.gravity).time
@@ -169,8 +169,7 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
     rows = _rows_to_end(recorder)
     kept = (rows[:, 0] != recorder.asked) | (not recorder.off_grid)
     forces, rows = recorder.forces.at(rows[:, 0])[kept], rows[kept]
-    resting_at_end = recorder.uplift is None or recorder.rests.resting
-    outcome = recorder.ended or ("rest" if resting_at_end else "completed")
+    outcome = recorder.ended or "stands"
     table = dict(zip(("time", *COLUMNS), rows.T, strict=True))
     uplift_time, uplift_direction = recorder.uplift or (math.nan, math.nan)
     contact = np.column_stack([table["contact_x"], table["contact_y"]])
@@ -200,12 +199,14 @@ def _trace(recorder: Recorder, scene: Scene, scale: Scale, **method: Any) -> Tra
         centre_of_mass=np.column_stack([table["x"], table["y"], table["z"]]) * scale.length,
         peak_tilt=_peak(recorder, outcome, rows),
         outcome=outcome,
+        rests=outcome == "stands" and recorder.resting,
+        followed_until=recorder.followed_until * scale.time,
         uplift_time=uplift_time * scale.time,
         uplift_direction=uplift_direction,
         source=Known(sampled),
         passes=passes,
         facts=tuple(diagnostics(recorder, passes, resolution, scale.time)),
-        rests=np.array(recorder.rests.after_motion(), dtype=float).reshape(-1, 2) * scale.time,
+        rest_intervals=np.array(recorder.rests.after_motion(), dtype=float).reshape(-1, 2) * scale.time,
         extrema=_extrema(recorder, scene, scale),
         contact_resolution=resolution,
         residual_displacement=float(np.hypot(table["base_x"][-1], table["base_y"][-1])) * scale.length,

@@ -1,8 +1,9 @@
-"""Stepping of an engine through a run, and past its end where overturning is still undecided.
+"""Stepping of an engine through a run, and past its end where the cylinder still moves.
 
-A run may end while the cylinder falls, or moves with the energy to pass its balance. It is then carried on,
-over still ground, until the tilt turns back or the side is on the ground. In the first case the run stands,
-and nothing of the time after its end is kept; in the second it has overturned, and goes on to there.
+A run that ends in motion is followed over still ground until the tilt turns back, comes to rest, or the side
+is on the ground. In the first two cases the run stands, and only the maximum is kept of the time after its
+end: of those over still ground the first is the largest, since contact only loses energy (walls, which turn
+spin into tilt, are the exception). In the last it has overturned, and goes on to there.
 """
 
 from __future__ import annotations
@@ -20,16 +21,15 @@ from .protocol import Engine, Scene, Stepper
 from .recording.passes import TurningPoint, true_swings
 from .recording.recorder import Recorder
 from .scene.excitation import StepMeans
-from .scene.guard import energy_scale
 
 Array = NDArray[np.float64]
 Progress = Callable[[float], None]
 
 _CHUNK = 10_000  # steps between two looks at the run: a second of the reference scene, 3 MB of states
-_CHUNK_BEYOND = 2_000  # the same after the end, where most falls are decided within a second
-# Times of growth by e next to the balance that a fall is followed for: what turns or falls no sooner is
+_CHUNK_BEYOND = 2_000  # the same after the end, where most swings turn back within a second
+# Times of growth by e next to the balance that a motion is followed for: what turns or falls no sooner is
 # nearer to the balance than 3e-7, where an engine knows it no better.
-LONGEST_FALL = 15.0
+LONGEST = 15.0
 # [rad] by which the tilt turns back; contact that lets go for a step and comes back makes 1e-7
 _TURN = 1e-6
 
@@ -43,7 +43,7 @@ def run_steps(
     sample_step: float,
     progress: Progress | None,
 ) -> Recorder:
-    """Step a run to its end, and return what recorded it: `recorder`, or one that saw it overturn.
+    """Step a run to its end, and return what recorded it: `recorder`, or one that saw it end later.
 
     `sample_step` is that of samples after the end [s], in the scene.
     """
@@ -60,15 +60,9 @@ def run_steps(
             done += count
             if progress is not None:
                 progress(done / total)
-        if recorder.ended or not may_overturn(recorder, scene.body, scene.gravity):
+        if recorder.ended or recorder.resting or _has_turned(recorder, means.still_from):
             return recorder
-        return _carried_on(stepper, scene, recorder, means, total, sample_step, progress)
-
-
-def may_overturn(recorder: Recorder, body: Body, gravity: float) -> bool:
-    """Return whether a run ends beyond its balance, or with the energy to pass it."""
-    tilt, energy = (recorder.last_value(name) for name in ("tilt", "energy"))
-    return tilt > math.atan(body.tan_alpha) or energy > energy_scale(body, gravity)
+        return _followed(stepper, scene, recorder, means, total, sample_step, progress)
 
 
 def growth_time(body: Body, gravity: float) -> float:
@@ -77,7 +71,7 @@ def growth_time(body: Body, gravity: float) -> float:
     return math.sqrt((body.transverse_inertia + h * h + b * b) / (gravity * math.hypot(b, h)))
 
 
-def _carried_on(
+def _followed(
     stepper: Stepper,
     scene: Scene,
     recorder: Recorder,
@@ -86,7 +80,7 @@ def _carried_on(
     sample_step: float,
     progress: Progress | None,
 ) -> Recorder:
-    end, longest = recorder.end, LONGEST_FALL * growth_time(scene.body, scene.gravity)
+    end, longest = recorder.end, LONGEST * growth_time(scene.body, scene.gravity)
     ahead = copy.deepcopy(recorder)
     first = math.floor(end / sample_step + 1e-9) + 1
     ahead.off_grid = end - (first - 1) * sample_step > 1e-6 * sample_step
@@ -101,11 +95,15 @@ def _carried_on(
         if progress is not None:
             progress(1.0)
         if ahead.ended:
+            ahead.followed_until = ahead.end_time
             return ahead
-        if _turned_back(start, ahead):
-            return recorder
+        top = _maximum(start, ahead)
+        if top is not None or ahead.resting:
+            break
         acceleration[0] = at_pose[0] = 0.0
-    recorder.undecided = True
+    recorder.undecided = top is None and not ahead.resting
+    recorder.followed_until = float(ahead.last_row[0]) if top is None else top.time
+    recorder.peak = max(recorder.peak, ahead.peak if top is None else top.tilt)
     return recorder
 
 
@@ -116,11 +114,16 @@ def _advance(stepper: Stepper, recorder: Recorder, acceleration: Array, at_pose:
         recorder.warn(warning)
 
 
-def _turned_back(start: TurningPoint, recorder: Recorder) -> bool:
-    """Return whether the tilt has reached a maximum after `start` and fallen from it."""
+def _has_turned(recorder: Recorder, since: float) -> bool:
+    """Return whether the tilt has had a maximum since a time [s]."""
+    return any(point.is_maximum and point.time >= since for point in true_swings(recorder.points, _TURN))
+
+
+def _maximum(start: TurningPoint, recorder: Recorder) -> TurningPoint | None:
+    """Return the first maximum after `start` from which the tilt has fallen."""
     later = [point for point in recorder.points if point.time > start.time]
     tilt = recorder.last_value("tilt")
-    return any(
-        point.is_maximum and point.time > start.time and tilt < point.tilt - _TURN
-        for point in true_swings([start, *later], _TURN)
-    )
+    for point in true_swings([start, *later], _TURN):
+        if point.is_maximum and point.time > start.time and tilt < point.tilt - _TURN:
+            return point
+    return None

@@ -3,17 +3,20 @@
 from __future__ import annotations
 
 import gc
+import hashlib
 import os
+import re
 import stat
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
-from functools import update_wrapper
+from contextlib import contextmanager, suppress
+from functools import cache, update_wrapper
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numba
+from numba.core.caching import IndexDataCacheFile
 from numba.extending import intrinsic
 from numpy.typing import NDArray
 
@@ -22,6 +25,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 # a division by zero gives inf or NaN, which the step control rejects, instead of a Python exception;
 # a multiply-add rounds once (contract), the one licence that keeps mirror and power-of-two scaling exact
 _OPTIONS: dict[str, Any] = {"error_model": "numpy", "fastmath": {"contract"}}
+_RELATIVE_IMPORT = re.compile(r"^from (\.+)([\w.]*) import", re.MULTILINE)
 
 
 class _Part:
@@ -60,7 +64,11 @@ def inlined(function: F) -> F:
 
 
 def kernel(function: F) -> F:
-    """Compile an entry point without the interpreter lock, and keep the machine code on disk."""
+    """Compile an entry point without the interpreter lock, and keep the machine code on disk.
+
+    It is kept under a digest of all sources that it is compiled from: numba knows the file of the entry point
+    alone, and that by time and size.
+    """
     compiled = numba.njit(cache=True, nogil=True, **_OPTIONS)
     try:
         entry = compiled(function)
@@ -68,7 +76,37 @@ def kernel(function: F) -> F:
         _keep_in_temporary_folder()
         entry = compiled(function)
     entry.compile = _uncollected()(entry.compile)
+    _keep_by_content(entry._cache, _digest(Path(function.__code__.co_filename)))
     return cast("F", entry)
+
+
+def _keep_by_content(kept: Any, digest: str) -> None:
+    """Keep machine code under the digest of its sources, and remove what was made from others."""
+    folder, base = Path(kept.cache_path), kept._impl.filename_base
+    name = f"{base}.{digest[:16]}"
+    kept._cache_file = IndexDataCacheFile(str(folder), name, digest)  # type: ignore[no-untyped-call]
+    # a name holds the line of the function
+    for path in folder.glob(re.sub(r"-\d+\.", "-*.", base) + ".*nb[ic]"):
+        if not path.name.startswith(name):
+            with suppress(OSError):  # of another user, or removed meanwhile
+                path.unlink()
+
+
+@cache  # entry points of one file have the same
+def _digest(source: Path) -> str:
+    """Return a digest of a source and of all that it imports from this folder."""
+    found: dict[Path, bytes] = {}
+    waiting = [source]
+    while waiting:
+        path = waiting.pop()
+        if path in found or not path.is_file():
+            continue
+        found[path] = path.read_bytes()
+        for dots, name in _RELATIVE_IMPORT.findall(found[path].decode()):
+            folder = path.parents[len(dots) - 1]
+            waiting += [folder / f"{name.replace('.', '/')}.py"] if name else folder.glob("*.py")
+    parts = (hashlib.sha256(found[path]).digest() for path in sorted(found))
+    return hashlib.sha256(b"".join(parts)).hexdigest()
 
 
 @contextmanager
@@ -130,20 +168,5 @@ def in_memory(entry: Callable[..., Any]) -> bool:
 
 
 def on_disk(entry: Callable[..., Any]) -> bool:
-    """Return whether compiled code of `entry` is kept on disk.
-
-    That cache compares only the file that holds the entry point, so whatever was compiled from an
-    older state of any file in this folder is removed here first.
-    """
-    newest = max(path.stat().st_mtime for path in Path(__file__).parent.rglob("*.py"))
-    fresh = False
-    for index in Path(cast("Any", entry).stats.cache_path).glob("*.nbi"):
-        try:
-            stale = index.stat().st_mtime < newest
-        except FileNotFoundError:  # another process has removed it meanwhile
-            continue
-        if stale:
-            index.unlink(missing_ok=True)
-        elif f".{entry.__name__}-" in index.name:
-            fresh = True
-    return fresh
+    """Return whether compiled code of `entry` is kept on disk."""
+    return bool(cast("Any", entry)._cache._cache_file._load_index())

@@ -22,7 +22,7 @@ from .integration.result import COMPLETED, OVER_BUDGET, OVERTURNED, REST, Integr
 from .problem import REST_TILT, Problem, make_problem
 from .solution import Solution, six_columns
 
-_OUTCOMES = {REST: "rest", COMPLETED: "completed", OVERTURNED: "overturned"}
+_OUTCOMES = {REST: "stands", COMPLETED: "stands", OVERTURNED: "overturned"}
 
 
 def simulate(
@@ -63,8 +63,9 @@ def simulate(
     Returns
     -------
     Trace
-        A numerical failure is an outcome with its diagnostics, not an exception. A run that ends in the
-        middle of a fall is followed, over still ground, until it is decided: an overturned one ends there.
+        A numerical failure is an outcome with its diagnostics, not an exception. A run that ends while the
+        cylinder moves is followed over still ground to the next maximum of the tilt, which counts for the
+        peak; one that overturns ends there, later than asked for.
 
     Raises
     ------
@@ -78,7 +79,7 @@ def simulate(
     >>> release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=1e-3)
     >>> trace = simulate(Case(pier, initial=release, duration=10.0), rtol=1e-10)
     >>> trace.outcome, round(float(np.degrees(trace.passes.angle_of_turn[0])), 2)
-    ('completed', 182.98)
+    ('stands', 182.98)
     """
     problem = make_problem(
         case, support=support, plane=plane, restitution=restitution, rtol=rtol, rest_tilt=rest_tilt
@@ -148,7 +149,7 @@ def _trace(
         roll_out=states[:, 6:8] if states.shape[1] == 8 else np.zeros((len(states), 2)),
         uplift_time=result.uplift_time,
         extrema=extrema,
-        rests=result.rests,
+        rest_intervals=result.rests,
     )
     return Trace(
         case=case,
@@ -165,10 +166,12 @@ def _trace(
         outcome=outcome,
         uplift_time=result.uplift_time,
         uplift_direction=result.uplift_direction + azimuth,
+        followed_until=result.followed_until,
         source=solution,
         passes=solution.passes(),
         facts=tuple(_facts(problem, result)),
-        rests=result.rests,
+        rests=result.status == REST,
+        rest_intervals=result.rests,
         extrema=extrema,
         settings=settings,
         wall_time=wall_time,

@@ -43,7 +43,7 @@ class Solution(Brief):
         Centre of the circle that the rim rolls on, relative to O [m].
     uplift_time : float
         [s]
-    extrema, rests : ndarray
+    extrema, rest_intervals : ndarray
         As of `Trace`.
     """
 
@@ -54,7 +54,7 @@ class Solution(Brief):
     roll_out: Array
     uplift_time: float
     extrema: Array
-    rests: Array
+    rest_intervals: Array
 
     def sampled(self) -> Mapping[str, Array]:
         """Return rolling rate, energy, contact force and restraining moment at the samples."""
@@ -99,7 +99,7 @@ class Solution(Brief):
         import pandas as pd
 
         time, tilt, angle, kind = self.extrema.T
-        motion = np.searchsorted(self.rests[:, 0], time)  # number of rests before
+        motion = np.searchsorted(self.rest_intervals[:, 0], time)  # number of rests before
         found = (
             (kind[1:-1] == MINIMUM)
             & (kind[:-2] == MAXIMUM)
@@ -120,9 +120,10 @@ class Solution(Brief):
     def assumptions(self, until: float) -> Assumptions:
         """Return whether contact and friction held until a time [s]; solved again, between its steps too."""
         result, _ = self.problem.solve(np.empty(0), record_steps=True)
-        steps = np.concatenate([[0.0], result.steps[:, 0], self.rests[:, 0], [min(result.end, until)]])
+        end = [min(result.end, until)]
+        steps = np.concatenate([[0.0], result.steps[:, 0], self.rest_intervals[:, 0], end])
         landings = self.extrema[self.extrema[:, 1] == 0.0, 0]
-        jumps = np.concatenate([[self.uplift_time], self.rests[:, 1], landings])
+        jumps = np.concatenate([[self.uplift_time], self.rest_intervals[:, 1], landings])
         jumps = jumps[np.isfinite(jumps) & (jumps > 0.0) & (jumps < until)]
         return review(self._demands_at, np.unique(steps[steps <= until]), jumps, self.friction)
 

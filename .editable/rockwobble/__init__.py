@@ -6,7 +6,7 @@ Every name is imported when it is first used, so that `import rockwobble` costs 
 >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 >>> trace = rw.simulate(rw.Case(pier, rw.el_centro_1940(), duration=5.0))
 >>> trace.outcome
-'completed'
+'stands'
 """
 
 import importlib
@@ -26,11 +26,16 @@ if TYPE_CHECKING:
         Trace,
         WobblingFrame,
         el_centro_1940,
+        far_field_motions,
         p695_far_field,
+        perturbed_copies,
         pulse,
         read_record,
+        read_records,
         read_suite,
         shipped_suites,
+        synthetic_motions,
+        with_motions,
     )
 
     __version__: str
@@ -50,18 +55,23 @@ __all__ = [
     "compare",  # the module, which may be called; to a type checker its function `compare`
     "el_centro_1940",
     "ensemble",
+    "far_field_motions",
     "fragility",
     "models",
     "multibody",
     "p695_far_field",
+    "perturbed_copies",
     "pulse",
     "read_record",
+    "read_records",
     "read_suite",
     "reduced",
     "reports",
     "shipped_suites",
     "simulate",
     "sweep",
+    "synthetic_motions",
+    "with_motions",
 ]
 _PARTS = ("compare", "models", "multibody", "reduced", "reports")
 _OF_COMPARE = ("Comparison", "External", "ensemble", "fragility", "simulate", "sweep")

@@ -20,17 +20,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case, Run, Trace
+from rockwobble.models import AGREEMENT, Case, Run, Trace
 from rockwobble.models.case import TimeStep
+from rockwobble.models.members import perturbed
 
-from ..studies.ensemble.members import perturbed
 from .short_cases import G, ShortCase, short_cases
 from .verdict import SAME, Entry, Sample, compare_entries
 
 Array = NDArray[np.float64]
 _SAMPLES = 40  # of each motion
 _BEYOND = 10.0  # what counts is so many times larger than the difference of the copies
-_AGREEMENT = 0.01  # of alpha
 _MEMBERS = 16
 SIGNALS = ("tilt", "lean_x", "lean_y", "twist", "energy", "force_x", "force_y", "force_z", "moment")
 
@@ -88,7 +87,7 @@ def fingerprint(method: Method) -> Iterator[Entry]:
         found, values = entry(short, trace), _signals(trace)
         copies = [_signals(method.simulate(short, copy)) for copy in _copies(short.case, method.accuracy)]
         spread = _BEYOND * np.array([_apart(copy, values) for copy in copies]).max(axis=0)
-        lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > _AGREEMENT)
+        lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > AGREEMENT)
         allowed = method.repeats * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
         if len(lost):  # from there on copies are no measure
             allowed[lost[0] :] = allowed[max(lost[0] - 1, 0)]

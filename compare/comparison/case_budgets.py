@@ -8,10 +8,10 @@ from collections.abc import Mapping, Sequence
 
 from rockwobble.models import Case, Run, Trace
 
-from ..metrics.agreement import Agreement, agreement_time
+from ..metrics.agreement import Agreement, agreement_time, tolerance_of
+from ..metrics.pair import make_pair
 from ..runs.choice import own_model, references_of
 from ..runs.execution import Job
-from ..traces.pair import make_pair
 from .error_budget import ErrorBudget, error_budget
 from .prediction import landings
 from .refinement import Refined, Simulate, limits
@@ -125,5 +125,6 @@ def _landings(
 def _agreement(case: Case, response: Trace, trajectory: Trace) -> Agreement | None:
     if response.outcome == "failed" or not math.isfinite(response.uplift_time):
         return None
-    agreement = agreement_time(make_pair(case.cylinder, response, trajectory, until=case.length))
+    pair = make_pair(case.cylinder, response, trajectory, until=case.length)
+    agreement = agreement_time(pair, tolerance=tolerance_of(response, trajectory))
     return agreement if agreement.length > 0.0 else None

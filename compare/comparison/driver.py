@@ -8,8 +8,11 @@ from pathlib import Path
 
 import pandas as pd
 
-from rockwobble.models import Case, Run, Suite, Trace
+from rockwobble.models import AGREEMENT, Case, Run, Suite, Trace
 
+from ..external.trajectory import External, read_trajectories
+from ..external.verdict import Row
+from ..metrics.agreement import tolerance_of
 from ..runs.choice import (
     default_runs,
     own_model,
@@ -21,11 +24,9 @@ from ..runs.labels import labels_beside_references
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import require_writable
 from ..storage.provenance import package_versions
-from ..traces.trajectory import External, read_trajectories
 from .case_budgets import case_budgets
 from .error_budget import ErrorBudget
-from .external.verdict import Row
-from .prediction import Simulate, estimated_error, measured_error, predict
+from .prediction import Prediction, Simulate, estimated_error, measured_error, predict
 from .result import KIND, Comparison
 from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
 
@@ -67,7 +68,7 @@ def compare(
         call with the same inputs, after whatever ended the first, repeats none that is there.
     external : iterable of External, str or Path, optional
         CSV files of trajectories of this case from a shake table or another code, each one more run; what
-        they may hold is said in `rockwobble.compare.traces.file`. With them, `runs` may be empty.
+        they may hold is said in `rockwobble.compare.external.table`. With them, `runs` may be empty.
     budget : bool, optional
         Whether to repeat each run at finer time steps, as far as traces agree, and split its difference
         into model form, numerics and what stays unexplained: see `ErrorBudget`. Takes some seven times
@@ -131,7 +132,7 @@ def compare(
     ]
     table = pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))
     comparison = Comparison(
-        summary=table.astype({"diverged": bool, "agreed_passes": int}),
+        summary=table.astype({"diverged": bool, "left_tolerance": bool, "agreed_passes": int}),
         cases={case.name: case for case in cases},
         traces=found | brought,
         versions=package_versions(),
@@ -192,14 +193,19 @@ def _row(
     error = (
         estimated_error(case, run.engine, trial.time_step) if budget is None else measured_error(case, budget)
     )
-    prediction = predict(
-        case,
-        reference=reference,
-        own=own,
-        contact_resolution=trial.contact_resolution,
-        error=error,
-        simulate=copy_of,
-    )
+
+    def predicted(tolerance: float) -> Prediction:
+        return predict(
+            case,
+            reference=reference,
+            own=own,
+            contact_resolution=trial.contact_resolution,
+            error=error,
+            simulate=copy_of,
+            tolerance=tolerance,
+        )
+
+    prediction, tolerance = predicted(AGREEMENT), tolerance_of(reference, trial)
     return summary_row(
         case,
         name,
@@ -207,6 +213,7 @@ def _row(
         label,
         trial,
         prediction=prediction,
+        within=predicted(tolerance) if tolerance < AGREEMENT else prediction,
         estimated_error=error,
         budget=budget,
         until=until,

@@ -7,14 +7,19 @@ limit is the engine extrapolated to a time step of zero, own the reduced model o
 (see `own_model`) or, where that goes through upright itself, planar motion with the loss of a base that
 lands flat. The three are signed traces of the tilt, and add up exactly.
 Tilt itself is never negative, so it folds where a motion goes past upright; as long as two motions agree
-within 1 % of alpha they are on the same side of that fold, which is why the budget ends with the agreement.
+within the tolerance of `tolerance_of` they are on the same side of that fold, which is why the budget ends
+with the agreement.
+
+Numerics and unexplained rest on the limit. Where it cannot be known they are not stated: see
+`ErrorBudget.not_split`.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
@@ -25,8 +30,9 @@ from rockwobble.models.shown import Brief
 from rockwobble.multibody.time_step.extrapolated import to_zero_step
 
 from ..metrics.agreement import Agreement
+from ..metrics.pair import start_of
 from ..metrics.tilt import rms
-from ..traces.pair import start_of
+from ..metrics.turning import first_unresolved_pass
 
 Array = NDArray[np.float64]
 
@@ -36,6 +42,8 @@ COVERED = 0.8
 WORTH_EXPLAINING = 1e-4
 # largest share of the whole that may stay unexplained
 LARGEST_SHARE = 0.2
+# smallest order in the step at which finer runs tend to a limit
+LEAST_ORDER = 0.5
 # samples are multiples of one step; two that differ by less are the same [s]
 _SAME_TIME = 1e-9
 
@@ -48,6 +56,11 @@ BUDGET_COLUMNS = (
     "limit_error",
     "step_order",
     "finest_step",
+    "not_split",
+)
+# of a row without a budget
+NO_BUDGET: Mapping[str, float | str] = MappingProxyType(
+    {**dict.fromkeys(BUDGET_COLUMNS, math.nan), "not_split": ""}
 )
 
 
@@ -93,6 +106,8 @@ class ErrorBudget(Brief):
         End of the stretch that the RMS values cover, 80 % of the agreement [s].
     steps, order : tuple of float, float
         Of the `Limit` that the numerics rest on.
+    unresolved : float
+        First pass of the engine that is closer to upright than its contact resolves [s]; infinite if none.
     """
 
     time: Array
@@ -104,23 +119,41 @@ class ErrorBudget(Brief):
     covered: float
     steps: tuple[float, ...]
     order: float
+    unresolved: float = math.inf
+
+    @property
+    def not_split(self) -> str:
+        """Why numerics and unexplained are not stated; empty where they are.
+
+        Where the model form is nearly all of the difference, they are. Else "unresolved_pass": a pass within
+        the agreement is left to chance, at any step; "order": finer runs tend to no limit, in an order below
+        a half; "error": the uncertainty of the limit is larger than both parts.
+        """
+        parts, error = max(self.rms("numerics"), self.rms("unexplained")), self.rms("limit_error")
+        if max(parts, error) <= LARGEST_SHARE * self.rms("whole"):
+            return ""
+        if len(self.time) and self.unresolved <= self.time[-1]:
+            return "unresolved_pass"
+        return "order" if self.order < LEAST_ORDER else "error" if error > parts else ""
 
     def rms(self, part: str) -> float:
         """Return the RMS of one part until 80 % of the agreement [alpha]; NaN without a sample."""
         return rms(getattr(self, part)[self.time <= self.covered + _SAME_TIME])
 
-    def columns(self) -> dict[str, float]:
-        """Return the columns of the summary."""
-        whole, unexplained = self.rms("whole"), self.rms("unexplained")
+    def columns(self) -> dict[str, float | str]:
+        """Return the columns of the summary; NaN for what is not stated."""
+        whole, lack = self.rms("whole"), self.not_split
+        numerics, unexplained = (math.nan if lack else self.rms(part) for part in ("numerics", "unexplained"))
         return {
             "whole_rms": whole,
             "model_form_rms": self.rms("model_form"),
-            "numerics_rms": self.rms("numerics"),
+            "numerics_rms": numerics,
             "unexplained_rms": unexplained,
             "unexplained_share": unexplained / whole if whole > 0.0 else math.nan,
             "limit_error": self.rms("limit_error"),
             "step_order": self.order,
             "finest_step": self.steps[-1],
+            "not_split": lack,
         }
 
     def to_frame(self) -> pd.DataFrame:
@@ -168,6 +201,7 @@ def error_budget(
         covered=start + COVERED * (agreement.end - start),
         steps=limit.steps,
         order=limit.order,
+        unresolved=first_unresolved_pass(engine, start=start),
     )
 
 
@@ -233,7 +267,7 @@ def common_count(times: Sequence[Array]) -> int:
 def findings(summary: pd.DataFrame) -> pd.DataFrame:
     """Return the rows of a summary in which too much stays unexplained, the worst first.
 
-    Rows whose whole difference is below 1e-4 alpha are not worth it.
+    Rows whose whole difference is below 1e-4 alpha, or is not split, are left out.
 
     Parameters
     ----------

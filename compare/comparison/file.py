@@ -10,9 +10,11 @@ import pandas as pd
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.traces.trace_file import case_from_plain, case_to_plain
 
+from ..external.verdict import lists_of_file
+from ..metrics.pair import start_of
+from ..metrics.turning import first_unresolved_pass
 from ..storage.manifest import Results
 from .error_budget import ErrorBudget
-from .external.verdict import lists_of_file
 
 ABOUT = "comparison.json"
 _SEPARATOR = "\n"  # in no name of a case or a run: these are single lines
@@ -93,7 +95,7 @@ def load_fields(stored: Results) -> ComparisonFields:
             traces=traces,
             versions=rest["versions"],
             until=rest["until"],
-            budgets=_budgets(rest["budgets"], samples),
+            budgets=_budgets(rest["budgets"], samples, traces),
         )
     except (ValueError, KeyError) as error:
         why = str(error).partition("\n")[0]
@@ -122,13 +124,20 @@ def _traces(
     return traces
 
 
-def _budgets(given: Mapping[str, _StoredBudget], samples: pd.DataFrame) -> dict[BudgetKey, ErrorBudget]:
+def _budgets(
+    given: Mapping[str, _StoredBudget], samples: pd.DataFrame, traces: Mapping[Key, Trace]
+) -> dict[BudgetKey, ErrorBudget]:
     budgets = {}
     for joined, rest in given.items():
         case, label, model = joined.split(_SEPARATOR)
         chosen = (samples["case"] == case) & (samples["run"] == label) & (samples["reference"] == model)
         table = {name: column.to_numpy() for name, column in samples[chosen].items()}
         arrays = {name: table[name] for name in ErrorBudget.__dataclass_fields__ if name in table}
-        steps, order = tuple(rest["steps"]), rest["order"]
-        budgets[case, label, model] = ErrorBudget(**arrays, covered=rest["covered"], steps=steps, order=order)
+        budgets[case, label, model] = ErrorBudget(
+            **arrays,
+            covered=rest["covered"],
+            steps=tuple(rest["steps"]),
+            order=rest["order"],
+            unresolved=first_unresolved_pass(traces[case, label], start=start_of(traces[case, model])),
+        )
     return budgets

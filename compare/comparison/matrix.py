@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any
 from rockwobble.models import Case, Trace
 
 from ..metrics.agreement import agreement_time
+from ..metrics.pair import make_pair
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
-from ..traces.pair import make_pair
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -26,6 +26,7 @@ MATRIX_COLUMNS: Mapping[str, tuple[str, str]] = {
     "peak_tilt_difference": ("alpha", "run minus other"),
     "agreement_time": ("s", "from uplift or release to the first tilt difference above 1 % of alpha"),
     "diverged": ("", "whether there was such a difference"),
+    "other_uplift_time": ("s", "uplift or release of the other; 0 where it stays at rest"),
 }
 
 
@@ -80,4 +81,5 @@ def _difference(case: Case, trial: Trace, reference: Trace, until: float | None)
         "peak_tilt_difference": (trial.peak_tilt - reference.peak_tilt) / cylinder.alpha,
         "agreement_time": found.length,
         "diverged": found.diverged,
+        "other_uplift_time": whole.start,
     }

@@ -17,28 +17,34 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
-from rockwobble.models import Case, Run, Trace
+from rockwobble.models import AGREEMENT, Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 
-from ..metrics.agreement import agreement_time
+from ..metrics.agreement import agreement_time, tolerance_of
+from ..metrics.pair import FloatArray, is_release, make_pair, start_of
 from ..metrics.tilt import rms
-from ..traces.pair import FloatArray, is_release, make_pair, start_of
 from .error_budget import ErrorBudget
 
 # a prediction is in time if the measured agreement time is within this factor of it, either way
 IN_TIME = 2.0
+# one that is beaten by more than this factor foretold nothing, and a run that beats it proves nothing
+BEATEN = 10.0
+# of `verdict` and of an agreement without motion: the run has not tested the model
+UNTESTED = ("much later", "too little motion")
 # [s] at a semidiagonal of 6 m and 9.81 m/s^2, and in proportion to the time scale of the cylinder
 FIRST_STRETCH = 1.0
 # relative change of gravity of the copy whose distance sets the scale; far above rounding, far below 1
 _TRIAL = 1e-6
 # and the largest that still is a copy
 _LARGEST = 1e-2
+# relative: a record is written with six digits
+NUDGE = 1e-6
 
 _SMALLEST_ERROR = 1e-9  # [alpha] no engine is better than its contact
 
@@ -104,6 +110,7 @@ def predict(
     contact_resolution: float,
     error: float,
     simulate: Simulate,
+    tolerance: float = AGREEMENT,
 ) -> Prediction:
     """Return the predicted agreement time of engine and `reference`.
 
@@ -120,13 +127,15 @@ def predict(
         RMS error of the engine's tilt in the first second of motion [alpha].
     simulate : callable
         Runs a reduced model on a case; for the perturbed copy.
+    tolerance : float, optional
+        Tilt difference that ends the agreement [alpha].
     """
     length = case.length
     start = start_of(reference)
     ends = {
-        "model form": length if own is reference else _diverges(case, reference, own),
+        "model form": length if own is reference else _diverges(case, reference, own, tolerance),
         "pass": _close_pass(own, contact_resolution, length),
-        "growth": _copy_diverges(case, own, error, simulate),
+        "growth": _copy_diverges(case, own, error, simulate, tolerance),
     }
     reason = min(ends, key=ends.__getitem__)
     if ends[reason] >= length:
@@ -134,19 +143,36 @@ def predict(
     return Prediction(length=max(0.0, ends[reason] - start), reason=reason)
 
 
+def nudged(case: Case) -> list[Case]:
+    """Return the case with an input that is off by less than anybody knows it, to either side."""
+    return [_disturbed(case, relative) for relative in (NUDGE, -NUDGE)]
+
+
+def reproducible_until(own: Trace, copies: Iterable[Trace]) -> float:
+    """Return until when a reduced run stays with all of its `nudged` copies, in the time of the run [s].
+
+    Infinite where it does so to its end.
+    """
+    ends = [_diverges(own.case, own, copy, tolerance_of(own)) for copy in copies]
+    return min((end for end in ends if end < own.case.length), default=math.inf)
+
+
 def verdict(measured: float, diverged: bool, predicted: float, reason: str) -> str:
     """Return the verdict on an agreement time and its prediction.
 
     Returns
     -------
-    {"in time", "later", "earlier", "never, as predicted"}
+    {"in time", "later", "much later", "earlier", "never, as predicted"}
         "later": they agree for more than twice as long as predicted, or to the end of the run;
+        "much later": for more than ten times as long, so that the prediction is refuted;
         "earlier": for less than half as long, which is a finding.
     """
     if not diverged and not reason:
         return "never, as predicted"
     if diverged and measured * IN_TIME < predicted:
         return "earlier"
+    if reason and measured > predicted * BEATEN:
+        return "much later"
     if reason and measured > predicted * IN_TIME:
         return "later"
     return "in time"
@@ -172,9 +198,10 @@ def time_scale(case: Case) -> float:
     return froude_scale(case.cylinder.semidiagonal, case.gravity).time
 
 
-def _diverges(case: Case, reference: Trace, other: Trace) -> float:
-    """Time at which two responses part [s]; the length of the run where they do not."""
-    agreement = agreement_time(make_pair(case.cylinder, reference, other, until=case.length))
+def _diverges(case: Case, reference: Trace, other: Trace, tolerance: float) -> float:
+    """Time at which two responses diverge [s]; the length of the run where they do not."""
+    pair = make_pair(case.cylinder, reference, other, until=case.length)
+    agreement = agreement_time(pair, tolerance=tolerance)
     return agreement.end if agreement.diverged else case.length
 
 
@@ -184,7 +211,7 @@ def _close_pass(own: Trace, contact_resolution: float, length: float) -> float:
     return float(min([*times[:1], *landings(own)[:1], length]))
 
 
-def _copy_diverges(case: Case, own: Trace, error: float, simulate: Simulate) -> float:
+def _copy_diverges(case: Case, own: Trace, error: float, simulate: Simulate, tolerance: float) -> float:
     if not math.isfinite(own.uplift_time):
         return case.length
     disturbed = simulate(_disturbed(case, _TRIAL), own.run)
@@ -194,7 +221,7 @@ def _copy_diverges(case: Case, own: Trace, error: float, simulate: Simulate) -> 
         return case.length
     disturbance = min(_TRIAL * error / distance, _LARGEST)
     # what is disturbed by less than the reduced model's own tolerance is no copy
-    return _diverges(case, own, simulate(_disturbed(case, disturbance), own.run))
+    return _diverges(case, own, simulate(_disturbed(case, disturbance), own.run), tolerance)
 
 
 def _disturbed(case: Case, relative: float) -> Case:

@@ -19,10 +19,10 @@ from rockwobble.models import Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.time_step.extrapolated import EXTRAPOLATED
 
+from ..metrics.pair import is_release, start_of
 from ..metrics.tilt import rms
 from ..runs.execution import SAMPLE_STEP, Job
 from ..runs.run_settings import at_step
-from ..traces.pair import is_release, start_of
 from .error_budget import COVERED, WORTH_EXPLAINING, Limit, common_count, extrapolated
 
 # of the step of the run: always two, and one more where the limit is uncertain

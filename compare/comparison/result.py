@@ -7,7 +7,6 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import ClassVar
 
 import numpy as np
 import pandas as pd
@@ -16,11 +15,11 @@ from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.models.shown import Shown
 
+from ..external.verdict import lists_in_words
 from ..runs.execution import case_inputs
 from ..storage.fingerprint import fingerprint
 from ..storage.manifest import Manifest, made_now, read_results, write_results
 from .error_budget import ErrorBudget
-from .external.verdict import lists_in_words
 from .file import ABOUT, load_fields, plain_fields
 from .matrix import agreement_matrix
 
@@ -63,7 +62,6 @@ class Comparison(Shown):
     [('free response', 'flat-ground model'), ('free response', 'recess model')]
     """
 
-    _figures: ClassVar[str] = "comparison.tilt"
     summary: pd.DataFrame
     cases: Mapping[str, Case]
     traces: Mapping[tuple[str, str], Trace]

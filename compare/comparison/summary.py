@@ -7,20 +7,18 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from rockwobble.models import Case, Trace
+from rockwobble.models import AGREEMENT, Case, Trace
 from rockwobble.models.diagnostic import joined
 
-from ..metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
+from ..external.verdict import VERDICT_COLUMNS, Row, judge, no_verdict
+from ..metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass, tolerance_of
 from ..metrics.contact import contact_rms
 from ..metrics.energy import energy_loss
+from ..metrics.pair import make_pair, start_of
 from ..metrics.tilt import tilt_rms, tilt_rms_relative
 from ..metrics.turning import direction_difference, first_unresolved_pass, turn_difference
 from ..runs.labels import REDUCED
-from ..traces.pair import make_pair
-from ..traces.trajectory import measurement
-from .error_budget import BUDGET_COLUMNS, ErrorBudget
-from .external.difference import allowance as noise_allowance
-from .external.verdict import VERDICT_COLUMNS, Row, judge, no_verdict
+from .error_budget import NO_BUDGET, ErrorBudget
 from .prediction import Prediction, close_pass, verdict
 
 # name: (unit, meaning); the order is that of the table
@@ -31,7 +29,7 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "reference_engine": ("", 'what the run is held against: an engine, or "reduced"'),
     "reference_support": ("", "its support"),
     "time_step": ("s", "time step of the engine"),
-    "outcome": ("", "how the run ended: rest, completed, overturned or failed"),
+    "outcome": ("", "how the run ended: stands, overturned or failed"),
     "reference_outcome": ("", "how the reference ended"),
     "diagnostics": ("", "codes of what ended or limits the run: see `rockwobble.models.diagnostic`"),
     "peak_tilt": ("alpha", "largest tilt of the run"),
@@ -61,10 +59,16 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "engine_version": ("", "version of the engine"),
     "run": ("", "label of the run, as in the files of samples and in the figures"),
     "reference": ("", "label of the reference"),
-    "predicted_by": ("", "what ends the agreement there: a pass, growth or model form; empty: nothing"),
+    "predicted_by": ("", "what ends it within the tolerance: a pass, growth, model form; empty: nothing"),
+    "reference_uplift_time": ("s", "uplift or release of the reference; 0 where it stays at rest"),
+    "tolerance": ("alpha", "the smaller of 1 % of alpha and a tenth of the peak tilt, for the next five"),
+    "within_tolerance_until": ("s", "time of the run of the first tilt difference above it, or of the end"),
+    "left_tolerance": ("", "whether there was such a difference"),
+    "predicted_until": ("s", "time of the run of the predicted one, from the reduced models alone"),
     "divergence": (
         "",
-        "in time: within a factor of 2 of the prediction; later, earlier, or after it touched a wall",
+        "in time: within a factor of 2 of that prediction; later, much later: more than ten times, which "
+        "tests nothing; earlier, after it touched a wall, or too little motion to test anything",
     ),
     "estimated_error": (
         "alpha",
@@ -78,6 +82,11 @@ SUMMARY_COLUMNS: Mapping[str, tuple[str, str]] = {
     "limit_error": ("alpha", "uncertainty of the extrapolation"),
     "step_order": ("", "order of the engine in its step, as measured from the three finest runs"),
     "finest_step": ("s", "smallest time step that the extrapolation rests on"),
+    "not_split": (
+        "",
+        "why numerics and unexplained are not stated: unresolved_pass, order (below a half) or error (larger "
+        "than both)",
+    ),
     **VERDICT_COLUMNS,
 }
 
@@ -90,6 +99,7 @@ def summary_row(
     trial: Trace,
     *,
     prediction: Prediction,
+    within: Prediction | None = None,
     estimated_error: float = math.nan,
     budget: ErrorBudget | None = None,
     until: float | None = None,
@@ -108,6 +118,8 @@ def summary_row(
     trial : Trace
     prediction : Prediction
         Predicted agreement time of the two.
+    within : Prediction, optional
+        The same for the tolerance of `tolerance_of`. Default: `prediction`.
     estimated_error : float, optional
         Error of the run that the prediction rests on [alpha].
     budget : ErrorBudget, optional
@@ -124,6 +136,8 @@ def summary_row(
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)
     broken = "failed" in (trial.outcome, reference.outcome)
     agreement = agreement_time(whole, broken=broken, allowance=allowance)
+    tolerance, within = tolerance_of(reference, trial), within or prediction
+    close = agreement_time(whole, tolerance=tolerance, broken=broken, allowance=allowance)
     direction = direction_difference(reference, trial)
     turned_until = min(agreement.end, first_unresolved_pass(trial, start=whole.start))
     row = {
@@ -153,12 +167,17 @@ def summary_row(
         "contact_resolution": trial.contact_resolution,
         "closest_pass": closest_pass(reference, agreement) / alpha,
         "engine_version": trial.version,
-        "predicted_by": prediction.reason,
-        "divergence": _divergence(trial, agreement, prediction),
+        "predicted_by": within.reason,
+        "reference_uplift_time": whole.start,
+        "tolerance": tolerance,
+        "within_tolerance_until": close.end,
+        "left_tolerance": close.diverged,
+        "predicted_until": within.length + (whole.start if within.reason else 0.0),
+        "divergence": _divergence(trial, close, within),
         "estimated_error": estimated_error,
         **no_verdict(),
     }
-    return row | (dict.fromkeys(BUDGET_COLUMNS, math.nan) if budget is None else budget.columns())
+    return {**row, **(NO_BUDGET if budget is None else budget.columns())}
 
 
 def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) -> Row:
@@ -179,12 +198,10 @@ def _methods(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
 
 def _divergence(trial: Trace, agreement: Agreement, prediction: Prediction) -> str:
     found = verdict(agreement.length, agreement.diverged, prediction.length, prediction.reason)
+    if found != "earlier":
+        return found if agreement.tested else "too little motion"
     # no reduced model knows of walls, so none predicts what they do
-    return (
-        "after it touched a wall"
-        if found == "earlier" and trial.first("wall_contact") <= agreement.end
-        else found
-    )
+    return "after it touched a wall" if trial.first("wall_contact") <= agreement.end else found
 
 
 def external_row(
@@ -198,8 +215,8 @@ def external_row(
 ) -> Row:
     """Return the row of an external trajectory: nothing is known of its steps and errors.
 
-    Its uplift is compared as its samples show it: see `external.uplift_difference`. Its peak is compared with
-    that of the reference while the file lasts.
+    Its uplift is compared as its samples show it: see `external.verdict.uplift_differences`. Its peak is
+    compared with that of the reference while the file lasts.
     """
     verdict = judge(trial, reference, case)
     row = summary_row(
@@ -210,15 +227,15 @@ def external_row(
         trial,
         prediction=close_pass(reference, trial.contact_resolution, case.length),
         until=until,
-        allowance=noise_allowance(measurement(trial).poses.noise, case.cylinder.alpha),
+        allowance=verdict.difference.tilt.bound - AGREEMENT,
     )
     for name, part in (("uplift_time", verdict.uplift_time), ("uplift_direction", verdict.uplift_direction)):
         if part is not None:
             row[f"{name}_difference"] = part.size
-    covered = (reference.time >= trial.time[0]) & (reference.time <= trial.time[-1])
-    largest = float(np.max(reference.tilt[covered], initial=0.0))
-    if np.max(reference.tilt[~covered], initial=0.0) > largest:  # the file does not reach the peak
-        row["peak_tilt_difference"] = (trial.peak_tilt - largest) / case.cylinder.alpha
+    tilts = np.vstack([np.column_stack([reference.time, reference.tilt]), reference.extrema[:, :2]])
+    covered = (tilts[:, 0] >= trial.time[0]) & (tilts[:, 0] <= trial.time[-1])
+    largest = float(np.max(tilts[covered, 1], initial=0.0))
+    row["peak_tilt_difference"] = (trial.peak_tilt - largest) / case.cylinder.alpha
     return row | verdict.columns()
 
 
@@ -232,6 +249,9 @@ def lost_row(case: Case, name: str, reference: Trace, label: str, trial: Trace) 
         "diverged": True,
         "agreed_passes": 0,
         "reference_wall_time": reference.wall_time,
+        "reference_uplift_time": start_of(reference),
+        "within_tolerance_until": start_of(reference),
+        "left_tolerance": True,
         "engine_version": "",
         "predicted_by": "",
         "divergence": "",

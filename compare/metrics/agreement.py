@@ -11,12 +11,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rockwobble.models import Trace
+from rockwobble.models import AGREEMENT, Trace
 
-from ..traces.pair import Pair
+from .pair import Pair
 
-# tilt difference that ends the agreement, in units of alpha
-AGREEMENT = 0.01
+# share of the peak tilt: motions that stay below 1 % of alpha agree within that whatever they do
+PEAK_SHARE = 0.1
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -31,27 +31,55 @@ class Agreement:
         The same in the time of the run [s].
     diverged : bool
         Whether there was a divergence.
+    tested : bool
+        Whether the tilt of the reference changes within it by more than the tolerance; if it does not,
+        anything that moves no more agrees.
     """
 
     length: float
     end: float
     diverged: bool
+    tested: bool
 
 
-def agreement_time(pair: Pair, *, broken: bool = False, allowance: float = 0.0) -> Agreement:
-    """Return the time from uplift or release to the first |tilt difference| > 1 % of alpha.
+def tolerance_of(reference: Trace, trial: Trace | None = None) -> float:
+    """Return the smaller of 1 % of alpha and a tenth of the peak tilt [alpha].
 
-    Where one of the two traces is `broken` off by a failure, agreement ends with it at the latest. The
-    `allowance` for the noise of a measurement is added to the bound [alpha].
+    The peak is that of the reference, or of the trial where the reference stays at rest.
     """
-    beyond = np.flatnonzero(np.abs(pair.tilt_difference) > AGREEMENT + allowance)
-    if not len(beyond) and broken:
-        return Agreement(length=max(0.0, pair.end - pair.start), end=pair.end, diverged=True)
-    if not len(beyond):
-        return Agreement(length=pair.end, end=pair.end, diverged=False)
-    end = float(pair.time[beyond[0]])
-    # a trial that moves before the reference uplifts has no agreement at all
-    return Agreement(length=max(0.0, end - pair.start), end=end, diverged=True)
+    for trace in (reference, trial):
+        if trace is not None and math.isfinite(trace.uplift_time) and trace.peak_tilt > 0.0:
+            return min(AGREEMENT, PEAK_SHARE * trace.peak_tilt / trace.case.cylinder.alpha)
+    return AGREEMENT
+
+
+def agreement_time(
+    pair: Pair, *, tolerance: float = AGREEMENT, broken: bool = False, allowance: float = 0.0
+) -> Agreement:
+    """Return the time from uplift or release to the first tilt difference above a tolerance.
+
+    Parameters
+    ----------
+    pair : Pair
+    tolerance : float, optional
+        [alpha]
+    broken : bool, optional
+        Whether one of the two traces is broken off by a failure: agreement ends with it at the latest.
+    allowance : float, optional
+        For the noise of a measurement, added to the tolerance [alpha].
+    """
+    beyond = np.flatnonzero(np.abs(pair.tilt_difference) > tolerance + allowance)
+    count = int(beyond[0]) if len(beyond) else len(pair.time)
+    end = float(pair.time[count]) if len(beyond) else pair.end
+    diverged = broken or len(beyond) > 0
+    agreed = pair.reference_tilt[:count]
+    return Agreement(
+        # a trial that moves before the reference uplifts has no agreement at all
+        length=max(0.0, end - pair.start) if diverged else end,
+        end=end,
+        diverged=diverged,
+        tested=count > 0 and float(np.ptp(agreed)) > tolerance * pair.cylinder.alpha,
+    )
 
 
 def agreed_passes(reference: Trace, agreement: Agreement) -> int:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..traces.pair import Pair
+from .pair import Pair
 from .tilt import rms
 
 # share of the reference peak below which a contact point is too poorly defined to compare

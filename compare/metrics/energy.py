@@ -11,7 +11,7 @@ import numpy as np
 
 from rockwobble.models import GroundMotion, Trace
 
-from ..traces.pair import FloatArray
+from .pair import FloatArray
 
 
 def energy_loss(trace: Trace, motion: GroundMotion | None) -> float:

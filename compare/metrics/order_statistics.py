@@ -25,6 +25,8 @@ Array = NDArray[np.float64]
 
 # probability with which an interval contains what it is for
 CONFIDENCE = 0.95
+# of fewer no two values have the median between them with that probability: 1 - 2/2^5 is 94 %
+FEWEST = 6
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -51,6 +53,20 @@ class Interval:
         return {name: self.value, f"{name}_low": self.low, f"{name}_high": self.high}
 
 
+def stated(value: float, count: int, *, ratio: bool = False) -> float:
+    """Return a quantile, median or ratio of `count` members where it may be stated, else NaN.
+
+    It is not of fewer than `FEWEST` members. Nor is a `ratio` of zero or infinity: it says only that most
+    members overturn by one of two methods alone. Counts say either.
+
+    Examples
+    --------
+    >>> stated(1.2, 6), stated(1.2, 5), stated(math.inf, 9), stated(math.inf, 9, ratio=True)
+    (1.2, nan, inf, nan)
+    """
+    return math.nan if count < FEWEST or (ratio and not 0.0 < value < math.inf) else value
+
+
 def quantile_interval(values: Array, share: float) -> Interval:
     """Return a quantile of what the values are drawn from, and its interval.
 
@@ -65,8 +81,8 @@ def quantile_interval(values: Array, share: float) -> Interval:
     -------
     Interval
         The value is the order statistic of index share (n + 1): NaN where it lies between minus and plus
-        infinity, or there are no values. Where one end is not bounded, the other leaves out all that an
-        interval may, so that it has its probability.
+        infinity. Where one end is not bounded, the other leaves out all that an interval may, so that it has
+        its probability. All NaN of fewer than `FEWEST` values.
 
     Examples
     --------
@@ -78,8 +94,8 @@ def quantile_interval(values: Array, share: float) -> Interval:
     """
     ordered = np.sort(np.asarray(values, dtype=np.float64))
     count = len(ordered)
-    if not count:
-        return Interval(value=math.nan, low=-math.inf, high=math.inf)
+    if count < FEWEST:
+        return Interval(value=math.nan, low=math.nan, high=math.nan)
     left_out = 1.0 - CONFIDENCE
     lower, upper = (end_index(count, part, 0.5 * left_out) for part in (share, 1.0 - share))
     if upper is None and lower is not None:

@@ -9,7 +9,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from rockwobble.models import Trace
 
-from ..traces.pair import Pair
+from ..runs.choice import support_of
+from .pair import Pair
 
 
 def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
@@ -26,7 +27,7 @@ def outcome_of(trace: Trace) -> str:
     One that leans on a wall beyond its balance at the end of its run counts as overturned: after it the
     ground is still, as where a fall is decided.
     """
-    leans = trace.run.support == "ring" and len(trace.tilt) and trace.tilt[-1] > trace.case.cylinder.alpha
+    leans = support_of(trace.run).walls and len(trace.tilt) and trace.tilt[-1] > trace.case.cylinder.alpha
     return "overturned" if leans and trace.outcome != "failed" else trace.outcome
 
 

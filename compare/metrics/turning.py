@@ -8,7 +8,7 @@ import numpy as np
 
 from rockwobble.models import Trace
 
-from ..traces.pair import Pair
+from .pair import Pair
 
 
 def direction_difference(reference: Trace, trial: Trace) -> float:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rockwobble.models import Case, Run
+from rockwobble.models.support import RECESS, Support
+from rockwobble.models.support import SUPPORTS as SUPPORT_FACTS
 from rockwobble.multibody import BrokenEngineError, available_engines
 from rockwobble.multibody.engines.registry import (
     engine_lack,
@@ -20,10 +22,6 @@ from rockwobble.multibody.scene_of_case import resolved_settings
 from .run_settings import at_step, step_settings
 
 SUPPORTS = ("recess", "flat")
-
-# What an exact engine would follow. A ring holds only what has rolled out as far as its clearance: until the
-# first touch of a wall the cylinder rolls as on flat ground, and after it no reduced model knows the walls.
-_OWN_MODELS = {"recess": "recess", "flat": "flat", "ring": "flat"}
 
 
 def missing_engines() -> tuple[str, ...]:
@@ -232,7 +230,12 @@ def own_model(run: Run) -> Run:
     >>> own_model(Run("mujoco", "flat"))
     Run(None, 'flat')
     """
-    return Run(None, _OWN_MODELS.get(run.support, "recess"))
+    return Run(None, support_of(run).own_model)
+
+
+def support_of(run: Run) -> Support:
+    """Return the support of a run; of an external trajectory, which may state none, the recess."""
+    return SUPPORT_FACTS.get(run.support, RECESS)
 
 
 def references_of(
@@ -242,21 +245,18 @@ def references_of(
 
     The reference is called `named`, by default as it calls itself.
 
-    A run in a recess is held against the recess model; one on flat ground against that and the flat-ground
-    model; one in a ring against the recess model and itself at half its step, or, where that is sought,
-    at half the default step.
+    A run is compared with the models that its support names; one between walls also with itself at half its
+    step, or, where that is sought, at half the default step.
     """
-    recess = Run(None, "recess")
+    support = support_of(run)
+    models = [Run(None, name) for name in support.compared_with] if reference is None else []
+    chosen = {str(model): model for model in models}
     if reference is not None:
         chosen = {named or str(reference): reference}
-    elif run.support == "flat":
-        chosen = {str(model): model for model in (recess, Run(None, "flat"))}
-    elif run.support == "ring":
+    elif support.walls:
         # the step of a run that seeks its own is not known beforehand
         half = "half the default step" if isinstance(run.time_step, str) else "half the step"
-        chosen = {str(recess): recess, f"{label}, {half}": _finer(case, run)}
-    else:
-        chosen = {str(recess): recess}
+        chosen[f"{label}, {half}"] = _finer(case, run)
     return {name: other for name, other in chosen.items() if other != run}
 
 

@@ -105,7 +105,7 @@ def simulate(
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> release = rw.InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     >>> rw.simulate(rw.Case(pier, initial=release, duration=2.0), support="flat").outcome
-    'completed'
+    'stands'
     """
     return simulate_run(case, Run(engine, support, time_step, **settings), sample_step=sample_step)
 
@@ -179,7 +179,7 @@ def simulate_all(
     >>> case = rw.Case(pier, initial=release, duration=4.0)
     >>> jobs = [Job(case=case, run=rw.Run(None, "recess")), Job(case=case, run=rw.Run(None, "flat"))]
     >>> [trace.outcome for trace in simulate_all(jobs, workers=1)]
-    ['completed', 'completed']
+    ['stands', 'stands']
     """
     found = run_tasks(
         run_job,

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 MANIFEST = "manifest.json"
+Number = float | int | str | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, repr=False)
@@ -67,7 +68,7 @@ class Manifest(Brief):
     versions: Mapping[str, str] = field(default_factory=dict)
     code: Mapping[str, str] = field(default_factory=dict)
     seeds: Mapping[str, int] = field(default_factory=dict)
-    headline: Mapping[str, float | int | str | None] = field(default_factory=dict)
+    headline: Mapping[str, Number] = field(default_factory=dict)
     about: Mapping[str, Any] = field(default_factory=dict)
     files: Mapping[str, str] = field(default_factory=dict)
     pages: tuple[str, ...] = ()
@@ -79,7 +80,7 @@ def made_now(
     inputs: str = "",
     command: str = "",
     seeds: Mapping[str, int] | None = None,
-    headline: Mapping[str, float | int | str | None] | None = None,
+    headline: Mapping[str, Number] | None = None,
     about: Mapping[str, object] | None = None,
     versions: Mapping[str, str] | None = None,
 ) -> Manifest:
@@ -197,6 +198,11 @@ class Results:
 
     folder: Path
     manifest: Manifest
+
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """Return all tables by name."""
+        names = [Path(name) for name in self.manifest.files]
+        return {name.stem: self.table(name.stem) for name in names if name.suffix == ".parquet"}
 
     def table(self, name: str) -> pd.DataFrame:
         """Return a table.

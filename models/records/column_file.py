@@ -39,7 +39,10 @@ def read_table(path: Path, lines: list[str]) -> list[Component]:
     ValueError
         If a line holds something else, the names are others, or the times do not rise in even steps.
     """
-    what = "three or four numbers, time [s] and the accelerations x, y and perhaps z"
+    what = (
+        "three or four numbers, time [s] and the accelerations x, y and perhaps z (a file of one component "
+        "needs another beside it, or zero for planar motion)"
+    )
     header, rows, numbers = _rows(path, lines, (3, 4), what)
     return [_component(path, header, rows, numbers, place) for place in _places(path, header, len(rows[0]))]
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import codecs
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +13,10 @@ from ..ground_motion import GroundMotion
 from ..number_checks import require_one_of
 from .at2_file import is_at2, read_at2
 from .column_file import read_columns, read_table
-from .component import Component
+from .component import DRIFT, Component, resampled
 from .units import UNITS, factor
 
-# over a whole record two components may drift apart by this part of a step, the rounding of printed times
-_DRIFT = 0.05
+ZERO = "zero"  # in the place of a file: planar motion
 # components may differ in length by this part, and by more where what is left out is below this part of
 # the peak
 _LEFT_OUT, _STILL = 0.01, 0.05
@@ -30,6 +30,7 @@ def read_record(
     *,
     units: str | None = None,
     name: str | None = None,
+    resample: bool = False,
 ) -> GroundMotion:
     r"""Read a ground motion, one file for each component or one for all.
 
@@ -41,13 +42,17 @@ def read_record(
     Parameters
     ----------
     x_path, y_path : str or Path
-        East-west and north-south component; without the second the first holds all.
+        East-west and north-south component; without the second the first holds all. "zero" in the place of
+        one is a component of zeros, for planar motion along the other.
     z_path : str or Path, optional
         Vertical component.
     units : {"g", "m/s2", "cm/s2"}, optional
         Required where a file does not say its unit; where it does, both must agree.
     name : str, optional
         Default: the name of the x file without its ending.
+    resample : bool, optional
+        Take components of different time steps at the largest step that divides all of them. Records are
+        linear between samples, all of which stay, so no component changes.
 
     Returns
     -------
@@ -78,15 +83,33 @@ def read_record(
             raise ValueError(f"a file of all components has no other beside it, got {z_path} beside {x_path}")
         components = _read_all(Path(x_path))
     else:
-        components = [_read_component(Path(path)) for path in (x_path, y_path, z_path) if path is not None]
+        components = _read_each(x_path, y_path, z_path)
+    if resample:
+        components = resampled(components)
     length = min(len(component.values) for component in components)
-    first = components[0]
-    for other in components[1:]:
+    first = max(components, key=lambda part: part.path.name != ZERO)
+    for other in components:
         _require_same_clock(first, other, length)
     with np.errstate(over="ignore"):  # GroundMotion refuses what is not finite
-        columns = [part.values[:length] * factor(part.path, part.unit, units) for part in components]
+        columns = [part.values[:length] * _factor(part, units) for part in components]
     _require_still_beyond(components, length)
     return GroundMotion(np.column_stack(columns), first.time_step, first.path.stem if name is None else name)
+
+
+def _read_each(x: str | Path, y: str | Path, z: str | Path | None) -> list[Component]:
+    """Read the file of each component; one of zeros has the clock of the other."""
+    if str(x) == str(y) == ZERO:
+        raise ValueError("one horizontal component must be a file, got zero for both")
+    found = [
+        None if str(path) == ZERO else _read_component(Path(path)) for path in (x, y, z) if path is not None
+    ]
+    given = next(part for part in found if part is not None)
+    zero = replace(given, path=Path(ZERO), values=np.zeros_like(given.values))
+    return [part or zero for part in found]
+
+
+def _factor(part: Component, units: str | None) -> float:
+    return 1.0 if part.path.name == ZERO else factor(part.path, part.unit, units)
 
 
 def _read_component(path: Path) -> Component:
@@ -97,7 +120,10 @@ def _read_component(path: Path) -> Component:
 def _read_all(path: Path) -> list[Component]:
     lines = _lines(path)
     if is_at2(lines):
-        raise ValueError(f"{path.name} is an AT2 file, which holds one component: give one for each")
+        raise ValueError(
+            f"{path.name} is an AT2 file, which holds one component: give one for each horizontal direction, "
+            f"or {ZERO} for the other (planar motion)"
+        )
     return read_table(path, lines)
 
 
@@ -136,11 +162,12 @@ def _require_still_beyond(components: Sequence[Component], length: int) -> None:
 
 
 def _require_same_clock(first: Component, other: Component, length: int) -> None:
-    tolerance = _DRIFT * first.time_step
+    tolerance = DRIFT * first.time_step
     if abs(other.time_step - first.time_step) * length > tolerance:
         raise ValueError(
             f"the components of a record must have one time step, got {first.time_step:g} s in "
-            f"{first.path.name} and {other.time_step:g} s in {other.path.name}"
+            f"{first.path.name} and {other.time_step:g} s in {other.path.name}: resample (--resample) takes "
+            "both at a step that divides them, which changes neither"
         )
     # an AT2 file gives no times: its first sample is taken as that of the others
     if first.start is not None and other.start is not None and abs(other.start - first.start) > tolerance:

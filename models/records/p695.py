@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from ..ground_motion import GroundMotion
+from ..number_checks import require_positive
 
 PAIRS = 22
 # acceleration of the files, and of the whole package: 1 g is 9.81 m/s^2
@@ -54,6 +55,38 @@ def p695_far_field(pair: int, *, normalised: bool = False) -> GroundMotion:
         step = float(f"{(time[-1] - time[0]) / (len(time) - 1):.9g}")
         name = _name(data["records/table"], pair)
     return GroundMotion(_G * np.column_stack([values[:length] for values in components]), step, name)
+
+
+def far_field_motions(*, peak: float) -> list[GroundMotion]:
+    """Return the 22 far-field pairs of FEMA P-695, each scaled to the same peak.
+
+    Parameters
+    ----------
+    peak : float
+        Largest horizontal resultant [m/s^2].
+
+    Returns
+    -------
+    list of GroundMotion
+
+    Raises
+    ------
+    ValueError
+        If the number is out of range, or the records of the extra `records` are not installed.
+    """
+    require_positive("peak", peak, "m/s^2")
+    return [motion.scaled(peak / motion.peak) for motion in recorded_far_field()]
+
+
+def recorded_far_field() -> list[GroundMotion]:
+    """Return the 22 far-field pairs of FEMA P-695 as they were recorded.
+
+    Raises
+    ------
+    ValueError
+        If the records of the extra `records` are not installed.
+    """
+    return [p695_far_field(pair) for pair in range(1, PAIRS + 1)]
 
 
 def missing_packages() -> list[str]:

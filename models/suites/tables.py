@@ -80,6 +80,7 @@ class MotionTable(_Table):
     y: str | None = None
     z: str | None = None
     units: str | None = None
+    resample: bool | None = None
     pulse: str | None = None
     amplitude: Positives | None = None
     period: Positives | None = None
@@ -114,7 +115,7 @@ class MotionTable(_Table):
 
     def refuse_others(self, kind: str) -> None:
         """Refuse the keys of the other kinds of motion."""
-        files, pulse = ("x", "y", "z", "units"), ("pulse", "amplitude", "period", "azimuth_deg")
+        files, pulse = ("x", "y", "z", "units", "resample"), ("pulse", "amplitude", "period", "azimuth_deg")
         if kind != "record":
             self.refuse("belongs to a record that ships", "record", "vertical", "pair")
         if kind != "x":

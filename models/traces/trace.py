@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -72,9 +72,15 @@ class Trace(Shown):
         Distance slipped so far [m], time in contact with walls so far [s], size of the force of the walls
         summed over time so far, per unit mass [m/s].
     peak_tilt : float
-        Largest tilt of the continuous motion [rad]; pi/2 if overturned, NaN if failed.
-    outcome : {"rest", "completed", "overturned", "failed"}
-        "rest": standing at the end; "completed": still in motion at the end.
+        Largest tilt of the continuous motion that the record causes [rad], a swing that goes on when the run
+        ends included; pi/2 if overturned, NaN if failed.
+    outcome : {"stands", "overturned", "failed"}
+    rests : bool
+        Whether it stands still at the end.
+    followed_until : float
+        When the tilt of one that moves at the end of the run was at its next maximum, or it came to rest or
+        overturned, over still ground [s]: of that time only the peak is kept, and all of an overturning. NaN
+        if there was nothing to follow: it stands still, or has had a maximum since the ground keeps still.
     facts, diagnostics : tuple of Diagnostic
         What ended or limits the motion; the latter with breaches of the model's assumptions.
     uplift_time, uplift_direction : float
@@ -82,7 +88,7 @@ class Trace(Shown):
     passes : DataFrame
         Tilt minima between two maxima of one motion: time [s], minimum_tilt [rad], angle_of_turn [rad] from
         maximum to maximum, resolved [bool].
-    rests : ndarray, shape (r, 2)
+    rest_intervals : ndarray, shape (r, 2)
         When it came to rest after it had moved, and when it uplifted again; NaN if it did not [s].
     extrema : ndarray, shape (k, 4)
         Turning points of the tilt: time [s], tilt [rad], rolling angle [rad], 1 for a maximum and -1 for
@@ -102,7 +108,7 @@ class Trace(Shown):
         Horizontal distance of the base centre from O at the end [m].
     error_estimate, settled_until : float
         Error of the tilt that the time step leaves [rad], and until when traces of successive steps agree
-        [s]; NaN unless the step was sought.
+        [s]; NaN unless the step was sought, the error also where it cannot be known, as of an unsettled run.
 
     Examples
     --------
@@ -110,12 +116,11 @@ class Trace(Shown):
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> trace = rw.simulate(rw.Case(pier, rw.el_centro_1940(), duration=15.0))
     >>> trace.outcome, round(trace.peak_tilt / pier.alpha, 4), len(trace.passes)
-    ('completed', 0.243, 18)
+    ('stands', 0.243, 18)
     >>> trace.tilt.shape, trace.contact_point.shape
     ((1501,), (1501, 2))
     """
 
-    _figures: ClassVar[str] = "runs.trace"
     case: Case
     run: Run
     version: str
@@ -133,7 +138,9 @@ class Trace(Shown):
     source: Source
     passes: pd.DataFrame = field(default_factory=no_passes)
     facts: tuple[Diagnostic, ...] = ()
-    rests: Array = field(default_factory=lambda: np.empty((0, 2)))
+    rests: bool = False
+    followed_until: float = math.nan
+    rest_intervals: Array = field(default_factory=lambda: np.empty((0, 2)))
     extrema: Array = field(default_factory=lambda: np.empty((0, 4)))
     settings: Mapping[str, Any] = field(default_factory=dict)
     time_step: float = math.nan
@@ -260,7 +267,7 @@ class Trace(Shown):
             "settings": dict(self.settings),
             "facts": self.facts,
             "assumptions": self.assumptions,
-            "rests": self.rests,
+            "rest_intervals": self.rest_intervals,
             "extrema": self.extrema,
             "passes": {name: self.passes[name].to_numpy() for name in self.passes.columns},
         }
@@ -310,6 +317,10 @@ class Trace(Shown):
             "uplift": "none" if math.isnan(self.uplift_time) else f"{self.uplift_time:.4g} s",
             "passes": str(len(self.passes)),
         }
+        if self.outcome == "stands" and not self.rests:
+            found["outcome"] += ", moving"
+            if not math.isnan(self.followed_until):
+                found["outcome"] += f", followed to {self.followed_until:.4g} s"
         if self.facts:
             found["diagnostics"] = joined(fact.code for fact in self.facts)
         return found

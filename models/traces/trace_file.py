@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -70,8 +71,9 @@ _LATE = (
     *("energy_error", "slip", "wall_contact", "wall_impulse"),
 )
 NUMBERS = (
-    *("version", "outcome", "peak_tilt", "uplift_time", "uplift_direction", "time_step", "wall_time"),
-    *("step_count", "contact_resolution", "residual_displacement", "error_estimate", "settled_until"),
+    *("version", "outcome", "rests", "peak_tilt", "uplift_time", "uplift_direction", "time_step"),
+    *("wall_time", "step_count", "contact_resolution", "residual_displacement", "error_estimate"),
+    *("settled_until", "followed_until"),
 )
 
 
@@ -83,6 +85,15 @@ def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
         columns = VECTORS.get(name)
         return samples[name].to_numpy() if columns is None else samples[list(columns)].to_numpy()
 
+    if "rest_intervals" not in facts:  # of up to 0.2: "rest" is an outcome, and rests are the intervals
+        word = facts["outcome"]
+        facts = {
+            **facts,
+            "rests": word == "rest",
+            "rest_intervals": facts["rests"],
+            "followed_until": math.nan,
+        }
+        facts["outcome"] = "stands" if word in ("rest", "completed") else word
     held = facts["assumptions"]
     passes = {
         name: np.array(column, dtype=bool if name == "resolved" else float)
@@ -94,7 +105,7 @@ def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
         **{name: facts[name] for name in NUMBERS},
         "settings": facts["settings"],
         "facts": _diagnostics(facts["facts"]),
-        "rests": np.array(facts["rests"], dtype=float).reshape(-1, 2),
+        "rest_intervals": np.array(facts["rest_intervals"], dtype=float).reshape(-1, 2),
         "extrema": np.array(facts["extrema"], dtype=float).reshape(-1, 4),
         "passes": pd.DataFrame(passes),
         "source": Known(

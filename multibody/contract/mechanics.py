@@ -99,7 +99,7 @@ def uplifts_when_due(engine: str, support: str) -> None:
         return
     below = GroundMotion([[0.0, 0.0], [0.8 * limit, 0.0]], 0.4)
     waiting = run(engine, support, initial=None, motion=below, duration=None)
-    hold(waiting.outcome == "rest", f"below the threshold the outcome is {waiting.outcome}")
+    hold(waiting.rests, "below the threshold it does not stand still")
     ramp = GroundMotion([[0.0, 0.0], [2.0 * limit, 0.0]], 0.8)
     found = run(engine, support, initial=None, motion=ramp, duration=None)
     small(found.uplift_time - 0.4, UPLIFT_TIME, "it does not uplift at 0.4 s")

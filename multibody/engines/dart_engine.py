@@ -29,6 +29,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from rockwobble.models.support import SUPPORTS
+
 from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
@@ -42,6 +44,9 @@ _OPEN = 5e-8  # [rad] lean at which the base is open; standing it stays below 5e
 # eccentricities of the load: from the first, of b, or of the friction, the scene follows it, at the second,
 # of b, the base may open
 _LOADED, _OPENING = 0.5, 0.999
+# [rad] between the scene and the load of a base that slides, of which friction in a box is 2 % off then: to
+# turn the scene costs more than a step
+_OFF_LOAD = 0.02
 _REDUCTION, _FASTEST_REDUCTION = 0.01, 1e-3  # [-], [m/s] by which DART itself reduces a depth
 _SLOWING = 0.1  # of gravity, by which the ground slows down that takes a landed base back
 _LANDED = 2.0  # depths of the rim by which a closed base is deeper than it was kept where it has landed
@@ -70,7 +75,7 @@ class _DartStepper:
         self._scene, self._step, self._settings = scene, scene.time_step, settings
         # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if scene.support == "recess" else 0.0
+        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
         self._dart: DartScene = build(scene, settings)
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._kept = settings.depth  # depth at which the rim is kept just now [m]
@@ -128,6 +133,9 @@ class _DartStepper:
         excited, gravity, heading = bool(self._scene.components), self._scene.gravity, self._heading
         friction = self._scene.friction
         followed = _LOADED * min(1.0, friction * arm)
+        # where friction gives way before the base opens, the four contacts of a closed base slide: those of
+        # the rim solver take its hundreds of sweeps in every step, for no motion that could follow
+        opens = friction * arm > _OPENING
         turn_x, turn_y = cosine(heading), sine(heading)
         spin_x, spin_y = cosine(0.5 * _SPIN), sine(0.5 * _SPIN)
         target, gain = self._settings.depth, self._settings.depth_gain / self._step
@@ -161,10 +169,11 @@ class _DartStepper:
                 # of a base that slides, friction is all the load
                 load = min(math.hypot(ax, ay) / (gravity + az), friction) * arm
                 # what lies after its landing leans by what it has sunk, and does not open
-                self._use_for(opening=load > _OPENING or (lean > _OPEN and not lies))
-                if lean > _LEANS or load > followed:
-                    # a load pushes against the acceleration
-                    along = math.atan2(axis_y, axis_x) + heading if lean > _LEANS else math.atan2(-ay, -ax)
+                self._use_for(opening=opens and (load > _OPENING or (lean > _OPEN and not lies)))
+                # a load pushes against the acceleration
+                along = math.atan2(axis_y, axis_x) + heading if lean > _LEANS else math.atan2(-ay, -ax)
+                off = opens or abs(math.remainder(along - heading, 0.5 * math.pi)) > _OFF_LOAD
+                if off and (lean > _LEANS or load > followed):
                     self._turn(along)
                     heading, turn_x, turn_y = along, cosine(along), sine(along)
                     x, y, z, _, _, height = get().tolist()

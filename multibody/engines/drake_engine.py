@@ -27,6 +27,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from rockwobble.models.support import SUPPORTS
+
 from ..body import Body
 from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
@@ -61,7 +63,7 @@ class _DrakeStepper:
         self._scene, self._step = scene, scene.time_step
         # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if scene.support == "recess" else 0.0
+        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
         self._standing, self._rolling = build(scene, settings, POINTS), build(scene, settings, 0)
         self._last = self._standing  # what took the last step
         self._overshoot = settings.friction_damping - 1.0

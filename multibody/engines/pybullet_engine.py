@@ -17,6 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from rockwobble.models.support import SUPPORTS
+
 from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
 from ..protocol import Array, Scene, Settings, Stepper, Steps
@@ -69,7 +71,7 @@ class _PybulletStepper:
         self._gravity = scene.gravity
         # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
-        self._stiffness = stiffness if scene.support == "recess" else 0.0
+        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
         self._standing = scene.start.standing
         self._ground = make_ground(pybullet, client, scene, settings)
         self._make = functools.partial(make_cylinder, pybullet, client, scene, settings)

@@ -9,6 +9,8 @@ from dataclasses import fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from rockwobble.models.support import SUPPORTS
+
 from ..kinematics import Kinematics, kinematics, rim, rolling_momentum, tilt_of, unwrap, unwrap_twist
 from ..protocol import Scene, Steps, Wall
 from ..scene.guard import energy_scale, first_breach
@@ -96,7 +98,8 @@ class Recorder:
         self.failure = ""  # code of the diagnostic that ended the run
         self.warnings: list[str] = []
         self.end_time = math.inf
-        self.undecided = False  # whether it falls after the end, and nobody knows how far
+        self.followed_until = math.nan  # when it was at its next maximum, or at rest, after the end [s]
+        self.undecided = False  # whether neither, nor the ground, came in time
 
     @property
     def table(self) -> Array:
@@ -107,6 +110,11 @@ class Recorder:
     def end(self) -> float:
         """Time of the last sample asked for [s]."""
         return float(self._samples[-1])
+
+    @property
+    def resting(self) -> bool:
+        """Whether it stands still at the last step analysed."""
+        return self.uplift is None or self.rests.resting
 
     def last_value(self, name: str) -> float:
         """Field of `COLUMNS` at the last step analysed."""
@@ -238,7 +246,7 @@ class Recorder:
             rate = max(float(state.tilt_rate[stop]), 1e-3)
             self.end_time = float(time[stop] + max(0.5 * math.pi - state.tilt[stop], 0.0) / rate)
         breach = first_breach(
-            state, gained, self._scene.body, self._scene.gravity, self._scene.support == "recess", wall,
+            state, gained, self._scene.body, self._scene.gravity, SUPPORTS[self._scene.support].guided, wall,
             self.energy.largest,
         )  # fmt: skip
         if breach is not None and breach.index < stop:

@@ -39,6 +39,9 @@ class StepMeans:
             self._samples = np.zeros((len(motion.acceleration), 3))
             self._samples[:, : motion.acceleration.shape[1]] = motion.acceleration / scale.acceleration
             self._spacing = motion.time_step / scale.time
+        shaken = np.flatnonzero(self._samples.any(axis=1))
+        # [s] from which on the ground keeps still: the last sample, or the first of the last zeros
+        self.still_from = self._spacing * min(shaken[-1] + 1 if len(shaken) else 0, len(self._samples) - 1)
         areas = 0.5 * self._spacing * (self._samples[1:] + self._samples[:-1])
         self._velocity: Array = np.vstack([np.zeros(3), np.cumsum(areas, axis=0)])
         self._slopes: Array = np.diff(self._samples, axis=0, append=self._samples[-1:]) / self._spacing

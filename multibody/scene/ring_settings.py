@@ -8,6 +8,7 @@ from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from rockwobble.models.number_checks import quoted
+from rockwobble.models.support import SUPPORTS
 
 STEEPEST = 1.5  # [rad] a wall that leans further is a floor
 
@@ -72,7 +73,7 @@ def take_ring(
     names = {field.name for field in fields(RingSettings)}
     others = {name: value for name, value in given.items() if name not in names}
     walls = {name: value for name, value in given.items() if name in names}
-    if support == "ring":
+    if SUPPORTS[support].walls:
         return others, RingSettings(**{"ring_inclination": min(math.atan(tan_alpha), STEEPEST), **walls})
     if walls:
         raise ValueError(f"{', '.join(walls)} is for support 'ring' only, got support {support!r}")

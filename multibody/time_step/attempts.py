@@ -11,6 +11,8 @@ import numpy as np
 from rockwobble.models import Trace
 
 _DIVERGED = 0.01  # of alpha
+# diagnostics beside which no estimate of the error is known: a pass is left to chance, or contact drives
+UNKNOWN = ("unresolved_pass", "energy")
 _SAME_TIME = 1e-9  # of the length of a run
 
 Progress = Callable[[float], None]
@@ -52,6 +54,11 @@ def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
     until = float(earlier[-1]) if len(earlier) else 0.0
     within = distance[: int(np.searchsorted(fine.time, until, side="right"))]
     return Closeness(float(within.max(initial=0.0)), until, divergence)
+
+
+def unknown_from(trace: Trace) -> tuple[float, str]:
+    """Return from when on no estimate of the error of a trace is known [s], and the code that says so."""
+    return min(((trace.first(code), code) for code in UNKNOWN), default=(math.inf, ""))
 
 
 def common_count(traces: Sequence[Trace]) -> int:

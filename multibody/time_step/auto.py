@@ -11,7 +11,9 @@ Halving ends without that where it no longer brings the traces closer, which eng
 is not always better), or at the smallest step. The run that is kept is the last that was an improvement.
 
 The estimate of the remaining error is Richardson's: with differences d1 and then d2 of successive
-halvings, the order is p = log2(d1/d2), and what is left of the finer one d2/(2^p - 1).
+halvings, the order is p = log2(d1/d2), and what is left of the finer one d2/(2^p - 1). Near passes mix the
+orders, so p counts as 1 at most. Only a run that has settled states an error; one with a pass that is not
+resolved, or in which contact makes or takes energy, has not.
 """
 
 from __future__ import annotations
@@ -22,7 +24,7 @@ from dataclasses import replace
 from rockwobble.models import Diagnostic, Trace
 
 from ..scene.guard import LARGEST_STEP
-from .attempts import Attempt, Closeness, Progress, closeness, part_of, shares
+from .attempts import Attempt, Closeness, Progress, closeness, part_of, shares, unknown_from
 
 AUTO = "auto"
 COARSEST = 4e-4  # [s] at the reference size: four times the default, so that easy cases cost a fourth
@@ -30,7 +32,7 @@ SMALLEST = 6.25e-6  # [s] at the reference size: six halvings; below it rounding
 STEP_TOLERANCE = 1e-3  # of alpha; the default, a tenth of the difference at which traces diverge
 _PUT_OFF = 1.05  # a divergence later by less is no gain
 _CLOSER = 0.9  # a difference reduced by less is no gain
-_ORDERS = 0.5, 2.0  # least and largest order that an estimate relies on
+_ORDERS = 0.5, 1.0  # least and largest order that an estimate relies on
 
 assert COARSEST <= LARGEST_STEP
 
@@ -120,9 +122,12 @@ def _reported(run: Trace, found: list[Closeness], verdict: str, alpha: float) ->
         fact = Diagnostic(code="unsettled", detail=verdict)
         return run if run.outcome == "failed" else replace(run, facts=(*run.facts, fact))
     last = found[-1]
-    error, order = _estimate(found)
+    unknown, code = unknown_from(run)
+    verdict = verdict or (code if math.isfinite(unknown) else "")
     if verdict:
+        error = math.nan
         fact = Diagnostic(code="unsettled", duration=last.until, size=last.difference / alpha, detail=verdict)
     else:
+        error, order = _estimate(found)
         fact = Diagnostic(code="settled", duration=last.until, size=error / alpha, bound=order)
     return replace(run, error_estimate=error, settled_until=last.until, facts=(*run.facts, fact))

@@ -5,14 +5,16 @@ Three runs, at h = 4, 2 and 1 times the finest step. The two finest give, sample
     x(h) + (x(h) - x(2 h))/(2^p - 1),
 
 the third run gives the order p, from the differences d1 and d2 of successive runs as log2(d1/d2), and the
-error that is left: what one halving has moved the extrapolation by, over 2^(p+1) - 1. p is 1 or 2. After a
-release, and wherever the rim only rolls, it is 1 and the formula 2 x(h) - x(2 h); under shaking the near
-passes of upright take over, in which a step of h is a share of a short time, and their error is of order 2.
+error that is left. p is 1 or 2. After a release, and wherever the rim only rolls, it is 1 and the formula
+2 x(h) - x(2 h); under shaking the near passes of upright take over, in which a step of h is a share of a
+short time, and their error is of order 2. The error is what one halving has moved the extrapolation by: of a
+pure series it is a third or a seventh of that, but near passes mix the orders.
 
-It means something as far as the runs agree: to the last pass before two of them part by 1 % of alpha, and no
-further than a halving moves the extrapolation by less than it moves the run. Beyond that the trace is
-the finest run, and a diagnostic says from when on. What contact did (force, slip, walls) is that of the
-finest run throughout: no power series of the step.
+It means something as far as the runs agree: to the last pass before two of them part by 1 % of alpha, no
+further than a halving moves the extrapolation by less than it moves the run, and not beyond a pass that
+contact does not resolve, or what contact makes or takes of the energy. Beyond that the trace is the finest
+run, and a diagnostic says from when on. What contact did (force, slip, walls) is that of the finest run
+throughout: no power series of the step.
 """
 
 from __future__ import annotations
@@ -30,7 +32,7 @@ from rockwobble.models import Diagnostic, Trace
 from rockwobble.models.traces.trace_source import Known
 
 from ..scene.guard import LARGEST_STEP
-from .attempts import Attempt, Progress, closeness, common_count, part_of, shares
+from .attempts import Attempt, Progress, closeness, common_count, part_of, shares, unknown_from
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -92,19 +94,21 @@ def extrapolation(runs: Sequence[Trace], alpha: float) -> Trace:
         return finest
     if any(run.outcome == "failed" for run in runs):
         return _noted(finest, Diagnostic(code="not_extrapolated", time=0.0, detail="fails"))
-    until = min(closeness(coarse, fine, alpha).until for coarse, fine in pairwise(runs))
+    agree = min(closeness(coarse, fine, alpha).until for coarse, fine in pairwise(runs))
+    unknown, code = unknown_from(finest)
+    until = min(agree, unknown)
     count = int(np.searchsorted(finest.time[: common_count(runs)], until, side="right"))
     tilts = [run.tilt[:count] for run in runs]
     order = _order(tilts)
     moved = np.abs(to_zero_step(tilts[1:], order) - to_zero_step(tilts[:-1], order))
     good = _meaningful(moved, np.maximum(np.abs(tilts[-1] - tilts[-2]), _OF_NO_ACCOUNT * alpha))
     whole = good == len(finest.time)
+    why = "no_closer" if good < count else code if unknown < agree else "diverged"
     if good == 0:
-        return _noted(finest, Diagnostic(code="not_extrapolated", time=0.0, detail="no_closer"))
-    end, left = float(finest.time[good - 1]), float(moved[:good].max()) / (2.0 ** (order + 1) - 1.0)
+        return _noted(finest, Diagnostic(code="not_extrapolated", time=0.0, detail=why))
+    end, left = float(finest.time[good - 1]), float(moved[:good].max())
     facts = [Diagnostic(code="extrapolated", duration=end, size=left / alpha, bound=order)]
     if not whole:
-        why = "no_closer" if good < count else "diverged"
         facts.append(Diagnostic(code="not_extrapolated", time=end, detail=why))
     merged = _merged(runs[-2:], order, good)
     return replace(_noted(merged, *facts), error_estimate=left, settled_until=end)

@@ -4,9 +4,15 @@ One driver serves the three models; they differ in their equations and in the nu
 `systems` says which.
 Every step ends at the next record sample at the latest, because the forcing has a kink there.
 
-A run that ends with more energy than standing on the rim at alpha takes is carried on over still ground
-until it is decided whether the cylinder overturns: free motion returns to the same largest tilt, so its
-next maximum tells.
+A run that ends while the cylinder moves is followed over still ground to the next maximum of the tilt, or
+until it overturns. Of the maxima over still ground the first is the largest:
+
+- Recess: energy and L are conserved, so the tilt oscillates between the same two turning points.
+- Flat ground: Lambda' and S' are theta' times what is linear in (Lambda, S) with coefficients of theta alone.
+  Both are thus functions of the tilt throughout a motion, whose two constants are integrals beside the
+  energy (Appell and Chaplygin, of a rolling disc): the tilt again has the same two turning points.
+- Losses lower each maximum: impacts in a plane, and rolling resistance in the recess, whose effect on the
+  energy at the maximum goes with theta'^2 + sin^2(theta) phi' (phi' - L/B(theta_max)) >= 0.
 """
 
 from __future__ import annotations
@@ -18,17 +24,16 @@ from numpy.typing import NDArray
 
 from .._compile import borrowed, once
 from ..body import Body
-from .endings import may_overturn
 from .events import NO_TURN
-from .log import as_table, empty_log, mark_of
+from .log import as_table, empty_log, has_turned, mark_of
 from .progress import Stage, make_progress, time_in
-from .record import piece_of_record
+from .record import piece_of_record, still_from
 from .result import (
     COMPLETED,
-    DECIDED,
     MAXIMUM,
     MINIMUM,
     REST,
+    TURNED,
     Driver,
     IntegrationResult,
     Options,
@@ -41,15 +46,16 @@ from .tsit5 import State
 _FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
 # a literal 0 has a type of its own, for which its users would be compiled too
 _FIRST_SAMPLE = cast("int", np.int64(0))
-# of 1/p; what leaves the balance, or unstable steady wobble, grows by exp(p t): in this time all motion turns
-# or falls but what is nearer to them than 3e-7, which nobody could tell from resting there
-_UNDECIDED = 15.0
+# of 1/p; what leaves the balance, or unstable steady wobble, grows by exp(p t), and what comes to it slows
+# down alike: in this time all motion turns or falls but what is nearer to them than 3e-7, which nobody could
+# tell from resting there, and whose largest tilt is that of the balance
+_LONGEST = 15.0
 
 
 def make_driver(system: System, stepper: Stepper) -> Driver:
     """Return the compiled time integration of one model by one method."""
     lifted, lift_in, at_beginning, at_rest, stood, moved = make_progress(system, stepper)
-    workspace, derivative, momenta = stepper.workspace, system.derivative, system.momenta
+    workspace, derivative = stepper.workspace, system.derivative
 
     @once
     def integrate(
@@ -89,14 +95,14 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         h_next = _FIRST_STEP / body.p
         run = Stage(0.0, initial, initial, h_next, True, resting, initial[0], _FIRST_SAMPLE, 0, COMPLETED)
         now, index = 0.0, 0
-        end, deciding, mark = options.duration, False, mark_of(run.y, run.peak, log)
+        end, following, mark = options.duration, False, mark_of(run.y, log)
 
         while run.status == COMPLETED:
             jumps = False
             if now >= end:
-                if deciding or run.resting or not may_overturn(body, run.y[0], run.y[1], *momenta(run.y)):
+                if following or run.resting or has_turned(log, still_from(record, time_step)):
                     break
-                end, deciding, mark = now + _UNDECIDED / body.p, True, mark_of(run.y, run.peak, log)
+                end, following, mark = now + _LONGEST / body.p, True, mark_of(run.y, log)
                 index, jumps = len(record), True
             piece = piece_of_record(record, time_step, index, now, end)
             if now == 0.0 and not resting and initial[1] == 0.0:  # a release at rest is a turning point
@@ -118,7 +124,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     now = time_in(piece, run.elapsed)
                     continue
                 begin = now
-                run, turn, landing = moved(body, options, piece, bounds, index, deciding, work, wanted, run)
+                run, turn, landing = moved(body, options, piece, bounds, index, following, work, wanted, run)
                 now = time_in(piece, run.elapsed)
                 if turn.kind != NO_TURN:
                     log.extrema.append((begin + turn.at, turn.tilt, turn.angle, turn.kind))
@@ -131,11 +137,13 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     run = at_rest(run)
             index += 1
 
-        y, peak, status = run.y, run.peak, run.status
-        if deciding and status in (COMPLETED, DECIDED):
-            y, peak, now, status = mark.y, mark.peak, options.duration, COMPLETED
+        y, status, followed = run.y, run.status, np.nan
+        if following:
+            followed = log.extrema[-1][0] if status == TURNED else log.rests[-1][0] if run.resting else now
+        if following and status in (COMPLETED, TURNED):
+            y, now, status = mark.y, options.duration, COMPLETED
         else:
-            mark = mark_of(y, peak, log)
+            mark = mark_of(y, log)
             if status == COMPLETED and run.resting:
                 status = REST
         final = np.empty(len(y))
@@ -144,7 +152,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
         return IntegrationResult(
             status,
             now,
-            peak,
+            followed,
+            run.peak,
             uplift[0],
             uplift[1],
             owned[1],

@@ -1,4 +1,4 @@
-"""Conditions that end a motion: the cylinder comes to rest, or has what it takes to overturn."""
+"""Conditions that end a motion: the cylinder comes to rest, or is bound to overturn."""
 
 from __future__ import annotations
 
@@ -29,15 +29,6 @@ def may_sit_down(
     if share <= 0.0 or excess(body, a) >= 0.0:
         return False
     return energy(body, theta, omega, L, S) < share * energy(body, limit, 0.0, 0.0, 0.0)
-
-
-@jit
-def may_overturn(body: Body, theta: float, omega: float, L: float, S: float) -> bool:
-    """Return whether the energy suffices to pass the balance at alpha over still ground.
-
-    It is conserved there, and no part of it is negative but the potential energy beyond alpha.
-    """
-    return theta >= body.alpha or energy(body, theta, omega, L, S) > energy(body, body.alpha, 0.0, 0.0, 0.0)
 
 
 @jit

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .._compile import jit
-from .result import write
+from .result import MAXIMUM, write
 from .tsit5 import State
 
 
@@ -24,10 +24,9 @@ class Log(NamedTuple):
 
 
 class Mark(NamedTuple):
-    """State at the end of the duration, from which the integration goes on to see whether it overturns."""
+    """State at the end of the duration, from which the motion is followed."""
 
     y: State
-    peak: float
     counts: tuple[int, int, int]  # rows of the log
 
 
@@ -42,9 +41,20 @@ def empty_log(y: State) -> Log:
 
 
 @jit
-def mark_of(y: State, peak: float, log: Log) -> Mark:
+def mark_of(y: State, log: Log) -> Mark:
     """Return the present state."""
-    return Mark(y, peak, (len(log.extrema), len(log.rests), len(log.steps)))
+    return Mark(y, (len(log.extrema), len(log.rests), len(log.steps)))
+
+
+@jit
+def has_turned(log: Log, since: float) -> bool:
+    """Return whether the tilt has had a maximum since a time [s]."""
+    for i in range(len(log.extrema) - 1, -1, -1):
+        if log.extrema[i][0] < since:
+            return False
+        if log.extrema[i][3] == MAXIMUM:
+            return True
+    return False
 
 
 @jit

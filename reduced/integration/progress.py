@@ -19,7 +19,7 @@ from ..trigonometry import sin_cos
 from .endings import HALF_PI, may_sit_down, surely_overturns
 from .events import NONE, REPEATED, Turn, make_events
 from .record import Piece
-from .result import COMPLETED, DECIDED, MAXIMUM, MINIMUM, OVER_BUDGET, OVERTURNED, STALLED, Options
+from .result import COMPLETED, MAXIMUM, MINIMUM, OVER_BUDGET, OVERTURNED, STALLED, TURNED, Options
 from .sampling import Wanted, make_sampling
 from .stepping import Stepper
 from .systems import System
@@ -84,7 +84,7 @@ class Progress(NamedTuple):
     at_beginning: Callable[..., Stage]  # (run, jumps)
     at_rest: Callable[..., Stage]  # (run)
     stood: Callable[..., Stage]  # (body, time_step, piece, lift, wanted, run)
-    moved: Callable[..., Step]  # (body, options, piece, later, index, deciding, work, wanted, run)
+    moved: Callable[..., Step]  # (body, options, piece, later, index, following, work, wanted, run)
 
 
 def make_progress(system: System, stepper: Stepper) -> Progress:
@@ -162,15 +162,14 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         piece: Piece,
         later: NDArray[np.float64],
         index: int,
-        deciding: bool,
+        following: bool,
         work: NDArray[np.float64],
         wanted: Wanted,
         run: Stage,
     ) -> Step:
         """Take one step in the piece behind sample `index`, to an event at the most.
 
-        `deciding` says that the record is over, so that the next highest point tells that the cylinder
-        does not overturn.
+        `following` says that the duration is over, so that the next maximum ends the run.
         """
         elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
         a = ground(piece.a, piece.slope, elapsed)
@@ -195,7 +194,7 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
             if ending.turns:
                 turn = trial.turn
                 peak = max(peak, turn.tilt)
-                status = DECIDED if deciding and turn.kind == MAXIMUM else COMPLETED
+                status = TURNED if following and turn.kind == MAXIMUM else COMPLETED
             y, peak = ending.y, max(peak, ending.y[0])
             if ending.overturns:
                 status = OVERTURNED

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .._compile import inlined
+from .._compile import inlined, jit
 from .tsit5 import Vector
 
 
@@ -37,3 +37,12 @@ def piece_of_record(
     )
     finish = min(end * time_step, last)
     return Piece(begin, finish, finish - begin, a, slope)
+
+
+@jit
+def still_from(record: NDArray[np.float64], time_step: float) -> float:
+    """Return when the ground begins to keep still [s]: at the last sample, or the first of the last zeros."""
+    last = max(len(record) - 1, 0)
+    while last > 0 and not (record[last - 1].any() or record[last].any()):
+        last -= 1
+    return last * time_step

@@ -12,7 +12,7 @@ from .._compile import jit
 from .tsit5 import State
 
 REST, COMPLETED, OVERTURNED, OVER_BUDGET, STALLED = range(5)  # how a time integration ends
-DECIDED = 5  # while it runs: it is known that it does not overturn after the duration
+TURNED = 5  # while it runs: the tilt has reached its first maximum after the duration
 MAXIMUM, MINIMUM = 1.0, -1.0
 
 
@@ -32,7 +32,8 @@ class IntegrationResult(NamedTuple):
 
     status: int
     end: float  # time reached [s]; later than the duration only where it overturns after it
-    peak: float  # largest tilt until the duration [rad]
+    followed_until: float  # time to which it was followed after the duration [s]; NaN if it did not move then
+    peak: float  # largest tilt, until then [rad]
     uplift_time: float  # first uplift, or 0 for a release [s]; NaN if there is none
     uplift_direction: float  # rolling angle there [rad]
     samples: NDArray[np.float64]  # (n, size) state at the times asked for

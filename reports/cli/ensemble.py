@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import math
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -11,141 +10,109 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
+from rockwobble.compare.studies.plans import Copies
 
 from ..console.progress import shown_progress
-from ..console.results import show_and_write
-from ..console.terminal import command_line, interruptible, user_input
+from ..console.results import show_and_save
+from ..console.terminal import interruptible, user_input
 from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible
-from .inputs.problem import Problem, refuse, refuse_options_of_engines, states_problem
+from .inputs.plan_options import takes_options
+from .inputs.problem import Problem, refuse, refuse_options_of_engines
+from .inputs.several import ManyMotions
 from .inputs.suite_choice import chosen_runs, refuse_problem_options, without_missing
 
-_MEMBERS = {"members", "perturbation", "synthetic", "p695"}  # options that state them
+_COPIES = {"copies", "perturbation"}
+_MOTIONS = {"p695", "records", "synthetic", "peak"}
 
-Members = Annotated[
-    int, typer.Option(help="Number of members, where no suite gives them.", callback=options.whole(2))
-]
-Perturbation = Annotated[
-    float,
-    typer.Option(
-        help="Relative standard deviation of tilt and rolling rate at release, or of the two components "
-        "of the ground motion; at most 0.1."
-    ),
-]
-Synthetic = Annotated[
+Peak = Annotated[
     float | None,
     typer.Option(
-        help="Made-up ground motions instead of perturbed copies, with a peak of so many times g tan alpha."
-    ),
-]
-FarField = Annotated[
-    float | None,
-    typer.Option(
-        help="The 22 far-field pairs of FEMA P-695 (extra records) instead of perturbed copies, each scaled "
-        "to a peak of so many times g tan alpha.",
+        help="Peak horizontal resultant to which each of many motions is scaled, in g tan alpha. Default: 3.",
+        rich_help_panel="Ground motions",
     ),
 ]
 
 
-@states_problem
+@takes_options
 def ensemble(
     context: typer.Context,
     problem: Problem,
+    copies: Copies,
+    motions: ManyMotions,
     suite: options.SuiteName = None,
-    members: Members = 20,
-    perturbation: Perturbation = 0.01,
-    synthetic: Synthetic = None,
-    p695: FarField = None,
-    seed: options.Seed = 0,
+    peak: Peak = None,
     engine: options.Engines = None,
     support: options.Supports = None,
     time_step: options.TimeStep = None,
     out: options.Out = Path("rockwobble-ensemble"),
 ) -> None:
-    """Hold the peak tilts of many members by each method against each other, member by member.
+    """Compare the peak tilts of many members by each method, member by member.
 
     Without options: El Centro on R = 6 m, tan alpha = 0.2, with 20 slightly perturbed copies. With
-    --synthetic or --p695 the members are ground motions, with a SUITE its cases, by its runs, among which
-    --engine and --support choose. --engine none runs the reduced models alone.
+    --synthetic, --p695 or --records the members are ground motions, with a SUITE its cases, by its runs,
+    among which --engine and --support choose. --engine none runs the reduced models alone.
 
-    Whatever ends it, the same command goes on where it stopped.
+    Whatever ends it, the same command resumes.
 
     Writes ensemble.html, the same as ensemble.md with ensemble.svg, and members, methods and contrasts as
     Parquet and CSV.
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.compare.studies.ensemble.members import require_perturbation
+            from rockwobble.models.records.plausibility import doubts_of
+
+            from ..pages.words.diagnostics import warnings
 
             rc.require_writable(out)
             refuse_options_of_engines(context, engine)
             stated: rw.Case | rw.Suite | list[rw.Case]
             if suite is not None:
-                refuse(context, _MEMBERS, f"does not go with a suite, got {suite}: its cases are the members")
+                ignored = _COPIES | _MOTIONS
+                refuse(context, ignored, f"does not go with a suite, got {suite}: its cases are the members")
                 refuse_problem_options(context, suite)
-                stated = rw.read_suite(suite)
+                stated, source = rw.read_suite(suite), f"cases of {suite}"
                 runs = _runs(engine, support, time_step, stated)
                 print(f"Suite {suite}: {len(stated.cases)} members")
+                for line in warnings(doubts_of(each.motion for each in stated.cases)):
+                    print(line)
             else:
-                _refuse_ignored(context, synthetic, p695)
-                case = problem.case()
+                stated, source = _members(context, problem, copies, motions, peak)
+                shown = stated if isinstance(stated, rw.Case) else stated[0]
+                count = copies.copies if isinstance(stated, rw.Case) else len(stated)
                 runs = _runs(engine, support, time_step, None)
                 # each engine and its own model, and a perturbed copy of that
-                require_feasible([case], [rw.Run(None, "recess"), *runs], members=members, samples=False)
-                motions = _motions(case, members, synthetic, p695, seed)
-                if not motions:
-                    require_perturbation(perturbation)
-                # named by the motion alone: the others are all the same
-                each = [dataclasses.replace(case, name=motion.name, motion=motion) for motion in motions]
-                stated = each or case
-                for line in describe(case)[:1] if motions else describe(case):
+                require_feasible([shown], [rw.Run(None, "recess"), *runs], members=count, samples=False)
+                for line in describe(shown) if isinstance(stated, rw.Case) else describe(shown)[:1]:
                     print(line)
-                print(f"Members: {len(motions) or members}, {_source(synthetic, p695, perturbation)}")
-        from rockwobble.compare.studies.ensemble.study import manifest_of
-
-        from ..pages.ensemble import ensemble_page
-
+                print(f"Members: {count}, {source}")
         with user_input(), shown_progress() as tell:
             found = rw.ensemble(
-                stated,
-                runs=runs,
-                size=members,
-                perturbation=perturbation,
-                seed=seed,
-                progress=tell,
-                resume=out,
-                source=_source(synthetic, p695, perturbation) if suite is None else f"cases of {suite}",
+                stated, runs=runs, progress=tell, resume=out, source=source, **dataclasses.asdict(copies)
             )
-        manifest = manifest_of(found, command_line())
-        tables = found.tables
-        sheets = {f"{name}.csv": table.to_csv(index=False).encode() for name, table in tables.items()}
-        show_and_write(out, ensemble_page(found, manifest), manifest, tables, sheets)
+        show_and_save(found, out)
 
 
-def _refuse_ignored(context: typer.Context, synthetic: float | None, far_field: float | None) -> None:
-    """Refuse what the members are not made of."""
-    ignored = {"perturbation", "record", "record_x", "record_y", "record_z", "units", "scale"}
-    for option, peak, more in (("--synthetic", synthetic, set()), ("--p695", far_field, {"members", "seed"})):
-        if peak is None:
-            continue
-        if not 0.0 < peak < math.inf:
-            raise ValueError(f"{option} must be positive and finite [g tan alpha], got {peak:g}")
-        refuse(context, ignored | more, f"does not go with {option}: its motions are the members")
-
-
-def _motions(
-    case: rw.Case, members: int, synthetic: float | None, far_field: float | None, seed: int
-) -> list[rw.GroundMotion]:
-    """Return the ground motions that are the members; none where the members are perturbed copies."""
-    if synthetic is not None and far_field is not None:
-        raise ValueError("the members are made-up ground motions or those of FEMA P-695, got both options")
-    uplift = case.gravity * case.cylinder.tan_alpha
-    if far_field is not None:
-        return rc.far_field_motions(peak=far_field * uplift)
-    if synthetic is not None:
-        return rc.synthetic_motions(members, peak=synthetic * uplift, seed=seed)
-    return []
+def _members(
+    context: typer.Context, problem: Problem, copies: Copies, motions: ManyMotions, peak: float | None
+) -> tuple[rw.Case | list[rw.Case], str]:
+    """Return the case whose copies are the members, or the members, and what they are."""
+    if not motions.given:
+        refuse(context, {"peak"}, "scales many motions, give --synthetic, --p695 or --records as well")
+        return problem.case(), f"perturbed copies, {100.0 * copies.perturbation:g} %"
+    ignored = {"record", "record_x", "record_y", "record_z", "scale", *_COPIES}
+    refuse(context, ignored, f"does not go with {motions.given}: its motions are the members")
+    case = dataclasses.replace(problem, units=None, resample=False).case()
+    level = 3.0 if peak is None else peak
+    found, source = motions.read(copies.seed)
+    target = level * case.gravity * case.cylinder.tan_alpha
+    if not target > 0.0:
+        raise ValueError(f"--peak must be positive [g tan alpha], got {level:g}")
+    # named by the motion alone: the others are all the same
+    scaled = [motion.scaled(target / motion.peak) for motion in found]
+    members = [dataclasses.replace(case, name=motion.name, motion=motion) for motion in scaled]
+    return members, f"{source}, with peaks of {level:g} g tan alpha"
 
 
 def _runs(
@@ -158,12 +125,3 @@ def _runs(
         return without_missing(chosen_runs(suite, engines, supports, time_step), engines)
     chosen = rc.default_runs(engines or None, supports or None)
     return [rw.Run(run.engine, run.support, time_step) for run in chosen]
-
-
-def _source(synthetic: float | None, far_field: float | None, perturbation: float) -> str:
-    """Return the source of the members, in words."""
-    if far_field is not None:
-        return f"far-field pairs of FEMA P-695, with peaks of {far_field:g} g tan alpha"
-    if synthetic is not None:
-        return f"made-up ground motions, with peaks of {synthetic:g} g tan alpha"
-    return f"perturbed copies, {100.0 * perturbation:g} %"

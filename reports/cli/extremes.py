@@ -10,8 +10,8 @@ import typer
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.results import show_and_write
-from ..console.terminal import FAILED, command_line, interruptible, user_input
+from ..console.results import show_and_save
+from ..console.terminal import FAILED, interruptible, user_input
 from .inputs import options
 
 Quick = Annotated[
@@ -37,13 +37,10 @@ def extremes(
     with interruptible(out):
         with user_input():
             rc.require_writable(out)
-        from rockwobble.compare.studies.extremes.study import KIND, manifest_of, measure_extremes
-
-        from ..pages.extremes import extremes_page
+        from rockwobble.compare.studies.extremes.study import measure_extremes
 
         with user_input(), shown_progress() as tell:
             found = measure_extremes(out, quick=quick, workers=workers, progress=tell)
-        manifest = manifest_of(found, command_line())
-        show_and_write(out, extremes_page(found, manifest), manifest, {KIND: found.table})
-    if (found.table["verdict"] == "silent").any():
+        show_and_save(found, out)
+    if (found.extremes["verdict"] == "silent").any():
         raise typer.Exit(FAILED)

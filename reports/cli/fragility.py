@@ -17,31 +17,18 @@ from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 from .inputs.grid import values_of
 from .inputs.method_values import settings
+from .inputs.plan_options import takes_options
 from .inputs.problem import refuse
-from .inputs.several import DEFAULT_COUNT, cylinders_of, methods_of, motions_of
+from .inputs.several import ManyMotions, cylinders_of, methods_of
 from .sweep import Scheduler
 
-_motions, _intensity, _statistics = map(options.panel, ("Ground motions", "Intensity", "Statistics"))
+_intensity, _statistics = map(options.panel, ("Intensity", "Statistics"))
 
 Cylinders = Annotated[
     list[str] | None,
     options.body(
         "A cylinder by name, as NAME=R,TAN_ALPHA such as pier=6,0.2; may be repeated.",
         metavar="NAME=R,TAN_ALPHA",
-    ),
-]
-FarField = Annotated[bool, _motions("The 22 far-field pairs of FEMA P-695 (extra records).", "--p695")]
-Records = Annotated[
-    Path | None,
-    _motions(
-        "A folder of records with a table records.csv: columns x and y (files), maybe z, name, units "
-        "and scale."
-    ),
-]
-Synthetic = Annotated[
-    int | None,
-    _motions(
-        f"So many made-up motions. Default, without records: {DEFAULT_COUNT}.", callback=options.whole(2)
     ),
 ]
 MeasureName = Annotated[
@@ -99,15 +86,13 @@ Margin = Annotated[float, _statistics("Within which two medians count as equival
 Resamples = Annotated[int, _statistics("Of the motions, for intervals.", callback=options.whole(2))]
 
 
+@takes_options
 def fragility(
     context: typer.Context,
+    many: ManyMotions,
     semidiagonal: Annotated[float, options.body("R, in m.")] = 6.0,
     tan_alpha: Annotated[float, options.TAN_ALPHA] = 0.2,
     cylinder: Cylinders = None,
-    p695: FarField = False,
-    records: Records = None,
-    synthetic: Synthetic = None,
-    units: options.Units = None,
     measure: MeasureName = "peak_acceleration",
     levels: Levels = None,
     cloud: Cloud = None,
@@ -135,7 +120,7 @@ def fragility(
     methods are compared motion by motion. Lognormal curves by maximum likelihood, with bands by
     resampling the motions.
 
-    Without options: the five reduced models of R = 6 m, tan alpha = 0.2 under made-up motions.
+    Without options: the five reduced models of R = 6 m, tan alpha = 0.2 under 100 synthetic motions.
 
     Whatever ends it, the same command goes on where it stopped.
 
@@ -148,6 +133,9 @@ def fragility(
         with user_input():
             from rockwobble.compare.studies.fragility.limits import DEFAULT_LIMITS
             from rockwobble.compare.studies.fragility.study import require_asked
+            from rockwobble.models.records.plausibility import doubts_of
+
+            from ..pages.words.diagnostics import warnings
 
             rc.require_writable(out)
             if cylinder:
@@ -175,11 +163,11 @@ def fragility(
                 "resamples": resamples,
             }
             require_asked(**asked)
-            motions, source = motions_of(p695, records, synthetic, units, seed)
+            motions, source = many.read(seed)
             for name, body in bodies.items():
                 size = f"R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}"
                 print(f"{name}: {size}" if cylinder else size)
-            print(f"Motions: {len(motions)}, {source}")
+            print(f"Motions: {len(motions)}, {source}", *warnings(doubts_of(motions)), sep="\n")
         from rockwobble.compare.studies.fragility.result import manifest_of
 
         from ..pages.fragility import count_files, fragility_page

@@ -45,7 +45,7 @@ for _command, _example in (
     (show, "rockwobble show rockwobble-sweep"),
     (report, "rockwobble report rockwobble-compare"),
     (view, "rockwobble view --scale 2 --support flat"),
-    (ensemble, "rockwobble ensemble --synthetic 3 --members 40 --engine mujoco"),
+    (ensemble, "rockwobble ensemble --synthetic 40 --peak 3 --engine mujoco"),
     (fragility, "rockwobble fragility --p695 --cylinder pier=6,0.2 --engine mujoco"),
     (check, "rockwobble check --only equations --only conserved"),
     (certify, "rockwobble certify --engine mujoco --out mujoco.json"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -18,7 +19,7 @@ from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible, time_needed
 from .inputs.method_values import settings
-from .inputs.problem import Problem, states_problem
+from .inputs.problem import Problem, restated, states_problem
 
 if TYPE_CHECKING:
     from rockwobble.compare.storage.manifest import Manifest
@@ -31,6 +32,7 @@ RestTilt = Annotated[
 
 @states_problem
 def simulate(
+    context: typer.Context,
     problem: Problem,
     engine: options.Engine = None,
     support: options.Support = "recess",
@@ -62,10 +64,11 @@ def simulate(
         for line in (*describe(case), *time_needed([case], [run])):
             print(line)
         job = rc.Job(case=case, run=run)
-        trace = _run(job)
+        trace, until = _run(job)
         from ..pages.runs.run import run_page
 
-        made, files = _results(job, trace)
+        answer = restated(context, "advise", also=("support",))
+        made, files = _results(job, trace, {"until": until, "answer": answer})
         show_and_write(out, run_page(trace, made), made, {}, files)
     if trace.outcome == "failed":
         raise typer.Exit(FAILED)
@@ -85,19 +88,27 @@ def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model:
     return whole
 
 
-def _run(job: rc.Job) -> rw.Trace:
+def _run(job: rc.Job) -> tuple[rw.Trace, float]:
+    """Return the trace, and until when it is reproducible [s], by copies of its reduced model."""
+    from rockwobble.compare.comparison.prediction import nudged, reproducible_until
+
     from ..pages.words.diagnostics import remarks
 
+    model = job.run if job.run.engine is None else rc.own_model(job.run)
+    cases = [*([job.case] if model != job.run else []), *nudged(job.case)]
+    beside = [rc.Job(case=case, run=model, label=f"copy of the {model}") for case in cases]
     with user_input(), shown_progress() as tell:
         # in a process of its own, so that Ctrl-C also stops an engine in the middle of a long call
-        trace = rc.simulate_all([job], workers=2, progress=tell)[0]
+        trace, *others = rc.simulate_all([job, *beside], workers=2, progress=tell)
     if not len(trace.time):
         complain(f"{job.label} left no result: {remarks(trace.facts)}")
         raise typer.Exit(FAILED)
-    return trace
+    *own, first, second = [*([trace] if model == job.run else []), *others]
+    known = all(len(each.time) for each in (*own, first, second))
+    return trace, reproducible_until(own[0], (first, second)) if known else math.inf
 
 
-def _results(job: rc.Job, trace: rw.Trace) -> tuple[Manifest, dict[str, bytes]]:
+def _results(job: rc.Job, trace: rw.Trace, single: dict[str, Any]) -> tuple[Manifest, dict[str, bytes]]:
     """Return what made a run, and its files of data."""
     from rockwobble.compare.runs.execution import job_fingerprint
     from rockwobble.compare.storage.manifest import made_now
@@ -109,8 +120,9 @@ def _results(job: rc.Job, trace: rw.Trace) -> tuple[Manifest, dict[str, bytes]]:
         "run": job.label,
         "case": case | {"motion": motion and {"name": motion.name, "time_step": motion.time_step}},
         "result": {
-            name: value for name, value in found.items() if name not in ("rests", "extrema", "passes")
+            key: value for key, value in found.items() if key not in ("rest_intervals", "extrema", "passes")
         },
+        "single_trace": single,
         "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},
     }
     headline: dict[str, float | int | str | None] = {

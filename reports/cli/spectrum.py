@@ -30,6 +30,14 @@ SearchStep = Annotated[
     float,
     options.method("Finest step of the search for the lowest intensity that overturns, in g tan alpha."),
 ]
+Probes = Annotated[
+    int,
+    options.method(
+        "Random intensities that are run below each lowest until none of them overturns: so many bound the "
+        "share that does. They take most of the time; 0 draws none.",
+        callback=options.whole(0),
+    ),
+]
 Support = Annotated[str, options.method("Of the model in three dimensions: recess or flat.")]
 
 
@@ -40,6 +48,7 @@ def spectrum(
     record_y: options.RecordY = None,
     record_z: options.RecordZ = None,
     units: options.Units = None,
+    resample: options.Resample = False,
     gravity: options.Gravity = 9.81,
     smallest: Smallest = 0.5,
     largest: Largest = 30.0,
@@ -49,6 +58,7 @@ def spectrum(
     intensities: Intensities = 100,
     support: Support = "recess",
     search_step: SearchStep = 0.015,
+    probes: Probes = 500,
     out: options.Out = Path("rockwobble-spectrum"),
 ) -> None:
     """Map the peak tilt over size and intensity, in 3D and by planar analysis of each component.
@@ -91,6 +101,7 @@ def spectrum(
                 record_y=record_y,
                 record_z=record_z,
                 units=units,
+                resample=resample,
                 gravity=gravity,
             ).case()
             motion = case.motion
@@ -111,7 +122,8 @@ def spectrum(
             f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(case.cylinder.alpha):.4g} deg), "
             f"{sizes} sizes from R = {smallest:g} to {largest:g} m"
         )
-        print(describe(case)[1])  # the ground: the threshold of uplift is that of all sizes
+        # the ground: the threshold of uplift is that of all sizes
+        print(*describe(case)[1:-1], sep="\n")
         with shown_progress("series") as tell:
             found = overturning_spectrum(
                 tan_alpha,
@@ -121,6 +133,7 @@ def spectrum(
                 support=support,
                 gravity=gravity,
                 search_step=search_step,
+                probes=probes,
                 progress=tell,
             )
         tables = tables_of(found)

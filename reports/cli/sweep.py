@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -22,7 +23,17 @@ from .inputs.problem import refuse
 _grid = options.panel("Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT")
 # what states a grid: the file of a suite states its own
 _STATED = {
-    *("semidiagonal", "tan_alpha", "scale", "record_x", "record_y", "record_z", "units", "gravity"),
+    *(
+        "semidiagonal",
+        "tan_alpha",
+        "scale",
+        "record_x",
+        "record_y",
+        "record_z",
+        "units",
+        "resample",
+        "gravity",
+    ),
     *("plane", "restitution"),
 }
 
@@ -43,9 +54,9 @@ Models = Annotated[
 ]
 RecordsX = Annotated[
     list[Path] | None,
-    _grid("East-west component; may be repeated for several records. Default: El Centro 1940."),
+    _grid("East-west component, or zero; may be repeated for several records. Default: El Centro 1940."),
 ]
-RecordsY = Annotated[list[Path] | None, _grid("North-south component of each.")]
+RecordsY = Annotated[list[Path] | None, _grid("North-south component of each, or zero.")]
 RecordsZ = Annotated[list[Path] | None, _grid("Vertical component of each, or of none.")]
 Scheduler = Annotated[
     str | None,
@@ -70,6 +81,7 @@ def sweep(
     record_y: RecordsY = None,
     record_z: RecordsZ = None,
     units: options.Units = None,
+    resample: options.Resample = False,
     gravity: options.Gravity = 9.81,
     model: Models = None,
     plane: options.Plane = None,
@@ -95,7 +107,7 @@ def sweep(
                 semidiagonal,
                 tan_alpha,
                 scale,
-                (record_x, record_y, record_z, units),
+                (record_x, record_y, record_z, units, resample),
                 model,
                 gravity=gravity,
                 plane=plane,
@@ -134,7 +146,13 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
 
 
 def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
+    from rockwobble.models.records.plausibility import doubts_of
+
+    from ..pages.words.diagnostics import warnings
+
+    motions: Iterable[rw.GroundMotion | None]
     if isinstance(plan, rc.Grid):
+        motions = plan.motions
         ends = [
             rw.Cylinder(semidiagonal=size, tan_alpha=tan_alpha)
             for size in (min(plan.semidiagonals), max(plan.semidiagonals))
@@ -146,6 +164,7 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
             f"{len(plan.scales)} scales, {len(plan.motions)} records, models {', '.join(plan.models)}"
         )
     else:
+        motions = [case.motion for case in plan.cases]
         ends = [case.cylinder for case in plan.cases]
         runs = len(plan.cases) * len(plan.runs)
         what = f"{len(plan.cases)} cases, {len(plan.runs)} runs of each"
@@ -159,6 +178,7 @@ def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
             )
         ),
         f"Runs: {runs:,} ({what})",
+        *warnings(doubts_of(motions)),
     ]
 
 

@@ -10,8 +10,8 @@ import typer
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.results import show_and_write
-from ..console.terminal import command_line, interruptible, user_input
+from ..console.results import show_and_save
+from ..console.terminal import interruptible, user_input
 from .inputs import options
 
 Quick = Annotated[
@@ -34,12 +34,8 @@ def tradeoff(quick: Quick = False, out: options.Out = Path("rockwobble-tradeoff"
     with interruptible():
         with user_input():
             rc.require_writable(out)
-        from rockwobble.compare.studies.tradeoff.study import manifest_of, measure_tradeoff
-
-        from ..pages.tradeoff import tradeoff_page
+        from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
 
         with shown_progress("rounds") as tell:
             found = measure_tradeoff(quick=quick, progress=tell)
-        tables = {"points": found.points, "problems": found.problems, "scenes": found.scenes}
-        manifest = manifest_of(found, command_line())
-        show_and_write(out, tradeoff_page(found, manifest), manifest, tables)
+        show_and_save(found, out)

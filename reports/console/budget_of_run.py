@@ -21,5 +21,5 @@ def budget_of_run(case: rw.Case, run: rw.Run, reference: rw.Run) -> list[str]:
         budget=budget,
         row=next(rows.itertuples(), None),  # a reference that is not its own has none
         share=100.0 * COVERED,
-        largest=budget and max(_PARTS, key=budget.rms),
+        verdict=budget and (budget.not_split or max(_PARTS, key=budget.rms)),
     )

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rich.text import Text
 
     from rockwobble.compare.storage.manifest import Manifest
+    from rockwobble.compare.storage.results import Results
 
     from ..pages.page import Page
 
@@ -50,6 +51,21 @@ def show_and_write(
         write_results(out, manifest, tables, files=files, pages=pages)
     page.show()
     names = [MANIFEST, *(f"{name}.parquet" for name in tables), *(files or ()), *pages]
+    print(f"\nWritten to {out}: {', '.join(names)}")
+
+
+def show_and_save(found: Results, out: Path) -> None:
+    """Write results with their page; then print the page."""
+    from ..pages.registry import page_of
+    from .terminal import command_line
+
+    found = found.made_by(command_line())
+    page = page_of(found)
+    pages = page.files()
+    with user_input():
+        found.save(out, pages=pages)
+    page.show()
+    names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
     print(f"\nWritten to {out}: {', '.join(names)}")
 
 

@@ -57,7 +57,7 @@ def advice_pictures(facts: Mapping[str, Any], tables: Mapping[str, pd.DataFrame]
 def _peaks(facts: Mapping[str, Any], members: pd.DataFrame) -> Panel:
     groups = [name for name in GROUPS if (members["group"] == name).any()]
     styles = run_styles(groups)
-    standing = members[members["outcome"].isin(["rest", "completed"])]
+    standing = members[~members["outcome"].isin(["overturned", "failed"])]
     end = 1.05 * max(float(standing["peak_tilt"].max()), 0.1) if len(standing) else 1.0
     layers: list[Line] = []
     for name in groups:

@@ -11,7 +11,7 @@ import pandas as pd
 
 from rockwobble.compare import Ensemble
 from rockwobble.compare.metrics.distributions import MARGIN
-from rockwobble.compare.studies.ensemble.tables import pairs
+from rockwobble.compare.studies.ensemble import pairs
 
 from .palette import DARK, ORDER, SHADED, Style, label_styles
 from .picture import Array, Axis, Line, Panel, Picture, Rule, Text, ecdf

@@ -22,7 +22,7 @@ _SHADES = {
 
 def pictures(found: Extremes) -> list[Picture]:
     """Return the counts of the verdicts, a bar for each method."""
-    runs = found.table[found.table["verdict"] != "n/a"]
+    runs = found.extremes[found.extremes["verdict"] != "n/a"]
     methods = list(dict.fromkeys(runs["method"]))
     places, start, layers = np.arange(len(methods), dtype=np.float64), np.zeros(len(methods)), []
     for verdict, (colour, hatch) in _SHADES.items():

@@ -55,7 +55,8 @@ def pictures(spectrum: OverturningSpectrum) -> list[Picture]:
         title=f"Peak tilt of sizes under intensities, {spectrum.motion.name or 'record'}, "
         f"tan α = {spectrum.tan_alpha:g}",
         caption="Each cell is a run. What overturns has a colour of its own, what does not uplift none. "
-        f"The lowest intensity is the lowest found, in steps down to {spectrum.search_step:g}.",
+        f"The lowest intensity is the lowest found, in steps down to {spectrum.search_step:g}"
+        + (f" and of {spectrum.probes} random intensities below." if spectrum.probes else "."),
         panels=[*maps, curves],
         columns=2,
         shades=PEAKS,

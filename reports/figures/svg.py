@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 import textwrap
 from collections.abc import Sequence
 from typing import Any
@@ -28,6 +29,7 @@ _GRID = "#dddddd"
 # no text is smaller than 8 pt at the width at which it is shown
 _STYLE: Any = {
     "svg.hashsalt": "rockwobble",
+    "svg.fonttype": "none",  # text that can be searched, and a third of the file
     # what is placed stays where it is, whatever the user has set
     "figure.autolayout": False,
     "figure.constrained_layout.use": False,
@@ -50,6 +52,7 @@ _VECTOR_CELLS = 2500
 _MOST_WRITTEN = 64
 # of the scale of colours: there white letters are read better
 _DARK = 0.6
+_LONG_NUMBER = re.compile(rb"(?<=[ \"(])(-?\d+\.\d{2})\d+")  # a hundredth of a point is not seen
 _HATCHES = {"": "", "/": "//", "x": "xx", ".": ".."}
 
 
@@ -60,7 +63,7 @@ def svg(picture: Picture, *, titled: bool = False) -> bytes:
         figure(picture, titled=titled).savefig(
             buffer, format="svg", dpi=_RASTER_DPI, metadata={"Date": None, "Creator": "rockwobble"}
         )
-    return buffer.getvalue()
+    return _LONG_NUMBER.sub(rb"\1", buffer.getvalue())
 
 
 def figure(picture: Picture, *, titled: bool = False) -> Figure:

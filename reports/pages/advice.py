@@ -11,18 +11,12 @@ import pandas as pd
 from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y
 from rockwobble.compare.studies.spectrum.verification import CHECK_RTOL, NUDGE
+from rockwobble.models import AGREEMENT
 from rockwobble.models.diagnostic import CODES
 
 from ..figures.advice import GROUPS, SHORT, advice_pictures
 from .page import Page
 from .words.criteria import CRITERIA
-
-# the largest tilt in a ring over that of the recess model: least and largest median over 22 records, and what
-# one record of twenty exceeds; `records` of published/validity/limits.parquet
-RING = {"ring_least": 0.53, "ring_largest": 1.02, "ring_95": 1.72}
-# [weights] more than any soft ground would give: 99 % of the time in motion asks for less than two
-ARTEFACT = 10.0
-GRADE_WORDS = {"good": "sound", "care": "care", "bad": "fails"}
 
 
 def advice_page(tables: Mapping[str, pd.DataFrame], manifest: Manifest) -> Page:
@@ -34,7 +28,15 @@ def advice_page(tables: Mapping[str, pd.DataFrame], manifest: Manifest) -> Page:
 
 
 def stored_page(results: Results) -> Page:
-    """Return the page of the advice that is stored."""
+    """Return the page of the advice that is stored.
+
+    Raises
+    ------
+    ValueError
+        If a version made it that graded otherwise.
+    """
+    if "bound" not in results.manifest.about["advice"]:
+        raise ValueError(f"{results.folder} holds grades by other criteria: run its command again")
     names = ("members", "band", "scales", "trace", "engine")
     return advice_page({name: results.table(name) for name in names}, results.manifest)
 
@@ -62,28 +64,19 @@ def advice_values(facts: Mapping[str, Any]) -> dict[str, Any]:
         groups.append(group)
     planar = [each["factor"] for name, each in facts["lowest"].items() if name in (PLANAR_X, PLANAR_Y)]
     known = [factor for factor in planar if math.isfinite(factor)]
-    # results of earlier versions do not say what moves the ground
-    unsaid = {"shaken": True, "has_vertical": bool(facts["vertical"] and facts["vertical"]["given"])}
     return {
-        **unsaid,
         **facts,
         "given": moved(facts["peak"]) if facts["moves"] and not facts["overturned"] else None,
         "groups": groups,
+        "spread": [group for group in groups if not math.isnan(group["friction_95"])],
         "here": next((row for row in facts["planar"] if row["scale"] == 1.0), None),
         "planar_lowest": min(known) if known else math.nan,
         "space": facts["lowest"].get("3d"),
         "meanings": [CODES[code][1] for code in facts["failure"]],
         "criteria": [
-            {
-                "topic": topic,
-                "grade": GRADE_WORDS[facts["grades"][topic]],
-                **dict(zip(("sound", "care", "fails"), CRITERIA[topic], strict=True)),
-            }
-            for topic in facts["grades"]
-            if topic in CRITERIA
+            {"topic": topic, "grade": grade, **CRITERIA[topic]} for topic, grade in facts["grades"].items()
         ],
-        "ring": RING,
-        "artefact": ARTEFACT,
+        "agreement": AGREEMENT,
         "tolerance": CHECK_RTOL,
         "nudge": NUDGE,
     }

@@ -10,29 +10,25 @@ from rockwobble.compare.metrics.distributions import (
     largest_share_unseen,
     least_significant_count,
 )
-from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.compare.studies.ensemble.study import stored_ensemble
+from rockwobble.compare.metrics.order_statistics import FEWEST, stated
 
 from ..figures.ensemble import main_pairs, pictures
 from .page import Page
 
 
-def ensemble_page(found: Ensemble, manifest: Manifest) -> Page:
+def page_of(found: Ensemble) -> Page:
     """Return the page of an ensemble."""
-    values = {**ensemble_values(found), "about": manifest}
+    values = {**ensemble_values(found), "about": found.manifest}
     return Page(name="ensemble", template="ensemble", values=values, pictures=pictures(found))
-
-
-def stored_page(results: Results) -> Page:
-    """Return the page of the ensemble that is stored."""
-    return ensemble_page(stored_ensemble(results), results.manifest)
 
 
 def ensemble_values(found: Ensemble) -> dict[str, object]:
     """Return the values of the template of an ensemble."""
     contrasts, methods = found.contrasts, found.methods.to_dict("records")
-    rows = contrasts.to_dict("records")
-    main = main_pairs(found)
+    rows, main = (
+        [{**row, "ratio": stated(row["ratio"], row["compared"], ratio=True)} for row in each]
+        for each in (contrasts.to_dict("records"), main_pairs(found))
+    )
     # those that matter first, then the others by their probability
     ordered = main + (contrasts.sort_values("ratio_p").to_dict("records") if rows else [])
     every = {(row["method"], row["against"]): row for row in ordered}
@@ -41,7 +37,7 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         row["only"], row["only_there"] = row["overturned"] - both, row["against_overturned"] - both
         row["neither"] = row["count"] - both - row["only"] - row["only_there"]
     return {
-        "facts": found.about,
+        "facts": found.facts,
         "count": found.members["member"].nunique(),
         "methods": methods,
         "contrasts": rows,
@@ -58,5 +54,6 @@ def ensemble_values(found: Ensemble) -> dict[str, object]:
         "power": POWER,
         "significance": SIGNIFICANCE,
         "fewest": least_significant_count(),
+        "fewest_members": FEWEST,
         "unseen": largest_share_unseen(int(contrasts["count"].min())) if rows else 1.0,
     }

@@ -6,8 +6,7 @@ import math
 
 import pandas as pd
 
-from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.compare.studies.extremes.study import Extremes, stored_extremes
+from rockwobble.compare.studies.extremes.study import Extremes
 from rockwobble.compare.studies.extremes.verdict import FINE
 from rockwobble.models.diagnostic import CODES, parted
 
@@ -31,9 +30,9 @@ _REFERENCES = {
 }
 
 
-def extremes_page(found: Extremes, manifest: Manifest) -> Page:
+def page_of(found: Extremes) -> Page:
     """Return the report."""
-    runs = found.table[found.table["verdict"] != "n/a"]
+    runs = found.extremes[found.extremes["verdict"] != "n/a"]
     counts = {name: int((runs["verdict"] == name).sum()) for name in WORDS}
     values: dict[str, object] = {
         "fine": FINE,
@@ -52,14 +51,9 @@ def extremes_page(found: Extremes, manifest: Manifest) -> Page:
             }
             for row in runs.to_dict("records")
         ],
-        "about": manifest,
+        "about": found.manifest,
     }
     return Page(name="extremes", template="extremes", values=values)
-
-
-def stored_page(results: Results) -> Page:
-    """Return the report on what is stored."""
-    return extremes_page(stored_extremes(results), results.manifest)
 
 
 def _by_method(runs: pd.DataFrame) -> list[dict[str, object]]:

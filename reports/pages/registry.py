@@ -8,6 +8,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from rockwobble.compare.storage.results import Results
+
     from .page import Page
 
 # kind: the module whose `stored_page` draws it; by name, because a command that shows one of them must not
@@ -40,5 +42,15 @@ def stored_page(kind: str, folder: Path) -> Page:
     from rockwobble.compare.storage.manifest import read_results  # it loads numpy, which no help needs
 
     drawer = importlib.import_module(f"rockwobble.reports.{KINDS[kind]}")
+    if hasattr(drawer, "page_of"):
+        from rockwobble.compare.storage.results import Results
+
+        return page_of(Results.kinds[kind].load(folder))  # its page has imported it
     page: Page = drawer.stored_page(read_results(folder, kind))
+    return page
+
+
+def page_of(found: Results) -> Page:
+    """Return the page of results, not drawn yet."""
+    page: Page = importlib.import_module(f"rockwobble.reports.{KINDS[found.kind]}").page_of(found)
     return page

@@ -8,10 +8,10 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.metrics.order_statistics import share_interval
 from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.spectrum.planar_contrast import unconservative_from
 from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, stored_spectrum
+from rockwobble.compare.studies.spectrum.search import gap_bound
 from rockwobble.compare.studies.spectrum.series import SPATIAL
 from rockwobble.compare.studies.spectrum.verification import AGREEMENT, CHECK_RTOL, NUDGE
 
@@ -76,14 +76,12 @@ def _search(spectrum: OverturningSpectrum, lowest: pd.DataFrame) -> dict[str, ob
     found = space[np.isfinite(space["intensity"])]
     spacing = float(np.diff(spectrum.intensities).max(initial=0.0))
     chance = found[~found["confirmed"].astype(bool)]
-    probed, below = int(space["probed"].sum()), int(space["overturned_below"].sum())
     return {
         "start": spectrum.searched_from[SPATIAL],
         "found": len(found),
         "unseen": int((found["intensity"] < found["on_grid"].fillna(math.inf) - spacing).sum()),
-        "probed": probed,
-        "below": below,
-        "below_most": share_interval(below, probed).high,
+        "lowered": int((space["overturned_below"] > 0).sum()),
+        "gap": gap_bound(spectrum.probes) if spectrum.probes else 1.0,
         "chance": len(chance),
         "chance_from": chance["semidiagonal"].min(),
         "chance_to": chance["semidiagonal"].max(),

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import pandas as pd
 
-from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.tradeoff.conclusions import costs, engine_factors, plateaus, rest_tilt_price
-from rockwobble.compare.studies.tradeoff.study import ROUNDS, Tradeoff, stored_tradeoff
+from rockwobble.compare.studies.tradeoff.study import ROUNDS, Tradeoff
 
 from ..figures.tradeoff import ERRORS, TITLES, pictures
 from .page import Page
@@ -15,7 +14,7 @@ from .table import NONE, number
 _NOT_ENGINES = ("reduced", "scipy")
 
 
-def tradeoff_page(found: Tradeoff, manifest: Manifest) -> Page:
+def page_of(found: Tradeoff) -> Page:
     """Return the report."""
     points, cheapest = found.points, costs(found.points)
     scipy = cheapest.loc[cheapest["family"] == "scipy", "ratio"]
@@ -33,17 +32,12 @@ def tradeoff_page(found: Tradeoff, manifest: Manifest) -> Page:
         "chance": _within_chance(found),
         "failed": _rows(points[points["error"].isna()]),
         "rounds": ROUNDS,
-        "load": found.load,
-        "about": manifest,
+        "load": found.facts["load"],
+        "about": found.manifest,
     }
     drawn = pictures(found)
     values["drawn"] = [picture.name for picture in drawn]
     return Page(name="tradeoff", template="tradeoff", values=values, pictures=drawn)
-
-
-def stored_page(results: Results) -> Page:
-    """Return the report on what is stored."""
-    return tradeoff_page(stored_tradeoff(results), results.manifest)
 
 
 def _rows(table: pd.DataFrame) -> list[dict[str, object]]:

@@ -13,11 +13,18 @@ from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
 from rockwobble.compare.studies.validity.limits import limits_of
 from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.limits.engine import damping
+from rockwobble.compare.studies.validity.limits.needs import needs
 from rockwobble.compare.studies.validity.rings import FREE
 from rockwobble.compare.studies.validity.study import Validity, stored_validity
 
 from ..figures.validity.pictures import METHODS, pictures
 from .page import Page
+
+_NEEDS = {
+    "friction": "friction over tan α",
+    "moment": "κ of the recess over weight × b",
+    "motions": "motions counted",
+}
 
 
 def validity_page(found: Validity, manifest: Manifest) -> Page:
@@ -28,6 +35,7 @@ def validity_page(found: Validity, manifest: Manifest) -> Page:
         "margin": MARGIN,
         "contrasts": _contrasts(contrasts(tables)),
         "summary": _summary(cells(tables)),
+        **_needs(needs(tables)),
         "rings": _rings(tables["rings"]),
         "worst": _worst(tables["rings"]),
         "damping": damping(tables).to_dict("records"),
@@ -87,12 +95,25 @@ def _summary(table: pd.DataFrame) -> list[dict[str, object]]:
                     for name in ("flat_ratio", "flat_90", "copy_90", "overturned", "flat_overturned")
                     for end in ("min", "max")
                 },
-                "friction": own["friction_90"].max(),
-                "moment": own["moment_90"].max(),
-                "normal": own["normal_10"].min(),
             }
         )
     return rows
+
+
+def _needs(table: pd.DataFrame) -> dict[str, object]:
+    """What must be supplied: a row for each slenderness, a column for each intensity."""
+    intensities = [f"{intensity:g}" for intensity in sorted(table["intensity"].unique())]
+    rows = [
+        {
+            "what": words,
+            "tan_alpha": tan_alpha,
+            **dict(zip(map("{:g}".format, own["intensity"]), own[name], strict=True)),
+        }
+        for name, words in _NEEDS.items()
+        for tan_alpha, own in table.groupby("tan_alpha")
+    ]
+    columns = [["tan_alpha", "tan α", "g"], *([name, f"{name} g tan α", ".3g"] for name in intensities)]
+    return {"needs": rows, "needed_columns": columns}
 
 
 def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
@@ -111,11 +132,10 @@ def _rings(table: pd.DataFrame) -> list[dict[str, object]]:
                 "inclination": "α" if inclination == 0.0 else inclination,
                 "friction": friction,
                 "least": ratio.min(),
-                "half": ratio.median(),
                 "largest": ratio.max(),
                 "rolled": shaken["rolled_out"].max(),
                 "at_end": shaken["at_end"].max(),
-                "loss": touched["loss"].median() if len(touched) else math.nan,
+                "loss": touched["loss"].max() if len(touched) else math.nan,
                 "halved": (shaken["halved_peak"] / shaken["peak"] - 1.0).abs().max(),
             }
         )

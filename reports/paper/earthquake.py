@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, Trace, el_centro_1940
+from rockwobble.models import AGREEMENT, Case, Cylinder, GroundMotion, Trace, el_centro_1940
 
 from .free import RESIDUAL, displacement
 from .statement import Statement, verdict_of
@@ -29,7 +29,6 @@ _NEIGHBOUR_STEP = 2e-3  # [s]; enough to count by
 _ABRUPT = 10.0
 # less than tells two instruments apart
 NUDGE = 1e-3
-_DIVERGED = 0.01  # of alpha
 # a difference of a quarter is seen in a figure
 _PLAINLY = 1.25
 
@@ -83,7 +82,7 @@ def shaken() -> Shaken:
     motion = el_centro_1940()
     trace, copy = _run(motion), _run(motion.scaled(1.0 + NUDGE))
     count = min(len(trace.tilt), len(copy.tilt))
-    apart = np.abs(trace.tilt[:count] - copy.tilt[:count]) > _DIVERGED * CYLINDER.alpha
+    apart = np.abs(trace.tilt[:count] - copy.tilt[:count]) > AGREEMENT * CYLINDER.alpha
     end = strong_end(motion)
     strong, weak = parts(trace, end)
     others = [(motion.scaled(scale), _run(motion.scaled(scale), _NEIGHBOUR_STEP)) for scale in _NEIGHBOURS]
@@ -188,13 +187,13 @@ def statements(data: Shaken) -> list[Statement]:
         "peak": trace.peak_tilt / CYLINDER.alpha,
         "last_tilt": float(trace.tilt[-1]) / CYLINDER.alpha,
         "last_away": displacement(float(trace.tilt[-1])),
-        "rests": trace.outcome == "rest",
+        "rests": trace.rests,
         "passes": len(trace.passes),
         "away": away,
         "twist": twist,
     }
     smooth = verdict_of(*(test(strong, weak) for test in tests.values()))
-    back = verdict_of(trace.outcome in ("rest", "completed"), away < RESIDUAL, twist == 0.0)
+    back = verdict_of(trace.outcome == "stands", away < RESIDUAL, twist == 0.0)
     found = [
         ("abrupt", abrupt, verdict_of(strong.abrupt > 0, 2 * strong.abrupt > strong.passes)),
         ("smooth", both | counts | {"neighbours": len(data.neighbours), "until": data.strong_end}, smooth),

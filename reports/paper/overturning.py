@@ -28,6 +28,7 @@ SIZES = (0.5, 30.0)  # [m]
 INTENSITIES = (1.0, 12.0)  # [g tan alpha]
 GRID = 100
 LARGE = 20.0  # [m] from which on a cylinder is "large": the upper third of the paper's sizes
+_PROBES = 5  # random intensities below each lowest, for each intensity of the grid: a coarse one is a glance
 _EVERY = 0.95  # share of the sizes that may pass for all of them: single ones are a matter of chance
 
 
@@ -38,6 +39,7 @@ def problem(grid: int = GRID) -> dict[str, Any]:
         "motion": el_centro_1940(),
         "semidiagonals": np.linspace(*SIZES, grid),
         "intensities": np.linspace(*INTENSITIES, grid),
+        "probes": _PROBES * grid,
     }
 
 

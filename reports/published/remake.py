@@ -48,9 +48,9 @@ STUDIES = {
     "advice/pier": "advise",
     "advice/column": "advise --semidiagonal 2 --tan-alpha 0.25 --friction 0.3",
     "advice/tower": "advise --semidiagonal 10 --tan-alpha 0.1",
-    "ensemble/p695-2": "ensemble --p695 2",
-    "ensemble/p695-3.5": "ensemble --p695 3.5 --engine mujoco",
-    "ensemble/synthetic-3": "ensemble --synthetic 3",
+    "ensemble/p695-2": "ensemble --p695 --peak 2",
+    "ensemble/p695-3.5": "ensemble --p695 --peak 3.5 --engine mujoco",
+    "ensemble/synthetic-3": "ensemble --synthetic 20 --peak 3",
     "ensemble/copies": "ensemble --duration 20",
     "fragility/p695": f"fragility --p695 {_BODIES} --friction 3 --step-factor 8 {_ENGINES} {_LIMITS}",
     # the control: engines whose numbers hold at half the step

@@ -23,14 +23,14 @@ from benchmark_files.submission import Table, submit
 from benchmark_files.write import PUBLISHED
 
 EXIT = {"exact": 0, "good": 0, "pass": 0, "fail": 1, "rejected": 2}
-# a case of one run out of three: a search for mistakes goes through each some thousand times
+# a case of one run out of three
 SINGLE, SPIN = "turn-once", "spin-0.1"
 
 
 class Judged(NamedTuple):
     verdict: str
     errors: dict[str, float]
-    mistakes: list[str]
+    mistakes: dict[str, float | None]  # values by code
     result: dict[str, Any]
     text: str
 
@@ -82,6 +82,8 @@ def judge(check: ModuleType, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
         result = json.loads(out.read_text())
         assert ended == EXIT[result["verdict"]]
         errors = {one["name"]: one["error"] for one in result["criteria"]}
-        return Judged(result["verdict"], errors, result["likely_mistakes"], result, said.getvalue())
+        mistakes = {one["code"]: one["value"] for one in result["mistakes"]}
+        assert len(mistakes) == len(result["likely_mistakes"])
+        return Judged(result["verdict"], errors, mistakes, result, said.getvalue())
 
     return run

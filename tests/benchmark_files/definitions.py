@@ -122,7 +122,7 @@ def turns(name: str, support: Support, words: str) -> Definition:
         runs=runs,
         step=0.002,
         criteria=(*asked, *lean_and_tilt(3.0, 1e-5)),
-        needed=("period_1", "tilt"),
+        needed=("turn_1", "period_1", "tilt"),
     )
 
 
@@ -138,7 +138,7 @@ def steady() -> Definition:
         runs=(run,),
         step=0.02,
         criteria=(quantity("revolutions_100", "relative", 0.002, 1e-6), *lean_and_tilt(0.98 * length, 1e-4)),
-        needed=("tilt",),
+        needed=("revolutions_100", "tilt"),
     )
 
 
@@ -171,7 +171,7 @@ def uplift() -> Definition:
             quantity("lean_azimuth", "rad", 0.02, 1e-5),
             *lean_and_tilt(1.75, 1e-5, start=1.0),
         ),
-        needed=("lean_time", "tilt"),
+        needed=("lean_time", "lean_azimuth", "tilt"),
     )
 
 
@@ -193,7 +193,7 @@ def near_upright() -> Definition:
             quantity("period_1", "relative", 0.002, 1e-6),
             *lean_and_tilt(5.5, 1e-4),
         ),
-        needed=("period_1", "tilt"),
+        needed=("turn_1", "period_1", "tilt"),
     )
 
 
@@ -231,7 +231,7 @@ def slip() -> Definition:
             quantity("lean_time", "s", 0.01, 1e-5, runs=["rocks"]),
             trace("tilt", 2.45, 1e-5),
         ),
-        needed=("tilt",),
+        needed=("slide_time", "lean_time", "tilt"),
     )
 
 

@@ -88,7 +88,7 @@ def positions(trace: Trace) -> Table:
 
 def submit(tables: Mapping[str, Table], path: Path, *, titles: Mapping[str, str] | None = None) -> Path:
     """Write one file with a column `run` of several tables, each name under a title of its own."""
-    lines = []
+    lines: list[str] = []
     for run, table in tables.items():
         if not lines:
             lines.append(",".join(["run", *((titles or {}).get(name, name) for name in table)]))

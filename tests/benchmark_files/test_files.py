@@ -18,7 +18,7 @@ from benchmark_files.conftest import EXIT, Judge
 from benchmark_files.definitions import definitions
 from benchmark_files.references import reference
 from benchmark_files.submission import cases_of
-from benchmark_files.write import PUBLISHED, case_file
+from benchmark_files.write import PUBLISHED, case_file, program
 from rockwobble import reduced
 from rockwobble.models import Case
 from rockwobble.reduced.exact import free_response, steady_wobble_rate
@@ -209,8 +209,11 @@ def test_the_window_of_el_centro_ends_where_a_copy_no_longer_agrees() -> None:
         assert ends[run] < end < ends[run] + 1.0
 
 
-def test_programs_are_short_and_need_numpy_only(copied: Path) -> None:
-    assert len((PUBLISHED / "check.py").read_text().splitlines()) < 400
+def test_the_check_is_made_of_the_modules_of_the_project() -> None:
+    assert (PUBLISHED / "check.py").read_text() == program()
+
+
+def test_programs_need_numpy_only(copied: Path) -> None:
     for name in ("check", "verify", "scoreboard"):
         code = (
             "import sys; before = set(sys.modules); sys.path.insert(0, sys.argv[1]); "

@@ -12,8 +12,10 @@ from pathlib import Path
 TESTS = Path(__file__).resolve().parents[1]
 SCRIPTS = (
     "agreement_times",
+    "boundary_gaps",
     "certified_releases",
     "convergence",
+    "cut_records",
     "engine_extremes",
     "engine_settings",
     "engine_versions",
@@ -21,10 +23,13 @@ SCRIPTS = (
     "false_alarms",
     "fragility_coverage",
     "frames",
+    "needs_coverage",
+    "named_mistakes",
     "ring_losses",
     "run_overhead",
     "scene_cost",
     "speed",
+    "step_errors",
     "sweep_overhead",
 )
 

@@ -19,10 +19,10 @@ import numpy as np
 
 from rockwobble.compare.comparison.prediction import estimated_error, predict, verdict
 from rockwobble.compare.metrics.agreement import agreement_time
+from rockwobble.compare.metrics.pair import Pair, make_pair
 from rockwobble.compare.runs.choice import SUPPORTS
 from rockwobble.compare.runs.execution import Job, simulate_all, simulate_run
 from rockwobble.compare.runs.progress import ProgressCallback
-from rockwobble.compare.traces.pair import Pair, make_pair
 from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
 
 from .console import options_of, show, tell

@@ -23,10 +23,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody, reduced
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.runs.choice import SUPPORTS
 from rockwobble.compare.runs.execution import Job, simulate_all
 from rockwobble.compare.runs.progress import ProgressCallback
-from rockwobble.compare.traces.pair import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 from rockwobble.multibody.engines.registry import find_engine
 

@@ -23,8 +23,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody, reduced
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.runs.choice import own_model
-from rockwobble.compare.traces.pair import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 
 from .console import options_of, show

@@ -22,11 +22,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import multibody
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.metrics.tilt import tilt_rms_relative
 from rockwobble.compare.runs.choice import SUPPORTS
 from rockwobble.compare.runs.execution import Job, simulate_all
 from rockwobble.compare.runs.progress import ProgressCallback
-from rockwobble.compare.traces.pair import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run, el_centro_1940
 
 from .console import options_of, show, tell

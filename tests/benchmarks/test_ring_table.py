@@ -29,7 +29,7 @@ def test_the_cases_turn() -> None:
 
 
 def test_a_line_holds_the_medians_of_the_turns() -> None:
-    same = {"outcome": "completed", "first_contact": math.inf, "contact_time": 0.0, "passes": 2,
+    same = {"outcome": "stands", "first_contact": math.inf, "contact_time": 0.0, "passes": 2,
             "rolled_out": 0.0, "at_end": 0.0, "twist": 0.0, "recess": 1e-5, "flat": 1e-2}  # fmt: skip
     rows = [{"case": "short", "run": "clearance 0.01", "loss": loss, **same} for loss in (0.01, 0.02, 0.06)]
     line = medians(pd.DataFrame(rows)).iloc[0]

@@ -45,7 +45,7 @@ def make_trace(cylinder: Cylinder) -> Callable[..., Trace]:
             "twist": np.zeros_like(time),
             "peak_tilt": float(np.max(tilt)),
             "passes": table,
-            "outcome": "completed",
+            "outcome": "stands",
             "uplift_time": 0.0,
             "uplift_direction": 0.0,
             "time_step": 1e-4,

@@ -12,6 +12,7 @@ import pytest
 from showing import shows_itself
 
 from rockwobble import reduced
+from rockwobble.compare.metrics.distributions import contrast
 from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.studies.advice import drive
 from rockwobble.compare.studies.advice.advice import Advice
@@ -27,7 +28,7 @@ from rockwobble.compare.studies.advice.grades import (
     grade_share,
     overall,
 )
-from rockwobble.compare.studies.advice.members import demands_of, other_records, peak_velocity
+from rockwobble.compare.studies.advice.members import demands_of, other_records, peak_velocity, ratios_of
 from rockwobble.compare.studies.advice.scales import FACTORS, planar_chances, planar_runs, scan_scales
 from rockwobble.compare.studies.advice.trust import trust_of
 from rockwobble.compare.studies.spectrum.series import intensity_unit, uplift_factor
@@ -112,11 +113,14 @@ def test_answers_count_what_falls_and_leave_out_what_failed(advice):
     assert stands.min() <= found["peak_tilt_50"] <= stands.max()
 
 
-@pytest.mark.parametrize(("missing", "grade"), [(0.0, "good"), (BROKEN, "care"), (BROKEN * 1.01, "bad")])
+@pytest.mark.parametrize(
+    ("missing", "grade"), [(0.0, "satisfied"), (BROKEN, "caution"), (BROKEN * 1.01, "not satisfied")]
+)
 def test_short_lacks_want_care_and_long_ones_rule_the_model_out(missing, grade):
     assert grade_share(missing) == grade
-    assert grade_share(missing, slides=True) == "bad"
-    assert grade_share(0.0, asked=False) == "care"
+    assert grade_share(missing, slides=True) == "not satisfied"
+    assert grade_share(0.0, asked=False) == "caution"
+    assert grade_share(missing, tested=False) == (grade if missing else "not tested")
 
 
 @pytest.mark.parametrize(
@@ -136,28 +140,39 @@ def test_trust_turns_on_what_comes_before_the_largest_tilt(methods, data, peak, 
 @pytest.mark.parametrize(
     ("fell", "lowest", "chances", "grade"),
     [
-        (True, 1.0, [0.0], "bad"),
-        (False, 9.0, [0.0, UNSAFE * 1.01], "bad"),
-        (False, 9.0, [UNSAFE], "care"),
-        (False, NEAR * 0.99, [0.0], "care"),
-        (False, NEAR, [0.0], "good"),
-        (False, math.nan, [], "good"),
-        (False, math.nan, [math.nan, 0.5], "bad"),  # a group whose members all failed hides no other
+        (True, 1.0, [0.0], "not satisfied"),
+        (False, 9.0, [0.0, UNSAFE * 1.01], "not satisfied"),
+        (False, 9.0, [UNSAFE], "caution"),
+        (False, NEAR * 0.99, [0.0], "caution"),
+        (False, NEAR, [0.0], "satisfied"),
+        (False, math.nan, [], "satisfied"),
+        (
+            False,
+            math.nan,
+            [math.nan, 0.5],
+            "not satisfied",
+        ),  # a group whose members all failed hides no other
     ],
 )
 def test_overturning_is_likely_near_or_far(fell, lowest, chances, grade):
-    assert grade_overturning(fell, lowest, chances) == grade
+    assert grade_overturning(fell, lowest, chances, tested=True) == grade
+    untested = grade_overturning(fell, lowest, chances, tested=False)
+    assert untested == ("not tested" if grade == "satisfied" else grade)
 
 
 def test_engines_and_intensities_have_grades_and_the_worst_counts():
-    assert grade_engine("completed", "earlier", differs=False) == "bad"
-    assert grade_engine("failed", "earlier", differs=False) == "care"
-    assert grade_engine("overturned", "later", differs=True) == "care"
-    assert grade_engine("completed", "in time", differs=False) == "good"
-    assert grade_intensity(1.0, 1.0, SENSITIVE) == "good"
-    assert grade_intensity(1.0, 1.0, math.inf) == grade_intensity(0.1, 1.0, 1.0) == "care"
-    assert overall(["good", "bad", "care"]) == "bad"
-    assert overall([]) == "good"
+    assert grade_engine("stands", "earlier", differs=True) == "not satisfied"
+    assert grade_engine("failed", "earlier", differs=False) == "not tested"
+    assert grade_engine("overturned", "much later", differs=True) == "caution"
+    assert grade_engine("stands", "later", differs=False) == "satisfied"
+    for divergence in ("much later", "too little motion"):
+        assert grade_engine("stands", divergence, differs=False) == "not tested"
+    assert grade_intensity(1.0, 1.0, SENSITIVE) == "satisfied"
+    assert grade_intensity(1.0, 1.0, math.inf) == grade_intensity(0.1, 1.0, 1.0) == "caution"
+    assert grade_intensity(math.nan, 1.0, math.nan) == "not tested"
+    assert overall(["satisfied", "not satisfied", "caution", "not tested"]) == "not satisfied"
+    assert overall(["not tested", "caution"]) == "caution"
+    assert overall(["satisfied", "not tested"]) == overall([]) == "not tested"
 
 
 def test_scales_hold_what_single_runs_give():
@@ -184,7 +199,9 @@ def test_the_lowest_of_a_release_is_searched_from_still_ground():
 
 
 def test_advice_and_spectrum_uplift_at_the_same_factor(advice):
-    spectrum = overturning_spectrum(0.2, SHORT, semidiagonals=[6.0], intensities=[1.0, 2.0], search_step=1.0)
+    spectrum = overturning_spectrum(
+        0.2, SHORT, semidiagonals=[6.0], intensities=[1.0, 2.0], search_step=1.0, probes=0
+    )
     unit = intensity_unit(0.2, SHORT, 9.81)
     for series, found in advice.lowest.items():
         assert found.start == pytest.approx(unit * spectrum.searched_from[series], rel=1e-12)
@@ -244,6 +261,59 @@ def test_a_cylinder_at_rest_needs_nothing():
     assert plain_json.loads(plain_json.dumps(facts))["moves"] is False
 
 
+def test_shaking_a_little_off_is_weaker_and_stronger(advice):
+    # the peak as large as the factor: two steps of twelve for each factor of two either way
+    table = pd.DataFrame({"series": "3d", "factor": FACTORS, "peak_tilt": 0.1 * PIER.alpha * FACTORS})
+    low, high = dataclasses.replace(advice, scales=table).beside
+    assert (low, high) == (pytest.approx(0.1 * 2.0 ** (-1 / 6)), pytest.approx(0.1 * 2.0 ** (1 / 6)))
+    falls = table.assign(peak_tilt=np.where(FACTORS > 1.1, 0.5 * math.pi, table["peak_tilt"]))
+    assert dataclasses.replace(advice, scales=falls).beside[1] == math.inf
+    assert dataclasses.replace(advice, scales=falls).grades["intensity"] == "caution"
+
+
+def test_copies_that_are_one_run_are_one(advice):
+    members = advice.members.copy()
+    copies = members["group"] == "copies"
+    one = members[copies].iloc[0]
+    numbers = ["peak_tilt", "friction", "moment", "force", "slip", "lost"]
+    members.loc[copies, numbers] = one[numbers].to_numpy(float)
+    found = dataclasses.replace(advice, members=members)
+    row = found.answers.set_index("group").loc["copies"]
+    assert (row["single"], row["runs"], row["failed"], row["overturned"]) == (True, 20, 0, 0)
+    assert np.isnan(row[["chance", "chance_low", "chance_high", "peak_tilt_50"]].to_numpy(float)).all()
+    assert found.facts()["form"] is None
+    # all at rest, or all overturned, are runs of their own
+    members.loc[copies, numbers] = 0.0
+    assert not dataclasses.replace(advice, members=members).answers["single"].any()
+    members.loc[copies, "peak_tilt"] = 0.5 * math.pi / PIER.alpha
+    members.loc[copies, "friction"] = np.linspace(0.2, 0.3, copies.sum())
+    assert not dataclasses.replace(advice, members=members).answers["single"].any()
+
+
+def test_nothing_is_graded_that_nothing_was_run_for():
+    up = el_centro_1940(vertical=True).acceleration[:800] * [0.0, 0.0, 7.0]
+    found = advise(Case(PIER, GroundMotion(up, 0.01, "up")), count=20)
+    assert (found.moves, found.lowest, found.copies_differ) == (True, {}, False)
+    grades = found.grades
+    for topic in ("overturning", "intensity", "engine"):
+        assert grades[topic] == "not tested"
+    assert grades["contact"] == "caution"  # as given it is lost
+    assert found.facts()["bound"] == pytest.approx(0.1 * found.peak)
+
+
+def test_ratios_of_overturned_copies_are_counts():
+    peaks = np.linspace(0.1, 0.3, 20)
+    fell, stands = np.arange(20) < 15, np.zeros(20, dtype=bool)
+    most = ratios_of(contrast(peaks, peaks, stands, fell))
+    assert math.isnan(most["ratio"])  # 0: fifteen overturn there alone
+    assert [most[name] for name in ("members", "count", "higher", "lower")] == [20, 20, 0, 15]
+    assert (most["overturned"], most["against_overturned"]) == (0, 15)
+    both = ratios_of(contrast(2.0 * peaks, peaks, fell, fell))
+    assert (both["count"], both["higher"]) == (5, 5)
+    assert math.isnan(both["ratio"])  # of five
+    assert ratios_of(contrast(2.0 * peaks, peaks, stands, stands))["ratio"] == pytest.approx(2.0)
+
+
 def test_what_only_the_vertical_moves_needs_no_recess() -> None:
     shaking = np.zeros((301, 3))
     shaking[:, 2] = 0.5 * np.sin(0.09 * np.arange(301))
@@ -265,7 +335,7 @@ def test_a_fall_that_the_record_does_not_see_is_a_fall_in_all_that_is_run():
     for found in (cut, followed):
         assert found.overturned
         assert found.answers.set_index("group").loc["copies", "chance"] == 1.0
-        assert found.grades["overturning"] == "bad"
+        assert found.grades["overturning"] == "not satisfied"
         # all above half of it overturn, by the exact step of the search or less
         assert found.lowest["3d"].factor == pytest.approx(0.506, abs=0.01)
     ends = [found.facts()["peak_time"] for found in (cut, followed)]

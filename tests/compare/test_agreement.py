@@ -5,9 +5,10 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.comparison.prediction import close_pass
-from rockwobble.compare.metrics.agreement import agreed_passes, agreement_time, closest_pass
-from rockwobble.compare.traces.pair import make_pair
+from rockwobble.compare.comparison.prediction import Prediction, close_pass
+from rockwobble.compare.comparison.summary import summary_row
+from rockwobble.compare.metrics.agreement import agreed_passes, agreement_time, closest_pass, tolerance_of
+from rockwobble.compare.metrics.pair import make_pair
 
 SAMPLE = 0.01  # an agreement time is known to one sample
 
@@ -75,3 +76,59 @@ def test_an_external_trajectory_is_predicted_by_its_first_unresolved_pass(growin
 def test_a_reference_without_passes_predicts_no_divergence(make_trace):
     time = np.arange(11) * SAMPLE
     assert close_pass(make_trace(time, np.full_like(time, 0.1)), 1e-3, 0.1).length == 0.1
+
+
+def test_a_tolerance_is_a_tenth_of_the_peak_of_what_moves(cylinder, make_trace):
+    time = np.arange(101) * SAMPLE
+
+    def peak(share: float, uplift: float = 0.5):
+        return make_trace(time, np.full_like(time, share * cylinder.alpha), uplift_time=uplift)
+
+    small, rest = peak(0.004), peak(1e-19, math.nan)
+    assert tolerance_of(peak(0.2), small) == 0.01
+    assert (
+        tolerance_of(small, peak(0.2))
+        == tolerance_of(small)
+        == tolerance_of(rest, small)
+        == pytest.approx(4e-4)
+    )
+    assert tolerance_of(rest, rest) == 0.01  # nothing moves
+    failed = make_trace(time, np.full_like(time, 0.1), peak_tilt=math.nan)
+    assert tolerance_of(failed) == 0.01
+
+
+def test_an_agreement_is_tested_by_motion_beyond_the_tolerance(cylinder, make_trace):
+    time = np.arange(1001) * SAMPLE
+    tilt = cylinder.alpha * 0.002 * np.maximum(time - 2.0, 0.0)  # 0.016 alpha at the end
+    reference = make_trace(time, tilt, uplift_time=2.0)
+
+    def agreed(leaves: float, tolerance: float):
+        trial = make_trace(time, tilt + np.where(time >= leaves, 0.1, 0.0))
+        return agreement_time(make_pair(cylinder, reference, trial), tolerance=tolerance)
+
+    # 0.01 alpha is reached at 7 s, 0.001 alpha at 2.5 s
+    assert [agreed(leaves, 0.01).tested for leaves in (0.0, 6.9, 7.1, 20.0)] == [False, False, True, True]
+    assert [agreed(leaves, 0.001).tested for leaves in (2.4, 2.6)] == [False, True]
+
+
+def test_a_summary_holds_both_bounds_and_the_time_of_the_run(cylinder, make_trace):
+    time = np.arange(1001) * SAMPLE
+    swing = np.where(time < 2.0, 0.0, 0.0075 * cylinder.alpha * np.sin(time - 2.0) ** 2)
+    reference = make_trace(time, swing, uplift_time=2.0)
+    rest = make_trace(time, np.full_like(time, 1e-19 * cylinder.alpha), uplift_time=math.nan)
+
+    def row(trial, within: float):
+        expected = Prediction(length=within, reason="growth")
+        return summary_row(reference.case, "model", reference, "made", trial, prediction=expected)
+
+    found = row(rest, 3.0)
+    assert (found["diverged"], found["agreement_time"]) == (False, 10.0)  # within 1 % of alpha
+    assert (found["tolerance"], found["reference_uplift_time"]) == (pytest.approx(7.5e-4, rel=1e-3), 2.0)
+    # a tenth of the peak is passed where the sine is the root of a tenth
+    assert found["left_tolerance"]
+    assert found["within_tolerance_until"] == pytest.approx(2.0 + math.asin(math.sqrt(0.1)), abs=SAMPLE)
+    assert found["predicted_until"] == 5.0
+    assert found["divergence"] == "earlier"
+    assert row(rest, 0.3)["divergence"] == "too little motion"
+    assert row(reference, 2.0)["divergence"] == "later"
+    assert row(reference, 0.9)["divergence"] == "much later"

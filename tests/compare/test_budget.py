@@ -30,7 +30,7 @@ STEP = 4e-4  # coarse, so that four runs take a second
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.5)
 CASE = Case(PIER, initial=InitialState(0.5 * PIER.alpha, rolling_rate=0.5), duration=2.0, name="release")
 TIME = np.arange(201) * 0.01
-WHOLE_RUN = Agreement(length=2.0, end=2.0, diverged=False)
+WHOLE_RUN = Agreement(length=2.0, end=2.0, diverged=False, tested=True)
 
 
 def run(case: Case, step: float):
@@ -144,6 +144,44 @@ def test_the_end_of_the_agreement_is_left_out(make_trace, cylinder):
     assert found.covered == pytest.approx(1.6)
     assert found.rms("whole") == 0.0
     assert found.whole[-1] > 0.0
+
+
+# RMS of numerics, unexplained, model form and limit error; measured order; a pass left to chance [s]
+@pytest.mark.parametrize(
+    ("parts", "order", "unresolved", "reason"),
+    [
+        ((1e-3, 1e-4, 0.0, 1e-4), 1.0, math.inf, ""),
+        ((1e-3, 1e-4, 0.0, 1e-4), math.nan, math.inf, ""),
+        ((1e-3, 1e-4, 0.0, 1e-4), 0.49, math.inf, "order"),
+        ((1e-3, 1e-4, 0.0, 1e-4), -1.4, math.inf, "order"),
+        ((1e-3, 1e-4, 0.0, 1.1e-3), 1.0, math.inf, "error"),
+        ((1e-3, 1e-4, 0.0, 1.1e-3), -1.4, 1.9, "unresolved_pass"),
+        ((1e-3, 1e-4, 0.0, 1e-4), 1.0, 2.1, ""),
+        ((1e-3, 1e-4, 1e-2, 1.1e-3), -1.4, math.inf, ""),
+        ((1e-3, 1e-4, 1e-2, 1.1e-3), 1.0, 1.9, ""),
+    ],
+)
+def test_what_cannot_be_known_is_not_split(parts, order, unresolved, reason) -> None:
+    numerics, unexplained, model_form, error = (np.full_like(TIME, part) for part in parts)
+    found = ErrorBudget(
+        time=TIME,
+        whole=numerics + unexplained + model_form,
+        numerics=numerics,
+        unexplained=unexplained,
+        model_form=model_form,
+        limit_error=error,
+        covered=1.6,
+        steps=(2e-4, 1e-4),
+        order=order,
+        unresolved=unresolved,
+    )
+    assert found.not_split == reason
+    columns = found.columns()
+    assert columns["not_split"] == reason
+    stated = [columns[name] for name in ("numerics_rms", "unexplained_rms", "unexplained_share")]
+    assert np.isnan(stated).tolist() == [bool(reason)] * 3
+    assert columns["model_form_rms"] == pytest.approx(parts[2], rel=ROUNDING)
+    assert findings(pd.DataFrame([columns])).empty  # nothing is called unexplained that is not known
 
 
 def test_the_finer_runs_are_no_longer_than_the_traces_agree(engine):

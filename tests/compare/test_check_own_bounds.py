@@ -183,11 +183,11 @@ def test_the_referee_decides(
 
     def traces(_: Bench, jobs: Sequence[Job]) -> list[Trace]:
         lost = math.isnan(referee)
-        return [trace_of(0.0 if lost else referee, "failed" if lost else "completed") for _ in jobs]
+        return [trace_of(0.0 if lost else referee, "failed" if lost else "stands") for _ in jobs]
 
     asked = SimpleNamespace(adjust=lambda run: run)
     asked.traces = partial(traces, asked)
     job = Job(case=released(0.5, 0.5, 1.0), run=Run("mujoco", "recess"))
-    found = suspects.suspect(asked, job, made(TIME, RAMP), trace_of(engine, "completed"))  # type: ignore[arg-type]
+    found = suspects.suspect(asked, job, made(TIME, RAMP), trace_of(engine, "stands"))  # type: ignore[arg-type]
     assert found[0] == part
     assert note in found[1]

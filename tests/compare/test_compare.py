@@ -140,7 +140,7 @@ def test_what_limits_a_run_is_in_its_row_by_code(made_up, case):
 
 
 def test_two_that_never_move_agree(made_up, case):
-    still = {"tilt": np.zeros(1001), "uplift_time": math.nan, "uplift_direction": math.nan, "outcome": "rest"}
+    still = {"tilt": np.zeros(1001), "uplift_time": math.nan, "uplift_direction": math.nan, "rests": True}
     made_up(still, still)
     row = compare(case, runs=[Run("mujoco", "recess")], workers=1).summary.iloc[0]
     assert (row.tilt_rms, row.diverged, row.agreement_time) == (0.0, False, 10.0)

@@ -70,7 +70,9 @@ def test_budgets_are_the_same(saved):
     assert first
     for budget, loaded in zip(first.values(), again.values(), strict=True):
         pd.testing.assert_frame_equal(budget.to_frame(), loaded.to_frame(), check_exact=True)
-        assert budget.columns() == pytest.approx(loaded.columns(), rel=0.0, abs=0.0, nan_ok=True)
+        pd.testing.assert_frame_equal(
+            pd.DataFrame([budget.columns()]), pd.DataFrame([loaded.columns()]), check_exact=True
+        )
         assert loaded.steps == budget.steps
 
 

@@ -8,13 +8,24 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import ensemble, far_field_motions, perturbed_copies, sweep, synthetic_motions
+from rockwobble.compare import ensemble, sweep
 from rockwobble.compare.runs import execution
 from rockwobble.compare.runs.execution import Job
-from rockwobble.compare.storage.manifest import made_now, read_results, write_results
-from rockwobble.compare.studies.ensemble import members as ensemble_members
-from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of, stored_ensemble
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite, Trace
+from rockwobble.compare.studies.ensemble import Ensemble, ensemble_of
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    Run,
+    Suite,
+    Trace,
+    el_centro_1940,
+    far_field_motions,
+    perturbed_copies,
+    synthetic_motions,
+)
+from rockwobble.models.records import p695
 
 ROUNDING = 1e-12
 RECESS = Run(None, "recess")
@@ -47,6 +58,21 @@ def test_copies_are_perturbed_by_the_stated_size():
     assert len({case.name for case in members}) == 400
 
 
+def test_each_component_of_a_copied_record_has_a_factor_of_its_own():
+    motion = el_centro_1940(vertical=True)
+    copies = perturbed_copies(Case(PIER, motion), 400, perturbation=0.01, seed=5)
+    given = motion.acceleration
+    factors = np.empty((400, 2))
+    for row, copy in zip(factors, copies, strict=True):
+        made = copy.motion.acceleration
+        row[:] = made[200, :2] / given[200, :2]
+        np.testing.assert_allclose(made, given * [*row, 1.0], rtol=ROUNDING)  # the vertical as it is
+    # the standard deviation of 400 draws is known to 1/sqrt(800)
+    assert np.std(factors, axis=0) == pytest.approx([0.01, 0.01], rel=4.0 / math.sqrt(800.0))
+    assert np.mean(factors, axis=0) == pytest.approx([1.0, 1.0], abs=4.0 * 0.01 / math.sqrt(400.0))
+    assert abs(np.corrcoef(*factors.T)[0, 1]) < 4.0 / math.sqrt(400.0)
+
+
 def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():
     first, again, other = (synthetic_motions(3, peak=4.0, seed=s, duration=5.0) for s in (1, 1, 2))
     assert np.array_equal(first[2].acceleration, again[2].acceleration)
@@ -58,7 +84,7 @@ def test_synthetic_motions_repeat_with_their_seed_and_have_their_peak():
 def test_a_ring_is_held_against_the_recess_model(monkeypatch):
     monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
     runs = [Run("mujoco", support) for support in ("recess", "flat", "ring")]
-    methods = ensemble(CASE, runs=runs, size=2, workers=1).methods.set_index("method")
+    methods = ensemble(CASE, runs=runs, copies=2, workers=1).methods.set_index("method")
     assert methods["own_model"].to_dict() == {
         "recess model": "",
         "flat-ground model": "",
@@ -68,7 +94,7 @@ def test_a_ring_is_held_against_the_recess_model(monkeypatch):
     }
 
 
-def made_up(job: Job, peak: float, outcome: str = "completed") -> Trace:
+def made_up(job: Job, peak: float, outcome: str = "stands") -> Trace:
     """Return a run that has another peak and outcome than it came to."""
     return dataclasses.replace(reduced.simulate(job.case, sample_step=1.0), peak_tilt=peak, outcome=outcome)
 
@@ -80,20 +106,20 @@ def test_failed_runs_are_counted_and_named(monkeypatch):
         return made_up(job, job.case.initial.tilt)
 
     monkeypatch.setattr(execution, "run_job", simulate)
-    found = ensemble(CASE, runs=[], size=4, workers=1)
+    found = ensemble(CASE, runs=[], copies=7, workers=1)
     methods = found.methods.set_index("method")
     assert methods["failed"].to_dict() == {"recess model": 0, "flat-ground model": 1}
     assert methods.loc["flat-ground model", "failed_members"] == "release #2"
-    assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [3, "release #2"]
-    assert len(found.members) == 8
-    # of three members that do not differ; what failed has no part in the counts and quantiles of its method
-    assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [3, 1.0]
-    assert methods.loc["flat-ground model", ["runs", "rocked", "overturned"]].tolist() == [4, 3, 0]
+    assert found.contrasts.loc[0, ["count", "masked"]].tolist() == [6, "release #2"]
+    assert len(found.members) == 14
+    # of six members that do not differ; what failed has no part in the counts and quantiles of its method
+    assert found.contrasts.loc[0, ["compared", "ratio"]].tolist() == [6, 1.0]
+    assert methods.loc["flat-ground model", ["runs", "rocked", "overturned"]].tolist() == [7, 6, 0]
     assert math.isfinite(methods.loc["flat-ground model", "peak_median"])
 
 
 def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
-    cases = [dataclasses.replace(CASE, name=name) for name in "ab"]
+    cases = [dataclasses.replace(CASE, name=name) for name in "abcdef"]
     # past its balance at the end: what that is called is the matter of who ran it
     runs = {
         "recess model": made_up(Job(case=cases[0], run=RECESS), 1.5 * PIER.alpha),
@@ -103,51 +129,51 @@ def test_outcome_and_peak_of_a_member_are_those_of_its_run(monkeypatch):
     found = ensemble(cases, runs=[], workers=1)
     for method, run in runs.items():
         rows = found.members[found.members["method"] == method]
-        assert rows["outcome"].tolist() == [run.outcome] * 2
-        assert rows["peak_tilt"].tolist() == pytest.approx([run.peak_tilt / PIER.alpha] * 2, abs=ROUNDING)
-    assert found.methods["overturned"].tolist() == [0, 2]
+        assert rows["outcome"].tolist() == [run.outcome] * 6
+        assert rows["peak_tilt"].tolist() == pytest.approx([run.peak_tilt / PIER.alpha] * 6, abs=ROUNDING)
+    assert found.methods["overturned"].tolist() == [0, 6]
     assert found.methods["peak_median"].tolist() == [pytest.approx(1.5, abs=ROUNDING), math.inf]
 
 
 def test_members_are_paired_by_name_and_not_by_row(monkeypatch):
     monkeypatch.setattr(execution, "run_job", lambda job: made_up(job, job.case.initial.tilt))
-    found = ensemble(CASE, runs=[], size=8, workers=1)
+    found = ensemble(CASE, runs=[], copies=8, workers=1)
     shuffled = found.members.sample(frac=1.0, random_state=1)
-    assert ensemble_of(shuffled, found.about).contrasts.loc[0, "ratio_95_low"] == 1.0
+    assert ensemble_of(shuffled, found.facts).contrasts.loc[0, "ratio_95_low"] == 1.0
     with pytest.raises(ValueError, match="one run by each method"):
-        ensemble_of(pd.concat([found.members, found.members[:1]]), found.about)
+        ensemble_of(pd.concat([found.members, found.members[:1]]), found.facts)
 
 
 def test_a_stored_ensemble_comes_back_with_the_same_bits(tmp_path):
-    found = ensemble(CASE, runs=[], size=3, workers=1)
-    write_results(tmp_path, made_now(KIND, about=found.about), {"members": found.members})
-    again = stored_ensemble(read_results(tmp_path, KIND))
+    found = ensemble(CASE, runs=[], copies=3, workers=1)
+    found.save(tmp_path)
+    again = Ensemble.load(tmp_path)
     assert again.contrasts.equals(found.contrasts)
     assert again.methods.equals(found.methods)
-    assert again.about == found.about
+    assert again.facts == found.facts
 
 
 def test_a_failed_run_is_no_member_that_stands():
-    found = ensemble(CASE, runs=[], size=4, workers=1)
+    found = ensemble(CASE, runs=[], copies=4, workers=1)
     members = found.members
     recess = members["method"] == "recess model"
-    members.loc[recess, "outcome"] = ["overturned", "overturned", "completed", "failed"]
+    members.loc[recess, "outcome"] = ["overturned", "overturned", "stands", "failed"]
     # the last is how far it came before it failed: no peak
     members.loc[recess, "peak_tilt"] = [8.0, 8.0, 0.3, 0.4]
-    again = ensemble_of(members, found.about)
+    again = ensemble_of(members, found.facts)
     assert again.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
-    turned = ensemble_of(members, {**found.about, "methods": {"flat-ground model": "", "recess model": ""}})
+    turned = ensemble_of(members, {**found.facts, "methods": {"flat-ground model": "", "recess model": ""}})
     assert turned.contrasts.loc[0, ["count", "compared", "masked"]].tolist() == [3, 3, "release #4"]
     assert again.methods.loc[0, ["runs", "rocked", "overturned", "failed"]].tolist() == [4, 3, 2, 1]
 
 
 def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monkeypatch, tmp_path):
-    first = ensemble(CASE, runs=[], size=3, workers=1, resume=tmp_path)
+    first = ensemble(CASE, runs=[], copies=3, workers=1, resume=tmp_path)
     monkeypatch.setattr(execution, "run_job", lambda job: pytest.fail("ran again"))
-    again = ensemble(CASE, runs=[], size=3, workers=1, resume=tmp_path)
+    again = ensemble(CASE, runs=[], copies=3, workers=1, resume=tmp_path)
     assert first.members.equals(again.members)
     assert first.contrasts.equals(again.contrasts)
-    assert first.about == again.about
+    assert first.facts == again.facts
     assert {
         len(pd.read_parquet(path)) for path in (tmp_path / "finished" / "ensemble").glob("*.parquet")
     } == {1}
@@ -155,8 +181,13 @@ def test_an_ensemble_that_was_ended_repeats_nothing_and_keeps_numbers_alone(monk
 
 def test_every_input_is_in_the_hash_of_an_ensemble():
     hashes = [
-        ensemble(CASE, runs=[], workers=1, **options).about["inputs"]
-        for options in ({"size": 2}, {"size": 3}, {"size": 2, "seed": 1}, {"size": 2, "models": [RECESS]})
+        ensemble(CASE, runs=[], workers=1, **options).facts["inputs"]
+        for options in (
+            {"copies": 2},
+            {"copies": 3},
+            {"copies": 2, "seed": 1},
+            {"copies": 2, "models": [RECESS]},
+        )
     ]
     assert len(set(hashes)) == 4
 
@@ -165,7 +196,7 @@ def test_far_field_motions_have_their_peak_and_their_names(monkeypatch):
     def made_up(pair: int) -> GroundMotion:
         return GroundMotion([[0.0, 0.0], [float(pair), 0.0]], 0.01, f"pair {pair}")
 
-    monkeypatch.setattr(ensemble_members, "p695_far_field", made_up)
+    monkeypatch.setattr(p695, "p695_far_field", made_up)
     motions = far_field_motions(peak=3.0)
     assert [motion.peak for motion in motions] == pytest.approx([3.0] * 22, abs=ROUNDING)
     assert [motion.name for motion in motions] == [f"pair {pair}" for pair in range(1, 23)]
@@ -174,7 +205,7 @@ def test_far_field_motions_have_their_peak_and_their_names(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("options", "message"), [({"size": 1}, "at least 2 members"), ({"perturbation": 0.5}, "perturbation")]
+    ("options", "message"), [({"copies": 1}, "at least 2"), ({"perturbation": 0.5}, "perturbation")]
 )
 def test_bad_input_is_refused(options, message):
     with pytest.raises(ValueError, match=message):

@@ -5,10 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from rockwobble.compare.comparison.external.clock import fitted_delays
-from rockwobble.compare.comparison.external.difference import AZIMUTH, Part, difference, explains
-from rockwobble.compare.comparison.external.frame import Frame, fitted_frames
-from rockwobble.compare.traces.motion import Motion
+from rockwobble.compare.external.difference import AZIMUTH_BOUND, Part, Reference, explains
+from rockwobble.compare.external.mistakes import Frame, fitted_frames, fitted_offsets, fitted_rate
+from rockwobble.compare.external.motion import Motion
 from rockwobble.models import Cylinder
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -25,8 +24,21 @@ def swings(*peaks):
     return 1e-4 + np.array(peaks)[each] * np.sin(np.pi * TIME) ** 2
 
 
+def model(motion):
+    return Reference(
+        motion=motion,
+        alpha=PIER.alpha,
+        base_radius=PIER.base_radius,
+        time_scale=0.78,
+        start=0.0,
+        is_free=True,
+        tilt_bound=0.01,
+        least_lean=0.05,
+    )
+
+
 def held(reference, other):
-    return difference(reference, other, cylinder=PIER, start=0.0)
+    return model(reference).difference(other)
 
 
 TILT = swings(0.1, 0.08, 0.06, 0.1)
@@ -36,7 +48,7 @@ TILT = swings(0.1, 0.08, 0.06, 0.1)
 def test_an_azimuth_differs_by_its_bound_and_from_its_first_sample(degrees):
     found = held(motion(TILT, TIME), motion(TILT, TIME + math.radians(degrees)))
     assert found.azimuth.size == pytest.approx(math.radians(degrees))
-    assert found.azimuth.differs == (math.radians(degrees) > AZIMUTH)
+    assert found.azimuth.differs == (math.radians(degrees) > AZIMUTH_BOUND)
     if found.azimuth.differs:
         # 5 % of the largest tilt
         assert found.azimuth.first_time == pytest.approx(math.asin(math.sqrt(0.05)) / math.pi, abs=0.01)
@@ -62,8 +74,9 @@ def test_a_turn_that_comes_with_a_pass_is_none_of_the_axes():
     lean = motion(TILT, azimuth)
 
     def fits(reference, other):
-        found = fitted_frames(reference, other, start=0.0, end=4.0)
-        return [(fit.code, fit.value) for fit in found]
+        found = fitted_frames(model(reference), other, start=0.0, end=4.0)
+        mistakes = [fit.change("azimuth").mistake for fit in found]
+        return [(mistake.code, mistake.value) for mistake in mistakes]
 
     assert fits(lean, motion(TILT, azimuth + angle)) == [("turned", pytest.approx(25.0))]
     assert fits(lean, motion(TILT, azimuth + angle * (TIME > 1.0))) == []
@@ -83,19 +96,26 @@ def test_a_frame_takes_back_what_it_names():
     reference = motion(TILT, azimuth)
     for frame in (Frame(angle=0.4), Frame(angle=1.1, mirrored=True), Frame(angle=math.pi)):
         wrong = motion(TILT, (frame.angle - azimuth) if frame.mirrored else azimuth - frame.angle)
-        (found,) = fitted_frames(reference, wrong, start=0.0, end=4.0)
+        (found,) = fitted_frames(model(reference), wrong, start=0.0, end=4.0)
         assert found.mirrored == frame.mirrored
         assert found.angle == pytest.approx(frame.angle)
         assert np.abs(found.apply(wrong).lean - reference.lean).max() < 1e-12
 
 
-@pytest.mark.parametrize("delay", [0.2, 0.7, -0.4])
-def test_an_offset_is_found_where_the_beginning_is_missing(delay):
+@pytest.mark.parametrize("offset", [0.2, 0.7, -0.4])
+def test_an_offset_is_found_where_the_beginning_is_missing(offset):
     tilt = 0.05 * (1.0 - np.cos(2.0 * TIME)) + 0.02 * TIME
     began = TIME >= 0.6
-    file = motion(tilt[began], TIME[began], time=TIME[began] - delay)
-    found = fitted_delays(motion(tilt, TIME), file, start=0.0, scale=0.78)
-    assert found == [pytest.approx(delay, abs=1e-3)]  # linear between samples
+    file = motion(tilt[began], TIME[began], time=TIME[began] - offset)
+    found = fitted_offsets(model(motion(tilt, TIME)), file)
+    assert found == [pytest.approx(offset, abs=1e-3)]  # linear between samples
+
+
+@pytest.mark.parametrize("slower", [1.005, 0.9, 1.08])
+def test_a_rate_is_found(slower):
+    tilt = 0.05 * (1.0 + np.cos(5.0 * TIME))
+    other = motion(0.05 * (1.0 + np.cos(5.0 * TIME / slower)), TIME)
+    assert fitted_rate(model(motion(tilt, TIME)), other) == pytest.approx(slower, abs=1e-4)  # as above
 
 
 def test_a_difference_that_is_only_just_gone_is_not_explained():

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pandas as pd
@@ -8,7 +9,8 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import External, read_trajectory
-from rockwobble.compare.traces.trajectory import measurement
+from rockwobble.compare.external.mistakes import Mistake
+from rockwobble.compare.external.trajectory import measurement
 from rockwobble.models import Case, Cylinder, InitialState
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -27,12 +29,11 @@ BAD = {
     "# table 3\n" + GOOD.replace("3,2\n", "much,2\n"): "line 5: tilt [deg] must be a number, got 'much'",
     GOOD.replace("3,2\n", ",2\n"): "line 4: tilt is missing",
     GOOD.replace("3,2\n", "3,\n"): "line 4: azimuth must be given where the tilt is 0.05236 rad",
-    GOOD.replace("3,2\n", "357,2\n"): "tilt must be between -pi and pi, got 6.231 rad; is it in degrees, or",
+    GOOD.replace("3,2\n", "357,2\n"): "tilt must be between -pi and pi, got 6.231 rad",
     GOOD.replace("0,1,0", "0,120,0"): "line 2: it must not lie at the start, got a tilt of 2.094 rad",
     GOOD.replace("0.0", ""): "line 3: samples must be at most 0.39 s apart for this cylinder, got 1 s",
     f"{TURN}\n0,0,0,0,1\n0.01,0,0,0,1\n0.02,0,0,0,1\n": (
-        "line 2: the quaternion is turned by 180 deg about the axis at the start, where it must be near 0; "
-        "are its numbers in the order qx, qy, qz, qw?"
+        "line 2: the quaternion must not be turned about the axis at the start, got 180 deg"
     ),
     f"{TURN}\n0,0,1,0,0\n0.01,0,1,0,0\n0.02,0,1,0,0\n": "the quaternion holds the cylinder upside down",
     "time,x [mm],y [mm],z [mm]\n0,0,0,5.88\n0.01,0,0,5.88\n0.02,0,0,5.88\n": (
@@ -46,7 +47,7 @@ BAD = {
     GOOD.replace("tilt [deg]", "lean [deg]"): "must have tilt where it has azimuth, got no tilt",
     GOOD.replace("time [s]", "t"): "must have columns time, and tilt and azimuth, or qw, qx, qy and qz, or x",
     GOOD.replace("azimuth", "tilt"): "must have each column once, got tilt twice",
-    GOOD.split("0.01")[0]: "must hold at least three samples, got 1",
+    GOOD.split("0.01")[0]: "must hold at least 3 samples, got 1",
     f"{TURN}\n0,1,0,0,0\n0.01,2,0,0,0\n0.02,1,0,0,0\n": "line 3: a quaternion must have the length 1, got 2",
     f"{TURN},tilt [rad],azimuth [rad]\n0,1,0,0,0,0,0\n.01,.99875,.04998,0,0,.1,0\n.02,0,0,0,1,.1,0\n": (
         "line 4: tilt and quaternion must agree, got tilts of 0.1 and 0 rad"
@@ -64,6 +65,36 @@ def test_whatever_is_wrong_with_a_file_is_one_line_with_its_number(save, text):
         read_trajectory(save(text), RELEASE)
     assert BAD[text] in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def y_up(run):
+    x, y, z = run.centre_of_mass.T
+    return {"x": x, "y": z, "z": -y}
+
+
+# files that cannot be read as they are, and the mistake without which they can
+UNREADABLE = {
+    "time_unit": lambda run: {"time": 1e3 * run.time, "tilt [rad]": run.tilt},
+    "angle_unit": lambda run: {"time": run.time, "tilt [rad]": np.degrees(run.tilt)},
+    "length_unit": lambda run: {
+        "time": run.time,
+        **dict(zip("xyz", 1e3 * run.centre_of_mass.T, strict=True)),
+    },
+    "z_reversed": lambda run: {
+        "time": run.time,
+        **dict(zip("xyz", (run.centre_of_mass * [1, 1, -1]).T, strict=True)),
+    },
+    "y_up": lambda run: {"time": run.time, **y_up(run)},
+}
+
+
+@pytest.mark.parametrize("code", UNREADABLE)
+def test_the_mistake_without_which_a_file_is_readable_is_named(save, response, code):
+    values = {"time_unit": 1e3, "angle_unit": math.degrees(1.0), "length_unit": 1e3}
+    concerns = {"angle_unit": "tilt"}.get(code, "path")
+    words = Mistake(code=code, concerns=concerns, value=values.get(code, math.nan)).words
+    with pytest.raises(ValueError, match=f"; likely mistake: {re.escape(words)}$"):
+        read_trajectory(save(pd.DataFrame(UNREADABLE[code](response))), RELEASE)
 
 
 @pytest.mark.parametrize("mark", [";", "\t"])
@@ -124,7 +155,7 @@ def test_a_signed_tilt_leans_to_the_other_side(save):
 def test_a_mass_centre_alone_tells_the_pose_of_a_cylinder_in_a_recess(save, response):
     x, y, z = 100.0 * response.centre_of_mass.T
     trajectory = read_trajectory(save(columns(response, **{"x [cm]": x, "y [cm]": y, "z [cm]": z})), RELEASE)
-    assert measurement(trajectory).poses.told == ("path",)
+    assert measurement(trajectory).poses.given == ("path",)
     assert trajectory.tilt == pytest.approx(response.tilt, abs=ROUNDING)
     assert trajectory.rolling_angle == pytest.approx(response.rolling_angle, abs=ROUNDING)
     assert "tilt and azimuth are those of a cylinder in a recess" in notes(trajectory)
@@ -172,7 +203,7 @@ def test_the_noise_is_told_by_the_samples(save, response, share):
 
 def test_columns_that_are_not_read_are_said(save):
     trajectory = read_trajectory(save(GOOD.replace("azimuth", "heading")), RELEASE)
-    assert measurement(trajectory).poses.told == ("tilt",)
+    assert measurement(trajectory).poses.given == ("tilt",)
     assert "columns not read: heading [deg]" in notes(trajectory)
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare import Comparison, compare, read_trajectory
-from rockwobble.compare.comparison.external.verdict import VERDICT_COLUMNS, judge, lists_in_words
+from rockwobble.compare.external.verdict import VERDICT_COLUMNS, judge, lists_in_words
 from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -195,48 +195,100 @@ def test_a_sign_is_named_before_an_offset(save, name):
     assert named(verdict(name, save(scaled(samples(name), -1.0, "z")))) == [("path", "z_reversed")]
 
 
-def test_quaternions_of_the_inverse_turn_lean_the_other_way(save):
-    trace = response("pier wobbles")
+def quaternions(trace):
     half = 0.5 * trace.tilt
-    quaternion = {
+    return {
         "qw": np.cos(half),
-        "qx": np.sin(half) * np.sin(trace.rolling_angle),
-        "qy": -np.sin(half) * np.cos(trace.rolling_angle),
+        "qx": -np.sin(half) * np.sin(trace.rolling_angle),
+        "qy": np.sin(half) * np.cos(trace.rolling_angle),
         "qz": np.zeros_like(half),
     }
-    found = verdict("pier wobbles", save(pd.DataFrame({"time": trace.time} | quaternion)))
-    assert named(found) == [("azimuth", "turned_back")]
 
 
-def test_planar_motion_cannot_tell_a_turn_from_a_mirror_and_says_so(save):
-    table = samples("planar", "angles")
-    found = verdict("planar", save(turned(table, 90.0, mirrored=True)))
+def test_quaternions_of_the_inverse_turn_are_named(save):
+    trace = response("pier wobbles")
+    table = quaternions(trace)
+    inverse = {name: (1.0 if name == "qw" else -1.0) * values for name, values in table.items()}
+    found = verdict("pier wobbles", save(pd.DataFrame({"time": trace.time} | inverse)))
+    assert named(found) == [("quaternion", "quaternion_inverse")]
+
+
+@pytest.mark.parametrize("placed", [False, True])
+def test_y_that_points_up_is_named_once_for_quaternions_and_path(save, placed):
+    trace = response("pier wobbles")
+    q = quaternions(trace)
+    table = {"time": trace.time, "qw": q["qw"], "qx": q["qx"], "qy": q["qz"], "qz": -q["qy"]}
+    if placed:
+        x, y, z = trace.centre_of_mass.T
+        table |= {"x": x, "y": z, "z": -y}
+    found = verdict("pier wobbles", save(pd.DataFrame(table)))
+    assert named(found) == [("axes", "y_up")]
+    assert found.mistakes[0].changes_tilt
+    assert found.explanation.left.differs_in == ()
+
+
+def test_y_that_points_up_in_the_path_alone_is_named(save):
+    table = samples("pier wobbles")
+    found = verdict("pier wobbles", save(table.assign(y=table["z"], z=-table["y"])))
+    assert named(found) == [("path", "y_up")]
+
+
+def test_planar_motion_cannot_tell_a_turn_from_a_mirror(save):
+    found = verdict("planar", save(turned(samples("planar", "angles"), 90.0, mirrored=True)))
     assert named(found) == [("azimuth", "turned")]
     assert found.mistakes[0].value == pytest.approx(90.0 - 2.0 * math.degrees(0.5), abs=1.0)
-    assert [mistake.code for mistake in found.explanation.alternatives] == ["axes_exchanged"]
     # mirrored in its own plane it is the same motion
-    same = turned(table, 2.0 * math.degrees(0.5), mirrored=True)
+    same = turned(samples("planar", "angles"), 2.0 * math.degrees(0.5), mirrored=True)
     assert verdict("planar", save(same)).differs_in == ()
 
 
-@pytest.mark.parametrize(
-    "other",
-    [
-        {"cylinder": Cylinder(semidiagonal=6.3, tan_alpha=0.2)},
-        {"cylinder": Cylinder(semidiagonal=6.0, tan_alpha=0.21)},
-        {"gravity": 9.3},
-    ],
-)
-@pytest.mark.parametrize("name", ["pier wobbles", "pier shaken"])
-def test_another_body_is_no_mistake_of_the_file(save, name, other):
-    case = dataclasses.replace(CASES[name], **other)
-    trace = reduced.simulate(
-        Case(case.cylinder, case.motion, initial=case.initial, duration=case.duration, gravity=case.gravity)
-    )
-    table = pd.DataFrame({"time": trace.time, "tilt [rad]": trace.tilt, "azimuth [rad]": trace.rolling_angle})
+def other_body(name, **changes):
+    case = CASES[name]
+    initial = changes.pop("initial", case.initial)
+    body = {"gravity": case.gravity, "cylinder": case.cylinder} | changes
+    trace = reduced.simulate(Case(motion=case.motion, initial=initial, duration=case.duration, **body))
+    return pd.DataFrame({"time": trace.time, "tilt [rad]": trace.tilt, "azimuth [rad]": trace.rolling_angle})
+
+
+SMALLER = Cylinder(semidiagonal=6.0 / 1.01, tan_alpha=0.2)
+OTHERS = {"R 1 % smaller": ({"cylinder": SMALLER}, 1.0 / 1.01), "g = 10": ({"gravity": 10.0}, 9.81 / 10.0)}
+
+
+@pytest.mark.parametrize("azimuth", [0.0, 10.0])
+@pytest.mark.parametrize("other", OTHERS)
+@pytest.mark.parametrize("name", ["pier wobbles", "pier passes", "planar"])
+def test_another_size_or_gravity_is_the_time_scale_of_a_release(save, name, other, azimuth):
+    changes, size = OTHERS[other]
+    table = other_body(name, **changes)
+    table["azimuth [rad]"] += math.radians(azimuth)
     found = verdict(name, save(table))
+    # an azimuth that is turned is no reason for tilts to differ, and is named beside it
+    assert [mistake.code for mistake in found.mistakes] == ["time_scale", "turned"][: 2 if azimuth else 1]
+    # a spin that is not scaled with it adds a tenth
+    assert found.mistakes[0].value ** 2 - 1.0 == pytest.approx(size - 1.0, rel=0.12)
+    assert [mistake.changes_tilt for mistake in found.mistakes] == [True, False][: 2 if azimuth else 1]
+
+
+LARGER = {"cylinder": Cylinder(semidiagonal=6.3, tan_alpha=0.2)}
+
+
+@pytest.mark.parametrize("changes", [LARGER, {"gravity": 9.3}])
+def test_under_shaking_another_size_or_gravity_is_no_time_scale(save, changes):
+    found = verdict("pier shaken", save(other_body("pier shaken", **changes)))
     assert "tilt" in found.differs_in
     assert found.mistakes == ()
+
+
+@pytest.mark.parametrize(
+    "change", [{"tilt": 1.02}, {"tilt": 1.05}, {"rolling_rate": 1.05}, {"rolling_rate": 1.2}]
+)
+@pytest.mark.parametrize("name", ["pier wobbles", "pier passes", "squat wobbles"])
+def test_another_start_is_no_mistake_of_the_file(save, name, change):
+    start = CASES[name].initial
+    initial = dataclasses.replace(
+        start, **{key: factor * getattr(start, key) for key, factor in change.items()}
+    )
+    assert verdict(name, save(other_body(name, initial=initial))).mistakes == ()
 
 
 def test_what_is_not_told_is_said_and_not_compared(save):

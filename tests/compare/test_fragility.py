@@ -11,13 +11,13 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import Fragility, IncompleteError, fragility, synthetic_motions
+from rockwobble.compare import Fragility, IncompleteError, fragility
 from rockwobble.compare.runs import execution
 from rockwobble.compare.studies.fragility import runs as running
 from rockwobble.compare.studies.fragility.islands import incremental, islands
 from rockwobble.compare.studies.fragility.limits import exceeded, require_limits
 from rockwobble.compare.studies.fragility.result import fragility_of
-from rockwobble.models import Case, Cylinder, Run
+from rockwobble.models import Case, Cylinder, Run, synthetic_motions
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
 LEVELS = (1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.5, 8.0)
@@ -94,7 +94,7 @@ def test_what_a_run_exceeds():
     table = pd.DataFrame(
         {
             "peak_tilt": [0.0, 1e-9, 0.5, 1.2, 8.0, NAN],
-            "outcome": ["rest", "rest", "completed", "completed", "overturned", "failed"],
+            "outcome": ["stands", "stands", "stands", "stands", "overturned", "failed"],
             "contact_lost": [0.0, 0.0, NAN, 1.0, 0.0, NAN],
         }
     )
@@ -129,7 +129,7 @@ def test_stopping_early_makes_the_median_smaller(found):
 
 
 def test_a_curve_that_all_or_none_exceed_ends_with_the_levels(found):
-    calm = found.runs.assign(peak_tilt=0.3, outcome="completed")
+    calm = found.runs.assign(peak_tilt=0.3, outcome="stands")
     limits = ["0.1 alpha", "1 alpha"]
     about = {**found.about, "limits": limits, "resamples": 2}
     curves = fragility_of(calm, found.points, about).curves

@@ -12,8 +12,8 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.studies.spectrum.search import (
-    PROBES,
     STEP,
+    gap_bound,
     lowest_on_grid,
     probe_below,
     run_searches,
@@ -131,21 +131,44 @@ def test_an_interruption_passes_through_a_search():
         run_searches([going], peaks)
 
 
-def test_probes_measure_the_share_that_a_search_has_missed():
+def test_probes_go_down_until_none_overturns():
     def third(_, level: float) -> np.ndarray:
         return np.array([FALL if 10.0 * level % 1.0 < 1.0 / 3.0 else 0.0])
 
-    found = [
-        run_searches([probe_below(1.0, 4.0, lowest, (seed,))], third, workers=1)[0]
-        for seed in range(300)
-        for lowest in (2.0, math.nan)
-    ]
-    count = sum(fell for _, fell in found)
-    total = len(found) * PROBES
-    # of so many draws the share is known to four times its standard deviation
-    assert count / total == pytest.approx(1.0 / 3.0, abs=4.0 * math.sqrt(2.0 / 9.0 / total))
-    assert all(math.isnan(low) == (fell == 0) for low, fell in found)
-    assert run_searches([probe_below(2.0, 4.0, 1.0, (0,))], third)[0][1] == 0
+    # a third of what is below, down to the first window, whatever has been found before
+    for lowest in (2.0, math.nan):
+        low, missed = run_searches([probe_below(1.0, 4.0, lowest, probes=500, seed=(1,))], third, workers=1)[
+            0
+        ]
+        assert 1.0 < low < 1.0 + 1.0 / 500
+        assert missed > 100
+    assert run_searches([probe_below(2.0, 4.0, 1.0, probes=9, seed=(0,))], third)[0] == (1.0, 0)
+    assert run_searches([probe_below(1.0, 4.0, 2.0, probes=0, seed=(0,))], third)[0] == (2.0, 0)
+
+
+@pytest.mark.parametrize(("width", "chance"), [(2.0 / 500, 1.0), (0.5 / 500, 0.5), (0.1 / 500, 0.1)])
+def test_a_gap_narrower_than_every_step_is_found_as_often_as_is_stated(width: float, chance: float):
+    """The probes lie one in each of 500 parts: a gap within one is hit as often as it is wide."""
+    trials, found = 200, 0
+    for seed in range(trials):
+        centre = 1.0 + np.random.default_rng(seed).uniform(0.1, 0.9)
+
+        def gap(_: list[int], level: float, centre: float = centre) -> np.ndarray:
+            return np.array([FALL if abs(level - centre) < 0.5 * width or level >= 2.0 else 0.0])
+
+        low, missed = run_searches([probe_below(1.0, 3.0, 2.0, probes=500, seed=(seed,))], gap, workers=1)[0]
+        assert (missed > 0) == (low < 2.0)
+        assert low == 2.0 or abs(low - centre) < 0.5 * width
+        found += low < 2.0
+    # four standard deviations of a share of so many
+    assert found / trials == pytest.approx(
+        chance, abs=4.0 * math.sqrt(chance * (1.0 - chance) / trials) + SAME
+    )
+
+
+def test_a_bound_on_gaps_is_that_of_no_hit_in_so_many_draws():
+    assert (1.0 - gap_bound(500)) ** 500 == pytest.approx(0.05)
+    assert gap_bound(500) == pytest.approx(0.006, abs=1e-4)
 
 
 def test_a_search_finds_windows_that_a_grid_does_not_see():

@@ -10,10 +10,12 @@ from rockwobble.compare.comparison.prediction import (
     close_pass,
     estimated_error,
     landings,
+    nudged,
     predict,
+    reproducible_until,
     verdict,
 )
-from rockwobble.models import Case, GroundMotion, InitialState, Run
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, el_centro_1940
 
 TIME = np.arange(1001) * 0.01
 
@@ -48,6 +50,38 @@ def predicted(case, cylinder, make_trace):
         )
 
     return call
+
+
+def test_a_prediction_under_shaking_counts_from_uplift(cylinder, make_trace):
+    motion = GroundMotion(np.ones((1001, 2)), 0.01)
+    case = Case(cylinder, motion, name="made up")
+    after = np.maximum(TIME - 2.0, 0.0)
+    level = np.where(TIME < 2.0, 0.0, 0.3 * cylinder.alpha)
+
+    def trace(difference, **fields):
+        return make_trace(TIME, level + difference * cylinder.alpha, uplift_time=2.0, **fields)
+
+    def simulate(disturbed: Case, _: Run):
+        relative = disturbed.gravity / case.gravity - 1.0
+        return trace(relative * np.where(TIME < 2.0, 0.0, np.exp(after)))
+
+    def found(passes=(), form=0.0, tolerance=0.01):
+        return predict(
+            case,
+            reference=trace(form),
+            own=trace(0.0, passes=passes),
+            contact_resolution=1e-5,
+            error=1e-5,
+            simulate=simulate,
+            tolerance=tolerance,
+        )
+
+    # as after a release: the first second is that after uplift
+    assert found().length == pytest.approx(np.log(1e3 * 1.787), abs=0.02)
+    assert found(tolerance=1e-3).length == pytest.approx(np.log(1e2 * 1.787), abs=0.02)
+    assert (found([(5.0, 1e-6)]).reason, found([(5.0, 1e-6)]).length) == ("pass", 3.0)
+    form = found(form=np.where(TIME >= 4.0, 0.02, 0.0))
+    assert (form.reason, form.length) == ("model form", pytest.approx(2.0))
 
 
 def test_a_copy_as_far_off_as_the_engine_grows_to_one_per_cent(predicted):
@@ -92,6 +126,9 @@ def test_a_small_error_and_no_close_pass_end_nothing(predicted):
         (8.1, True, 4.0, "pass", "later"),
         (10.0, False, 4.0, "pass", "later"),
         (10.0, False, 6.0, "pass", "in time"),
+        (10.0, False, 1.01, "pass", "later"),
+        (10.0, False, 0.99, "pass", "much later"),
+        (0.02, True, 0.0, "pass", "much later"),
         (4.9, True, 10.0, "", "earlier"),
     ],
 )
@@ -101,3 +138,24 @@ def test_verdict(measured, diverged, predicted, reason, expected):
 
 def test_the_estimated_error_is_of_first_order_in_the_step(case):
     assert estimated_error(case, "mujoco", 4e-4) == pytest.approx(4.0 * estimated_error(case, "mujoco", 1e-4))
+
+
+def test_a_chaotic_run_is_reproducible_until_its_neighbours_leave_it():
+    # a cylinder whose peaks under the record in full and with six decimals of g differ by 0.1 alpha and more
+    slender = Cylinder(semidiagonal=6.0847320541999865, tan_alpha=0.08996054265853794)
+    record, scale = el_centro_1940(), 1.28359029043245
+    case = Case(slender, record.scaled(scale))
+    own, *copies = (reduced.simulate(each) for each in (case, *nudged(case)))
+    until = reproducible_until(own, copies)
+    rounded = GroundMotion(np.round(record.acceleration / 9.81, 6) * 9.81, record.time_step)
+    other = reduced.simulate(Case(slender, rounded.scaled(scale)))
+    count = min(len(own.tilt), len(other.tilt))
+    apart = np.abs(own.tilt[:count] - other.tilt[:count]) > 0.01 * slender.alpha
+    assert abs(own.peak_tilt - other.peak_tilt) > 0.1 * slender.alpha
+    # the sixth digit is another perturbation of the same size: each e-fold takes less than a second
+    assert until == pytest.approx(own.time[apart.argmax()], abs=3.0)
+    assert until < own.time[own.tilt.argmax()]
+    # without passes nothing is magnified
+    swing = Case(slender, initial=InitialState(0.5 * slender.alpha, rolling_rate=1.0), duration=5.0)
+    own, *copies = (reduced.simulate(each) for each in (swing, *nudged(swing)))
+    assert reproducible_until(own, copies) == np.inf

@@ -19,6 +19,7 @@ WHOLE = el_centro_1940()
 # the seconds that hold its peak: a spectrum of the whole record takes six times as long and shows no more
 EL_CENTRO = GroundMotion(WHOLE.acceleration[:800], WHOLE.time_step)
 SIZES = np.array([1.0, 4.0, 8.0, 12.0])
+PROBES = 20  # below each lowest: what so many find is of another test
 INTENSITIES = np.linspace(1.0, 11.0, 11)
 # the two runs differ in where the factor on the record is applied: rounding, grown by a few passes
 SAME_RUN = 1e-6
@@ -26,7 +27,7 @@ SAME_RUN = 1e-6
 
 @pytest.fixture(scope="module")
 def spectrum() -> OverturningSpectrum:
-    return overturning_spectrum(0.1, EL_CENTRO, semidiagonals=SIZES, intensities=INTENSITIES)
+    return overturning_spectrum(0.1, EL_CENTRO, semidiagonals=SIZES, intensities=INTENSITIES, probes=PROBES)
 
 
 def alone(component: int) -> GroundMotion:
@@ -62,7 +63,9 @@ def test_the_first_intensity_is_the_threshold_of_uplift(spectrum):
 
 
 def test_the_same_bits_whatever_the_number_of_threads(spectrum):
-    one = overturning_spectrum(0.1, EL_CENTRO, semidiagonals=SIZES, intensities=INTENSITIES, workers=1)
+    one = overturning_spectrum(
+        0.1, EL_CENTRO, semidiagonals=SIZES, intensities=INTENSITIES, probes=PROBES, workers=1
+    )
     for series in SERIES:
         assert np.array_equal(one.peak_tilt[series], spectrum.peak_tilt[series], equal_nan=True)
         assert np.array_equal(one.lowest[series], spectrum.lowest[series], equal_nan=True)
@@ -89,10 +92,11 @@ def test_the_tables_hold_every_cell(spectrum):
     assert row["on_grid"] >= row["intensity"]
     assert row["searched_from"] == pytest.approx(1.0 / share, rel=1e-14)
     assert row["search_step"] == spectrum.search_step == STEP
+    assert row["probed"] == spectrum.probes == PROBES
 
 
 def test_below_a_grid_that_begins_high_the_lowest_is_found():
-    spectrum = overturning_spectrum(0.1, EL_CENTRO, semidiagonals=[0.5], intensities=[6.0, 8.0])
+    spectrum = overturning_spectrum(0.1, EL_CENTRO, semidiagonals=[0.5], intensities=[6.0, 8.0], probes=0)
     assert spectrum.overturned(SPATIAL)[0, 0]
     assert spectrum.lowest[SPATIAL][0] < 1.1
     row = spectrum.lowest_frame().iloc[0]
@@ -101,7 +105,13 @@ def test_below_a_grid_that_begins_high_the_lowest_is_found():
 
 def test_the_rolling_model_makes_another_spectrum(spectrum):
     rolling = overturning_spectrum(
-        0.1, EL_CENTRO, semidiagonals=SIZES[:2], intensities=INTENSITIES[:4], support="flat", search_step=2.0
+        0.1,
+        EL_CENTRO,
+        semidiagonals=SIZES[:2],
+        intensities=INTENSITIES[:4],
+        support="flat",
+        search_step=2.0,
+        probes=0,
     )
     single = reduced.simulate(
         Case(Cylinder(semidiagonal=4.0, tan_alpha=0.1), EL_CENTRO.scaled(rolling.scales[1])),
@@ -120,6 +130,7 @@ def test_the_rolling_model_makes_another_spectrum(spectrum):
         ({"intensities": []}, r"intensities must be positive, .* got \[\]"),
         ({"intensities": [1.0, math.nan]}, "intensities must be positive, finite and increasing"),
         ({"support": "ring"}, "support must be one of recess, flat, got 'ring'"),
+        ({"probes": -1}, "probes must be 0 or more, got -1"),
         ({"search_step": 0.0}, "search_step must be positive, got 0.0"),
     ],
 )
@@ -142,7 +153,7 @@ DRAWN_SIZES, DRAWN_INTENSITIES = np.linspace(0.5, 30.0, 100)[7::46], np.linspace
 @pytest.fixture(scope="module")
 def drawn() -> OverturningSpectrum:
     return overturning_spectrum(
-        0.1, WHOLE, semidiagonals=DRAWN_SIZES, intensities=DRAWN_INTENSITIES, search_step=2.0
+        0.1, WHOLE, semidiagonals=DRAWN_SIZES, intensities=DRAWN_INTENSITIES, search_step=2.0, probes=0
     )
 
 
@@ -194,6 +205,7 @@ def test_what_falls_after_the_record_has_overturned_in_every_cell():
             GroundMotion(acceleration, 0.01),
             semidiagonals=[6.0],
             intensities=[1.5, 2.5, 4.0],
+            probes=0,
         )
         for acceleration in (pulse, np.vstack([pulse, still]))
     )

@@ -44,6 +44,7 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> OverturningSpectrum
         below={name: np.zeros(len(space)) for name in peaks},
         searched_from=dict.fromkeys(peaks, 1.0),
         search_step=0.1,
+        probes=0,
     )
 
 

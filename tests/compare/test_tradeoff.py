@@ -124,7 +124,7 @@ def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
     # an engine takes a step of some microseconds, the model a few for the whole release
     low, high = engine_factors(found.points)
     assert 2.0 < low < high
-    assert study.manifest_of(found).headline["engine over recess model, least"] == low
+    assert found.headline()["engine over recess model, least"] == low
 
 
 def points(

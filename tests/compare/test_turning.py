@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from rockwobble.compare.metrics.contact import contact_rms
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.metrics.turning import direction_difference, first_unresolved_pass, turn_difference
-from rockwobble.compare.traces.pair import make_pair
 
 ROUNDING = 1e-12
 
@@ -94,6 +94,18 @@ def test_contact_points_count_only_where_both_are_tilted(cylinder, make_trace, t
     low = np.where((time > 3.0) & (time < 5.0), 0.04 * high, high)
     trial = make_trace(time, low, rolling_angle=phi + off)
     expected = 2.0 * math.sin(0.15) * math.sqrt(200 / 301)  # 200 of the 301 samples that count
+    assert contact_rms(make_pair(cylinder, reference, trial)) == pytest.approx(expected, rel=ROUNDING)
+
+
+def test_contact_points_count_from_5_per_cent_of_the_peak_of_the_reference(cylinder, make_trace, time):
+    high, angle = 0.3 * cylinder.alpha, 2.0 * time
+    # then at 10 % of that peak: below 5 % of alpha, and of the trial's own peak; at last at 4 % of it
+    share = np.where(time < 4.0, 1.0, np.where(time < 8.0, 0.1, 0.04))
+    reference = make_trace(time, high * share, rolling_angle=angle)
+    trial = make_trace(
+        time, high * np.where(time < 4.0, 3.0, share), rolling_angle=angle + 0.3 * (time >= 4.0)
+    )
+    expected = 2.0 * math.sin(0.15) * math.sqrt(0.5)  # in half of the samples that count
     assert contact_rms(make_pair(cylinder, reference, trial)) == pytest.approx(expected, rel=ROUNDING)
 
 

@@ -19,9 +19,9 @@ from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.validity import study
 from rockwobble.compare.studies.validity.extent import FULL, LARGEST_PEAK, QUICK
 from rockwobble.compare.studies.validity.limits import LIMITS, limits_of
-from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts, vertical
+from rockwobble.compare.studies.validity.limits.distributions import FEWEST, cells, contrasts, vertical
 from rockwobble.compare.studies.validity.limits.engine import damping
-from rockwobble.compare.studies.validity.limits.needs import friction
+from rockwobble.compare.studies.validity.limits.needs import friction, needs
 from rockwobble.compare.studies.validity.limits.numbers import first_failing, reached, up_to
 from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case, source_of
 from rockwobble.compare.studies.validity.parts import PARTS, part_named
@@ -131,7 +131,7 @@ def test_over_records_agreement_is_said_where_the_interval_shows_it(
     scattered = factor * peaks * np.exp(scatter * random.standard_normal(count))
     rows = [
         {"motion": f"record {i}", "tan_alpha": 0.2, "semidiagonal": 6.0, "intensity": 2.0, "method": method,
-         "peak": peak, "outcome": "completed", "contact_time": 0.0, "loss": 0.0}
+         "peak": peak, "outcome": "stands", "contact_time": 0.0, "loss": 0.0}
         for method, values in ((RECESS, peaks), ("recess", scattered), ("ring", 2.0 * peaks), (HALVED, peaks))
         for i, peak in enumerate(values)
     ]  # fmt: skip
@@ -167,14 +167,41 @@ def test_a_cell_is_of_records_signed_and_knows_who_overturns(tables: Tables) -> 
     assert found["copy_ratio"] == pytest.approx(1.0)
 
 
+def test_needs_are_by_slenderness_and_intensity_and_of_enough_motions(tables: Tables) -> None:
+    def cell(tan_alpha: float, size: float, intensity: float, largest: float, standing: int) -> pd.DataFrame:
+        shares = np.where(np.arange(10) < standing, np.arange(1, 11) / 10.0, math.nan)
+        return pd.DataFrame(
+            {
+                "motion": [f"record {n}" for n in range(10)],
+                "recess": 0.5, "flat": 0.5, "copy": 0.5, "least_normal": 1.0 - shares,
+                "friction": 2.0 * largest * shares * tan_alpha, "moment": largest * shares,
+            }
+        ).assign(tan_alpha=tan_alpha, semidiagonal=size, intensity=intensity)  # fmt: skip
+
+    peaks = pd.concat(
+        [
+            cell(0.1, 4.0, 2.0, 0.05, FEWEST),
+            cell(0.1, 8.0, 2.0, 0.06, FEWEST),
+            cell(0.1, 8.0, 5.0, 0.2, FEWEST - 1),
+            cell(0.4, 8.0, 2.0, 0.3, FEWEST),
+        ]
+    )
+    found = needs({**tables, "peaks": peaks}).set_index(["tan_alpha", "intensity"])
+    assert list(found.index) == [(0.1, 2.0), (0.4, 2.0)]
+    # nine in ten of the size that needs most
+    assert found["moment"].to_list() == pytest.approx([0.9 * 0.06, 0.9 * 0.3])
+    assert found["friction"].to_list() == pytest.approx([1.8 * 0.06, 1.8 * 0.3])
+    assert found[["sizes", "motions"]].to_numpy().tolist() == [[2, 20], [1, 10]]
+
+
 def test_the_vertical_component_counts_what_it_alone_overturns() -> None:
     fell = 0.5 * math.pi / math.atan(0.2)
     recess, other = [0.5] * 8 + [0.5, fell, fell], [0.55] * 8 + [fell, 0.5, fell]
     table = pd.DataFrame({"tan_alpha": 0.2, "recess": recess, "vertical": other, "copy": recess})
     found = vertical({"peaks": table})
     assert (found["cells"], found["vertical_compared"]) == (11.0, 10.0)  # twice overturned there is no ratio
-    assert (found["vertical_05"], found["vertical_95"]) == (0.0, math.inf)
-    assert found["vertical_half"] == pytest.approx(1.1)
+    assert (found["vertical_apart"], found["copy_apart"]) == (10.0, 0.0)  # each changes by a tenth, or falls
+    assert found["vertical_least"] == found["vertical_largest"] == pytest.approx(1.1)
 
 
 def test_a_friction_that_slips_at_one_release_does_not_hold() -> None:
@@ -189,12 +216,12 @@ def test_a_friction_that_slips_at_one_release_does_not_hold() -> None:
 def test_soft_contact_is_told_by_its_damping_and_failures_are_counted(tables: Tables) -> None:
     rows = [
         {"damping": damping, "softness": softness, "time_constant": round(softness, 3), "loss": 0.1,
-         "peak": peak, "recess_peak": 0.5, "free_outcome": "completed", "outcome": outcome}
+         "peak": peak, "recess_peak": 0.5, "free_outcome": "stands", "outcome": outcome}
         for damping, softness, peak, outcome in (
             # one contact, slightly softer for the stouter, which it moves
-            (0.1, 0.0098, 0.51, "completed"),
-            (0.3, 0.01, 0.8, "completed"),
-            (1.0, 0.002, 0.5, "completed"),
+            (0.1, 0.0098, 0.51, "stands"),
+            (0.3, 0.01, 0.8, "stands"),
+            (1.0, 0.002, 0.5, "stands"),
             (1.0, 0.02, math.nan, "failed"),
         )
     ]  # fmt: skip

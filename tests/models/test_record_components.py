@@ -56,7 +56,9 @@ def test_named_for_the_first_file_unless_told_otherwise(write: Write) -> None:
 
 def test_refuses_different_time_steps(write: Write) -> None:
     x, y = write(columns(0.01, 9), "x"), write(columns(0.02, 9), "y")
-    message = r"^the components of a record must have one time step, got 0.01 s in x and 0.02 s in y$"
+    message = (
+        r"^the components of a record must have one time step, got 0.01 s in x and 0.02 s in y: resample"
+    )
     with pytest.raises(ValueError, match=message):
         read_record(x, y)
     with pytest.raises(ValueError, match="one time step"):
@@ -120,3 +122,39 @@ def test_refuses_a_file_that_is_not_there_or_is_a_folder(tmp_path: Path) -> None
         read_record(tmp_path, tmp_path)
     with pytest.raises(ValueError, match=r"^cannot read the record .*: embedded null byte$"):
         read_record("a\0b", "a\0b")
+
+
+def test_a_component_of_zeros_is_planar_motion(write: Write) -> None:
+    x = write(columns(0.01, 300, unit="m/s2"), "north.csv")
+    for paths, moves in (((x, "zero"), 0), (("zero", x), 1)):
+        motion = read_record(*paths)
+        assert (motion.name, motion.acceleration.shape) == ("north", (300, 2))
+        assert motion.acceleration[:, moves].tolist() == [float(i) for i in range(300)]
+        assert not motion.acceleration[:, 1 - moves].any()
+    with pytest.raises(ValueError, match="zero for both"):
+        read_record("zero", "zero")
+
+
+@pytest.mark.parametrize(("steps", "common"), [((0.01, 0.02), 0.01), ((0.01, 0.015), 0.005)])
+def test_resampling_changes_no_component(write: Write, steps: tuple[float, float], common: float) -> None:
+    random = np.random.default_rng(3)
+    time = np.linspace(0.0, 1.2, 997)
+    paths, known = [], []
+    for step, name in zip(steps, "xy", strict=True):
+        grid = step * np.arange(round(1.2 / step) + 1)
+        values = random.normal(size=len(grid))
+        text = "\n".join(f"{t:.4f},{v!r}" for t, v in zip(grid, values.tolist(), strict=True))
+        paths.append(write("t [s],a [m/s2]\n" + text, name))
+        known.append(np.interp(time, grid, values))
+    motion = read_record(*paths, resample=True)
+    assert motion.time_step == pytest.approx(common, rel=1e-12)
+    grid = motion.time_step * np.arange(len(motion.acceleration))
+    # rounding of the times of samples, on slopes of some 100 m/s^3
+    for component, expected in zip(motion.acceleration.T, known, strict=True):
+        assert np.interp(time, grid, component) == pytest.approx(expected, abs=1e-11)
+
+
+def test_resampling_refuses_steps_without_a_common_one(write: Write) -> None:
+    x, y = write(columns(0.01, 900), "x"), write(columns(0.0137, 900), "y")
+    with pytest.raises(ValueError, match=r"at least 1/20 of the smallest: 0.01 s in x and 0.0137 s in y"):
+        read_record(x, y, resample=True)

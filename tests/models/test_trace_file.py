@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pandas as pd
@@ -31,6 +32,18 @@ def test_a_trace_comes_back_with_the_same_bits(trace: Trace, tmp_path: Path, che
     pd.testing.assert_frame_equal(again.passes, trace.passes, check_exact=True)
     assert plain_json.dumps(again.to_plain()) == plain_json.dumps(trace.to_plain())
     assert case_to_plain(again.case) == case_to_plain(trace.case)
+
+
+@pytest.mark.parametrize(("word", "rests"), [("rest", True), ("completed", False)])
+def test_outcomes_of_a_file_of_version_0_2_are_read(trace: Trace, word: str, rests: bool) -> None:
+    facts = plain_json.loads(plain_json.dumps(trace.to_plain())) | {
+        "outcome": word,
+        "rests": [[0.5, math.nan]],
+    }
+    del facts["rest_intervals"]
+    again = Trace.from_plain(facts, trace.to_frame(), trace.case)
+    assert (again.outcome, again.rests) == ("stands", rests)
+    assert again.rest_intervals.tolist()[0][0] == 0.5
 
 
 def test_a_file_that_is_none_or_damaged_is_refused(trace: Trace, tmp_path: Path) -> None:

@@ -68,7 +68,7 @@ def test_a_shaken_run_extrapolates(engine: str, solve_forced: Callable[..., Any]
     assert [(fact.code, fact.bound) for fact in run.facts] == [("extrapolated", 2.0)]
 
 
-def made(tilt: Any, *, angle: Any = None, outcome: str = "completed", **more: Any) -> Trace:
+def made(tilt: Any, *, angle: Any = None, outcome: str = "stands", **more: Any) -> Trace:
     """Return a trace with that tilt and nothing else to speak of."""
     n = len(tilt)
     zeros, points = np.zeros(n), np.zeros((n, 3))
@@ -131,12 +131,31 @@ def test_angles_a_turn_apart_are_one_angle() -> None:
     np.testing.assert_array_equal(extrapolation(runs, ALPHA).extrema, runs[2].extrema)
 
 
-def test_the_estimate_is_the_term_that_is_left() -> None:
+def test_the_estimate_is_what_a_halving_moves() -> None:
     shape = 1e-5 * np.sin(0.1 * np.arange(100))
     found = extrapolation(three(lambda step: shape * (step + 0.05 * step**2)), ALPHA)
     error = np.abs(found.tilt - 0.1).max()
     assert error > 1e-8
-    assert found.error_estimate == pytest.approx(error, rel=1e-6)
+    # the second order that is left is quartered: three of four parts are gone by the last halving
+    assert found.error_estimate == pytest.approx(3.0 * error, rel=1e-6)
+
+
+@pytest.mark.parametrize("code", ["unresolved_pass", "energy"])
+def test_beyond_what_is_left_to_chance_it_is_the_finest_run(code: str) -> None:
+    runs = three(lambda step: 1e-5 * step * np.sin(0.1 * np.arange(100)))
+    late = Diagnostic(code=code, time=0.5)
+    runs[-1] = replace(runs[-1], facts=(late,))
+    found = extrapolation(runs, ALPHA)
+    assert found.settled_until == pytest.approx(0.5)
+    np.testing.assert_array_equal(found.tilt[51:], runs[-1].tilt[51:])
+    assert [(fact.code, fact.detail) for fact in found.facts[1:]] == [
+        ("extrapolated", ""),
+        ("not_extrapolated", code),
+    ]
+    runs[-1] = replace(runs[-1], facts=(replace(late, time=-0.01),))
+    found = extrapolation(runs, ALPHA)
+    assert np.isnan(found.error_estimate)
+    assert [(fact.code, fact.detail) for fact in found.facts[1:]] == [("not_extrapolated", code)]
 
 
 def test_beyond_a_divergence_it_is_the_finest_run() -> None:

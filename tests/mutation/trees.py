@@ -1,15 +1,14 @@
 """Copies of the checkout, into which one fault at a time is put and from which it is taken again.
 
 Compiled code is kept beside its sources: a copy that takes it along compiles again only what a fault
-changes. Python's own compiled files and numba's are told apart from their sources by times and sizes, which
-a fault of the same length need not change; so what a fault makes stale is removed here, by name.
+changes. Python tells its own compiled files from their sources by times and sizes, which a fault of the same
+length need not change; so what a fault makes stale is removed here, by name.
 """
 
 from __future__ import annotations
 
 import ast
 import hashlib
-import os
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -45,10 +44,7 @@ class Tree:
         """Put a fault into the copy for a while; yields its root."""
         path = self.root / fault.file
         compiled = path in compiled_files(self.root)
-        before = path.stat()
         path.write_text(fault.applied(path.read_text(encoding="utf-8")), encoding="utf-8")
-        # code that the fault does not concern is recognised by this time, see reduced/_compile.py
-        os.utime(path, ns=(before.st_atime_ns, before.st_mtime_ns))
         for stale in (path.parent / "__pycache__").glob(f"{path.stem}.*.pyc"):
             stale.unlink()
         if compiled:

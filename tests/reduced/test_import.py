@@ -1,17 +1,18 @@
 from __future__ import annotations
 
 import os
+import shutil
 import subprocess
 import sys
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, el_centro_1940
-from rockwobble.reduced._compile import _is_ours, on_disk
+from rockwobble.reduced import _compile
+from rockwobble.reduced._compile import _is_ours
 
 
 def test_scipy_is_loaded_by_what_uses_it():
@@ -52,18 +53,45 @@ def test_compiled_code_goes_to_a_folder_of_ours_where_it_has_no_other_place(tmp_
     assert (other.parent, other != folder) == (tmp_path, True)
 
 
-def test_stale_code_that_another_process_has_removed_meanwhile_is_no_error(monkeypatch, tmp_path):
-    kept = tmp_path / "driver.integrate_recess-1.py311.nbi"
-    true = Path.glob  # that of the sources goes on
+# a package of one kernel, of which the file imported last holds a coefficient
+SOURCES = {
+    "__init__.py": "",
+    "entry.py": "from ._compile import kernel\nfrom .inner.scaling import scaled\n\n\n"
+    "@kernel\ndef value(x):\n    return scaled(x)\n",
+    "inner/__init__.py": "",
+    "inner/scaling.py": "from .._compile import jit\nfrom ..table import FACTOR\n\n\n"
+    "@jit\ndef scaled(x):\n    return FACTOR * x\n",
+    "table.py": "FACTOR = 2.0\n",
+}
+CALL = "from made import entry, _compile as c; print(c.on_disk(entry.value), entry.value(5.0), end='')"
+OLD = 1_000_000_000.0  # a time of a file in 2001 [s]
 
-    def glob(self, pattern, **options):
-        return [kept] if pattern == "*.nbi" else true(self, pattern, **options)
 
-    monkeypatch.setattr(Path, "glob", glob)
-    entry = SimpleNamespace(stats=SimpleNamespace(cache_path=tmp_path), __name__="integrate_recess")
-    assert not on_disk(entry)
-    kept.touch()
-    assert on_disk(entry)
+@pytest.fixture
+def made(tmp_path: Path) -> Path:
+    folder = tmp_path / "made"
+    for name, text in SOURCES.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(text)
+    shutil.copy(_compile.__file__, folder / "_compile.py")
+    return folder
+
+
+def called(folder: Path) -> str:
+    command = [sys.executable, "-c", CALL]
+    return subprocess.run(command, cwd=folder.parent, capture_output=True, text=True, check=True).stdout
+
+
+def test_compiled_code_is_kept_by_the_content_of_its_sources(made: Path) -> None:
+    assert [called(made), called(made)] == ["False 10.0", "True 10.0"]
+    (made / "table.py").write_text("FACTOR = 3.0\n")
+    os.utime(made / "table.py", (OLD, OLD))
+    assert called(made) == "False 15.0"
+    (kept,) = (made / "__pycache__").glob("*.nbi")  # that of the other source is gone
+    for path in made.rglob("*.py"):
+        os.utime(path)
+    assert called(made) == "True 15.0"
+    assert kept.exists()
 
 
 @pytest.mark.parametrize("options", [{"support": "recess"}, {"support": "flat"}, {"plane": 0.0}])

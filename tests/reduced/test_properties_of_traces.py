@@ -2,6 +2,7 @@
 
 import dataclasses
 import itertools
+import math
 
 import numpy as np
 import pytest
@@ -11,6 +12,7 @@ from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+SAME = 1e-8  # of the peak: another end of the last step, at an rtol of 1e-9
 DENSE = 1e-4  # s; of the samples that the extrema of the continuous solution are held against
 
 
@@ -22,8 +24,11 @@ def test_the_peak_is_no_less_than_any_sample_and_is_attained():
             continue
         assert response.tilt.max() <= response.peak_tilt * (1.0 + 1e-12), seed
         maxima = response.extrema[response.extrema[:, 3] > 0.0, 1]
-        # a run may begin while it falls and end while it rises
-        assert response.peak_tilt == max(*maxima, response.tilt[0], response.tilt[-1]), seed
+        attained = max(*maxima, response.tilt[0])  # a run may begin while it falls
+        if not math.isnan(response.followed_until):  # and end in the middle of a swing
+            longer = given.simulate(duration=response.followed_until + 1e-6)
+            attained = max(attained, longer.extrema[-1, 1])
+        assert response.peak_tilt == pytest.approx(attained, rel=SAME), seed
 
 
 def test_turning_points_take_turns_within_a_motion():
@@ -31,7 +36,7 @@ def test_turning_points_take_turns_within_a_motion():
     for seed in range(60):
         response = problem(seed, released=seed % 3 == 0).simulate()
         extrema = response.extrema
-        motion = np.searchsorted(response.rests[:, 0], extrema[:, 0])
+        motion = np.searchsorted(response.rest_intervals[:, 0], extrema[:, 0])
         same = motion[1:] == motion[:-1]
         assert (extrema[1:, 3] != extrema[:-1, 3])[same].all(), seed
         count += same.sum()
@@ -61,15 +66,16 @@ def test_no_pass_joins_two_motions_across_a_rest():
     for seed in range(100):
         given = problem(seed)
         response = given.simulate(rest_tilt=0.1)  # many rests
+        rests = response.rest_intervals[:, 0]
         maxima = response.extrema[response.extrema[:, 3] > 0.0, 0]
         for time in response.passes.time:
             after = int(np.searchsorted(maxima, time))
             begin, end = maxima[after - 1], maxima[after]
-            assert not ((response.rests[:, 0] > begin) & (response.rests[:, 0] < end)).any(), (seed, time)
+            assert not ((rests > begin) & (rests < end)).any(), (seed, time)
         # a rest between two maxima with a minimum on either side of it would have made one
         minima = response.extrema[response.extrema[:, 3] < 0.0, 0]
         for begin, end in itertools.pairwise(maxima):
-            rest = (response.rests[:, 0] > begin) & (response.rests[:, 0] < end)
+            rest = (rests > begin) & (rests < end)
             across += rest.any() and ((minima > begin) & (minima < end)).any()
     assert across > 2
 
@@ -142,7 +148,7 @@ def test_impacts_lose_energy_and_nothing_else_does(restitution):
     assert heights[1:] == pytest.approx(factor**2 * heights[:-1], rel=1e-7)
     assert len(heights) >= (1 if factor == 0.0 else 4)
     if factor < 0.6:
-        assert response.outcome == "rest"
+        assert response.rests
 
 
 def test_impacts_under_shaking_end_and_converge():

@@ -4,7 +4,7 @@ The state is that of a rigid body in space, its axis and its angular velocity, a
 Newton and Euler in vectors. The base touches the ground at the lowest point of its rim, which does not slip;
 in the recess a moment along z_world + z_body keeps the angular velocity across that direction. Pair of order
 8 of Dormand and Prince. Rules of the contract: uplift at f >= 0 towards the inertia force, rest threshold,
-still ground after the record, on which it is decided whether a run in motion overturns.
+still ground after the record, over which a run in motion is followed to its next maximum.
 """
 
 from __future__ import annotations
@@ -166,21 +166,19 @@ def highest(h: float, tilt: float, rate: float, tilt_new: float, rate_new: float
 def integrate_arrays(
     P: Array, alpha: float, record: Array, dt: float, duration: float, y: Array, rest: float, rtol: float
 ) -> tuple[int, float, float, int]:
-    """Return 0 rest, 1 completed, 2 overturned or 3 too many steps; peak, time of uplift, number of rests."""
+    """Return 0 at rest, 1 in motion, 2 overturned, 3 too many steps; peak, uplift time, number of rests."""
     b, h, I1, _, g, _ = P
     p2 = g * math.hypot(b, h) / (I1 + h * h + b * b)
     p, least = math.sqrt(p2), g * (b * math.sin(rest * alpha) - 2.0 * h * math.sin(0.5 * rest * alpha) ** 2)
     moving = y[2] < 1.0
-    peak = peak_then = tilt_of(y)[0] if moving else 0.0
+    peak = tilt_of(y)[0] if moving else 0.0
     uplift, rests, piece, now, end, steps = (0.0 if moving else np.nan), 0, 0, 0.0, duration, 0
-    deciding, proposed = False, 1e-4 / p
+    following, proposed = False, 1e-4 / p
     while True:
         if now >= end * (1.0 - 1e-13):
-            if deciding or not moving:
-                return int(deciding), peak_then if deciding else peak, uplift, rests
-            if energy(P, y) < g * (math.hypot(b, h) - h) and tilt_of(y)[0] < alpha:
-                return 1, peak, uplift, rests
-            deciding, end, peak_then, piece = True, now + 200.0 / p, peak, len(record)
+            if following or not moving:
+                return int(following), peak, uplift, rests
+            following, end, piece = True, now + 200.0 / p, len(record)
         a, slope, finish = np.zeros(3), np.zeros(3), end
         if piece < len(record) - 1:
             a, slope, finish = (
@@ -226,8 +224,8 @@ def integrate_arrays(
             peak = max(peak, tilt_new)
             if turns:
                 peak = max(peak, highest(size, tilt, rate, tilt_new, rate_new))
-                if deciding:
-                    return 1, peak_then, uplift, rests
+                if following:
+                    return 1, peak, uplift, rests
             y, at = new, length if at + size >= length else at + size
             f = excess(P, a + slope * at)
             if f < 0.0 and tilt_new < alpha and energy(P, y) < least * -f * h / (g * b):
@@ -253,4 +251,4 @@ def integrate(given: Problem, *, rtol: float = 1e-12, rest: float = 1e-8) -> Res
     status, peak, uplift, rests = integrate_arrays(
         P, body.alpha, record, motion.time_step, motion.duration, y, rest, rtol
     )
-    return Result(("rest", "completed", "overturned", "failed")[status], peak, uplift, rests)
+    return Result(("stands", "stands", "overturned", "failed")[status], peak, uplift, rests)

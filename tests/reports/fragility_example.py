@@ -42,7 +42,7 @@ def made_up(cylinders: tuple[str, ...] = ("pier", "tower")) -> Fragility:
                 )
                 for method, (factor, _) in METHODS.items():
                     fell = level >= factor * capacity[motion]
-                    outcome = "overturned" if fell else "completed"
+                    outcome = "overturned" if fell else "stands"
                     runs.append(
                         {**place, "method": method, "peak_tilt": 8.0 if fell else 0.5, "outcome": outcome}
                     )

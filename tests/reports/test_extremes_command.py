@@ -12,10 +12,10 @@ from showing import shows_itself
 from typer.testing import CliRunner
 
 from rockwobble.compare.studies.extremes import study as scan
-from rockwobble.compare.studies.extremes.study import Extremes, manifest_of, measure_extremes
+from rockwobble.compare.studies.extremes.study import Extremes, measure_extremes
 from rockwobble.compare.studies.extremes.verdict import Verdict
 from rockwobble.reports.cli.main import app
-from rockwobble.reports.pages.extremes import extremes_page
+from rockwobble.reports.pages import extremes as pages
 from rockwobble.reports.pages.page import Page
 
 
@@ -30,11 +30,11 @@ def given(worst: Verdict) -> Extremes:
     table = pd.DataFrame(
         [dict(zip(names, row[:3], strict=True)) | dataclasses.asdict(row[3]) for row in rows]
     )
-    return Extremes(table=table)
+    return Extremes(tables={"extremes": table}, facts={}).made_by()
 
 
 def page_of(worst: Verdict) -> Page:
-    return extremes_page(given(worst), manifest_of(given(worst)))
+    return pages.page_of(given(worst))
 
 
 FLAGGED = Verdict(verdict="flagged", error=0.3, reference="model", begins=0.5, limit="slip")
@@ -76,11 +76,11 @@ def test_a_second_scan_repeats_nothing(tmp_path: Path, monkeypatch: pytest.Monke
     monkeypatch.setattr(scan, "conditions", lambda **_: cheap)
     monkeypatch.setattr(scan, "methods", lambda: scan.MODELS[:2])
     first = measure_extremes(tmp_path, workers=1)
-    assert list(first.table["verdict"]) == ["fine"] * 4
+    assert list(first.extremes["verdict"]) == ["fine"] * 4
     monkeypatch.setattr(scan, "judge", None)
     again = measure_extremes(tmp_path, workers=1)
-    pd.testing.assert_frame_equal(first.table, again.table)
-    assert manifest_of(again).headline == {"fine": 4}
+    pd.testing.assert_frame_equal(first.extremes, again.extremes)
+    assert again.headline() == {"runs": 4, "fine": 4}
 
 
 def test_bad_input_is_one_line(tmp_path: Path) -> None:

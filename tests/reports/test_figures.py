@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import re
 
 import numpy as np
@@ -56,8 +57,9 @@ def maps(values: np.ndarray, shades: Shades, **heat: object) -> Picture:
 
 
 def words(content: bytes) -> str:
-    # matplotlib writes each text as paths under a comment that holds it
-    return " ".join(re.findall(r"<!-- (.*?) -->", content.decode()))
+    return " ".join(
+        html.unescape(each) for each in re.findall(r"<text.*?>(.*?)</text>", content.decode(), re.S)
+    )
 
 
 def test_svg_has_the_same_bytes_and_says_what_it_shows():

@@ -23,6 +23,7 @@ from rockwobble.models import (
 )
 from rockwobble.models.diagnostic import CODES, REASONS
 from rockwobble.reports.figures.comparison.view import case_views
+from rockwobble.reports.pages.comparison.external import within
 from rockwobble.reports.pages.comparison.findings import (
     Finding,
     counted_remarks,
@@ -40,27 +41,35 @@ LENGTH = 50.0
 
 
 def row(**values):
+    """A row of a summary, under shaking: the reference uplifts at 1.7 s."""
+    values = {
+        "case": "El Centro",
+        "run": "mujoco recess",
+        "engine": "mujoco",
+        "support": "recess",
+        "reference": "recess model",
+        "reference_engine": "reduced",
+        "reference_support": "recess",
+        "outcome": "stands",
+        "reference_outcome": "stands",
+        "peak_tilt": 0.25,
+        "reference_peak_tilt": 0.25,
+        "agreement_time": 20.0,
+        "diverged": True,
+        "agreed_passes": 7,
+        "predicted_agreement_time": 18.0,
+        "predicted_by": "pass",
+        "contact_resolution": 2e-5,
+        "closest_pass": 3e-3,
+        "likely_mistake": (),
+    } | values
     return SimpleNamespace(
         **{
-            "case": "El Centro",
-            "run": "mujoco recess",
-            "engine": "mujoco",
-            "support": "recess",
-            "reference": "recess model",
-            "reference_engine": "reduced",
-            "reference_support": "recess",
-            "outcome": "completed",
-            "reference_outcome": "completed",
-            "peak_tilt": 0.25,
-            "reference_peak_tilt": 0.25,
-            "agreement_time": 20.0,
-            "diverged": True,
-            "agreed_passes": 7,
-            "predicted_agreement_time": 18.0,
-            "predicted_by": "pass",
-            "contact_resolution": 2e-5,
-            "closest_pass": 3e-3,
-            "likely_mistake": (),
+            "reference_uplift_time": 1.7,
+            "tolerance": 0.01,
+            "left_tolerance": values["diverged"],
+            "within_tolerance_until": values["agreement_time"] + (1.7 if values["diverged"] else 0.0),
+            "predicted_until": values["predicted_agreement_time"] + 1.7,
         }
         | values
     )
@@ -75,7 +84,8 @@ def said(touched=False, failed="", uplifted=True, end=math.nan, **values):
             uplifted=uplifted,
             reference_uplifted=uplifted,
             reason=reason(given, LENGTH, touched=touched),
-            bound="1 % of alpha",
+            bound=within(given),
+            passes=7,
             end=end,
         )
     )
@@ -98,7 +108,7 @@ def test_agreement_to_the_end():
 @pytest.mark.parametrize(
     ("values", "words"),
     [
-        ({}, "at 18.0 s a pass comes closer to upright than the contact resolves (2\u00a0×\u00a010⁻⁵ rad)"),
+        ({}, "at 19.7 s a pass comes closer to upright than the contact resolves (2\u00a0×\u00a010⁻⁵ rad)"),
         ({"predicted_agreement_time": 30.0}, "the closest of which comes within 0.003 alpha of upright"),
         (
             {"predicted_agreement_time": 30.0, "closest_pass": math.nan},
@@ -115,7 +125,7 @@ def test_agreement_to_the_end():
 )
 def test_a_divergence_and_its_reason_follow_from_the_numbers(values, words):
     text = said(**values)
-    assert "for 20.0 s from uplift or release (7 passes by upright), then they diverge" in text
+    assert "until 21.7 s of the run (7 passes by upright), then they diverge" in text
     assert words in text
 
 
@@ -176,6 +186,18 @@ def test_a_peak_that_is_the_release_tells_nothing(no_engines):
     assert "Peak tilt is" in words(0.02, el_centro_1940())  # which the shaking raises
 
 
+def test_a_motion_below_the_bound_agrees_within_a_tenth_of_its_peak():
+    small = row(
+        tolerance=2.3e-6, agreement_time=50.0, diverged=False, left_tolerance=True, within_tolerance_until=9.0
+    )
+    text = said(**vars(small))
+    assert (
+        "within a tenth of the peak (2\u00a0×\u00a010⁻⁶ alpha) of the recess model until 9.0 s of the run"
+        in text
+    )
+    assert "a tenth of the peak (2\u00a0×\u00a010⁻⁶ alpha) until 9.0 s" in headline(table(small), LENGTH)
+
+
 def test_outcomes_that_are_no_traces():
     fell = said(outcome="overturned", end=9.0)
     assert fell.endswith("Only mujoco recess overturns; compared up to 9 s.")
@@ -199,7 +221,7 @@ def test_headline_speaks_of_each_run_against_the_model_of_its_support():
     own = row(**FLAT, **OWN, diverged=False, agreement_time=50.0)
     assert headline(table(first, second, other, own), LENGTH) == (
         "In an ideal recess, mujoco and pybullet follow the recess model within 1 % of alpha "
-        "for 12.0 s to 20.0 s from uplift or release. "
+        "until 13.7 s to 21.7 s of the run. "
         "On flat ground, mujoco follows the flat-ground model within 1 % of alpha "
         "for the whole run (50.0 s). "
         "Once traces have diverged, compare distributions."
@@ -240,6 +262,14 @@ WORDS = {
     "not_extrapolated": (
         "it is not extrapolated from 2 s on, but the run at the finest time step: the runs diverge there",
         {"detail": "diverged"},
+    ),
+    "large_peak": (
+        "its peak is 1.53e+03 g, more than any record has (5 g): it would be 1.6 g with its numbers in cm/s2",
+        {"size": 1532.0, "bound": 5.0, "detail": "cm/s2"},
+    ),
+    "unlike_components": (
+        "the peaks of its components differ by a factor of 981, y is the larger",
+        {"size": 981.0, "detail": "y"},
     ),
     "missed_pass": ("2 near passes fell between two samples, first at 2 s", {"size": 2}),
     "note": ("positions are in mm", {"detail": "positions are in mm"}),

@@ -13,11 +13,11 @@ from browser import complaints, needs_chromium
 from fragility_example import LEVELS, MOTIONS, made_up
 from showing import shows_itself
 
-from rockwobble.compare import Fragility, fragility, synthetic_motions
+from rockwobble.compare import Fragility, fragility
 from rockwobble.compare.storage.manifest import Manifest, read_manifests, read_results
 from rockwobble.compare.studies.fragility.questions import main_contrasts
 from rockwobble.compare.studies.fragility.result import KIND, fragility_of, manifest_of, stored_fragility
-from rockwobble.models import Cylinder
+from rockwobble.models import Cylinder, synthetic_motions
 from rockwobble.models.records import p695
 from rockwobble.reports.cli import fragility as command
 from rockwobble.reports.cli.main import main
@@ -131,7 +131,7 @@ def test_files_of_a_small_study_and_its_page_again(tmp_path, capsys):
     assert call("fragility", *SMALL, *cylinders, "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "column: R = 3 m, tan alpha = 0.15" in printed
-    assert "Motions: 8, made-up ground motions, seed 0" in printed
+    assert "Motions: 8, synthetic ground motions, seed 0" in printed
     (manifest,) = read_manifests(tmp_path)
     assert (manifest.kind, manifest.seeds) == (KIND, {"resamples": 0})
     assert stored_page(KIND, tmp_path).files() == {
@@ -240,7 +240,7 @@ def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words)
 def test_what_no_motion_is_needed_for_is_refused_before_any_is_made(
     tmp_path: Path, monkeypatch, capsys, arguments, words
 ):
-    monkeypatch.setattr(command, "motions_of", lambda *_: pytest.fail("motions were made"))
+    monkeypatch.setattr(command.ManyMotions, "read", lambda *_: pytest.fail("motions were made"))
     assert call("fragility", *arguments, "--out", str(tmp_path / "out")) == 2
     printed = capsys.readouterr()
     assert printed.out == ""

@@ -75,7 +75,7 @@ def test_one_method_is_not_asked_whether_it_agrees(found):
 
 
 def test_without_overturning_no_curve_is_spoken_of(found):
-    words = by_one_method(found, outcome="completed", peak_tilt=0.5)
+    words = by_one_method(found, outcome="stands", peak_tilt=0.5)
     assert "**Nothing overturns at these intensities.**" in words
     assert "Nothing overturns, so there is no curve." in words
     assert "No curve is contradicted" not in words

@@ -205,6 +205,7 @@ def spectrum(space: list[float], x: list[float]) -> OverturningSpectrum:
         below=dict.fromkeys(lowest, np.zeros(len(space))),
         searched_from=dict.fromkeys(lowest, 1.0),
         search_step=0.1,
+        probes=0,
     )
 
 

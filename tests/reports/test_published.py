@@ -10,9 +10,10 @@ import pytest
 
 from rockwobble.compare.certificate.verdict import CHANGED
 from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests, read_results
+from rockwobble.compare.studies.validity.limits.needs import needs
+from rockwobble.compare.studies.validity.study import stored_validity
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.reports.cli.main import main
-from rockwobble.reports.pages.advice import RING
 from rockwobble.reports.pages.registry import KINDS, stored_page
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
@@ -59,10 +60,18 @@ def test_its_diagnostics_are_codes(path: Path) -> None:
         assert set(parted(cell)) <= set(CODES)
 
 
-def test_what_an_advice_says_of_a_ring_is_in_the_published_limits() -> None:
-    limits = read_results(PUBLISHED / "validity", "validity").table("limits")
-    known = limits[limits["limit"] == "records"].set_index("number")["value"]
-    assert {name: round(known[name], 2) for name in RING} == RING
+def test_the_guide_states_the_needs_of_the_published_limits() -> None:
+    found = needs(stored_validity(read_results(PUBLISHED / "validity", "validity")).tables)
+    guide = (PUBLISHED.parents[1] / "docs" / "guide" / "limits.md").read_text(encoding="utf-8")
+    for name in ("friction", "moment"):
+        heads = [f"{each:g}" for each in sorted(found["intensity"].unique())]
+        lines = [["tan α", *heads]]
+        for tan_alpha, own in found.groupby("tan_alpha"):
+            known = {f"{row['intensity']:g}": f"{row[name]:.3g}" for row in own.to_dict("records")}
+            lines.append([f"{tan_alpha:g}", *(known.get(head, "–") for head in heads)])
+        head, *rows = (f"| {' | '.join(line)} |" for line in lines)
+        assert head in guide
+        assert "\n".join(rows) in guide
 
 
 @pytest.mark.parametrize("name", ["reduced", "mujoco"])

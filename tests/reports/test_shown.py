@@ -22,7 +22,7 @@ def comparison() -> rw.Comparison:
 
 
 def test_trace_shows_itself():
-    shows_itself(rw.simulate(RELEASE), "recess model", "completed at 1 s")
+    shows_itself(rw.simulate(RELEASE), "recess model", "stands at 1 s")
 
 
 def test_comparison_shows_itself_case_by_case(comparison):
@@ -33,14 +33,14 @@ def test_comparison_shows_itself_case_by_case(comparison):
 
 
 def test_ensemble_shows_itself():
-    found = rw.ensemble(RELEASE, runs=[], size=4, workers=1)
+    found = rw.ensemble(RELEASE, runs=[], copies=4, workers=1)
     shows_itself(found, "4, perturbed copies of free response", "overturned 0 of 8")
 
 
 def test_sweep_shows_itself():
-    shows_itself(rw.sweep([RELEASE], workers=1), "runs 1, completed 1")
+    shows_itself(rw.sweep([RELEASE], workers=1), "runs 1, stands 1")
     grid = rc.Grid(semidiagonals=[1, 6], tan_alphas=[0.2], scales=[0.1, 2], motions=[rw.el_centro_1940()])
-    shows_itself(rw.sweep(grid, workers=1), "runs 4, stood 2, overturned 2")
+    shows_itself(rw.sweep(grid, workers=1), "runs 4, stands 2, overturned 2")
 
 
 def test_values_are_a_line(comparison):

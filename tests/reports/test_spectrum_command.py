@@ -49,7 +49,7 @@ def call(*arguments: str) -> int:
 
 def test_it_prints_and_writes_and_draws_again_what_it_found(tmp_path: Path, capsys):
     (tmp_path / "kept.txt").write_text("mine")
-    coarse = ["--search-step", "0.4"]
+    coarse = ["--search-step", "0.4", "--probes", "3"]
     assert call(*SMALL, *coarse, "--tan-alpha", "0.2", "--out", str(tmp_path)) == 0
     printed = " ".join(capsys.readouterr().out.split())
     assert "Cylinders: tan alpha = 0.2 (alpha = 11.31 deg), 4 sizes from R = 0.5 to 20 m" in printed
@@ -126,6 +126,7 @@ def spectrum() -> OverturningSpectrum:
         semidiagonals=np.linspace(0.5, 30.0, 12),
         intensities=np.linspace(1.0, 12.0, 12),
         search_step=0.2,
+        probes=5,
     )
 
 
@@ -206,9 +207,9 @@ def test_the_search_says_what_it_missed_and_what_is_chance(spectrum):
     none = dataclasses.replace(spectrum, below={name: np.zeros(12) for name in SERIES})
     found = int(np.isfinite(spectrum.lowest[SPATIAL]).sum())
     words = said(none, on_grid=none.lowest_frame()["intensity"] + 0.5)  # less than a step of the grid, 1
-    # 0 of 60 draws: below 1 - 0.025^(1/60)
-    assert "of 60 intensities drawn at random below the lowest in 3D 0 overturned" in words
-    assert "some 6 % of what lies below does at most (95 %)" in words
+    # 0 of 5 draws: below 1 - 0.05^(1/5)
+    assert "Of 5 intensities drawn at random below each none overturns" in words
+    assert "at most 45 % do (95 %). At 0 of 12 sizes" in words
     assert f"Of {found} sizes that overturn in 3D 0 do so more than a step of the grid below" in words
     assert "All overturn again at a tolerance of 1e-9." in words
     confirmed = np.ones(36, dtype=bool)
@@ -243,7 +244,7 @@ def test_a_record_of_one_component_has_a_picture_and_a_page(still):
     acceleration[:, still] = 0.0
     motion = GroundMotion(acceleration, 0.01, "one component")
     found = overturning_spectrum(
-        0.1, motion, semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0
+        0.1, motion, semidiagonals=[1.0, 8.0], intensities=[0.5, 4.0, 9.0], search_step=1.0, probes=0
     )
     assert not found.peak_tilt[SERIES[1 + still]].any()
     (picture,) = pictures(found)

@@ -49,7 +49,7 @@ def test_an_empty_argument_is_refused(capsys: pytest.CaptureFixture[str]) -> Non
         (["compare", "--scale", "abc"], "abc"),
         (["simulate", "--plane", "north"], "north"),
         (["simulate", "--engine", "mujoco", "--time-step", "short"], "short"),
-        (["ensemble", "--members", "2.5"], "2.5"),
+        (["ensemble", "--copies", "2.5"], "2.5"),
         (["spectrum", "--sizes", "many"], "many"),
         (["fragility", "--seed", "1e3"], "1e3"),
         (["certify", "--time-step", "1e"], "1e"),

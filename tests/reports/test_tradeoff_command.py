@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pandas as pd
@@ -10,11 +11,10 @@ import pytest
 from showing import shows_itself
 from typer.testing import CliRunner
 
-from rockwobble.compare.storage.manifest import read_results, write_results
 from rockwobble.compare.studies.tradeoff import study
-from rockwobble.compare.studies.tradeoff.study import KIND, Tradeoff, manifest_of, stored_tradeoff
+from rockwobble.compare.studies.tradeoff.study import Tradeoff
 from rockwobble.reports.cli.main import app
-from rockwobble.reports.pages.tradeoff import tradeoff_page
+from rockwobble.reports.pages.tradeoff import page_of
 
 TABLES = ("points", "problems", "scenes")
 
@@ -35,16 +35,13 @@ def found() -> Tradeoff:
     problem = {"problem": "shaken", "support": "recess", "source": "tight", "doubt": 1e-12, "members": 1,
                "chance": float("nan")}  # fmt: skip
     scene = {"engine": "mujoco", "degrees_of_freedom": 6, "contacts": 1, "constraint_rows": 3}
+    scenes = [
+        scene | {"support": "flat", "option": "released", "microseconds": 4.0, "ratio": 1.0},
+        scene | {"support": "ring", "option": "128 walls", "microseconds": 10.0, "ratio": 2.5},
+    ]
+    tables = {"points": rows, "problems": [problem], "scenes": scenes}
     return Tradeoff(
-        points=pd.DataFrame(rows),
-        problems=pd.DataFrame([problem]),
-        scenes=pd.DataFrame(
-            [
-                scene | {"support": "flat", "option": "released", "microseconds": 4.0, "ratio": 1.0},
-                scene | {"support": "ring", "option": "128 walls", "microseconds": 10.0, "ratio": 2.5},
-            ]
-        ),
-        load=(0.1, 1.2),
+        tables={name: pd.DataFrame(table) for name, table in tables.items()}, facts={"load": [0.1, 1.2]}
     )
 
 
@@ -69,26 +66,27 @@ def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
     assert page.count("plotly-graph-div") >= 2
     assert "The load of the machine was 0.1 before and 1.2 after." in page
     assert len(page) < 8e6
-    stored = stored_tradeoff(read_results(tmp_path, KIND))
-    assert stored.load == found.load
+    stored = Tradeoff.load(tmp_path)
+    assert stored.facts == found.facts
     for name in TABLES:
         pd.testing.assert_frame_equal(getattr(stored, name), getattr(found, name), check_exact=True)
-    assert json.loads((tmp_path / "manifest.json").read_text())["kind"] == KIND
+    assert json.loads((tmp_path / "manifest.json").read_text())["kind"] == "tradeoff"
 
 
 def test_other_stored_numbers_have_other_conclusions(found: Tradeoff, tmp_path: Path) -> None:
     points = found.points.copy()
     points.loc[points["family"] == "mujoco", "ratio"] *= 2.0
-    tables = {"points": points, "problems": found.problems, "scenes": found.scenes}
-    write_results(tmp_path, manifest_of(found, "rockwobble tradeoff"), tables)
+    replace(found, tables={**found.tables, "points": points}).made_by("rockwobble tradeoff").save(tmp_path)
     assert CliRunner().invoke(app, ["report", str(tmp_path)]).exit_code == 0
     for name in ("tradeoff.html", "tradeoff.md"):
         assert "an engine takes 2,800 to 4,200 times" in (tmp_path / name).read_text()
-    assert read_results(tmp_path, KIND).manifest.command == "rockwobble tradeoff"
+    manifest = Tradeoff.load(tmp_path).manifest
+    assert manifest is not None
+    assert manifest.command == "rockwobble tradeoff"
 
 
 def test_variants_stand_beside_what_they_vary_on_shared_axes(found: Tradeoff) -> None:
-    (picture,) = tradeoff_page(found, manifest_of(found)).pictures
+    (picture,) = page_of(found.made_by()).pictures
     methods, scipy = picture.panels
     assert methods.entries() == ["recess model", "mujoco recess"]
     assert scipy.entries() == ["recess model", "LSODA, Python"]
@@ -104,4 +102,4 @@ def test_bad_input_is_one_line(tmp_path: Path) -> None:
 
 
 def test_a_measurement_shows_itself(found: Tradeoff) -> None:
-    shows_itself(found, "problems shaken", "points 9")
+    shows_itself(found, "engine over recess model, largest 2100")

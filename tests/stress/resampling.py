@@ -12,8 +12,7 @@ import sys
 
 import numpy as np
 
-from rockwobble.compare.studies.ensemble.members import synthetic_motions
-from rockwobble.models import GroundMotion
+from rockwobble.models import GroundMotion, synthetic_motions
 from rockwobble.reduced import peak_tilts
 
 TAN_ALPHA = 0.2

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.studies.ensemble.members import synthetic_motions
-from rockwobble.models import Case, Cylinder, GroundMotion
+from rockwobble.models import Case, Cylinder, GroundMotion, synthetic_motions
 from rockwobble.reduced import simulate
 
 COUNT = 400

@@ -9,8 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.studies.ensemble.members import synthetic_motions
-from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940, synthetic_motions
 from rockwobble.reduced import peak_tilts, simulate
 from rockwobble.reduced.problem import REST_TILT
 

@@ -15,15 +15,15 @@ from collections.abc import Iterator
 
 from rockwobble.models import Bounds, Case, Run, Trace
 
-from ...comparison.external.verdict import numbers_of
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale, verdict
 from ...comparison.summary import SUMMARY_COLUMNS, summary_row
+from ...external.verdict import numbers_of
 from ...metrics.agreement import agreement_time
 from ...metrics.energy import energy_loss
+from ...metrics.pair import is_release, make_pair
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import own_model
 from ...runs.execution import Job
-from ...traces.pair import is_release, make_pair
 from ..bench import Bench, why
 from ..finding import Bound, Finding, at_most, not_run
 from . import own_bounds

@@ -17,17 +17,16 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from rockwobble.models import Case, GroundMotion, InitialState, Trace
+from rockwobble.models import AGREEMENT, Case, GroundMotion, InitialState, Trace
 from rockwobble.multibody.scene.froude import default_step
 from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
 
 from ...comparison.prediction import early_rms, estimated_error, landings, time_scale
-from ...metrics.agreement import AGREEMENT
+from ...metrics.pair import is_release
 from ...metrics.tilt import rms
 from ...runs.choice import require_runnable
 from ...runs.execution import Job
 from ...runs.run_settings import at_step
-from ...traces.pair import is_release
 from ..bench import Array, Bench, why
 from ..finding import Bound, Finding, at_most, not_run
 from .suspects import suspect

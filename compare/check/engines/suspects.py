@@ -7,9 +7,9 @@ import math
 from rockwobble.models import Run, Trace
 from rockwobble.multibody.engines.registry import find_engine
 
+from ...metrics.pair import make_pair
 from ...metrics.tilt import tilt_rms
 from ...runs.execution import Job
-from ...traces.pair import make_pair
 from ..bench import Bench, engines_here
 
 SIDES = 0.3  # who is nearer to the referee than this share of what the two differ by stands with it

@@ -15,9 +15,9 @@ import numpy as np
 
 from rockwobble.models import Trace
 
-from ...comparison.external.verdict import numbers_of
 from ...comparison.summary import SUMMARY_COLUMNS, external_row
-from ...traces.trajectory import External, read_trajectory
+from ...external.trajectory import External, read_trajectory
+from ...external.verdict import numbers_of
 from ..bench import Array, Bench, largest
 from ..finding import Bound, Finding, worst_of
 from ..models import lagrange

@@ -31,7 +31,7 @@ def made(time: Array, tilt: Array, *, energy: Array | None = None, **fields: Any
         "contact_point": flat,
         "centre_of_mass": space,
         "peak_tilt": float(np.max(tilt)),
-        "outcome": "completed",
+        "outcome": "stands",
         "uplift_time": 0.0,
         "uplift_direction": 0.0,
         "source": Known({"energy": none if energy is None else energy}),

@@ -14,15 +14,15 @@ import numpy as np
 
 from rockwobble.models import Case, Diagnostic, GroundMotion, Trace
 
-from ...comparison.external.verdict import numbers_of
 from ...comparison.prediction import Prediction
 from ...comparison.summary import SUMMARY_COLUMNS, lost_row, summary_row
+from ...external.verdict import numbers_of
 from ...metrics.agreement import Agreement, agreed_passes, agreement_time, closest_pass
 from ...metrics.contact import contact_rms
 from ...metrics.energy import energy_loss
+from ...metrics.pair import Pair, make_pair
 from ...metrics.tilt import tilt_rms, tilt_rms_relative
 from ...metrics.turning import direction_difference, first_unresolved_pass, turn_difference
-from ...traces.pair import Pair, make_pair
 from ..bench import Array, Bench
 from ..finding import Bound, Finding, worst_of
 from ..problems import PIER

@@ -81,5 +81,5 @@ def _dying_swings(bench: Bench) -> Iterator[Finding]:
     squat = Cylinder(semidiagonal=2.0, tan_alpha=1.5)
     case = released(0.1 / squat.alpha, 0.0, 3.0, squat)
     upright = bench.solve(case, "planar", sample_step=1.0, restitution="momentum")
-    stops = 0.0 if upright.outcome == "rest" else math.nan
+    stops = 0.0 if upright.rests else math.nan
     yield at_most("a body too squat to rock stops at its landing", stops, STOPS, PART)

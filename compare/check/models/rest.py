@@ -109,7 +109,7 @@ def _threshold(bench: Bench) -> Finding:
                 initial = InitialState(tilt=share * scale * REST * PIER.alpha, rolling_rate=rate)
                 case = Case(PIER, steady(ground, 10.0), initial=initial, duration=2.0)
                 found = bench.solve(case, model, sample_step=0.1, rest_tilt=REST)
-                if not _ended(found, "rest" if share < 1.0 else "completed"):
+                if not _ended(found, at_rest=share < 1.0):
                     wrong.append(f"{model}, {share:g} of it, ground {ground}: {found.outcome}")
     return none_wrong(
         f"wrong endings of {tried} releases near the rest threshold",
@@ -119,8 +119,7 @@ def _threshold(bench: Bench) -> Finding:
     )
 
 
-def _ended(found: Trace, outcome: str) -> bool:
-    if outcome == "rest":
-        still = found.tilt[-1] == found.tilt_rate[-1] == 0.0
-        return bool(found.outcome == "rest" and still and np.isnan(found.rolling_angle[-1]))
-    return bool(found.outcome == outcome and np.isfinite(found.rolling_angle).all())
+def _ended(found: Trace, *, at_rest: bool) -> bool:
+    still = found.tilt[-1] == found.tilt_rate[-1] == 0.0 and np.isnan(found.rolling_angle[-1])
+    as_it_was = still if at_rest else np.isfinite(found.rolling_angle).all()
+    return bool(found.outcome == "stands" and found.rests == at_rest and as_it_was)

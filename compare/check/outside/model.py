@@ -15,7 +15,8 @@ from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
 from rockwobble.reduced.exact import steady_wobble_rate
 
-from ...traces.motion import Motion, motion_of
+from ...external.motion import Motion
+from ...external.verdict import motion_of
 from ..finding import Bound, Finding, at_most, not_run
 from .motion import apart, first_maximum, rises
 from .outputs import Array, Model, outputs_of

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from ...traces.motion import Motion
+from ...external.motion import Motion
 
 _REACH = 3  # samples on each side of a maximum
 

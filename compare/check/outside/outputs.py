@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case
 
-from ...traces.motion import Motion, motion_at
+from ...external.motion import Motion, motion_at
 
 Array = NDArray[np.float64]
 Model = Callable[[Case, str], object]

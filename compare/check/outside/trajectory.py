@@ -9,10 +9,10 @@ from functools import partial
 
 import numpy as np
 
-from rockwobble.models import Case, Trace
+from rockwobble.models import AGREEMENT, Case, Trace
 
-from ...traces.motion import Motion
-from ...traces.trajectory import measurement
+from ...external.motion import Motion
+from ...external.trajectory import measurement, own_samples
 from ..finding import Finding
 from .model import NEVER, TOLERANCE, held, left_out, ours
 from .motion import apart, rises
@@ -39,7 +39,10 @@ def check_trajectory(
     ValueError
         If its file tells no tilt.
     """
-    finding, given, case = partial(held, tolerance), _own_samples(trajectory), trajectory.case
+    source = measurement(trajectory)
+    if "tilt" not in source.poses.given:
+        raise ValueError(f"{source.given.path.name} must have tilt, or qw, qx, qy and qz")
+    finding, given, case = partial(held, tolerance), own_samples(trajectory), trajectory.case
     model, alpha = ours(case, support), case.cylinder.alpha
     if case.initial is None:
         seen = [rises(one, _LEVEL * alpha) for one in (given, model)]
@@ -63,15 +66,6 @@ def check_trajectory(
         yield left_out(layer, f"checks of the layer {layer}", "the model", note)
 
 
-def _own_samples(trajectory: Trace) -> Motion:
-    source = measurement(trajectory)
-    poses = source.poses
-    if "tilt" not in poses.told:
-        raise ValueError(f"{source.given.path.name} must have tilt, or qw, qx, qy and qz")
-    lean = poses.axis[:, 0] + 1j * poses.axis[:, 1] if "azimuth" in poses.told else None
-    return Motion(time=poses.time, tilt=poses.tilt, lean=lean)
-
-
 def _agreement(model: Motion, case: Case, support: str) -> float:
     """Return until when a copy that is off by 0.1 % stays within 1 % of alpha [s]."""
     other = case
@@ -82,5 +76,5 @@ def _agreement(model: Motion, case: Case, support: str) -> float:
         other = dataclasses.replace(case, initial=start)
     copy = ours(other, support)
     count = min(len(copy.tilt), len(model.tilt))
-    beyond = np.flatnonzero(np.abs(copy.tilt[:count] - model.tilt[:count]) > 0.01 * case.cylinder.alpha)
+    beyond = np.flatnonzero(np.abs(copy.tilt[:count] - model.tilt[:count]) > AGREEMENT * case.cylinder.alpha)
     return float(model.time[beyond[0]] if len(beyond) else model.time[-1])

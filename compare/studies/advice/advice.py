@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, ClassVar
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -17,12 +17,21 @@ from rockwobble.models.shown import Shown
 from rockwobble.multibody.scene.ring_geometry import rim_overhang
 
 from ...comparison.prediction import Prediction
+from ...metrics.agreement import tolerance_of
 from ...metrics.distributions import Contrast
+from ...metrics.pair import is_release
 from ...metrics.tilt import overturned
-from ...traces.pair import is_release
 from ..spectrum.series import SPATIAL, uplift_factor
-from .grades import Grade, grade_engine, grade_intensity, grade_overturning, grade_share, overall
-from .members import COPIES, answers, fall_of
+from .grades import (
+    Grade,
+    grade_engine,
+    grade_intensity,
+    grade_overturning,
+    grade_share,
+    grade_trace,
+    overall,
+)
+from .members import COPIES, answers, demands_of, fall_of, ratios_of
 from .scales import BESIDE, Lowest, planar_chances
 from .trust import Trust, Verification
 
@@ -68,7 +77,6 @@ class Advice(Shown):
     seed : int
     """
 
-    _figures: ClassVar[str] = "advice"
     case: Case
     support: str
     friction_given: bool
@@ -120,6 +128,12 @@ class Advice(Shown):
         return answers(self.members[self.members["group"] != OTHER])
 
     @property
+    def copies_differ(self) -> bool:
+        """Whether the copies of the case are more than one run."""
+        copies = self.answers[self.answers["group"] == COPIES]
+        return bool(copies["chance"].notna().all())
+
+    @property
     def peak(self) -> float:
         """Largest tilt of the case as given [alpha]."""
         return self.trace.peak_tilt / self.case.cylinder.alpha
@@ -139,28 +153,42 @@ class Advice(Shown):
     def grades(self) -> dict[str, Grade]:
         """Grade of each topic that there is something to say about; the criteria are in `grades`."""
         if self.trace.outcome == "failed":
-            return {"trace": "bad"}
+            return {"trace": "not satisfied"}
         if not self.moves:
             return {}
-        worst, low_high = self.answers.max(numeric_only=True), self.beside
+        motion, engine = self.case.motion, self.verification
+        worst, own = self.answers.max(numeric_only=True), demands_of(self.trace)
+        spread = not math.isnan(worst["lost_95"])
+        lacking = {name: worst[f"{name}_95"] if spread else own[name] for name in ("slip", "lost")}
         lowest = self.lowest[SPATIAL].factor if self.lowest else math.nan
         slides = self.friction_given and self.case.friction < self.case.cylinder.tan_alpha
         found: dict[str, Grade] = {
-            "overturning": grade_overturning(self.overturned, lowest, self.answers["chance"]),
+            "overturning": grade_overturning(
+                self.overturned,
+                lowest,
+                self.answers["chance"],
+                tested=bool(self.lowest) or (motion is None and self.copies_differ),
+            ),
             "friction": grade_share(
-                worst["slip_95"] if self.friction_given else 0.0,
+                lacking["slip"] if self.friction_given else 0.0,
                 asked=self.friction_given,
+                tested=spread,
                 slides=slides and self.trace.uplift_time > 0.0,
             ),
-            "contact": grade_share(worst["lost_95"]),
-            "trace": "care" if self.trust.kind == "statistics" else "good",
+            "contact": grade_share(lacking["lost"], tested=spread),
+            "trace": grade_trace(self.trust.kind, tested=self.copies_differ),
         }
-        if not (self.overturned or math.isnan(low_high[0])):
-            found["intensity"] = grade_intensity(low_high[0], self.peak, low_high[1])
-        if self.verification is not None:
-            engine = self.verification
-            differs = (engine.outcome == "overturned") != self.overturned
-            found["engine"] = grade_engine(engine.outcome, engine.divergence, differs=differs)
+        if motion is not None and not self.overturned:
+            low, high = self.beside
+            found["intensity"] = grade_intensity(low, self.peak, high)
+        differs = engine is not None and (
+            (engine.outcome == "overturned") != self.overturned or not engine.moves
+        )
+        found["engine"] = (
+            "not tested"
+            if engine is None
+            else grade_engine(engine.outcome, engine.divergence, differs=differs)
+        )
         return found
 
     def recess(self) -> dict[str, float] | None:
@@ -217,7 +245,7 @@ class Advice(Shown):
             "peak": self.peak,
             "peak_deg": math.degrees(trace.peak_tilt),
             "peak_time": float(trace.time[int(trace.tilt.argmax())]),
-            "peak_rank": float((known < self.peak).mean()) if len(known) else math.nan,
+            "peak_rank": float((known < self.peak).mean()) if len(known) and self.copies_differ else math.nan,
             "in_one_plane": self.moves and not np.any(trace.rolling_rate),
             "released": is_release(case),
             "shaken": case.motion is not None,
@@ -237,10 +265,14 @@ class Advice(Shown):
             "lowest": {name: dataclasses.asdict(each) for name, each in self.lowest.items()},
             "highest": float(self.scales["factor"].max()) if len(self.scales) else math.nan,
             "planar": planar_chances(self.planar) if len(self.planar) else [],
-            "prediction": dataclasses.asdict(self.prediction),
+            "bound": tolerance_of(trace),
+            "predicted": {
+                "until": trace.uplift_time + self.prediction.length,
+                "reason": self.prediction.reason,
+            },
             "engine": None if self.verification is None else dataclasses.asdict(self.verification),
             "trust": dataclasses.asdict(self.trust),
-            "form": None if self.form is None else dataclasses.asdict(self.form.ratio),
+            "form": ratios_of(self.form) if self.form is not None and self.copies_differ else None,
             "vertical": self.vertical,
             "records": self.records,
             "perturbation": self.perturbation,

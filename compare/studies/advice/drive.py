@@ -9,16 +9,15 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940
+from rockwobble.models import Case, GroundMotion, Run, Trace, el_centro_1940, perturbed_copies
 from rockwobble.models.number_checks import require_one_of
 
 from ...metrics.distributions import Contrast, contrast
 from ...runs.choice import require_runnable
 from ...runs.execution import SAMPLE_STEP, simulate_run
 from ...runs.progress import ProgressCallback, Stages
-from ..ensemble.members import perturbed_copies
 from .advice import OTHER, Advice
-from .members import COPIES, VELOCITY, member_rows, other_records
+from .members import COPIES, VELOCITY, member_rows, other_records, ratios_of
 from .scales import planar_runs, scan_scales
 from .trust import BAND_STEP, Trust, band_of, predicted, spread_from, trust_of, verified
 
@@ -79,7 +78,7 @@ def advise(
     >>> pier = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
     >>> found = advise(pier, count=20)
     >>> found.trust.kind, found.grades["overturning"]
-    ('statistics', 'care')
+    ('statistics', 'caution')
     """
     if run is not None:
         support = run.support
@@ -157,8 +156,7 @@ def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -
     Returns
     -------
     dict
-        given, record, count of the copies that move, and of the ratios of their largest tilts, with over
-        without it, the median ratio with its interval (low, high) and 5 to 95 % (ratio_05, ratio_95).
+        given, record, and the ratios of the largest tilts, with over without it: see `ratios_of`.
     """
     motion = case.motion
     assert motion is not None
@@ -174,16 +172,7 @@ def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -
     )
     if found is None or not found.compared:
         return None
-    return {
-        "given": motion.has_vertical,
-        "record": record.name,
-        "count": found.compared,
-        "ratio": found.ratio.value,
-        "low": found.ratio.low,
-        "high": found.ratio.high,
-        "ratio_05": found.ratio_05.value,
-        "ratio_95": found.ratio_95.value,
-    }
+    return {"given": motion.has_vertical, "record": record.name, **ratios_of(found)}
 
 
 def _horizontal(motion: GroundMotion | None) -> GroundMotion:

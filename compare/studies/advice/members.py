@@ -10,12 +10,12 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.models import Case, GroundMotion, Trace
+from rockwobble.models import Case, GroundMotion, Trace, far_field_motions, synthetic_motions
 from rockwobble.models.records import p695
 
-from ...metrics.order_statistics import quantile_interval, share_interval
-from ...traces.pair import is_release
-from ..ensemble.members import far_field_motions, synthetic_motions
+from ...metrics.distributions import Contrast
+from ...metrics.order_statistics import Interval, quantile_interval, share_interval, stated
+from ...metrics.pair import is_release
 from ..fragility.intensity import largest_resultant, velocity
 
 Array = NDArray[np.float64]
@@ -27,6 +27,7 @@ SPIKES = 0.01
 _QUANTILES = {"05": 0.05, "50": 0.5, "95": 0.95}
 # what each run asks, and of which it has a percentile over the members
 DEMANDS = ("friction", "moment", "force", "slip", "lost")
+_MOTION = ["peak_tilt", *DEMANDS]
 
 
 def fall_of(trace: Trace) -> float:
@@ -107,17 +108,48 @@ def member_rows(group: str, traces: Iterable[Trace]) -> list[dict[str, float | s
     ]
 
 
+def ratios_of(found: Contrast) -> dict[str, float]:
+    """Return what may be stated of the largest tilts of copies by one of two ways over those by the other.
+
+    Returns
+    -------
+    dict
+        members, copies run both ways; overturned and against_overturned, those that overturn; count, copies
+        with a ratio, higher and lower, those with one above and below 1; ratio, low and high, the median and
+        its interval, ratio_05 and ratio_95: NaN where they may not be stated, see `stated`.
+    """
+    names = {"ratio": found.ratio, "ratio_05": found.ratio_05, "ratio_95": found.ratio_95}
+    return {
+        "members": found.count,
+        "overturned": found.overturned,
+        "against_overturned": found.against_overturned,
+        "count": found.compared,
+        "higher": found.higher,
+        "lower": found.lower,
+        **{name: stated(each.value, found.compared, ratio=True) for name, each in names.items()},
+        "low": found.ratio.low,
+        "high": found.ratio.high,
+    }
+
+
 def answers(members: pd.DataFrame) -> pd.DataFrame:
     """Return one row for each group of members: how many overturn, and percentiles of the rest.
 
-    Columns: group, runs, failed, overturned, chance with chance_low and chance_high, and for peak_tilt
-    [alpha], infinite where it overturns, and each of `DEMANDS` the percentiles _05, _50 and _95.
+    Columns: group, runs, failed, overturned, single, whether all moved alike, which makes them one run;
+    chance with chance_low and chance_high, and for peak_tilt [alpha], infinite where it overturns, and each
+    of `DEMANDS` the percentiles _05, _50 and _95. NaN where too few runs differ, see `stated`.
     """
     rows = []
     for group, runs in members.groupby("group", sort=False):
         known = runs[runs["outcome"] != "failed"]
+        # of records that differ none move alike, but many not at all
+        single = len(known) > 1 and known["peak_tilt"].min() > 0.0 and known[_MOTION].nunique().max() == 1
+        failed, counted = len(runs) - len(known), int((known["outcome"] == "overturned").sum())
+        chance = Interval(value=math.nan, low=math.nan, high=math.nan)
+        if not single:
+            chance = share_interval(counted, len(known))
+        known = known[:1] if single else known
         fell = known["outcome"] == "overturned"
-        chance = share_interval(int(fell.sum()), len(known))
         numbers: Mapping[str, Array] = {
             "peak_tilt": known["peak_tilt"].mask(fell, math.inf).to_numpy(float),
             **{name: known[name].to_numpy(float) for name in DEMANDS},
@@ -126,8 +158,9 @@ def answers(members: pd.DataFrame) -> pd.DataFrame:
             {
                 "group": group,
                 "runs": len(runs),
-                "failed": len(runs) - len(known),
-                "overturned": int(fell.sum()),
+                "failed": failed,
+                "overturned": counted,
+                "single": single,
                 **chance.columns("chance"),
                 **{
                     f"{name}_{label}": quantile_interval(values, share).value

@@ -16,8 +16,8 @@ from rockwobble.models import Case
 from rockwobble.models.cpus import in_threads
 
 from ...metrics.order_statistics import share_interval
+from ...metrics.pair import is_release
 from ...metrics.tilt import overturned
-from ...traces.pair import is_release
 from ..spectrum.search import STEP, Array, lowest_on_grid, run_searches, search_lowest
 from ..spectrum.series import SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
 from ..spectrum.study import RTOL

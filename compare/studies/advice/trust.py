@@ -16,9 +16,8 @@ from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 
 from ...comparison.driver import compare
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale
-from ...metrics.agreement import agreement_time
+from ...metrics.agreement import tolerance_of
 from ...runs.execution import simulate_run
-from ...traces.pair import make_pair
 
 # A trace is lost where the copies are spread over half of the peak tilt. A percent of alpha, the limit of
 # agreement between methods, would be exceeded by the percent that the copies differ by itself.
@@ -59,11 +58,14 @@ class Verification:
         Codes of what ended or limits it.
     peak_tilt : float
         [alpha]; NaN where failed.
-    agreement, agreed_until : float
-        From uplift or release to the first tilt difference above 1 % of alpha, and when that is [s].
+    moves : bool
+        Whether it uplifts, or is released.
+    agreed_until : float
+        Time of the record of the first tilt difference above the tolerance, or of the end [s].
     diverged : bool
+        Whether there is such a difference.
     divergence : str
-        Whether that was "in time", "later" or "earlier" than predicted, or "never, as predicted".
+        Whether that was when predicted, as in the summary of a comparison.
     """
 
     label: str
@@ -72,7 +74,7 @@ class Verification:
     outcome: str
     diagnostics: str
     peak_tilt: float
-    agreement: float
+    moves: bool
     agreed_until: float
     diverged: bool
     divergence: str
@@ -126,18 +128,15 @@ def predicted(case: Case, trace: Trace, run: Run | None) -> Prediction:
         contact_resolution=float(np.abs(trace.tilt_rate).max()) * step,
         error=estimated_error(case, DEFAULT_ENGINE if run is None else run.engine, step),
         simulate=simulate_run,
+        tolerance=tolerance_of(trace),
     )
 
 
-def verified(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction, Trace | None]:
+def verified(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction, Trace]:
     """Run the engine; what it resolved makes the prediction sharper."""
     found = compare(case, runs=[run], reference=model)
     row = found.summary.iloc[0]
-    trace = found.traces.get((case.name, row["run"]))
-    agreed_until = 0.0
-    if trace is not None:
-        pair = make_pair(case.cylinder, found.traces[case.name, row["reference"]], trace)
-        agreed_until = agreement_time(pair, broken=row["outcome"] == "failed").end
+    trace = found.traces[case.name, row["run"]]
     verification = Verification(
         label=str(row["run"]),
         version=str(row["engine_version"]),
@@ -145,12 +144,13 @@ def verified(case: Case, run: Run, model: Run) -> tuple[Verification, Prediction
         outcome=str(row["outcome"]),
         diagnostics=str(row["diagnostics"]),
         peak_tilt=float(row["peak_tilt"]),
-        agreement=float(row["agreement_time"]),
-        agreed_until=agreed_until,
-        diverged=bool(row["diverged"]),
+        moves=math.isfinite(trace.uplift_time),
+        agreed_until=float(row["within_tolerance_until"]),
+        diverged=bool(row["left_tolerance"]),
         divergence=str(row["divergence"]),
     )
-    length = float(row["predicted_agreement_time"])
-    if not math.isfinite(length):  # a run that was lost left none
+    until, reason = float(row["predicted_until"]), str(row["predicted_by"])
+    if not math.isfinite(until):  # a run that was lost left none
         return verification, Prediction(length=case.length, reason=""), trace
-    return verification, Prediction(length=length, reason=str(row["predicted_by"])), trace
+    start = float(row["reference_uplift_time"]) if reason else 0.0
+    return verification, Prediction(length=until - start, reason=reason), trace

@@ -6,19 +6,18 @@ import dataclasses
 from collections import Counter
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
 
 import pandas as pd
 
 from rockwobble.models import Run
-from rockwobble.models.shown import Shown
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 from ...runs.progress import ProgressCallback
 from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Manifest, Results, made_now
+from ...storage.manifest import Number
 from ...storage.provenance import code_digests, package_versions
+from ...storage.results import Results
 from .conditions import Condition, conditions
 from .verdict import Verdict, judge
 
@@ -33,26 +32,19 @@ def methods() -> tuple[Run, ...]:
     return (*MODELS, *engines)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Extremes(Shown):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Extremes(Results, kind=KIND):
     """Verdicts of a scan of the extremes.
 
-    Attributes
-    ----------
-    table : DataFrame
+    Tables
+    ------
+    extremes : DataFrame
         One row for each condition and method: extreme, value, method, and the attributes of `Verdict`.
     """
 
-    _figures: ClassVar[str] = "extremes"
-    table: pd.DataFrame
-
-    @property
-    def counts(self) -> dict[str, int]:
-        """How many runs have each verdict."""
-        return dict(Counter(map(str, self.table["verdict"])))
-
-    def _said(self) -> dict[str, str]:
-        return {"runs": str(len(self.table)), **{verdict: str(n) for verdict, n in self.counts.items()}}
+    def headline(self) -> dict[str, Number]:
+        """Return the number of runs, and of those with each verdict."""
+        return {"runs": len(self.extremes), **Counter(map(str, self.extremes["verdict"]))}
 
 
 def measure_extremes(
@@ -93,17 +85,7 @@ def measure_extremes(
         workers=workers,
         progress=progress,
     ) as found:
-        return Extremes(table=pd.concat(found, ignore_index=True))
-
-
-def manifest_of(found: Extremes, command: str = "") -> Manifest:
-    """Return what made a scan, with the number of runs of each verdict as headline."""
-    return made_now(KIND, command=command, headline=found.counts)
-
-
-def stored_extremes(results: Results) -> Extremes:
-    """Return a scan that was stored."""
-    return Extremes(table=results.table(KIND))
+        return Extremes(tables={KIND: pd.concat(found, ignore_index=True)}, facts={})
 
 
 def measure_task(task: Task) -> pd.DataFrame:

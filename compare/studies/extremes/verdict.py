@@ -29,18 +29,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.models import Case, Diagnostic, Run, Trace
+from rockwobble.models import AGREEMENT, Case, Diagnostic, Run, Trace
 from rockwobble.models.diagnostic import FAILURES, joined
 from rockwobble.multibody.engines.registry import engine_facts
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 
 from ...comparison.prediction import time_scale
+from ...metrics.pair import make_pair
 from ...runs.choice import own_model, require_runnable
 from ...runs.execution import simulate_run
-from ...traces.pair import make_pair
 from .conditions import Condition, without_spin
 
-FINE = 0.01  # of alpha, or of the angle of turn: what ends an agreement everywhere else
+FINE = AGREEMENT  # of alpha, or of the angle of turn
 # relative to the energy that balances the cylinder on its rim
 _ENERGY = 1e-5
 _TIGHT, _REFERENCE = 1e-12, 1e-10  # tolerances
@@ -125,7 +125,7 @@ def _reduced(condition: Condition, run: Run, trace: Trace) -> Verdict:
         if len(turns):
             exact = reduced.angle_of_turn(case.cylinder, case.initial, gravity=case.gravity)
             errors["exact_turn"] = abs(float(turns[0]) / exact - 1.0)
-    if case.motion is None and trace.outcome == "completed":
+    if case.motion is None and trace.outcome == "stands" and not trace.rests:
         errors["energy"] = _energy_error(trace) * FINE / _ENERGY
     worst = max(errors, key=lambda each: errors[each])
     if errors[worst] > FINE:

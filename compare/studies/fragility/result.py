@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Any, ClassVar
+from typing import Any
 
 import pandas as pd
 
@@ -59,15 +59,13 @@ class Fragility(Shown):
     --------
     >>> import rockwobble as rw
     >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
-    >>> from rockwobble.compare import synthetic_motions
-    >>> shaking = synthetic_motions(6, peak=1.0, seed=1)
+    >>> shaking = rw.synthetic_motions(6, peak=1.0, seed=1)
     >>> found = rw.fragility(pier, shaking, methods=["recess"], levels=[2, 4, 8], resamples=20, workers=1)
     >>> overturned = found.fits[found.fits["limit"] == "overturned"]
     >>> overturned[["method", "runs", "exceeded"]].to_dict("records")
     [{'method': 'recess model', 'runs': 18, 'exceeded': 10}]
     """
 
-    _figures: ClassVar[str] = "fragility"
     runs: pd.DataFrame
     points: pd.DataFrame
     counts: pd.DataFrame

@@ -8,6 +8,7 @@ from typing import Any
 
 from rockwobble.models import Cylinder, GroundMotion, Run
 from rockwobble.models.number_checks import require_increasing, require_positive
+from rockwobble.models.records.plausibility import doubts_of
 from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...runs.progress import ProgressCallback
@@ -104,7 +105,7 @@ def fragility(
 
     Examples
     --------
-    >>> from rockwobble.compare import synthetic_motions
+    >>> from rockwobble.models import synthetic_motions
     >>> column = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
     >>> shaking = synthetic_motions(8, peak=1.0, seed=1)
     >>> found = fragility(column, shaking, methods=["recess"], levels=[1.5, 3, 6], resamples=50, workers=1)
@@ -144,6 +145,7 @@ def fragility(
         "margin": margin,
         "resamples": resamples,
         "seed": seed,
+        "doubts": doubts_of(motions),
     }
     runs = run_plan(plan, KIND, folder=resume, workers=workers, scheduler=scheduler, progress=progress)
     return fragility_of(runs, plan.points, about)

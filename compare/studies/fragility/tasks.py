@@ -119,11 +119,7 @@ class Task:
         return [
             {
                 "peak_tilt": float(peak) / self.cylinder.alpha,
-                "outcome": "failed"
-                if math.isnan(peak)
-                else "overturned"
-                if overturned(peak)
-                else "completed",
+                "outcome": "failed" if math.isnan(peak) else "overturned" if overturned(peak) else "stands",
                 "contact_lost": math.nan,
             }
             for peak in peaks

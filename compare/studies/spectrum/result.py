@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 import pandas as pd
@@ -16,12 +15,12 @@ from rockwobble.models.shown import Shown
 
 from ...metrics.tilt import overturned
 from ...storage.manifest import Results
-from .search import PROBES, lowest_on_grid
+from .search import lowest_on_grid
 from .series import SERIES, SPATIAL, intensity_unit
 
 Array = NDArray[np.float64]
 KIND = "overturning spectrum"
-_FACTS = ("tan_alpha", "gravity", "support", "rest_tilt", "searched_from", "search_step")
+_FACTS = ("tan_alpha", "gravity", "support", "rest_tilt", "searched_from", "search_step", "probes")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -52,16 +51,17 @@ class OverturningSpectrum(Shown):
         For each of `SERIES` an ndarray, shape (n_R,): the lowest intensity found to overturn [-]; NaN
         where none was found.
     below : mapping
-        For each of `SERIES` an ndarray, shape (n_R,): how many of `PROBES` intensities, drawn at random
-        below what the search had found, overturned; then `lowest` is one of them.
+        For each of `SERIES` an ndarray, shape (n_R,): how many intensities drawn at random below what the
+        search had found overturned; then `lowest` is one of them.
     searched_from : mapping
         For each of `SERIES` the intensity at which it uplifts [-], from which `lowest` was searched: up to
         where something overturns, or to the last of the grid. inf where it uplifts at none.
     search_step : float
         Finest step of that search [-].
+    probes : int
+        Intensities drawn at random below each of `lowest`, none of which overturns.
     """
 
-    _figures: ClassVar[str] = "spectrum"
     tan_alpha: float
     motion: GroundMotion
     gravity: float
@@ -74,6 +74,7 @@ class OverturningSpectrum(Shown):
     below: Mapping[str, Array]
     searched_from: Mapping[str, float]
     search_step: float
+    probes: int = 0
 
     def _said(self) -> dict[str, str]:
         sizes, levels = self.semidiagonals, self.intensities
@@ -146,8 +147,8 @@ class OverturningSpectrum(Shown):
 
         Columns: series, semidiagonal [m], intensity [-], peak_acceleration [m/s^2] (of what drives the
         series), on_grid [-], the lowest intensity of the grid that overturns, each NaN where nothing does;
-        searched_from and search_step [-]; probed and overturned_below, intensities drawn below and how many
-        of them overturned.
+        searched_from and search_step [-]; probed, intensities drawn below, none of which overturns, and
+        overturned_below, those that did on the way to it.
         """
         tables = []
         for series in SERIES:
@@ -164,7 +165,7 @@ class OverturningSpectrum(Shown):
                         "on_grid": lowest_on_grid(self.intensities, self.peak_tilt[series]),
                         "searched_from": self.searched_from[series],
                         "search_step": self.search_step,
-                        "probed": PROBES if searched else 0,
+                        "probed": self.probes if searched else 0,
                         "overturned_below": self.below[series].astype(int),
                     }
                 )
@@ -184,7 +185,7 @@ def stored_spectrum(results: Results) -> OverturningSpectrum:
     sizes, levels = (np.unique(cells[name].to_numpy()) for name in ("semidiagonal", "intensity"))
     by_series = dict(iter(lowest.groupby("series")))
     return OverturningSpectrum(
-        **{name: about[name] for name in _FACTS},
+        **{name: about[name] for name in _FACTS if name in about},
         motion=motion,
         semidiagonals=sizes,
         intensities=levels,

@@ -15,7 +15,7 @@ from rockwobble.models.number_checks import require_increasing, require_one_of, 
 
 from ...runs.progress import ProgressCallback, Stages
 from .result import Array, OverturningSpectrum
-from .search import STEP, probe_below, run_searches, search_lowest
+from .search import PROBES, STEP, probe_below, run_searches, search_lowest
 from .series import SERIES, TITLES, intensity_unit, series_options, uplift_of_series
 
 # Steps end at each sample of the record, so a tenth of the tolerance of `reduced.peak_tilts` costs only
@@ -35,6 +35,7 @@ def overturning_spectrum(
     rest_tilt: float = reduced.REST_TILT,
     gravity: float = 9.81,
     search_step: float = STEP,
+    probes: int = PROBES,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
 ) -> OverturningSpectrum:
@@ -55,6 +56,9 @@ def overturning_spectrum(
         As in `reduced.simulate`.
     search_step : float, optional
         Finest step of the search for the lowest overturning intensity [-]; see `search_lowest`.
+    probes : int, optional
+        Intensities drawn at random below each lowest, none of which overturns; 0 draws none. See
+        `probe_below`.
     workers : int, optional
         Number of threads. It does not influence the result.
     progress : callable, optional
@@ -73,7 +77,12 @@ def overturning_spectrum(
     --------
     >>> from rockwobble.models import el_centro_1940
     >>> spectrum = overturning_spectrum(
-    ...     0.1, el_centro_1940(), semidiagonals=[1.0, 20.0], intensities=[0.9, 4.0], search_step=0.2
+    ...     0.1,
+    ...     el_centro_1940(),
+    ...     semidiagonals=[1.0, 20.0],
+    ...     intensities=[0.9, 4.0],
+    ...     search_step=0.2,
+    ...     probes=9,
     ... )
     >>> spectrum.overturned("3d").tolist()
     [[False, True], [False, False]]
@@ -82,6 +91,8 @@ def overturning_spectrum(
     levels = require_increasing("intensities", intensities)
     require_one_of("support", support, SUPPORTS)
     require_positive("search_step", search_step)
+    if probes < 0:
+        raise ValueError(f"probes must be 0 or more, got {probes!r}")
     unit = intensity_unit(tan_alpha, motion, gravity)
     peaks, lowest, below, start = {}, {}, {}, {}
     stages = Stages(progress, [1.0] * len(SERIES))
@@ -103,9 +114,11 @@ def overturning_spectrum(
             peaks[name] = run(sizes, scales=unit * levels, workers=workers)
             at = partial(_at_level, run, sizes, unit)
             found = run_searches([search(known) for known in peaks[name]], at, workers=workers)
-            probes = [probe_below(start[name], levels[-1], each, (index, i)) for i, each in enumerate(found)]
-            probed = np.array(run_searches(probes, at, workers=workers))
-        lowest[name], below[name] = np.fmin(found, probed[:, 0]), probed[:, 1]
+            probing = [
+                probe_below(start[name], levels[-1], each, probes=probes, seed=(index, i))
+                for i, each in enumerate(found)
+            ]
+            lowest[name], below[name] = np.array(run_searches(probing, at, workers=workers)).T
     return OverturningSpectrum(
         tan_alpha=tan_alpha,
         motion=motion,
@@ -119,6 +132,7 @@ def overturning_spectrum(
         below=below,
         searched_from=start,
         search_step=search_step,
+        probes=probes,
     )
 
 

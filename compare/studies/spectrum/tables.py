@@ -6,6 +6,8 @@ from collections.abc import Mapping
 
 import pandas as pd
 
+from rockwobble.models.records.plausibility import doubts_of
+
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Manifest, made_now
 from ...storage.provenance import reduced_makers
@@ -42,5 +44,5 @@ def manifest_of(
             "share that overturns in 3D and in neither plane": float(every["missed"]),
             "share that overturns in a plane and not in 3D": float(every["overcalled"]),
         },
-        about=spectrum.facts(),
+        about=spectrum.facts() | {"doubts": doubts_of([spectrum.motion])},
     )

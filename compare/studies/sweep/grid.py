@@ -228,9 +228,7 @@ def _motion_key(motion: GroundMotion) -> str:
 def _outcome(peak: float) -> str:
     if math.isnan(peak):
         return "failed"
-    if peak == 0.0:
-        return "stood"
-    return "overturned" if overturned(peak) else "rocked"
+    return "overturned" if overturned(peak) else "stands"
 
 
 def _axis(name: str, values: ArrayLike, *, above_zero: bool) -> tuple[float, ...]:

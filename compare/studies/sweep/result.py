@@ -5,17 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
 
 import pandas as pd
 
 from rockwobble.models.shown import Shown
 
+from ...metrics.order_statistics import stated
 from ...storage.manifest import Results
 
 KIND = "sweep"
-# of a grid, whose runs are known by their peaks alone: no uplift, and uplift without overturning; of a trace
-_OUTCOMES = ("stood", "rest", "rocked", "completed", "overturned", "failed")
+_OUTCOMES = ("stands", "overturned", "failed")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -30,7 +29,6 @@ class Sweep(Shown):
         The plan: its kind, the number of runs, and the axes of a grid or its cases and methods.
     """
 
-    _figures: ClassVar[str] = "runs.sweep"
     table: pd.DataFrame
     about: Mapping[str, object]
 
@@ -48,8 +46,9 @@ class Sweep(Shown):
     def summary(self) -> pd.DataFrame:
         """Return one row for each part: how many runs ended how, and their peak tilts.
 
-        Columns: `keys`, runs, a count for each outcome that there is, and in alpha median, in which an
-        overturned run is infinite, and largest, of those that do not overturn.
+        Columns: `keys`, runs, a count for each outcome that there is, no_uplift (how many of them stood still
+        throughout), and in alpha median, in which an overturned run is infinite, NaN of fewer than six, and
+        largest, of those that do not overturn.
         """
         rows, outcomes = [], self.outcomes
         for key, own in self.table.groupby(self.keys, sort=False):
@@ -59,7 +58,8 @@ class Sweep(Shown):
                     **dict(zip(self.keys, key, strict=True)),
                     "runs": len(own),
                     **{name: int((own["outcome"] == name).sum()) for name in outcomes},
-                    "median": peaks.mask(fell, math.inf).median(),
+                    "no_uplift": int((peaks == 0.0).sum()),
+                    "median": stated(peaks.mask(fell, math.inf).median(), int(peaks.notna().sum())),
                     "largest": peaks[~fell].max(),
                 }
             )

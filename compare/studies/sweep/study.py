@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Suite
+from rockwobble.models.records.plausibility import doubts_of
 
 from ...runs.execution import all_makers
 from ...runs.progress import ProgressCallback
@@ -82,9 +83,9 @@ def sweep(
     >>> grid = Grid(semidiagonals=[2.0, 6.0], tan_alphas=[0.2], scales=[1.0, 3.0], motions=[el_centro_1940()])
     >>> found = sweep(grid, workers=1)
     >>> found
-    Sweep(runs 4, rocked 2, overturned 2)
+    Sweep(runs 4, stands 2, overturned 2)
     >>> found.table[["semidiagonal", "scale", "outcome"]].values.tolist()
-    [[2.0, 1.0, 'rocked'], [2.0, 3.0, 'overturned'], [6.0, 1.0, 'rocked'], [6.0, 3.0, 'overturned']]
+    [[2.0, 1.0, 'stands'], [2.0, 3.0, 'overturned'], [6.0, 1.0, 'stands'], [6.0, 3.0, 'overturned']]
 
     Every case of a suite with each of its runs:
 
@@ -92,7 +93,7 @@ def sweep(
     >>> pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     >>> case = Case(pier, initial=InitialState(0.5 * pier.alpha, rolling_rate=0.5), duration=4.0)
     >>> sweep(Suite([case], [Run(None, "recess"), Run(None, "flat")]), workers=1)
-    Sweep(runs 2, completed 2)
+    Sweep(runs 2, stands 2)
     """
     whole = plan if isinstance(plan, Grid) else runnable_suite(plan)
     if chunk_size is not None and chunk_size < 1:
@@ -118,7 +119,9 @@ def sweep(
     ) as found:
         by_place = dict(zip(order, found, strict=True))
         table: pd.DataFrame = pd.concat([by_place[place] for place in range(len(chunks))], ignore_index=True)
+        motions = whole.motions if isinstance(whole, Grid) else [case.motion for case in whole.cases]
         about = whole.describe() if isinstance(whole, Grid) else describe_suite(whole)
+        about = {**about, "doubts": doubts_of(motions)}
         if out is not None:
             made = made_now(
                 KIND,
@@ -158,7 +161,7 @@ def read_sweep(folder: str | Path) -> Sweep:
     >>> grid = Grid(semidiagonals=[6], tan_alphas=[0.2], scales=[1, 2], motions=[rw.el_centro_1940()])
     >>> _ = rw.sweep(grid, out=folder, workers=1)
     >>> read_sweep(folder)
-    Sweep(runs 2, rocked 1, overturned 1)
+    Sweep(runs 2, stands 1, overturned 1)
     """
     return stored_sweep(read_results(folder, KIND))
 

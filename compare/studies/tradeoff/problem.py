@@ -21,11 +21,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, InitialState, Run, Trace, el_centro_1940
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    InitialState,
+    Run,
+    Trace,
+    el_centro_1940,
+    synthetic_motions,
+    with_motions,
+)
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
 from ...runs.execution import simulate_run
-from ..ensemble.members import synthetic_motions, with_motions
 
 Array = NDArray[np.float64]
 

@@ -6,22 +6,20 @@ import math
 import os
 import time
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case
-from rockwobble.models.shown import Shown
 
 from ...runs.progress import ProgressCallback, Stage, Stages
-from ...storage.manifest import Manifest, Results, made_now
+from ...storage.manifest import Number
+from ...storage.results import Results
 from .conclusions import engine_factors
 from .methods import Method, MethodResult, methods_for
 from .problem import Problem, problems, sampling_distance
 from .scene_cost import scene_costs
 
-KIND = "tradeoff"
 # a run shorter than this is repeated, so that a tick of the clock does not show [s]
 _SHORT = 2e-3
 _REPEATS = 5
@@ -30,12 +28,12 @@ ROUNDS = 3  # of a single case; an ensemble has as many as members
 _COSTS = {"turn": 1.0, "shaken": 4.0, "peaks": 3.0, "scenes": 0.5}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Tradeoff(Shown):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Tradeoff(Results, kind="tradeoff"):
     """Measurements of a trade-off.
 
-    Attributes
-    ----------
+    Tables
+    ------
     points : DataFrame
         One row for each problem, line and value of its knob: problem, support, panel, family, line, knob,
         value, ratio, ratio_low, ratio_high (of computing times, to the recess model at its default tolerance
@@ -46,24 +44,15 @@ class Tradeoff(Shown):
     problems : DataFrame
         One row for each problem and support: problem, support, source and doubt of the reference, members,
         chance (what two ensembles of as many members differ by chance [alpha]; NaN for a single case).
-    load : tuple of float
-        Of the machine before and after: how many processes wanted to run, ours included, over a minute;
-        NaN where the system does not tell.
+
+    Its fact "load" is that of the machine before and after: how many processes wanted to run, this one
+    included, over a minute; NaN where the system does not know.
     """
 
-    _figures: ClassVar[str] = "tradeoff"
-    points: pd.DataFrame
-    scenes: pd.DataFrame
-    problems: pd.DataFrame
-    load: tuple[float, float]
-
-    def _said(self) -> dict[str, str]:
+    def headline(self) -> dict[str, Number]:
+        """Return the cost of engines over that of the recess model."""
         low, high = engine_factors(self.points)
-        return {
-            "problems": ", ".join(dict.fromkeys(self.points["problem"])),
-            "points": str(len(self.points)),
-            "engine over recess model": f"{low:.3g} to {high:.3g} times the time",
-        }
+        return {"engine over recess model, least": low, "engine over recess model, largest": high}
 
 
 def measure_tradeoff(*, quick: bool = False, progress: ProgressCallback | None = None) -> Tradeoff:
@@ -83,31 +72,12 @@ def measure_tradeoff(*, quick: bool = False, progress: ProgressCallback | None =
     stage = Stages(progress, [_COSTS[name] for name, count in rounds for _ in range(count)]).stage
     points = [_points(each, methods_for(each, quick=quick), stage) for each in asked]
     scenes = scene_costs(rounds=scene_rounds, steps=500 if quick else 2000, stage=stage)
-    load = (before, _load())
-    return Tradeoff(
-        points=pd.concat(points, ignore_index=True),
-        scenes=scenes,
-        problems=pd.concat([_described(each) for each in asked], ignore_index=True),
-        load=load,
-    )
-
-
-def manifest_of(found: Tradeoff, command: str = "") -> Manifest:
-    """Return what made a measurement, with the cost of engines as headline."""
-    low, high = engine_factors(found.points)
-    headline = {"engine over recess model, least": low, "engine over recess model, largest": high}
-    return made_now(KIND, command=command, headline=headline, about={"load": list(found.load)})
-
-
-def stored_tradeoff(results: Results) -> Tradeoff:
-    """Return a measurement that was stored."""
-    before, after = results.manifest.about["load"]
-    return Tradeoff(
-        points=results.table("points"),
-        scenes=results.table("scenes"),
-        problems=results.table("problems"),
-        load=(before, after),
-    )
+    tables = {
+        "points": pd.concat(points, ignore_index=True),
+        "scenes": scenes,
+        "problems": pd.concat([_described(each) for each in asked], ignore_index=True),
+    }
+    return Tradeoff(tables=tables, facts={"load": [before, _load()]})
 
 
 def _described(problem: Problem) -> pd.DataFrame:

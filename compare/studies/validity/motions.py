@@ -7,10 +7,16 @@ from dataclasses import replace
 from functools import cache
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940, p695_far_field
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    el_centro_1940,
+    p695_far_field,
+    synthetic_motions,
+)
 from rockwobble.models.records.p695 import missing_packages
-
-from ..ensemble.members import synthetic_motions
 
 EL_CENTRO = "El Centro 1940"
 REFERENCE_SIZE = 6.0  # [m] of free responses: they scale with size (Froude)

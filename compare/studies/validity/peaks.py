@@ -58,7 +58,7 @@ def _row(motion: str, tan_alpha: float, size: float, intensity: float) -> Row:
         "least_normal": math.nan,
         "moment": math.nan,
     }
-    if recess.peak_tilt > 0.0 and recess.outcome in ("rest", "completed"):
+    if recess.peak_tilt > 0.0 and recess.outcome == "stands":
         needs = recess.assumptions
         assert needs is not None
         row["friction"] = needs.largest_friction_needed

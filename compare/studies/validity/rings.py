@@ -14,8 +14,8 @@ from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 from rockwobble.multibody.scene.ring_geometry import clearance_needed
 from rockwobble.multibody.scene.ring_settings import take_ring
 
+from ...metrics.pair import FloatArray
 from ...runs.execution import simulate_run
-from ...traces.pair import FloatArray
 from .extent import Extent
 from .motions import AMPLE, EL_CENTRO, REFERENCE_SIZE, shaken_case
 from .part import Inputs, Part, Row

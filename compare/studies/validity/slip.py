@@ -8,8 +8,8 @@ from dataclasses import replace
 
 from rockwobble import multibody, reduced
 
+from ...metrics.pair import make_pair
 from ...metrics.tilt import tilt_rms
-from ...traces.pair import make_pair
 from .extent import Extent
 from .free_response import needs_of
 from .motions import release_case

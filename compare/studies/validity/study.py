@@ -7,7 +7,6 @@ import inspect
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar
 
 import pandas as pd
 
@@ -27,7 +26,12 @@ from .parts import PARTS, part_named
 KIND = "validity"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
 _PLACES = {"recess": "in an ideal recess", "ring": "in a ring", "flat": "on flat ground"}
-_ENDS = {"least": "least median", "largest": "largest median", "05": "5 %", "95": "95 %"}
+_ENDS = {
+    "least": "least median",
+    "largest": "largest median",
+    "95_least": "least of what 95 % of the records do not exceed",
+    "95_largest": "largest of what 95 % of the records do not exceed",
+}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -42,7 +46,6 @@ class Validity(Shown):
         What the motions of the ensemble are.
     """
 
-    _figures: ClassVar[str] = "validity.pictures"
     tables: Mapping[str, pd.DataFrame]
     records: str
 

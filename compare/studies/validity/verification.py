@@ -9,10 +9,10 @@ from dataclasses import replace
 from rockwobble.models import Run
 from rockwobble.multibody import DEFAULT_ENGINE
 
+from ...metrics.pair import make_pair
 from ...metrics.tilt import tilt_rms
 from ...runs.choice import SUPPORTS, own_model
 from ...runs.execution import simulate_run
-from ...traces.pair import make_pair
 from .extent import Extent
 from .free_response import next_maximum
 from .motions import release_case

@@ -57,8 +57,8 @@ def require_feasible(
     _require(
         _all_seconds(cases, runs) * members,
         longest / SAMPLE_STEP * _BYTES * kept + members * _CASE_BYTES,
-        "give a shorter --duration" + (" or fewer --members" if members > 1 else ""),
-        "give a shorter --duration, a larger --time-step" + (" or fewer --members" if members > 1 else ""),
+        "give a shorter --duration" + (" or fewer members" if members > 1 else ""),
+        "give a shorter --duration, a larger --time-step" + (" or fewer members" if members > 1 else ""),
     )
 
 

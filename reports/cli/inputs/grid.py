@@ -10,7 +10,7 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 _MOST_VALUES = 100_000
-Records = tuple[list[Path] | None, list[Path] | None, list[Path] | None, str | None]
+Records = tuple[list[Path] | None, list[Path] | None, list[Path] | None, str | None, bool]
 
 
 def grid_of(
@@ -73,17 +73,20 @@ def values_of(option: str, text: str) -> list[float]:
 
 
 def _motions(
-    x: list[Path] | None, y: list[Path] | None, z: list[Path] | None, units: str | None
+    x: list[Path] | None, y: list[Path] | None, z: list[Path] | None, units: str | None, resample: bool
 ) -> list[rw.GroundMotion]:
     x, y, z = x or [], y or [], z or []
     if not x and not y:
-        if lone := "--record-z" if z else "--units" if units else "":
+        if lone := "--record-z" if z else "--units" if units else "--resample" if resample else "":
             raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
         return [rw.el_centro_1940()]
     if len(x) != len(y) or len(z) not in (0, len(x)):
         raise ValueError(
-            f"each record needs both horizontal components, and all a vertical one or none: "
-            f"got {len(x)}, {len(y)} and {len(z)} files"
+            "each record needs both horizontal components (zero for one: planar motion), and all a vertical "
+            f"one or none: got {len(x)}, {len(y)} and {len(z)} files"
         )
     ups: list[Path | None] = list(z) if z else [None] * len(x)
-    return [rw.read_record(east, north, up, units=units) for east, north, up in zip(x, y, ups, strict=True)]
+    return [
+        rw.read_record(east, north, up, units=units, resample=resample)
+        for east, north, up in zip(x, y, ups, strict=True)
+    ]

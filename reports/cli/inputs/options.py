@@ -64,11 +64,23 @@ Record = Annotated[
     Path | None, _ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
 ]
 RecordX = Annotated[
-    Path | None, _ground("East-west component: PEER AT2, two-column text or CSV. Default: El Centro 1940.")
+    Path | None,
+    _ground(
+        "East-west component: PEER AT2, two-column text or CSV, or zero beside the other (planar motion). "
+        "Default: El Centro 1940."
+    ),
 ]
-RecordY = Annotated[Path | None, _ground("North-south component.")]
+RecordY = Annotated[Path | None, _ground("North-south component, or zero.")]
 RecordZ = Annotated[Path | None, _ground("Vertical component, may be left out.")]
 Units = Annotated[str | None, _ground("g, m/s2 or cm/s2; required where the files do not say.")]
+Resample = Annotated[
+    bool,
+    _ground(
+        "Take components of different time steps at the largest step that divides all; linear between "
+        "samples, which stay, so that none changes.",
+        "--resample",
+    ),
+]
 Scale = Annotated[float, _ground("Factor on all components.")]
 Gravity = Annotated[float, _ground("g, in m/s2.")]
 Friction = Annotated[

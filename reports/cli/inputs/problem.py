@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable
+import shlex
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, fields
 from functools import wraps
 from typing import Annotated, Any, get_type_hints
@@ -36,6 +37,7 @@ class Problem:
     record_y: options.RecordY = None
     record_z: options.RecordZ = None
     units: options.Units = None
+    resample: options.Resample = False
     scale: options.Scale = 1.0
     gravity: options.Gravity = 9.81
     friction: options.Friction = 1.0
@@ -112,9 +114,11 @@ class Problem:
         if whole is not None:
             if any(path is not None for path in (x, y, z)):
                 raise ValueError("--record holds all components, got --record-x, -y or -z beside it")
+            if self.resample:
+                raise ValueError("--resample goes with --record-x and --record-y: --record has one time step")
             return rw.read_record(whole, units=self.units).scaled(scale)
         if x is None and y is None:
-            if lone := "--record-z" if z is not None else "--units" if self.units is not None else "":
+            if lone := "--record-z" if z is not None else self._lone_option():
                 raise ValueError(f"{lone} belongs to a record, give --record-x and --record-y as well")
             if not still:
                 return rw.el_centro_1940().scaled(scale)
@@ -124,10 +128,13 @@ class Problem:
         if x is None or y is None:
             given, missing = ("--record-y", "--record-x") if x is None else ("--record-x", "--record-y")
             raise ValueError(
-                f"both horizontal components are needed, got {given} without {missing}; one file of all is "
-                "given by --record"
+                f"both horizontal components are needed, got {given} without {missing}: for planar motion "
+                f"give {missing} zero, one file of all by --record"
             )
-        return rw.read_record(x, y, z, units=self.units).scaled(scale)
+        return rw.read_record(x, y, z, units=self.units, resample=self.resample).scaled(scale)
+
+    def _lone_option(self) -> str:
+        return "--units" if self.units is not None else "--resample" if self.resample else ""
 
 
 def states_problem(command: Callable[..., None]) -> Callable[..., None]:
@@ -159,6 +166,15 @@ def given_options(context: typer.Context) -> list[str]:
     """Return the options that the user gave, by the names of their parameters."""
     sources = {name: context.get_parameter_source(name) for name in context.params}
     return [name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"]
+
+
+def restated(context: typer.Context, command: str, *, also: Collection[str] = ()) -> str:
+    """Return the line of another command on the problem that the user gave; `also`: more of its options."""
+    parts = ["rockwobble", command]
+    for name in given_options(context):
+        if name in PROBLEM or name in also:
+            parts += [f"--{name.replace('_', '-')}", str(context.params[name])]
+    return shlex.join(parts)
 
 
 def refuse(context: typer.Context, names: set[str], why: str) -> None:

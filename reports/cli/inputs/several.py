@@ -3,13 +3,65 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Annotated, Any, Literal
 
 import rockwobble as rw
 import rockwobble.compare as rc
 
-DEFAULT_COUNT = 100  # of made-up motions, where the user does not say
+from . import options
+
+DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
+_motions = options.panel("Ground motions")
+
+
+@dataclass(frozen=True, kw_only=True)
+class ManyMotions:
+    """The options that name many ground motions."""
+
+    p695: Annotated[bool, _motions("The 22 far-field pairs of FEMA P-695 (extra records).", "--p695")] = False
+    records: Annotated[
+        Path | None,
+        _motions(
+            "A folder of records with a table records.csv: columns x and y (files), maybe z, name, units "
+            "and scale."
+        ),
+    ] = None
+    synthetic: Annotated[int | None, _motions("So many synthetic motions.", callback=options.whole(2))] = None
+    units: options.Units = None
+    resample: options.Resample = False
+
+    @property
+    def given(self) -> str:
+        """The option that names them; empty without one."""
+        named = {"--p695": self.p695, "--records": self.records, "--synthetic": self.synthetic is not None}
+        return next((name for name, value in named.items() if value), "")
+
+    def read(self, seed: int) -> tuple[list[rw.GroundMotion], str]:
+        """Return the ground motions and what they are; synthetic ones where none are named.
+
+        Raises
+        ------
+        ValueError
+            If two sources are asked for, or one cannot be read.
+        """
+        from rockwobble.models.records.p695 import recorded_far_field
+
+        if self.p695 + (self.records is not None) + (self.synthetic is not None) > 1:
+            raise ValueError(
+                "the motions are those of --p695, of --records or --synthetic, got more than one"
+            )
+        lone = "--units" if self.units is not None else "--resample" if self.resample else ""
+        if lone and self.records is None:
+            raise ValueError(f"{lone} belongs to --records")
+        if self.p695:
+            return recorded_far_field(), "far-field pairs of FEMA P-695"
+        if self.records is not None:
+            found = rw.read_records(self.records, units=self.units, resample=self.resample)
+            return found, f"records of {self.records.name}"
+        count = DEFAULT_COUNT if self.synthetic is None else self.synthetic
+        return rw.synthetic_motions(count, peak=1.0, seed=seed), f"synthetic ground motions, seed {seed}"
 
 
 def cylinders_of(
@@ -39,31 +91,6 @@ def cylinders_of(
             raise ValueError(f"--cylinder {name} is given twice")
         found[name] = rw.Cylinder(semidiagonal=size, tan_alpha=slenderness)
     return found
-
-
-def motions_of(
-    p695: bool, records: Path | None, synthetic: int | None, units: str | None, seed: int
-) -> tuple[list[rw.GroundMotion], str]:
-    """Return the ground motions and what they are.
-
-    Raises
-    ------
-    ValueError
-        If two sources are asked for, or one cannot be read.
-    """
-    from rockwobble.compare.studies.ensemble.members import recorded_far_field
-    from rockwobble.compare.studies.fragility.motions import read_records
-
-    if p695 + (records is not None) + (synthetic is not None) > 1:
-        raise ValueError("the motions are those of --p695, of --records or --synthetic, got more than one")
-    if units is not None and records is None:
-        raise ValueError("--units belongs to --records")
-    if p695:
-        return recorded_far_field(), "far-field pairs of FEMA P-695"
-    if records is not None:
-        return read_records(records, units=units), f"records of {records.name}"
-    count = DEFAULT_COUNT if synthetic is None else synthetic
-    return rc.synthetic_motions(count, peak=1.0, seed=seed), f"made-up ground motions, seed {seed}"
 
 
 def methods_of(

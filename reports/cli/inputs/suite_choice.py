@@ -76,10 +76,14 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
 def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
     """Yield the lines that echo what will run, and how long it may take."""
     from rockwobble.compare.runs.labels import run_labels
+    from rockwobble.models.records.plausibility import doubts_of
+
+    from ...pages.words.diagnostics import warnings
 
     groups = Counter(group_of(case.name) for case in cases)
     yield f"Suite {name}: {len(cases)} cases x {len(runs)} runs = {len(cases) * len(runs)} runs of engines"
     counted = (f"{group} ({count})" if count > 1 else group for group, count in groups.items())
     yield f"Cases: {', '.join(counted)}"
     yield f"Runs: {', '.join(run_labels(runs))}"
+    yield from warnings(doubts_of(case.motion for case in cases))
     yield from time_needed(cases, runs, always=True)

@@ -42,18 +42,21 @@ def part_shares(budget: ErrorBudget) -> dict[str, float]:
     return {part: size / total if total > 0.0 else 0.0 for part, size in sizes.items()}
 
 
-def budget_picture(view: CaseView, name: str) -> Picture:
-    """Return the stacked parts of each run and reference of a case."""
-    return _stacked([(f"{run} − {model}", each, True) for (run, model), each in view.budgets.items()], name)
+def budget_picture(view: CaseView, name: str) -> Picture | None:
+    """Return the stacked parts of each run and reference of a case; None where no difference is split."""
+    bars = [
+        (f"{run} − {model}", each, True) for (run, model), each in view.budgets.items() if not each.not_split
+    ]
+    return _stacked(bars, name)
 
 
-def all_budgets_picture(comparison: Comparison) -> Picture:
-    """Return a bar for each row of the summary with a budget, the findings on top.
+def all_budgets_picture(comparison: Comparison) -> Picture | None:
+    """Return a bar for each row of the summary whose difference is split, the findings on top.
 
     The order is: rows above the bound, the worst first; then those worth explaining; then the rest, which
     is drawn pale.
     """
-    summary = comparison.summary[comparison.summary["whole_rms"].notna()]
+    summary = comparison.summary[comparison.summary["unexplained_rms"].notna()]
     worth = summary["whole_rms"] > WORTH_EXPLAINING
     finding = worth & (summary["unexplained_share"] > LARGEST_SHARE)
     ordered = summary.assign(worth=worth, finding=finding).sort_values(
@@ -70,7 +73,9 @@ def all_budgets_picture(comparison: Comparison) -> Picture:
     return _stacked(bars, "budget")
 
 
-def _stacked(bars: Sequence[Bar], name: str) -> Picture:
+def _stacked(bars: Sequence[Bar], name: str) -> Picture | None:
+    if not bars:
+        return None
     places, ticks = names([label for label, _, _ in bars])
     ends = np.zeros(len(bars))
     layers: list[Bars | Text] = []
@@ -98,7 +103,10 @@ def parts_picture(view: CaseView, name: str, *, above: float = 0.0) -> Picture |
         if budget.rms("whole") < above:
             continue
         lines = []
+        resting = ("numerics", "unexplained") if budget.not_split else ()
         for part, (words, style, _) in ({"whole": _WHOLE} | PARTS).items():
+            if part in resting:
+                continue
             values = np.abs(getattr(budget, part))
             if values.any():
                 upper = np.maximum(envelope(budget.time, values), _SMALLEST)

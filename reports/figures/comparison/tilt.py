@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockwobble.compare import AGREEMENT, Comparison, make_pair
+from rockwobble.compare import Comparison, make_pair
+from rockwobble.models import AGREEMENT
 
 from ..palette import Style
 from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule

@@ -10,7 +10,7 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.compare import Comparison, ErrorBudget, own_model
-from rockwobble.compare.traces.pair import start_of
+from rockwobble.compare.metrics.pair import start_of
 from rockwobble.models import Case, Diagnostic, Run, Trace
 
 from ..palette import Style, label_styles

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.validity.limits.distributions import cells
-from rockwobble.compare.studies.validity.limits.needs import MODERATE
+from rockwobble.compare.studies.validity.limits.distributions import FEWEST, cells
 from rockwobble.compare.studies.validity.limits.numbers import Tables
 
 from ..heat import Gap, Heat, Shades, contour, names
@@ -15,15 +14,16 @@ from ..picture import Array, Axis, Line, Panel, Picture
 
 _FREE_PANELS = 4
 _FAR = 1e3  # what infinite is drawn as: beyond every scale
-_STILL, _NONE = "no record uplifts it", "no record rocks it and leaves it standing"
+_STILL, _FEW = "no record uplifts it", f"fewer than {FEWEST} records rock it and leave it standing"
+_MODERATE = 2.0  # friction over tan(alpha): twice that of uplift
 # column of the cells, level, name of the line where it is reached, style
 _LINES = (
     ("overturned", 0.1, "1 in 10 records overturns", Style(colour=DARK, dash="dash")),
     ("overturned", 0.5, "1 in 2 records overturns", Style(colour=DARK)),
     (
         "friction_90",
-        MODERATE,
-        f"1 in 10 needs friction above {MODERATE:g} tan α",
+        _MODERATE,
+        f"1 in 10 needs friction above {_MODERATE:g} tan α",
         Style(colour=ORDER[1], dash="dot"),
     ),
     ("lost", 0.1, "1 in 10 loses contact", Style(colour=ORDER[4], dash="dashdot")),
@@ -101,7 +101,7 @@ def _shaken(table: pd.DataFrame, name: str, title: str, caption: str, column: st
         )
         values, still = _grid(own, column), _grid(own, "rocked") == 0.0
         gaps = [
-            Gap(name=_NONE, colour=GREY, cells=np.isnan(values) & ~still),
+            Gap(name=_FEW, colour=GREY, cells=np.isnan(values) & ~still),
             Gap(name=_STILL, colour=PALE, cells=still),
         ]
         layers: list[Heat | Line] = [Heat(x=x, y=y, values=values, gaps=gaps)]

@@ -7,7 +7,9 @@ from typing import Any
 
 import pandas as pd
 
-from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
+from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
+from rockwobble.compare.external.verdict import mistakes_of
+from rockwobble.models import AGREEMENT
 
 from ...figures.comparison.view import rows_of
 from ..table import Row
@@ -16,15 +18,15 @@ from ..words.sentences import sentence
 WORDS = "comparison/external.md.j2"
 
 
-def told(row: Any) -> dict[str, object]:
+def found_in(row: Any) -> dict[str, object]:
     """Return what the codes of a row of an external trajectory say.
 
     Returns
     -------
     dict
         row, of the summary; differs and left, parts that differ, and that still do without the mistake;
-        agrees and wrong, what does and does not besides the tilt; mistakes and alternatives, in words: what
-        is likely, and what explains the azimuth just as well.
+        agrees and wrong, what does and does not besides the tilt; mistakes, in words; explained, whether
+        they explain a divergence of the tilts.
     """
     differs = row.differs_in
     known = [part for part in ("azimuth", "path") if math.isfinite(getattr(row, f"{part}_rms"))]
@@ -34,33 +36,30 @@ def told(row: Any) -> dict[str, object]:
         "left": row.differs_without_mistake,
         "agrees": [part for part in known if part not in differs],
         "wrong": [part for part in differs if part != "tilt"],
-        "mistakes": mistakes(row),
-        "alternatives": [
-            sentence(WORDS, "mistake", "azimuth", *other)
-            for other in zip(row.alternative_mistake, row.alternative_mistake_value, strict=True)
-        ],
+        "mistakes": [mistake.words for mistake in mistakes_of(row)],
+        "explained": explains_divergence(row),
     }
 
 
-def mistakes(row: Any) -> list[str]:
-    """Return each mistake that explains the differences of a row, in words."""
-    found = zip(row.likely_mistake_in, row.likely_mistake, row.likely_mistake_value, strict=True)
-    return [sentence(WORDS, "mistake", *mistake) for mistake in found]
+def explains_divergence(row: Any) -> bool:
+    """Whether a likely mistake is a reason for the tilts to diverge: a turn of the axes is none."""
+    return any(mistake.changes_tilt for mistake in mistakes_of(row))
 
 
 def within(row: Any) -> str:
     """Return what agreement of the tilts means for a run."""
-    return sentence(WORDS, "within", row.tilt_bound)
+    noise = row.tilt_bound - AGREEMENT if row.support == EXTERNAL else 0.0
+    return sentence(WORDS, "within", row.tolerance, noise, AGREEMENT)
 
 
 def scope(row: Any) -> str:
     """Return what of an external trajectory agrees while the tilts do, and what does not, for a headline."""
-    return sentence(WORDS, "scope", told(row))
+    return sentence(WORDS, "scope", found_in(row))
 
 
 def external_sentences(row: Any) -> str:
     """Return the sentences on azimuth, path, uplift and likely mistakes of an external trajectory."""
-    return sentence(WORDS, "sentences", told(row))
+    return sentence(WORDS, "sentences", found_in(row))
 
 
 def external_rows(summary: pd.DataFrame) -> list[Row]:

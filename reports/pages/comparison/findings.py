@@ -11,17 +11,16 @@ import pandas as pd
 
 from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
-from rockwobble.compare.metrics.agreement import AGREEMENT
+from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.runs.labels import REDUCED
-from rockwobble.compare.traces.pair import make_pair
-from rockwobble.compare.traces.trajectory import SUPPORT as EXTERNAL
-from rockwobble.models import Case, Run
+from rockwobble.models import Case, Run, Trace
 from rockwobble.models.diagnostic import parted
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
 from ..words.diagnostics import counted, failure, remarks
 from ..words.sentences import sentence, the
-from .external import external_sentences, scope, within
+from .external import explains_divergence, external_sentences, scope, within
 
 WORDS = "comparison/findings.md.j2"
 _LISTED = 10
@@ -44,6 +43,8 @@ class Finding:
         "mistake" (of an external trajectory), or "" (no pass: not chance).
     bound : str
         What agreement means, in words.
+    passes : int
+        Passes of the reference while they agree.
     end : float
         Up to when traces of different length are compared [s]; NaN where it is to the end.
     released : bool
@@ -56,6 +57,7 @@ class Finding:
     reference_uplifted: bool
     reason: str
     bound: str
+    passes: int
     end: float
     released: bool = False
 
@@ -94,11 +96,16 @@ def findings(view: CaseView) -> Iterator[Finding]:
                 touched=any(fact.code == "wall_contact" for fact in view.facts[row.run]),
                 models_differ=_models_differ(view, row),
             ),
-            bound=within(row) if row.support == EXTERNAL else "1 % of alpha",
+            bound=within(row),
+            passes=_passes_before(row.within_tolerance_until, traces.get(row.reference)),
             end=end if end < length * (1.0 - 1e-9) else math.nan,
             released=_is_release(view.case, row.peak_tilt)
             and _is_release(view.case, row.reference_peak_tilt),
         )
+
+
+def _passes_before(end: float, reference: Trace | None) -> int:
+    return 0 if reference is None else int((reference.passes["time"] <= end).sum())
 
 
 def _is_release(case: Case, peak: float) -> bool:
@@ -113,10 +120,10 @@ def _models_differ(view: CaseView, row: Any) -> bool:
     """Whether half of what ends an agreement lies between the models of recess and flat ground by then."""
     traces = view.traces
     models = [traces.get(str(Run(None, support))) for support in ("recess", "flat")]
-    if not row.diverged or row.reference not in traces or models[0] is None or models[1] is None:
+    if not row.left_tolerance or row.reference not in traces or models[0] is None or models[1] is None:
         return True
-    pair = make_pair(view.case.cylinder, models[0], models[1], until=view.divergence(row))
-    return bool((abs(pair.tilt_difference) > 0.5 * AGREEMENT).any())
+    pair = make_pair(view.case.cylinder, models[0], models[1], until=row.within_tolerance_until)
+    return bool((abs(pair.tilt_difference) > 0.5 * row.tolerance).any())
 
 
 def reason(row: Any, length: float, *, touched: bool = False, models_differ: bool = True) -> str:
@@ -138,11 +145,11 @@ def reason(row: Any, length: float, *, touched: bool = False, models_differ: boo
         return "support"
     if row.support == "ring" and row.reference_support != "ring" and (against_recess or touched):
         return "walls"
-    if row.support == EXTERNAL and row.likely_mistake:
+    if row.support == EXTERNAL and explains_divergence(row):
         return "mistake"
-    predicted = row.predicted_agreement_time
+    predicted = row.predicted_until
     by_pass = row.predicted_by == "pass" and row.support != EXTERNAL and predicted < length
-    if by_pass and row.agreement_time >= predicted:
+    if by_pass and row.within_tolerance_until >= predicted:
         return "pass"
     return "near passes" if math.isfinite(row.closest_pass) else ""
 
@@ -181,7 +188,7 @@ def headline(rows: pd.DataFrame, length: float) -> str:
         groups = [[index] for index in of_support.index] if single else [list(of_support.index)]
         parts += [sentence(WORDS, "followed", _group(of_support.loc[group], length)) for group in groups]
         diverged = diverged or any(
-            row.diverged and not (single and row.likely_mistake) for row in rows_of(of_support)
+            row.left_tolerance and not (single and explains_divergence(row)) for row in rows_of(of_support)
         )
     if not parts:
         return "No run could be compared."
@@ -194,18 +201,20 @@ def _group(rows: pd.DataFrame, length: float) -> dict[str, object]:
     external = first.support == EXTERNAL
     names = {the(row.run, REDUCED) if row.engine == REDUCED else row.engine: None for row in rows_of(rows)}
     references = {the(row.reference, row.reference_engine): None for row in rows_of(rows)}
+    ends = rows["within_tolerance_until"]
+    last = float(ends.max())
     return {
         "support": str(first.support),
         "names": list(names),
         "references": list(references),
         "rows": len(rows),
-        "bound": within(first) if external else "1 % of alpha",
-        "diverged": bool(rows["diverged"].any()),
-        "shortest": float(rows["agreement_time"].min()),
-        "longest": float(rows["agreement_time"].max()),
+        "bound": within(first),
+        "diverged": bool(rows["left_tolerance"].any()),
+        "first": float(ends.min()),
+        "last": last,
         # the file of an external trajectory may end before the run does
-        "length": min(length, float(rows["agreement_time"].max())) if external else length,
-        "short": external and float(rows["agreement_time"].max()) < length * (1.0 - 1e-9),
+        "length": min(length, last) if external else length,
+        "short": external and last < length * (1.0 - 1e-9),
         "scope": scope(first) if external else "",
     }
 
@@ -215,7 +224,8 @@ def budget_sentences(summary: pd.DataFrame) -> list[str]:
     known = summary[summary["whole_rms"].notna()]
     if not len(known):
         return []
-    worth, found = known[known["whole_rms"] > WORTH_EXPLAINING], unexplained(known)
+    large = known[known["whole_rms"] > WORTH_EXPLAINING]
+    worth, found = large[large["not_split"] == ""], unexplained(known)
     lines = [sentence(WORDS, "unexplained", row) for row in rows_of(found.head(_LISTED))]
     counts = {
         "more": len(found) - _LISTED,
@@ -223,12 +233,16 @@ def budget_sentences(summary: pd.DataFrame) -> list[str]:
         "explained": len(worth) - len(found),
         "cases": worth["case"].nunique(),
         "explained_cases": worth["case"].nunique() - found["case"].nunique(),
-        "small": len(known) - len(worth),
+        "small": len(known) - len(large),
+        "not_split": large.loc[large["not_split"] != "", "not_split"].value_counts().to_dict(),
         "missing": len(summary) - len(known),
         "largest": LARGEST_SHARE,
         "bound": WORTH_EXPLAINING,
     }
-    said = [sentence(WORDS, macro, counts) for macro in ("more_unexplained", "explained", "no_budget")]
+    said = [
+        sentence(WORDS, macro, counts)
+        for macro in ("more_unexplained", "explained", "not_split", "no_budget")
+    ]
     return [*lines, *filter(None, said)]
 
 

@@ -48,8 +48,9 @@ def comparison_page(comparison: Comparison, command: str = "") -> Page:
     whole = [picture for of_case in pictures.values() for picture in of_case]
     if many:
         whole = _thinned(whole)
-    if comparison.budgets:
-        whole.append(all_budgets_picture(comparison))
+    bars = all_budgets_picture(comparison) if comparison.budgets else None
+    if bars is not None:
+        whole.append(bars)
     blocks = _blocks(views, many=many)
     diverging = diverging_runs(summary, lengths) if many else []
     matrix = comparison.matrix()
@@ -60,7 +61,7 @@ def comparison_page(comparison: Comparison, command: str = "") -> Page:
             "many": many,
             "command": command or comparison.command,
             "versions": comparison.versions,
-            "budgets": bool(comparison.budgets),
+            "budgets": bars is not None,
             "group_rows": group_rows(summary, lengths) if many else [],
             "worst": worst_first(summary, lengths) if many else [],
             "diverging": diverging[:_NAMED],
@@ -99,7 +100,7 @@ def _case(view: CaseView) -> dict[str, object]:
         "lines": describe(view.case),
         "headline": headline(rows, length),
         "findings": [*finding_sentences(view), *budget_sentences(rows), *divergence_sentences(rows)],
-        "rows": main_rows(rows),
+        "rows": main_rows(rows, length),
         "external": external_rows(rows),
         "numbers": numbers,
         "columns": columns,
@@ -116,10 +117,11 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
         yield azimuth_picture(view, f"contact-{place}")
     yield turn_picture(view, f"turns-{place}", notes=not many)
     if view.budgets:
-        yield budget_picture(view, f"shares-{place}")
+        yield from filter(None, [budget_picture(view, f"shares-{place}")])
         # where there is nothing to explain they are a megabyte for nothing
-        parts = parts_picture(view, f"parts-{place}", above=WORTH_EXPLAINING if many else 0.0)
-        yield from () if parts is None else (parts,)
+        yield from filter(
+            None, [parts_picture(view, f"parts-{place}", above=WORTH_EXPLAINING if many else 0.0)]
+        )
     if not many:
         yield residual_picture(view, f"residuals-{place}")
     excitation = excitation_picture(view, f"excitation-{place}")

@@ -9,7 +9,7 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.compare import SUMMARY_COLUMNS
-from rockwobble.compare.comparison.external.verdict import lists_in_words
+from rockwobble.compare.external.verdict import lists_in_words
 from rockwobble.models import Run
 
 from ...figures.comparison.view import own_rows, rows_of
@@ -17,18 +17,32 @@ from ..table import Row, number
 from ..words.cases import group_of
 
 
-def main_rows(rows: pd.DataFrame) -> list[Row]:
-    """Return the main columns of the summary; what fell or failed has a word for its peak."""
+def main_rows(rows: pd.DataFrame, length: float) -> list[Row]:
+    """Return the main columns of the summary; what fell or failed has a word for its peak.
+
+    Parameters
+    ----------
+    rows : DataFrame
+        Of the summary.
+    length : float
+        Of the run [s]; times are those of the run.
+    """
     return [
         {
             **row._asdict(),
             "against": row.reference.removesuffix(" model").removesuffix("-ground"),
             "peak": _peak(row.peak_tilt, row.outcome),
             "reference_peak": _peak(row.reference_peak_tilt, row.reference_outcome),
-            "agrees": f"{row.agreement_time:.2f}{' ' if row.diverged else '+'}",
+            "agrees": _until(row, row.reference_uplift_time, open_end="+", other=" "),
+            "predicted": min(row.reference_uplift_time + row.predicted_agreement_time, length),
         }
         for row in rows_of(rows)
     ]
+
+
+def _until(row: Any, start: float, *, open_end: str, other: str = "") -> str:
+    """Return the end of an agreement within 1 % of alpha in the time of the run, or of the run."""
+    return f"{row.agreement_time + (start if row.diverged else 0.0):.2f}{other if row.diverged else open_end}"
 
 
 def _peak(value: float, outcome: str) -> float | str:
@@ -81,7 +95,7 @@ def group_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]
                     "group": group,
                     "run": run,
                     "cases": len(chosen),
-                    "agree": int((~chosen["diverged"]).sum()),
+                    "agree": int((~chosen["left_tolerance"]).sum()),
                     "least": float(chosen["share"].min()),
                     "rms": float(chosen["tilt_rms_relative"].median()),
                     "worst": float(chosen["tilt_rms_relative"].max()),
@@ -104,15 +118,15 @@ def worst_first(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Any
 def diverging_runs(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Any]:
     """Return the runs that diverge from the model of their support, the first to do so first."""
     rows = _with_shares(summary, lengths)
-    found = rows[rows["diverged"]].sort_values("share", kind="stable")
+    found = rows[rows["left_tolerance"]].sort_values("share", kind="stable")
     return list(rows_of(found.assign(length=found["case"].map(lengths))))
 
 
 def _with_shares(summary: pd.DataFrame, lengths: Mapping[str, float]) -> pd.DataFrame:
     """Add the group of each case, and the share of the run for which the tilts agree."""
     rows = own_rows(summary)
-    share = (rows["agreement_time"] / rows["case"].map(lengths)).clip(upper=1.0)
-    share = share.where(rows["diverged"], 1.0)
+    share = (rows["within_tolerance_until"] / rows["case"].map(lengths)).clip(upper=1.0)
+    share = share.where(rows["left_tolerance"], 1.0)
     known = share.where(share.map(math.isfinite), 0.0)
     return rows.assign(group=rows["case"].map(group_of), share=known)
 
@@ -141,7 +155,7 @@ def _cell(rows: pd.DataFrame) -> str:
     difference = number(float(rows["tilt_rms_relative"].median()), ".1e")
     if len(rows) == 1:
         (row,) = rows_of(rows)
-        return f"{row.agreement_time:.2f}{'' if row.diverged else '+'}, {difference}"
+        return f"{_until(row, row.other_uplift_time, open_end='+')}, {difference}"
     return f"{int((~rows['diverged']).sum())} of {len(rows)}, {difference}"
 
 

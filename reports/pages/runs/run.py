@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
+from rockwobble.compare.comparison.prediction import NUDGE
 from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.models import Trace
 
@@ -21,6 +24,7 @@ def run_page(trace: Trace, manifest: Manifest) -> Page:
         "lines": describe(trace.case),
         "said": remarks(trace.diagnostics),
         **_numbers(trace),
+        **_reproducible(trace, manifest.about.get("single_trace", {})),
         "about": manifest,
     }
     return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))
@@ -29,6 +33,17 @@ def run_page(trace: Trace, manifest: Manifest) -> Page:
 def stored_page(results: Results) -> Page:
     """Return the page of the run that is stored."""
     return run_page(Trace.load(results.folder / "run.parquet"), results.manifest)
+
+
+def _reproducible(trace: Trace, single: Mapping[str, Any]) -> dict[str, object]:
+    """Return until when one trace is reproducible, whether the peak comes later, and what answers then."""
+    until = single.get("until", math.inf)  # of earlier versions nothing is known
+    return {
+        "until": until,
+        "peak_later": float(trace.time[int(trace.tilt.argmax())]) > until,
+        "nudge": NUDGE,
+        "answer": single.get("answer", ""),
+    }
 
 
 def _numbers(trace: Trace) -> dict[str, object]:

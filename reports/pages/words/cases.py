@@ -20,6 +20,9 @@ def describe(case: Case) -> list[str]:
     if motion is not None:
         # here, because the help of the command line needs no numpy
         from rockwobble.compare.studies.spectrum.series import uplift_factor
+        from rockwobble.models.records.plausibility import doubts_of
+
+        from .diagnostics import warnings
 
         factor = uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length)
         within = " within the run" if case.length < motion.duration else ""
@@ -29,6 +32,7 @@ def describe(case: Case) -> list[str]:
             f"{components} components, peak {motion.peak / case.gravity:.3f} g "
             f"({1.0 / factor:.2f} times the uplift threshold{within})"
         )
+        lines += warnings(doubts_of([motion]))
     if initial is not None:
         lines.append(
             f"Release: tilt {math.degrees(initial.tilt):.4g} deg "

@@ -5,9 +5,11 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
+from typing import Any
 
 from rockwobble.models import Diagnostic
 from rockwobble.models.diagnostic import FAILURES
+from rockwobble.models.records.plausibility import likely_unit
 
 # why halving the step did not settle it
 _UNSETTLED = {
@@ -15,12 +17,16 @@ _UNSETTLED = {
     "still_changes": "it still changes at the smallest step allowed",
     "no_later": "a smaller step does not put off the divergence",
     "no_closer": "a smaller step does not bring it closer",
+    "unresolved_pass": "a pass is left to chance, so that its error is not known",
+    "energy": "contact makes or takes energy, so that its error is not known",
 }
 # why runs at successive steps tell no limit
 _NOT_EXTRAPOLATED = {
     "fails": "a run at a coarser step fails",
     "diverged": "the runs diverge there",
     "no_closer": "the runs do not come closer to one another",
+    "unresolved_pass": "a pass is left to chance there",
+    "energy": "contact makes or takes energy",
 }
 _WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
     "step_budget": lambda fact: (
@@ -84,6 +90,14 @@ _WORDS: Mapping[str, Callable[[Diagnostic], str]] = {
         f"it passed through upright itself, first{_at(fact)}: the ground had moved in one plane, and the "
         "side of such a pass is undetermined"
     ),
+    "large_peak": lambda fact: (
+        f"its peak is {fact.size:.3g} g, more than any record has ({fact.bound:g} g): it would be "
+        f"{likely_unit(fact.size)[1]:.2g} g with its numbers in {fact.detail}; give the unit of the file"
+    ),
+    "unlike_components": lambda fact: (
+        f"the peaks of its components differ by a factor of {fact.size:.3g}, {fact.detail} is the larger: "
+        "their units may differ"
+    ),
     "note": lambda fact: fact.detail,
     "missed_pass": lambda fact: (
         f"{_count(fact.size, 'near pass', 'fell', 'fell')} between two samples, first{_at(fact)}"
@@ -116,6 +130,15 @@ def sentence(fact: Diagnostic) -> str:
 def remarks(facts: Iterable[Diagnostic]) -> str:
     """Return diagnostics in words, separated by semicolons."""
     return "; ".join(map(sentence, facts))
+
+
+def warnings(doubts: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Return a line on each doubt about a record, as `doubts_of` gives them."""
+    lines = []
+    for doubt in doubts:
+        fields = {name: value for name, value in doubt.items() if name != "record"}
+        lines.append(f"Warning: {doubt['record']}: {sentence(Diagnostic(**fields))}.")
+    return lines
 
 
 def failure(facts: Iterable[Diagnostic]) -> str:

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from rockwobble.compare.runs.labels import REDUCED
 
+from .diagnostics import warnings
+
 if TYPE_CHECKING:
     import jinja2
 
@@ -60,6 +62,7 @@ def the(label: str, engine: str) -> str:
 # what templates know besides what jinja2 does
 _FILTERS = {
     **{"seconds": seconds, "small": small, "listed": listed, "the": the, "degrees": math.degrees},
+    "warnings": warnings,
     "lookup": lambda name, table: table[name],
 }
 

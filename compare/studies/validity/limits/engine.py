@@ -9,9 +9,9 @@ import pandas as pd
 
 from ....comparison.prediction import IN_TIME
 from ..rings import FREE
-from .numbers import Array, Numbers, Tables, column, first_failing, largest, quantile, up_to
+from .numbers import Array, Numbers, Tables, column, first_failing, largest, up_to
 
-ALIKE = 0.01  # of period or angle of turn: below what a test on a shake table would see
+ALIKE = 0.01  # of period, angle of turn or peak: below what a test on a shake table would see
 SMALL = 0.05  # of the peak tilt: less cannot be told from chance
 # an engine confirms a model if it is nearer to it than this share of the difference of the models
 _CONFIRMS = 0.5
@@ -31,7 +31,6 @@ def free_response(tables: Tables) -> Numbers:
     return {
         "alike_up_to": up_to(tan_alpha, holds),
         "apart_from": first_failing(tan_alpha, holds),
-        "turn_half": quantile(turns, 0.5),
         "turn_largest": largest(turns),
         "turn_largest_deg": math.degrees(largest(np.abs(flat - turn))),
         **{f"worst_{name}": float(worst[name]) for name in ("tan_alpha", "release", "spin")},
@@ -64,7 +63,10 @@ def models_apart(table: pd.DataFrame) -> Array:
 
 
 def traces(tables: Tables) -> Numbers:
-    """Return agreement times [s] of engine and model, and the count that diverge earlier than predicted."""
+    """Return agreement times [s] of engine and model, and the count that diverge earlier than predicted.
+
+    NAME and NAME_longest: the shortest and the longest; NAME_whole, runs that agree to their end.
+    """
     table = tables["following"]
     numbers: Numbers = {"duration": largest(column(table, "duration")), "comparisons": float(len(table))}
     for name, support, reference in (
@@ -75,11 +77,11 @@ def traces(tables: Tables) -> Numbers:
         own = table[(table["support"] == support) & (table["reference_support"] == reference)]
         peaks = column(own, "peak_tilt") / column(own, "reference_peak_tilt")
         numbers |= {
-            name: quantile(column(own, "agreement_time"), 0.5),
-            f"{name}_passes": quantile(column(own, "agreed_passes"), 0.5),
+            name: -largest(-column(own, "agreement_time")),
+            f"{name}_longest": largest(column(own, "agreement_time")),
             f"{name}_runs": float(len(own)),
             f"{name}_whole": float((~own["diverged"].to_numpy(dtype=bool)).sum()),
-            f"{name}_peak_half": quantile(np.abs(peaks - 1.0), 0.5),
+            f"{name}_peak_alike": float((np.abs(peaks - 1.0) <= ALIKE).sum()),
             f"{name}_peak_worst": largest(np.abs(peaks - 1.0)),
         }
     agreed, predicted = column(table, "agreement_time"), column(table, "predicted_agreement_time")
@@ -96,7 +98,6 @@ def rings(tables: Tables) -> Numbers:
         "touched": float(len(touched)),
         "runs": float(ring.sum()),
         "failed": float((table["outcome"] == "failed").sum()),
-        "loss_half": quantile(column(touched, "loss"), 0.5),
         "loss_worst": largest(column(touched, "loss")),
         "rolled": largest(column(table[ring & shaken], "rolled_out")),
         "flat_rolled": largest(column(table[(table["support"] == "flat") & shaken], "rolled_out")),
@@ -107,14 +108,14 @@ def rings(tables: Tables) -> Numbers:
         ratio = column(own, "peak") / column(own, "recess_peak")
         numbers |= {
             f"{support}_least": -largest(-ratio),
-            f"{support}_half": quantile(ratio, 0.5),
             f"{support}_largest": largest(ratio),
         }
     own = table[ring & shaken]
     halved = np.abs(column(own, "halved_peak") / column(own, "peak") - 1.0)
     best = own.groupby("clearance")["at_end"].max()
     return numbers | {
-        "halved_half": quantile(halved, 0.5),
+        "halved_alike": float((halved <= SMALL).sum()),
+        "halved_known": float(np.isfinite(halved).sum()),
         "halved_worst": largest(halved),
         "tightest": float(str(best.idxmin())) if len(best) else math.nan,
         "tightest_at_end": float(best.min()) if len(best) else math.nan,

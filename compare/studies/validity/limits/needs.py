@@ -5,53 +5,56 @@ from __future__ import annotations
 import math
 
 import numpy as np
+import pandas as pd
 
-from .numbers import Array, Numbers, Tables, column, first_failing, largest, quantile, reached, up_to
+from .distributions import cells
+from .numbers import Numbers, Tables, column, first_failing, largest, up_to
 
 # [b] in one period: less is the creep of a contact that never lets go
 SLIPPED = 1e-3
-# over tan(alpha): up to here a need is that of uplift, which is 1, and a little more
-MODERATE = 2.0
 # [weight times base radius]: a tenth of what would tip the cylinder about its rim
 SLIGHT = 0.1
 
 
-def friction(tables: Tables) -> Numbers:
-    """Return the friction needed over tan(alpha), and where the engine slips with less than needed.
+def needs(tables: Tables) -> pd.DataFrame:
+    """Return what ground and recess must supply, by slenderness and intensity.
 
-    up_to, nine_in_ten, beyond_from: the slenderness up to which nine in ten runs that rock without
-    overturning need a `MODERATE` friction, how much, and the next slenderness.
+    What nine in ten of the records that rock a cylinder without overturning it need at most, of the size that
+    needs most: sizes differ by a few percent, slenderness and intensity by factors.
+
+    Returns
+    -------
+    DataFrame
+        tan_alpha, intensity, sizes with enough such records, motions that rock them, friction over
+        tan(alpha), normal [weights] (at least), and moment over weight and base radius. No row where no size
+        has enough.
     """
+    known = cells(tables).dropna(subset="moment_90")
+    return known.groupby(["tan_alpha", "intensity"], as_index=False).agg(
+        sizes=("semidiagonal", "count"),
+        motions=("standing", "sum"),
+        friction=("friction_90", "max"),
+        normal=("normal_10", "min"),
+        moment=("moment_90", "max"),
+    )
+
+
+def friction(tables: Tables) -> Numbers:
+    """Return the friction needed over tan(alpha), and where the engine slips with less than needed."""
     free, slip = tables["free_response"], tables["slip"]
     moving = tables["peaks"][tables["peaks"]["friction"].notna()]
-    tan_alpha = column(moving, "tan_alpha")
-    need = column(moving, "friction") / tan_alpha
-    held, nine, beyond = _moderate(tan_alpha, need)
     share, slipped = column(slip, "share"), column(slip, "slip") > SLIPPED
     slips_at, sticks = largest(share[slipped]), share[~slipped]
     sticks = sticks[~(sticks <= slips_at)]  # what slips at one release does not hold at all
     nearest = slip[share == slips_at]
     return {
         "free_response": largest(column(free, "friction") / column(free, "tan_alpha")),
-        "half": quantile(need, 0.5),
-        "up_to": held,
-        "nine_in_ten": nine,
-        "beyond_from": beyond,
+        "shaken": largest(column(moving, "friction") / column(moving, "tan_alpha")),
         "slips_at": slips_at,
         "holds_from": float(sticks.min()) if len(sticks) else math.nan,
         "tilt_error": largest(column(nearest, "tilt_rms")),
         "slip": largest(column(nearest, "slip")),
     }
-
-
-def _moderate(tan_alpha: Array, need: Array) -> tuple[float, float, float]:
-    held = nine = math.nan
-    for value in np.unique(tan_alpha):
-        needed = reached(need[tan_alpha == value], 0.9)
-        if not needed <= MODERATE:
-            return held, nine, float(value)
-        held, nine = float(value), needed if math.isnan(nine) else max(nine, needed)
-    return held, nine, math.nan
 
 
 def contact(tables: Tables) -> Numbers:
@@ -81,8 +84,6 @@ def restraining_moment(tables: Tables) -> Numbers:
     tan_alpha, needed = column(moving, "tan_alpha"), column(moving, "moment")
     return {
         "free_response": largest(column(tables["free_response"], "moment")),
-        "half": quantile(needed, 0.5),
-        "nine_in_ten": quantile(needed, 0.9),
         "shaken": largest(needed),
         "slight_up_to": up_to(tan_alpha, needed <= SLIGHT),
         "heavy_from": first_failing(tan_alpha, needed <= SLIGHT),

@@ -19,12 +19,6 @@ def column(table: pd.DataFrame, name: str) -> Array:
     return table[name].to_numpy(dtype=np.float64)
 
 
-def quantile(values: Array, share: float) -> float:
-    """Return the value that a share of the finite values does not exceed; NaN where there are none."""
-    finite = values[np.isfinite(values)]
-    return float(np.quantile(finite, share)) if len(finite) else math.nan
-
-
 def largest(values: Array) -> float:
     """Return the largest finite value; NaN where there is none."""
     finite = values[np.isfinite(values)]

@@ -1,22 +1,27 @@
-"""Verdict on an external trajectory against a model, in numbers and codes."""
+"""Verdict on an external trajectory compared with a model, in numbers and codes."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
+import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, Trace
+from rockwobble.models import AGREEMENT, Case, Trace
 
-from ...traces.motion import motion_of
-from ...traces.pair import start_of
-from ...traces.trajectory import external_motion, measurement
-from .difference import Difference, Part, difference
-from .explanation import Explanation, explain
-from .frame import Mistake
-from .uplift_difference import uplift_differences
+from ..metrics.contact import TILTED
+from ..metrics.pair import start_of
+from .difference import Difference, Part, Reference
+from .mistakes import Explanation, Mistake, explanations
+from .motion import Motion, exceeds, motion_at
+from .table import Values
+from .trajectory import external_motion, measurement, trajectory_of
+
+# standard deviations of the noise: the first of some hundred samples that is above a tilt is sought
+CONFIDENCE = 4.0
 
 # columns of the summary that only external trajectories have: unit, meaning
 Cell = float | str | bool | tuple[str, ...] | tuple[float, ...]
@@ -34,13 +39,14 @@ VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
     "path_differs_from": ("s", "time of the first distance above its bound"),
     "tilt_bound": ("alpha", "tilt difference that ends the agreement: 1 % of alpha, and more with noise"),
     "noise": ("alpha", "standard deviation of the scatter of the samples"),
-    "uplift_time_uncertainty": ("s", "how well the samples tell the difference of the uplift times"),
-    "uplift_direction_uncertainty": ("rad", "how well they tell that of the directions"),
+    "uplift_time_uncertainty": (
+        "s",
+        "uncertainty of the difference of the uplift times",
+    ),
+    "uplift_direction_uncertainty": ("rad", "that of the directions"),
     "likely_mistake": ("", "codes of what explains the differences: see `Mistake`"),
     "likely_mistake_in": ("", "what each of them concerns"),
     "likely_mistake_value": ("", "their values, in the units of the codes"),
-    "alternative_mistake": ("", "what explains the azimuth just as well"),
-    "alternative_mistake_value": ("", "its value"),
     "differs_without_mistake": ("", "what still differs, of tilt, azimuth and path"),
     "agreement_without_mistake": ("s", "from uplift or release, as it would be without them"),
 }
@@ -48,13 +54,12 @@ VERDICT_COLUMNS: Mapping[str, tuple[str, str]] = {
 LISTS = (
     *("differs_in", "not_compared", "not_given", "differs_without_mistake"),
     *("likely_mistake", "likely_mistake_in", "likely_mistake_value"),
-    *("alternative_mistake", "alternative_mistake_value"),
 )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """An external trajectory held against a model.
+    """An external trajectory compared with a model.
 
     Attributes
     ----------
@@ -105,9 +110,7 @@ class Verdict:
             "likely_mistake_value": tuple(mistake.value for mistake in self.mistakes),
         }
         if self.explanation is not None and self.mistakes:
-            others, left = self.explanation.alternatives, self.explanation.left
-            own["alternative_mistake"] = tuple(mistake.code for mistake in others)
-            own["alternative_mistake_value"] = tuple(mistake.value for mistake in others)
+            left = self.explanation.left
             # as of the agreement time: the length of the run where they never diverge
             own["differs_without_mistake"] = left.differs_in
             own["agreement_without_mistake"] = left.length if left.tilt.differs else left.end
@@ -121,25 +124,104 @@ class Verdict:
         return own
 
 
+def reference_of(trace: Trace, case: Case) -> Reference:
+    """Return what an external trajectory of a case is compared with."""
+    cylinder = case.cylinder
+    return Reference(
+        motion=motion_of(trace),
+        alpha=cylinder.alpha,
+        base_radius=cylinder.base_radius,
+        time_scale=math.sqrt(cylinder.semidiagonal / case.gravity),
+        start=start_of(trace),
+        is_free=case.motion is None,
+        tilt_bound=AGREEMENT,
+        least_lean=TILTED,
+    )
+
+
+def motion_of(trace: Trace) -> Motion:
+    """Return the motion of the trace of a model."""
+    return motion_at(trace.time, trace.tilt, trace.rolling_angle, trace.centre_of_mass)
+
+
 def judge(trajectory: Trace, reference: Trace, case: Case) -> Verdict:
-    """Hold an external trajectory of a case against the trace of a model."""
-    model, motion = motion_of(reference), external_motion(trajectory)
-    start = start_of(reference)
-    found = difference(model, motion, cylinder=case.cylinder, start=start)
+    """Compare an external trajectory of a case with the trace of a model."""
+    model, motion, source = (
+        reference_of(reference, case),
+        external_motion(trajectory),
+        measurement(trajectory),
+    )
+    found = model.difference(motion)
     time, direction = uplift_differences(trajectory, reference)
     parts = (("azimuth", found.azimuth, motion.lean), ("path", found.path, motion.path))
-    verdict = Verdict(
+
+    def read(values: Values) -> Motion | None:
+        try:
+            other = trajectory_of(replace(source.table, values=values), source.given, case)
+        except ValueError:
+            return None
+        return external_motion(other)
+
+    return Verdict(
         difference=found,
-        explanation=None,
+        explanation=next(explanations(source.table.values, read, model)) if found.differs_in else None,
         not_compared=tuple(name for name, part, _ in parts if part is None),
         not_given=tuple(name for name, _, given in parts if given is None),
         uplift_time=time,
         uplift_direction=direction,
-        noise=measurement(trajectory).poses.noise / case.cylinder.alpha,
+        noise=source.poses.noise / case.cylinder.alpha,
     )
-    if not found.differs_in:
-        return verdict
-    return replace(verdict, explanation=explain(trajectory, model, case, start=start))
+
+
+def uplift_differences(trajectory: Trace, reference: Trace) -> tuple[Part | None, Part | None]:
+    """Return time [s] and azimuth [rad] at which a trajectory leans first, minus those of a model.
+
+    A cylinder may rock for a while below the tilt that its samples can show. So what is compared is when both
+    lean that far, and the model shows how well noise and samples determine that time.
+    The size of each is the difference and its bound the uncertainty; both are None for a release, or where
+    one of the two never leans.
+    """
+    source = measurement(trajectory)
+    stands, blur = source.poses.stands, CONFIDENCE * source.poses.noise
+    seen = source.first_lean
+    passed = [first_passage(reference, tilt) for tilt in (stands - blur, stands, stands + blur)]
+    if not (seen > 0.0 and 0.0 < passed[1] < math.inf):
+        return None, None
+    early, middle, late = passed
+    # a tilt that the model only just reaches may be missed: until its largest, nobody knows
+    late = late if math.isfinite(late) else float(reference.time[int(np.argmax(reference.tilt))])
+    half = 0.5 * trajectory.time_step
+    apart = seen - half - middle
+    uncertainty = half + max(late - middle, middle - early)
+    time = Part(first_time=seen if abs(apart) > uncertainty else math.nan, size=apart, bound=uncertainty)
+    if not math.isfinite(trajectory.uplift_direction):
+        return time, None
+    around = seen + uncertainty * np.linspace(-1.0, 1.0, 9)
+    angle = np.interp(
+        [seen, *around],
+        reference.time,
+        np.nan_to_num(reference.rolling_angle, nan=reference.uplift_direction),
+    )
+    turned = float(np.abs(angle[1:] - angle[0]).max())
+    off = math.remainder(trajectory.uplift_direction - float(angle[0]), 2.0 * math.pi)
+    bound = turned + blur / stands
+    return time, Part(first_time=seen if abs(off) > bound else math.nan, size=off, bound=bound)
+
+
+def first_passage(trace: Trace, tilt: float) -> float:
+    """Return when a trace leans first by this tilt [s]; inf if never."""
+    time = trace.time.copy()
+    before = int(np.argmax(trace.tilt > tilt)) - 1
+    if before >= 0 and trace.tilt[before] == 0.0:
+        # from rest the growth begins at the uplift, not at the sample before it
+        time[before] = max(time[before], trace.uplift_time)
+    return exceeds(time, trace.tilt, tilt, 3.0)
+
+
+def mistakes_of(row: Any) -> tuple[Mistake, ...]:
+    """Return the likely mistakes of a row of the summary, a named tuple."""
+    columns = zip(row.likely_mistake, row.likely_mistake_in, row.likely_mistake_value, strict=True)
+    return tuple(Mistake(code=code, concerns=part, value=value) for code, part, value in columns)
 
 
 def numbers_of(row: Row) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Ground motions of a fragility: folders of records with a table."""
+"""Ground motions of a folder of records with a table."""
 
 from __future__ import annotations
 
@@ -6,17 +6,21 @@ import csv
 from collections.abc import Mapping
 from pathlib import Path
 
-from rockwobble.models import GroundMotion, read_record
+from ..ground_motion import GroundMotion
+from .files import ZERO, read_record
 
 TABLE = "records.csv"
 _COLUMNS, _NEEDED = ("name", "x", "y", "z", "units", "scale"), ("x", "y")
 
 
-def read_records(folder: str | Path, *, units: str | None = None) -> list[GroundMotion]:
+def read_records(
+    folder: str | Path, *, units: str | None = None, resample: bool = False
+) -> list[GroundMotion]:
     """Return the ground motions of a folder, as its records.csv lists them.
 
     A row for each motion, with the columns x and y, the files of the two horizontal components beside the
-    table (PEER AT2, two-column text or CSV), and maybe z (vertical), name, units and scale.
+    table (PEER AT2, two-column text or CSV; "zero" is a component of zeros), and maybe z (vertical), name,
+    units and scale.
 
     Parameters
     ----------
@@ -24,6 +28,8 @@ def read_records(folder: str | Path, *, units: str | None = None) -> list[Ground
         Or the table itself.
     units : {"g", "m/s2", "cm/s2"}, optional
         Of the files that do not say, where the table has no units.
+    resample : bool, optional
+        Take components of different time steps at one that divides all, as `read_record` does.
 
     Raises
     ------
@@ -53,23 +59,31 @@ def read_records(folder: str | Path, *, units: str | None = None) -> list[Ground
     motions = []
     for number, row in rows:
         try:
-            motions.append(_motion(path.parent, row, units))
+            motions.append(_motion(path.parent, row, units, resample))
         except ValueError as error:
             raise ValueError(f"{path.name}, line {number}: {error}") from None
     return motions
 
 
-def _motion(folder: Path, row: Mapping[str | None, str | list[str]], units: str | None) -> GroundMotion:
+def _place(folder: Path, name: str | None) -> str | Path | None:
+    return name if name == ZERO else folder / name if name else None
+
+
+def _motion(
+    folder: Path, row: Mapping[str | None, str | list[str]], units: str | None, resample: bool
+) -> GroundMotion:
     beyond = list(row.get(None, ()))  # cells under no column
     if any(cell.strip() for cell in beyond):
         raise ValueError(f"must have {len(row) - 1} cells, got {len(row) - 1 + len(beyond)}")
     cells = {name: (cell or "").strip() for name, cell in row.items() if isinstance(cell, str)}
     if not (cells.get("x") and cells.get("y")):
         raise ValueError("both horizontal components are needed, x and y")
-    x, y, z = (folder / cells[name] if cells.get(name) else None for name in ("x", "y", "z"))
+    x, y, z = (_place(folder, cells.get(name)) for name in ("x", "y", "z"))
     assert x is not None
     assert y is not None
-    motion = read_record(x, y, z, units=cells.get("units") or units, name=cells.get("name") or None)
+    motion = read_record(
+        x, y, z, units=cells.get("units") or units, name=cells.get("name") or None, resample=resample
+    )
     if not cells.get("scale"):
         return motion
     try:

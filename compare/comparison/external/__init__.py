@@ -1,1 +1,0 @@
-"""External trajectories held against the models, and the likely mistake named."""

@@ -1,0 +1,1 @@
+"""External trajectories, read, compared with a model, and the likely mistakes named."""

@@ -1,0 +1,74 @@
+"""Options of a study, stated once: names, defaults, ranges and help, for callers and for the command line."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+from numbers import Integral, Real
+from typing import Any, get_type_hints
+
+_KEY = "option"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Option:
+    """What is to be known of an option besides its name, type and default.
+
+    Attributes
+    ----------
+    help : str
+        A sentence or two, with the unit.
+    group : str
+        Under which help lists it.
+    least, most : float
+        Range of a number, both ends included.
+    above : float
+        A number must be larger.
+    """
+
+    help: str
+    group: str
+    least: float = -math.inf
+    most: float = math.inf
+    above: float = -math.inf
+
+    def allowed(self) -> str:
+        """Return the range in words."""
+        low = f"at least {self.least:g}" if self.least > -math.inf else ""
+        low = f"above {self.above:g}" if self.above > -math.inf else low
+        high = f"at most {self.most:g}" if self.most < math.inf else ""
+        return " and ".join(part for part in (low, high) if part) or "finite"
+
+
+def option(default: Any, text: str, *, group: str = "Method", **ranges: float) -> Any:
+    """Return the field of a plan that is an option; `text` is its help, `ranges` those of `Option`."""
+    return field(default=default, metadata={_KEY: Option(help=text, group=group, **ranges)})
+
+
+class Plan:
+    """Base of the plans: frozen dataclasses whose fields are options, checked when one is made.
+
+    Raises
+    ------
+    ValueError
+        If a number is none, or out of its range.
+    """
+
+    def __post_init__(self) -> None:
+        from rockwobble.models.number_checks import quoted  # with numpy, which help can do without
+
+        kinds = get_type_hints(type(self))
+        for name, stated in options_of(type(self)).items():
+            kind, value = kinds[name], getattr(self, name)
+            if kind not in (int, float):
+                continue
+            whole = kind is int
+            number = isinstance(value, Integral if whole else Real) and not isinstance(value, bool)
+            if not (number and stated.least <= value <= stated.most and stated.above < value < math.inf):
+                what = "a whole number, " if whole else ""
+                raise ValueError(f"{name} must be {what}{stated.allowed()}, got {quoted(value)}")
+
+
+def options_of(plan: type) -> dict[str, Option]:
+    """Return the options of a plan by name."""
+    return {each.name: each.metadata[_KEY] for each in fields(plan) if _KEY in each.metadata}

@@ -1,0 +1,109 @@
+"""Results: the one value that every study returns, that is saved, loaded, shown and drawn."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
+
+from rockwobble.models.shown import Shown, brief
+
+from .manifest import Manifest, Number, made_now, read_results, write_results
+from .manifest import Results as Stored
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Results(Shown):
+    """What a study has found; a subclass registers its kind by `class Ensemble(Results, kind="ensemble")`.
+
+    Attributes
+    ----------
+    tables : mapping of str to DataFrame
+        A table is an attribute, too: `found.members` is `found.tables["members"]`.
+    facts : mapping
+        What the tables do not hold, as JSON knows it: numbers, texts, lists and mappings. "inputs" is the
+        hash of all that the results depend on, "seed" that of whatever random numbers were drawn.
+    manifest : Manifest or None
+        What made results that were loaded, or are about to be saved.
+    """
+
+    kind: ClassVar[str]
+    kinds: ClassVar[dict[str, type[Results]]] = {}
+    tables: Mapping[str, pd.DataFrame]
+    facts: Mapping[str, Any]
+    manifest: Manifest | None = None
+
+    def __init_subclass__(cls, *, kind: str) -> None:
+        cls.kind = kind
+        Results.kinds[kind] = cls
+
+    def __getattr__(self, name: str) -> pd.DataFrame:
+        # not the fields themselves, for which a copy or a pickle asks before there are any
+        if name.startswith("_") or name in ("tables", "facts", "manifest") or name not in self.tables:
+            raise AttributeError(f"{type(self).__name__} has no attribute {name!r}")
+        return self.tables[name]
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self.tables})
+
+    def headline(self) -> Mapping[str, Number]:
+        """Return the main numbers, by what they are."""
+        return {}
+
+    def _said(self) -> Mapping[str, str]:
+        return {name: brief(value) for name, value in self.headline().items()}
+
+    def sheets(self) -> Mapping[str, bytes]:
+        """Return files of data besides the tables, by name, such as tables as CSV."""
+        return {}
+
+    def made_by(self, command: str = "") -> Self:
+        """Return these results with the manifest of this machine and version, and of the `command`."""
+        facts = self.facts
+        manifest = made_now(
+            self.kind,
+            inputs=str(facts.get("inputs", "")),
+            command=command,
+            seeds={"seed": int(facts["seed"])} if "seed" in facts else {},
+            headline=self.headline(),
+            about=facts,
+        )
+        return dataclasses.replace(self, manifest=manifest)
+
+    def save(self, folder: str | Path, *, pages: Mapping[str, bytes] | None = None) -> None:
+        """Write tables, facts and manifest to `folder`: whole or not at all; other files there stay.
+
+        Parameters
+        ----------
+        folder : str or Path
+        pages : mapping, optional
+            Content of what was drawn of the results, by name of the file.
+
+        Raises
+        ------
+        ValueError
+            If the folder cannot be written.
+        """
+        manifest = self.manifest or self.made_by().manifest
+        write_results(folder, cast("Manifest", manifest), self.tables, files=self.sheets(), pages=pages)
+
+    @classmethod
+    def load(cls, folder: str | Path) -> Self:
+        """Return the results of this kind in `folder`, as they were saved; nothing runs.
+
+        Raises
+        ------
+        ValueError
+            If there are none, or a file is missing or damaged: the first such file is named.
+        """
+        return cls.of_stored(read_results(folder, cls.kind))
+
+    @classmethod
+    def of_stored(cls, stored: Stored) -> Self:
+        """Return the results whose files are whole."""
+        return cls(tables=stored.tables(), facts=stored.manifest.about, manifest=stored.manifest)

@@ -1,0 +1,328 @@
+"""Study of an ensemble: distributions of peak tilts, which agree where single traces have diverged."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
+from rockwobble.models.diagnostic import joined
+
+from ..metrics.distributions import Array, Contrast, Flags, adjusted, contrast, log_ratios
+from ..metrics.order_statistics import Interval, quantile_interval, stated
+from ..metrics.tilt import outcome_of
+from ..runs.choice import default_runs, require_runnable, support_of
+from ..runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
+from ..runs.labels import run_labels
+from ..runs.progress import ProgressCallback
+from ..storage.fingerprint import fingerprint
+from ..storage.manifest import Number
+from ..storage.manifest import Results as Stored
+from ..storage.results import Results
+from .plans import Copies
+
+KIND = "ensemble"
+MODELS = (Run(None, "recess"), Run(None, "flat"))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Ensemble(Results, kind=KIND):
+    """Peak tilts of many members by several methods.
+
+    Tables
+    ------
+    members : DataFrame
+        One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
+        overturned), outcome (see `outcome_of`), diagnostics (their codes), wall_time [s].
+    methods : DataFrame
+        One row for each method: own_model (of the support of an engine; of a ring, which has none, the recess
+        model), runs, rocked, overturned, failed, failed_members (their names), and of the peak tilts of what
+        did not fail [alpha] the median with its interval (peak_median, _low, _high) and the 16th and 84th
+        percentile (peak_16, peak_84): infinite where they overturn.
+    contrasts : DataFrame
+        One row for each two methods: the numbers of `Contrast`, intervals in columns _low and _high, its
+        verdict, masked (members that failed by one of them), and both probabilities corrected for the number
+        of pairs (Holm) in columns _adjusted.
+
+    Its facts are what the members are, the range of their sizes and slendernesses, the model of the support
+    of each method, the seed, and the hash of all inputs.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> case = rw.Case(pier, rw.el_centro_1940(), duration=15.0)
+    >>> both = [rw.Run(None, "recess"), rw.Run(None, "flat")]
+    >>> found = rw.ensemble(case, runs=[], models=both, copies=5, workers=1)
+    >>> list(found.methods["runs"]), found.members.shape
+    ([5, 5], (10, 6))
+    """
+
+    def headline(self) -> dict[str, Number]:
+        """Return the median ratio of each two methods."""
+        return {
+            f"{row['method']} / {row['against']}, median ratio": stated(
+                row["ratio"], row["compared"], ratio=True
+            )
+            for row in self.contrasts.to_dict("records")
+        }
+
+    def sheets(self) -> dict[str, bytes]:
+        """Return the tables as CSV."""
+        return {f"{name}.csv": table.to_csv(index=False).encode() for name, table in self.tables.items()}
+
+    @classmethod
+    def of_stored(cls, stored: Stored) -> Ensemble:
+        """Return the ensemble of the stored members: what is concluded from them is computed anew."""
+        found = ensemble_of(stored.table("members"), stored.manifest.about)
+        return dataclasses.replace(found, manifest=stored.manifest)
+
+    def _said(self) -> dict[str, str]:
+        runs = self.methods[["runs", "overturned", "failed"]].sum()
+        return {
+            "members": f"{self.members['member'].nunique()}, {self.facts.get('members', '')}",
+            "overturned": f"{runs['overturned']} of {runs['runs']} runs",
+            "methods": ", ".join(self.methods["method"]),
+            "failed": str(runs["failed"]),
+        }
+
+
+def ensemble(
+    case_or_members: Case | Suite | Sequence[Case],
+    *,
+    runs: Iterable[Run] | None = None,
+    models: Sequence[Run] = MODELS,
+    workers: int | None = None,
+    progress: ProgressCallback | None = None,
+    resume: str | Path | None = None,
+    source: str = "cases",
+    **options: Any,
+) -> Ensemble:
+    """Run many members by each method, and hold their peak tilts against each other, member by member.
+
+    Parameters
+    ----------
+    case_or_members : Case, Suite or sequence of Case
+        One case is run as perturbed copies, see `perturbed_copies`; several are the members, such as one
+        body under many records.
+    runs : iterable of Run, optional
+        Default: those of the suite, else every installed engine with supports "recess" and "flat".
+    models : sequence of Run, optional
+        Reduced models. The first is named first in every contrast.
+    workers, progress, resume
+        As in `compare`.
+    source : str, optional
+        What the members are, for people, where there are several cases.
+    **options
+        Of the copies, see `Copies`: copies (20), perturbation (0.01), seed (0).
+
+    Returns
+    -------
+    Ensemble
+        Failed runs have no peak; they are counted and named, and their member does not count in the
+        contrasts of their method.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two members, or an engine or a number is not usable.
+
+    Examples
+    --------
+    >>> from rockwobble.models import Cylinder, el_centro_1940
+    >>> case = Case(Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940())
+    >>> found = ensemble(case, runs=[], copies=5, workers=1)
+    >>> found.methods[["method", "runs", "failed"]].values.tolist()
+    [['recess model', 5, 0], ['flat-ground model', 5, 0]]
+    """
+    plan = Copies(**options)
+    about: dict[str, object] = {"seed": plan.seed}
+    if isinstance(case_or_members, Case):
+        perturbation = plan.perturbation
+        members = perturbed_copies(case_or_members, plan.copies, perturbation=perturbation, seed=plan.seed)
+        about |= {"members": f"perturbed copies of {case_or_members.name}, {100.0 * perturbation:g} %"}
+        about |= {"perturbation": perturbation}
+    else:
+        members = list(case_or_members.cases if isinstance(case_or_members, Suite) else case_or_members)
+        about |= {"members": source}
+    if len(members) < 2 or len({case.name for case in members}) < len(members):
+        raise ValueError(f"an ensemble has at least 2 members of different names, got {len(members)}")
+    stated = case_or_members.runs if isinstance(case_or_members, Suite) else ()
+    chosen = (stated or default_runs()) if runs is None else tuple(runs)
+    for case in members:
+        for run in chosen:
+            require_runnable(case, run)
+    methods = dict(zip(run_labels((*models, *chosen)), (*models, *chosen), strict=True))
+    jobs = [Job(case=case, run=run, label=label) for case in members for label, run in methods.items()]
+    with nullcontext() if resume is None else open_trace_cache(resume, "ensemble", samples=False) as cache:
+        results = simulate_all(jobs, workers=workers, progress=progress, cache=cache)
+    table = _members(jobs, results)
+    about |= {name: _range(members, name) for name in ("semidiagonal", "tan_alpha")}
+    about |= {"methods": {label: _compared_with(run) for label, run in methods.items()}}
+    about |= {"inputs": fingerprint([(job.case.name, job.label, job_fingerprint(job)) for job in jobs])}
+    return ensemble_of(table, about)
+
+
+def _compared_with(run: Run) -> str:
+    """Return the label of the model of an engine's own support, or the recess model."""
+    return str(Run(None, support_of(run).compared_with[-1])) if run.engine else ""
+
+
+def ensemble_of(members: pd.DataFrame, about: Mapping[str, object]) -> Ensemble:
+    """Return the ensemble of a table of members, and of what `Ensemble.facts` says of them."""
+    methods = cast("Mapping[str, str]", about["methods"])
+    tables = {
+        "members": members,
+        "methods": method_table(members, methods),
+        "contrasts": contrast_table(members, methods),
+    }
+    return Ensemble(tables=tables, facts=about)
+
+
+def _range(members: Sequence[Case], name: str) -> dict[str, float]:
+    values = {float(getattr(case.cylinder, name)) for case in members}
+    return {"from": min(values), "to": max(values), "count": len(values)}
+
+
+def _members(jobs: Sequence[Job], results: Sequence[Trace]) -> pd.DataFrame:
+    return pd.DataFrame(
+        {
+            "member": job.case.name,
+            "method": job.label,
+            "peak_tilt": result.peak_tilt / job.case.cylinder.alpha,
+            "outcome": outcome_of(result),
+            "diagnostics": joined(fact.code for fact in result.facts),
+            "wall_time": result.wall_time,
+        }
+        for job, result in zip(jobs, results, strict=True)
+    )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Pairs:
+    """The members of an ensemble by two methods.
+
+    Attributes
+    ----------
+    members : ndarray of str, shape (n,)
+    peaks, against : ndarray, shape (n,)
+        Peak tilts [alpha], NaN where a run failed.
+    overturned, against_overturned : ndarray of bool, shape (n,)
+    """
+
+    members: NDArray[np.str_]
+    peaks: Array
+    against: Array
+    overturned: Flags
+    against_overturned: Flags
+
+    @property
+    def failed(self) -> Flags:
+        """Whether a member failed by one method or both."""
+        return np.isnan(self.peaks) | np.isnan(self.against)
+
+    def log_ratios(self) -> Array:
+        """Return the logarithms of the ratios of the members, see `distributions.log_ratios`."""
+        return log_ratios(self.peaks, self.against, self.overturned, self.against_overturned)
+
+    def contrast(self) -> Contrast | None:
+        """Return the contrast of the methods; None where fewer than two members ran by both."""
+        if np.count_nonzero(~self.failed) < 2:
+            return None
+        return contrast(self.peaks, self.against, self.overturned, self.against_overturned)
+
+
+def pairs(
+    runs: pd.DataFrame, method: str, against: str, *, member: str = "member", peak: str = "peak_tilt"
+) -> Pairs:
+    """Return the members by two methods, each beside itself.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        One row for each member and method: columns method, outcome, and those of the names below.
+    method, against : str
+    member, peak : str, optional
+        Columns of the member's name and of its peak tilt [alpha].
+
+    Raises
+    ------
+    ValueError
+        If a member has two runs of one method.
+    """
+    if runs.duplicated([member, "method"]).any():
+        raise ValueError("a member has one run by each method, got more")
+    names = list(runs[member].unique())
+    ours, theirs = (
+        runs[runs["method"] == name].set_index(member).reindex(names) for name in (method, against)
+    )
+    return Pairs(
+        members=np.array(names, dtype=str),
+        peaks=ours[peak].where(ours["outcome"] != "failed").to_numpy(float),
+        against=theirs[peak].where(theirs["outcome"] != "failed").to_numpy(float),
+        overturned=(ours["outcome"] == "overturned").to_numpy(bool),
+        against_overturned=(theirs["outcome"] == "overturned").to_numpy(bool),
+    )
+
+
+def method_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:
+    """Return one row for each method, see `Ensemble.methods`; `methods` names the own model of each."""
+    rows = []
+    for method, own in methods.items():
+        runs = members[members["method"] == method]
+        failed = runs[runs["outcome"] == "failed"]
+        known = runs[runs["outcome"] != "failed"]
+        fallen = known["outcome"] == "overturned"
+        peaks = np.where(fallen, math.inf, known["peak_tilt"].to_numpy(float))
+        median = quantile_interval(peaks, 0.5)
+        rows.append(
+            {
+                "method": method,
+                "own_model": own,
+                "runs": len(runs),
+                "rocked": int((known["peak_tilt"] > 0.0).sum()),
+                "overturned": int(fallen.sum()),
+                "failed": len(failed),
+                "failed_members": ", ".join(failed["member"]),
+                "peak_16": quantile_interval(peaks, 0.16).value,
+                "peak_median": median.value,
+                "peak_median_low": max(median.low, 0.0),
+                "peak_median_high": median.high,
+                "peak_84": quantile_interval(peaks, 0.84).value,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def contrast_table(members: pd.DataFrame, methods: Mapping[str, str]) -> pd.DataFrame:
+    """Return one row for each two methods, see `Ensemble.contrasts`."""
+    rows = []
+    for against, method in itertools.combinations(methods, 2):
+        both = pairs(members, method, against)
+        found = both.contrast()
+        if found is not None:
+            masked = ", ".join(both.members[both.failed])
+            rows.append({"method": method, "against": against, **contrast_row(found), "masked": masked})
+    table = pd.DataFrame(rows)
+    for name in ("ratio_p", "overturned_p") if len(table) else ():
+        table[f"{name}_adjusted"] = adjusted(table[name].to_numpy(float))
+    return table
+
+
+def contrast_row(found: Contrast) -> dict[str, float | int | str]:
+    """Return a contrast by the names of its attributes, the ends of an interval as NAME_low and NAME_high."""
+    row: dict[str, float | int | str] = {}
+    for field in dataclasses.fields(found):
+        value = getattr(found, field.name)
+        row |= value.columns(field.name) if isinstance(value, Interval) else {field.name: value}
+    return row | {"verdict": found.verdict}

@@ -1,1 +1,0 @@
-"""Ensembles: peak tilts of many members by several methods, compared as distributions."""

@@ -1,1 +1,0 @@
-"""Two traces on one time axis, and trajectories from elsewhere."""

@@ -1,0 +1,110 @@
+"""Many cases from one: perturbed copies of it, or the same cylinder under several ground motions."""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Sequence
+
+import numpy as np
+
+from .case import Case
+from .ground_motion import GroundMotion
+
+# a copy further off is another problem, and a factor could change its sign
+MOST_PERTURBED = 0.1
+
+
+def require_perturbation(perturbation: float) -> None:
+    """Refuse a relative standard deviation of copies that is out of range."""
+    if not 0.0 < perturbation <= MOST_PERTURBED:
+        raise ValueError(f"perturbation must be above 0 and at most {MOST_PERTURBED:g}, got {perturbation!r}")
+
+
+def perturbed_copies(case: Case, count: int, *, perturbation: float, seed: int) -> list[Case]:
+    """Return one problem `count` times, each with slightly different conditions.
+
+    From a release its tilt and its rolling rate, from rest the two horizontal components of the ground
+    motion, are multiplied by 1 + perturbation * N with a standard normal N of its own for each.
+
+    Parameters
+    ----------
+    case : Case
+    count : int
+    perturbation : float
+        Relative standard deviation.
+    seed : int
+
+    Returns
+    -------
+    list of Case
+
+    Raises
+    ------
+    ValueError
+        If a number is out of range, or nothing moves the cylinder.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> copies = perturbed_copies(case, 3, perturbation=1e-3, seed=1)
+    >>> [round(copy.initial.tilt / release.tilt, 5) for copy in copies]
+    [1.00035, 1.00033, 1.00091]
+    """
+    _require_count(count)
+    require_perturbation(perturbation)
+    factors = 1.0 + perturbation * np.random.default_rng(seed).standard_normal((count, 2))
+    return [
+        dataclasses.replace(perturbed(case, *map(float, pair)), name=f"{case.name} #{index + 1}")
+        for index, pair in enumerate(factors)
+    ]
+
+
+def perturbed(case: Case, first: float, second: float) -> Case:
+    """Return a release with its tilt and rolling rate, or a motion with its two components, times factors."""
+    initial, motion = case.initial, case.motion
+    if initial is not None and initial.tilt > 0.0:
+        released = dataclasses.replace(
+            initial, tilt=initial.tilt * first, rolling_rate=initial.rolling_rate * second
+        )
+        return dataclasses.replace(case, initial=released)
+    if motion is None:
+        raise ValueError("an ensemble needs a release or a ground motion, got a cylinder at rest")
+    acceleration = np.array(motion.acceleration)
+    acceleration[:, 0] *= first
+    acceleration[:, 1] *= second
+    return dataclasses.replace(case, motion=GroundMotion(acceleration, motion.time_step, motion.name))
+
+
+def with_motions(case: Case, motions: Sequence[GroundMotion]) -> list[Case]:
+    """Return one problem under each of several ground motions, as long as each of them.
+
+    Parameters
+    ----------
+    case : Case
+    motions : sequence of GroundMotion
+
+    Returns
+    -------
+    list of Case
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> shaking = rw.synthetic_motions(2, peak=4.0, seed=1, duration=10.0)
+    >>> cases = with_motions(rw.Case(pier, duration=1.0), shaking)
+    >>> [each.length for each in cases]
+    [10.0, 10.0]
+    """
+    return [
+        dataclasses.replace(case, name=f"{case.name}: {motion.name}", motion=motion, duration=None)
+        for motion in motions
+    ]
+
+
+def _require_count(count: int) -> None:
+    if count < 2:
+        raise ValueError(f"an ensemble has at least 2 members, got {count!r}")

@@ -1,0 +1,57 @@
+"""From a dataclass of options to the options of a command: names, types, defaults and help stand there."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Iterator
+from dataclasses import fields, is_dataclass
+from functools import wraps
+from typing import Annotated, Any, get_type_hints
+
+import typer
+
+from rockwobble.compare.runs.plan import options_of
+
+from ...console.terminal import user_input
+
+
+def takes_options(command: Callable[..., None]) -> Callable[..., None]:
+    """Give a command, in the place of each parameter whose type is a dataclass, its fields as options.
+
+    A field is annotated with an option of typer, or is an option of a plan, whose numbers are checked when
+    the plan is made. Two dataclasses may share a field: it is one option, and both get its value.
+    """
+    own = get_type_hints(command, include_extras=True)
+    stated: dict[str, Any] = {name: kind for name, kind in own.items() if is_dataclass(kind)}
+    parameters: dict[str, inspect.Parameter] = {}
+    for name, parameter in inspect.signature(command).parameters.items():
+        if name in stated:
+            parameters |= {each.name: each for each in _parameters(stated[name])}
+        else:
+            parameters[name] = parameter.replace(kind=parameter.KEYWORD_ONLY, annotation=own[name])
+
+    @wraps(command)
+    def with_options(**given: Any) -> None:
+        with user_input():
+            made = {
+                name: kind(**{each.name: given[each.name] for each in fields(kind)})
+                for name, kind in stated.items()
+            }
+        others = {name: value for name, value in given.items() if name in own and name not in stated}
+        command(**made, **others)
+
+    with_options.__signature__ = inspect.Signature(list(parameters.values()))  # type: ignore[attr-defined]
+    with_options.__annotations__ = {name: each.annotation for name, each in parameters.items()}
+    return with_options
+
+
+def _parameters(kind: type) -> Iterator[inspect.Parameter]:
+    types, options = get_type_hints(kind, include_extras=True), options_of(kind)
+    for each in fields(kind):
+        annotation = types[each.name]
+        if each.name in options:
+            stated = options[each.name]
+            annotation = Annotated[annotation, typer.Option(help=stated.help, rich_help_panel=stated.group)]
+        yield inspect.Parameter(
+            each.name, inspect.Parameter.KEYWORD_ONLY, default=each.default, annotation=annotation
+        )

@@ -1,0 +1,100 @@
+"""Shares of fresh motions for which the friction and the restraining moment that the limits state suffice.
+
+`python tests/benchmarks needs_coverage --seed 7` prints them by slenderness and intensity, with counts. The
+stated needs are computed from the published tables; the cylinders are of sizes drawn at random between the
+least and the largest mapped, evenly in the logarithm, under records drawn at random, or with `--synthetic`
+under synthetic motions of the seed. Those that rock without overturning count.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble import reduced
+from rockwobble.compare.runs.progress import Stages
+from rockwobble.compare.storage.manifest import read_results
+from rockwobble.compare.studies.ensemble.members import synthetic_motions
+from rockwobble.compare.studies.validity.limits.needs import needs
+from rockwobble.compare.studies.validity.motions import AMPLE, GRAVITY, motion_named, record_names
+from rockwobble.compare.studies.validity.study import KIND, stored_validity
+from rockwobble.models import Case, Cylinder, GroundMotion
+
+from .console import options_of, tell
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+PUBLISHED = Path(__file__).parents[2] / "reports" / "published" / "validity"
+DRAWS = 150  # of a slenderness and intensity: a share of 0.9 is then known to 0.025
+RECORDS = 22
+
+
+def coverage(
+    stated: pd.DataFrame, sizes: tuple[float, float], motions: Sequence[GroundMotion], draws: int, seed: int
+) -> pd.DataFrame:
+    """Return `stated` with motions that rock and stand, and those of them whose need is covered.
+
+    The columns more: standing, friction_covered, moment_covered.
+    """
+    random, counts = np.random.default_rng(seed), []
+    stages = Stages(tell, [1.0] * len(stated))
+    for row in stated.to_dict("records"):
+        found = []
+        with stages.stage(f"tan alpha {row['tan_alpha']:g}, {row['intensity']:g} g tan alpha"):
+            for size in np.exp(random.uniform(*map(math.log, sizes), draws)):
+                cylinder = Cylinder(semidiagonal=float(size), tan_alpha=row["tan_alpha"])
+                motion = motions[int(random.integers(len(motions)))]
+                motion = motion.scaled(row["intensity"] * GRAVITY * row["tan_alpha"] / motion.peak)
+                run = reduced.simulate(Case(cylinder, motion, friction=AMPLE), rtol=1e-7)
+                if run.peak_tilt > 0.0 and run.outcome not in ("overturned", "failed"):
+                    assert run.assumptions is not None
+                    found.append(
+                        (
+                            run.assumptions.largest_friction_needed <= row["friction"] * row["tan_alpha"],
+                            run.assumptions.largest_restraining_moment
+                            <= row["moment"] * cylinder.base_radius,
+                        )
+                    )
+        friction, moment = np.array(found, dtype=int).reshape(-1, 2).sum(axis=0)
+        counts.append({"standing": len(found), "friction_covered": friction, "moment_covered": moment})
+    return stated.assign(**{name: [row[name] for row in counts] for name in counts[0]})
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Print the two tables."""
+    parser = options_of("needs_coverage", "Shares of fresh motions for which the stated needs suffice.")
+    parser.add_argument("--seed", type=int, default=1, help="of sizes and motions (%(default)s)")
+    parser.add_argument(
+        "--draws", type=int, default=DRAWS, help="of each slenderness and intensity (%(default)s)"
+    )
+    parser.add_argument("--synthetic", action="store_true", help="motions of the seed in place of records")
+    parser.add_argument("--limits", type=Path, default=PUBLISHED, help="folder of the validity study")
+    given = parser.parse_args(arguments)
+    tables = stored_validity(read_results(given.limits, KIND)).tables
+    mapped = tables["peaks"]["semidiagonal"]
+    motions = (
+        synthetic_motions(RECORDS, peak=1.0, seed=given.seed)
+        if given.synthetic
+        else [GroundMotion(m.acceleration[:, :2], m.time_step, m.name) for m in _records()]
+    )
+    found = coverage(
+        needs(tables), (float(mapped.min()), float(mapped.max())), motions, given.draws, given.seed
+    )
+    for name in ("friction", "moment"):
+        print(f"\nStated {name} and the share of motions for which it suffices, by intensity [g tan alpha]")
+        for tan_alpha, own in found.groupby("tan_alpha"):
+            print(f"tan alpha {tan_alpha:g}")
+            for row in own.to_dict("records"):
+                covered, count = row[f"{name}_covered"], row["standing"]
+                print(f"{row['intensity']:8g}{row[name]:10.3g}{covered / count:9.1%}  {covered} of {count}")
+        print(f"all: {found[f'{name}_covered'].sum()} of {found['standing'].sum()}")
+    return 0
+
+
+def _records() -> list[GroundMotion]:
+    return [motion_named(name) for name in record_names(RECORDS)]
