@@ -256,8 +256,8 @@ def _mjcf(frame: Frame, step: float, impedance: float, contact_steps: float) -> 
     hardness = (1.0 - impedance) / impedance * 9999.0
     return (
         f'<mujoco><option timestep="{step}" cone="elliptic" jacobian="dense" tolerance="1e-12" '
-        f'iterations="200" impratio="{hardness}" ccd_tolerance="1e-12" ccd_iterations="200">'
-        '<flag island="disable"/></option>'
+        f'iterations="200" impratio="{hardness}" ccd_tolerance="1e-16" ccd_iterations="200">'
+        '<flag island="disable" multiccd="disable"/></option>'
         f'<worldbody><geom name="ground" type="plane" size="0 0 1" contype="0" conaffinity="0"/>'
         f'<site name="world"/>{bodies}</worldbody><contact>{pairs}</contact>'
         f"<actuator>{guides if frame.support == 'recess' else ''}</actuator></mujoco>"

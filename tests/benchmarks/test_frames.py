@@ -19,7 +19,7 @@ TURNS = 4e-4  # of alpha, by which a free slab on a circle of 3 b turns its colu
 def test_one_column_is_the_reduced_model(support: str) -> None:
     frame = Frame(columns=1, support=support, duration=SHORT)
     assert measured(frame, by_springs)[1] < SPRINGS
-    assert measured(frame, lambda frame: by_mujoco(frame, impedance=0.9999, contact_steps=2.0))[1] < MUJOCO
+    assert measured(frame, lambda frame: by_mujoco(frame, impedance=0.995, contact_steps=2.0))[1] < MUJOCO
 
 
 @pytest.mark.parametrize("solve", [by_springs, by_mujoco, by_bullet])
