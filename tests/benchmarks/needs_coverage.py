@@ -46,7 +46,7 @@ def coverage(
     for row in stated.to_dict("records"):
         found = []
         with stages.stage(f"tan alpha {row['tan_alpha']:g}, {row['intensity']:g} g tan alpha"):
-            for size in np.exp(random.uniform(*map(math.log, sizes), draws)):
+            for size in np.exp(random.uniform(math.log(sizes[0]), math.log(sizes[1]), draws)):
                 cylinder = Cylinder(semidiagonal=float(size), tan_alpha=row["tan_alpha"])
                 motion = motions[int(random.integers(len(motions)))]
                 motion = motion.scaled(row["intensity"] * GRAVITY * row["tan_alpha"] / motion.peak)

@@ -22,6 +22,7 @@ Array = NDArray[np.float64]
 
 FITTED, NEVER, ALWAYS, SEPARATED, FALLING = "fitted", "never", "always", "separated", "not increasing"
 KINDS = (FITTED, NEVER, ALWAYS, SEPARATED, FALLING)
+TOO_FEW = "too few"  # motions or levels: whatever the curve, it is not stated
 _ITERATIONS, _HALVINGS = 60, 30
 _TOLERANCE = 1e-11  # of a step of Newton's method, in standard deviations of the logarithm of the intensity
 _LEVEL = 1e-9  # slope, in the same, of a share that is the same at all intensities

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, ClassVar
 
 import pandas as pd
@@ -12,6 +12,7 @@ from rockwobble.models.shown import Shown
 
 from ...storage.manifest import Manifest, Results, made_now
 from .efficiency import efficiency_table
+from .fit import TOO_FEW
 from .islands import island_table
 from .limits import OVERTURNED
 from .resampling import resamples
@@ -19,6 +20,9 @@ from .samples import blocks_of
 from .tables import contrast_table, count_table, curve_table, curves_of, fit_table
 
 KIND = "fragility"
+# a curve is stated of no fewer: of four motions a median has no ends, and of one level no slope
+FEWEST_MOTIONS, FEWEST_LEVELS = 6, 2
+_COUNTED = ("cylinder", "method", "limit", "runs", "exceeded", "failed")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
@@ -38,9 +42,10 @@ class Fragility(Shown):
         n runs and k that exceed a limit, by cylinder, method, limit and intensity.
     fits : DataFrame
         One row for each cylinder, method and limit: kind ("fitted", "never", "always", "separated", "not
-        increasing"), median, dispersion, runs, exceeded, failed, extrapolated, without_curve (share of the
-        resamples), and of the goodness of fit deviance, degrees, p and largest (difference of share and
-        curve).
+        increasing"; of fewer motions or levels than a curve takes "too few", and no number but counts; then
+        the tables below are empty), median, dispersion, runs, exceeded, failed, extrapolated, without_curve
+        (share of the resamples), and of the goodness of fit deviance, degrees, p and largest (difference of
+        share and curve).
     curves : DataFrame
         The curves point by point: intensity, probability, low, high.
     contrasts : DataFrame
@@ -101,7 +106,7 @@ def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, about: Mapping[str, A
     blocks = blocks_of(runs, points, about["limits"], str(about["measure"]))
     weights = resamples(len(blocks.motions), int(about["resamples"]), int(about["seed"]))
     fitted, drawn = curves_of(blocks), curves_of(blocks, weights)
-    return Fragility(
+    found = Fragility(
         runs=runs,
         points=points,
         counts=count_table(blocks),
@@ -112,6 +117,18 @@ def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, about: Mapping[str, A
         islands=island_table(blocks, weights),
         about=about,
     )
+    levels = points.groupby("cylinder")[blocks.measure].nunique()
+    enough = len(blocks.motions) >= FEWEST_MOTIONS and levels.min() >= FEWEST_LEVELS
+    return found if enough else _counts_alone(found)
+
+
+def _counts_alone(found: Fragility) -> Fragility:
+    """Return a fragility of too few motions or levels: what was counted, and nothing fitted."""
+    fits = found.fits.assign(kind=TOO_FEW, extrapolated=False)
+    fitted = fits.columns.difference([*_COUNTED, "kind", "extrapolated"])
+    fits[fitted] = float("nan")
+    tables = ("curves", "contrasts", "efficiency", "islands")
+    return replace(found, fits=fits, **{name: getattr(found, name).iloc[:0] for name in tables})
 
 
 def stored_fragility(results: Results) -> Fragility:
@@ -124,7 +141,10 @@ def manifest_of(found: Fragility, command: str = "") -> Manifest:
     """Return the manifest of a fragility, with its medians and the contrasts of overturning as headline."""
     fits = found.fits[found.fits["limit"] == OVERTURNED]
     headline = {
-        f"{row['cylinder']}, {row['method']}, median": row["median"] for row in fits.to_dict("records")
+        f"{row['cylinder']}, {row['method']}, overturned of {row['runs']}": row["exceeded"]
+        if row["kind"] == TOO_FEW
+        else row["median"]
+        for row in fits.to_dict("records")
     } | {
         f"{row['cylinder']}, {row['method']} / {row['against']}": row["ratio"]
         for row in found.contrasts.to_dict("records")

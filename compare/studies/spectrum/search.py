@@ -122,7 +122,7 @@ def probe_below(
 
 def gap_bound(probes: int) -> float:
     """Return the share of intensities of which none in so many drawn overturns with a chance of 5 %."""
-    return 1.0 - (1.0 - CONFIDENCE) ** (1.0 / probes)
+    return 1.0 - math.pow(1.0 - CONFIDENCE, 1.0 / probes)
 
 
 def run_searches(
