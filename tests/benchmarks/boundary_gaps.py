@@ -27,8 +27,7 @@ from rockwobble.compare.studies.spectrum.search import (
     run_searches,
     search_lowest,
 )
-from rockwobble.compare.studies.spectrum.series import intensity_unit, uplift_factor
-from rockwobble.compare.studies.spectrum.study import RTOL, SUPPORTS
+from rockwobble.compare.studies.spectrum.spectrum import RTOL, SUPPORTS, intensity_unit, uplift_factor
 from rockwobble.models import GroundMotion, el_centro_1940
 
 from .console import options_of, show, tell

@@ -20,7 +20,7 @@ from ...comparison.prediction import Prediction
 from ...metrics.distributions import Contrast
 from ...metrics.tilt import overturned
 from ...traces.pair import is_release
-from ..spectrum.series import SPATIAL, uplift_factor
+from ..spectrum.spectrum import SPATIAL, uplift_factor
 from .grades import Grade, grade_engine, grade_intensity, grade_overturning, grade_share, overall
 from .members import COPIES, answers, fall_of
 from .scales import BESIDE, Lowest, planar_chances

@@ -19,7 +19,7 @@ def describe(case: Case) -> list[str]:
     ]
     if motion is not None:
         # here, because the help of the command line needs no numpy
-        from rockwobble.compare.studies.spectrum.series import uplift_factor
+        from rockwobble.compare.studies.spectrum.spectrum import uplift_factor
 
         factor = uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length)
         within = " within the run" if case.length < motion.duration else ""
