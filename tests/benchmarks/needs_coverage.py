@@ -19,8 +19,8 @@ from rockwobble import reduced
 from rockwobble.compare.runs.progress import Stages
 from rockwobble.compare.storage.manifest import read_results
 from rockwobble.compare.studies.ensemble.members import synthetic_motions
-from rockwobble.compare.studies.validity.limits.needs import needs
-from rockwobble.compare.studies.validity.motions import AMPLE, GRAVITY, motion_named, record_names
+from rockwobble.compare.studies.validity.limits import needs
+from rockwobble.compare.studies.validity.plan import AMPLE, GRAVITY, motion_named, record_names
 from rockwobble.compare.studies.validity.study import KIND, stored_validity
 from rockwobble.models import Case, Cylinder, GroundMotion
 

@@ -17,17 +17,27 @@ from tiny_validity import TINY, kept_engine_runs, tiny_tables, tiny_validity
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.validity import study
-from rockwobble.compare.studies.validity.extent import FULL, LARGEST_PEAK, QUICK
-from rockwobble.compare.studies.validity.limits import LIMITS, limits_of
-from rockwobble.compare.studies.validity.limits.distributions import FEWEST, cells, contrasts, vertical
-from rockwobble.compare.studies.validity.limits.engine import damping
-from rockwobble.compare.studies.validity.limits.needs import friction, needs
-from rockwobble.compare.studies.validity.limits.numbers import first_failing, reached, up_to
-from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case, source_of
-from rockwobble.compare.studies.validity.parts import PARTS, part_named
+from rockwobble.compare.studies.validity.distributions import (
+    FEWEST,
+    cells,
+    contrasts,
+    first_failing,
+    reached,
+    up_to,
+    vertical,
+)
+from rockwobble.compare.studies.validity.el_centro import FREE
+from rockwobble.compare.studies.validity.limits import LIMITS, damping, friction, limits_of, needs
+from rockwobble.compare.studies.validity.plan import (
+    EL_CENTRO,
+    FULL,
+    LARGEST_PEAK,
+    QUICK,
+    shaken_case,
+    source_of,
+)
 from rockwobble.compare.studies.validity.records import HALVED, RECESS
-from rockwobble.compare.studies.validity.rings import FREE
-from rockwobble.compare.studies.validity.study import measure_all
+from rockwobble.compare.studies.validity.study import PARTS, measure_all, part_named
 from rockwobble.models import Cylinder, Run
 from rockwobble.reduced import body, problem
 from rockwobble.reduced.body import Body
