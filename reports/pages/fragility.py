@@ -10,9 +10,13 @@ from rockwobble.compare import Fragility
 from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER, TOO_FEW
 from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.limits import OVERTURNED
-from rockwobble.compare.studies.fragility.questions import main_contrasts
-from rockwobble.compare.studies.fragility.result import FEWEST_LEVELS, FEWEST_MOTIONS, stored_fragility
+from rockwobble.compare.studies.fragility.samples import OVERTURNED
+from rockwobble.compare.studies.fragility.study import (
+    FEWEST_LEVELS,
+    FEWEST_MOTIONS,
+    main_contrasts,
+    stored_fragility,
+)
 from rockwobble.compare.studies.fragility.tables import ALL
 
 from ..figures.fragility import pictures

@@ -13,10 +13,10 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare import Fragility, IncompleteError, fragility, synthetic_motions
 from rockwobble.compare.runs import execution
-from rockwobble.compare.studies.fragility import runs as running
-from rockwobble.compare.studies.fragility.islands import incremental, islands
-from rockwobble.compare.studies.fragility.limits import exceeded, require_limits
-from rockwobble.compare.studies.fragility.result import fragility_of
+from rockwobble.compare.studies.fragility import plan as running
+from rockwobble.compare.studies.fragility.samples import exceeded, require_limits
+from rockwobble.compare.studies.fragility.study import fragility_of
+from rockwobble.compare.studies.fragility.tables import incremental, islands
 from rockwobble.models import Case, Cylinder, Run
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)

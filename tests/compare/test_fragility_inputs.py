@@ -9,9 +9,9 @@ import pytest
 
 from rockwobble.compare import fragility, synthetic_motions
 from rockwobble.compare.studies.fragility.methods import methods_of, own_model
-from rockwobble.compare.studies.fragility.motions import read_records
 from rockwobble.compare.studies.fragility.plan import Plan
 from rockwobble.models import Cylinder, Run, el_centro_1940
+from rockwobble.models.records.folder import read_records
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
 MOTIONS = synthetic_motions(12, peak=1.0, seed=4)

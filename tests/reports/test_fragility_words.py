@@ -13,8 +13,7 @@ from fragility_example import METHODS, made_up
 from rockwobble.compare import Fragility
 from rockwobble.compare.metrics.order_statistics import Interval
 from rockwobble.compare.storage.manifest import Manifest
-from rockwobble.compare.studies.fragility.questions import main_contrasts
-from rockwobble.compare.studies.fragility.result import KIND, fragility_of
+from rockwobble.compare.studies.fragility.study import KIND, fragility_of, main_contrasts
 from rockwobble.compare.studies.fragility.tables import margin_of
 from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.pages.fragility import fragility_page

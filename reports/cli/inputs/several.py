@@ -52,7 +52,7 @@ def motions_of(
         If two sources are asked for, or one cannot be read.
     """
     from rockwobble.compare.studies.ensemble.members import recorded_far_field
-    from rockwobble.compare.studies.fragility.motions import read_records
+    from rockwobble.models.records.folder import read_records
 
     if p695 + (records is not None) + (synthetic is not None) > 1:
         raise ValueError("the motions are those of --p695, of --records or --synthetic, got more than one")

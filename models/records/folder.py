@@ -1,4 +1,4 @@
-"""Ground motions of a fragility: folders of records with a table."""
+"""Folders of records: ground motions as a table beside their files lists them."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ import csv
 from collections.abc import Mapping
 from pathlib import Path
 
-from rockwobble.models import GroundMotion, read_record
+from ..ground_motion import GroundMotion
+from .files import read_record
 
 TABLE = "records.csv"
 _COLUMNS, _NEEDED = ("name", "x", "y", "z", "units", "scale"), ("x", "y")
