@@ -96,7 +96,7 @@ def ratios(runs: pd.DataFrame, method: str, against: str) -> Array:
     return np.exp(pairs(runs, method, against, member="motion", peak="peak").log_ratios())
 
 
-def records(tables: Tables) -> Numbers:
+def peak_ratios(tables: Tables) -> Numbers:
     """Return the range over the points of the contrasts of each method.
 
     NAME_least and NAME_largest, of the median ratio to the recess model; NAME_05_least to NAME_95_largest, of

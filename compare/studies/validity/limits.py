@@ -17,7 +17,7 @@ from .distributions import (
     column,
     first_failing,
     largest,
-    records,
+    peak_ratios,
     single_peaks,
     up_to,
     vertical,
@@ -112,7 +112,7 @@ _CONFIRMS = 0.5
 _CONTRADICTS = 1e-3
 
 
-def free_response(tables: Tables) -> Numbers:
+def free_passes(tables: Tables) -> Numbers:
     """Return the difference of recess and flat ground in a pass, and the releases that an engine decides."""
     table = tables["free_response"]
     tan_alpha, turn, flat = (column(table, name) for name in ("tan_alpha", "turn", "flat_turn"))
@@ -256,10 +256,10 @@ def damping(tables: Tables) -> pd.DataFrame:
 
 
 LIMITS: Mapping[str, Callable[[Tables], Numbers]] = {
-    "records": records,
+    "records": peak_ratios,
     "single_peaks": single_peaks,
     "traces": traces,
-    "free_response": free_response,
+    "free_response": free_passes,
     "friction": friction,
     "contact": contact,
     "restraining_moment": restraining_moment,
