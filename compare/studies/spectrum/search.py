@@ -37,7 +37,7 @@ _COARSEST = 8.0  # of these, where nothing asks for a finer one
 # side, reaches alpha within so many times its length: next to a window the tilt changes fast.
 _REACH, _BESIDE = 6.0, 2
 # Intensities drawn below each lowest. Where 0.6 % of all overturn, none of so many does once in twenty times;
-# they are some seven times as many runs as the cells of a spectrum and the search together.
+# with them a spectrum takes some five times as many runs as without.
 PROBES = 500
 _SPARE = 10  # as a tenth more are drawn, one that overturns near the lowest asks for no others
 _CLOSE = 1e-6  # relative: so near to uplift there is nothing to draw between
