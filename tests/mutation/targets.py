@@ -157,8 +157,7 @@ GROUPS = (
         name="studies",
         patterns=(
             "compare/studies/spectrum/search.py",
-            "compare/studies/spectrum/series.py",
-            "compare/studies/spectrum/study.py",
+            "compare/studies/spectrum/spectrum.py",
             "compare/studies/sweep/grid.py",
         ),
         layers=("studies", "metrics"),

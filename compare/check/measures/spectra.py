@@ -11,8 +11,7 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, Trace
 
-from ...studies.spectrum.series import SERIES
-from ...studies.spectrum.study import overturning_spectrum
+from ...studies.spectrum.spectrum import SERIES, overturning_spectrum
 from ..bench import Array, Bench
 from ..finding import Bound, Finding, at_most, none_wrong
 from ..problems import polyline
