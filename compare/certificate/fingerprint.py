@@ -122,7 +122,8 @@ def entry(short: ShortCase, trace: Trace) -> Sample:
         "outcome": trace.outcome,
         "uplift_time": _known(trace.uplift_time),
         "uplift_direction": _known(trace.uplift_direction),
-        "peak_tilt": _known(trace.peak_tilt / short.case.cylinder.alpha),
+        # as the signals, of the run alone
+        "peak_tilt": _known(trace.peak_within_run / short.case.cylinder.alpha),
         "time": _rounded(trace.time),
         "signals": {name: _listed(values[:, k]) for k, name in enumerate(SIGNALS)},
     }
