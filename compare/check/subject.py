@@ -1,0 +1,361 @@
+"""Subjects of the checks: a reduced model, an engine, somebody's model, or files of trajectories."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble import reduced
+from rockwobble.models import Case, Run, Trace
+from rockwobble.models.case import TimeStep
+from rockwobble.models.shown import Brief
+from rockwobble.models.traces.trace_source import Known
+from rockwobble.multibody.engines.registry import engine_facts, find_engine
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+
+from ..runs.execution import SAMPLE_STEP, simulate_run
+from ..storage.fingerprint import fingerprint
+from ..traces.trajectory import measurement
+from .result import Bound
+from .scenes import RELEASE
+
+Array = NDArray[np.float64]
+Simulate = Callable[..., Trace]
+
+FIELDS = frozenset(
+    {"tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_point", "centre_of_mass"}
+    | {"energy", "contact_force", "extrema", "passes", "peak_tilt", "outcome", "uplift_time"}
+)
+_ENGINE_FIELDS = ("slip", "contact_offset", "energy_error", "residual_displacement")
+# relative: what the reduced models leave at rtol 1e-11, and passes magnify; 1e-12 to 3e-11 was measured
+MODEL_TOLERANCE, _MODEL_RTOL = 1e-10, 1e-11
+# relative to alpha: contact at the default step; a tenth to a half of it was measured with all engines
+ENGINE_TOLERANCE = 1e-5
+# of the same motion, turned or mirrored: solvers stop at a tolerance, and a pass magnifies what is left
+ENGINE_REPEATABILITY = 1e-5
+TOLERANCE = 1e-3  # of a model or trajectory of somebody else, where nothing else is said
+_VERTEX = 3  # samples on either side of a turning point
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Subject(Brief):
+    """One source of motions, as every check sees it.
+
+    Parameters
+    ----------
+    label : str
+    source : callable
+        Returns the `Trace` of a case and a support, with `sample_step` and what `options` names.
+    supports : tuple of str
+        "recess", "flat", "ring" and, of the reduced models, "planar".
+    knows : frozenset of str
+        Fields of a trace that it fills.
+    options : frozenset of str
+        Further options of `source`; "stepper" says that it is an engine of the protocol.
+    tolerance : float
+        Relative accuracy that it claims: of alpha, of a time or of an energy.
+    repeatability : float
+        Difference of the same motion stated in another way, over alpha.
+    steps : tuple of float
+        Accuracy parameters (tolerance or time step) of the check of the order, the coarsest first.
+    order : float
+        Order of the error in that parameter.
+    at_step : callable, optional
+        Returns the subject at another accuracy parameter.
+    reference : callable, optional
+        The independent model that it is compared with, called as `reduced.simulate`.
+    run : Run, optional
+        Engine, time step and settings, of an engine.
+    cases : tuple of Case, optional
+        The only cases that it answers. Default: any.
+    """
+
+    label: str
+    source: Simulate
+    supports: tuple[str, ...]
+    knows: frozenset[str]
+    options: frozenset[str] = frozenset()
+    tolerance: float
+    repeatability: float
+    steps: tuple[float, ...] = ()
+    order: float = 1.0
+    at_step: Callable[[float], Subject] | None = None
+    reference: Simulate | None = None
+    run: Run | None = None
+    cases: tuple[Case, ...] | None = None
+
+    def simulate(
+        self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: Any
+    ) -> Trace:
+        """Return the motion of a case; options that the source does not take are left out."""
+        known = {name: value for name, value in options.items() if name in self.options}
+        return self.source(case, support, sample_step=sample_step, **known)
+
+    def within(self, times: float, reason: str, unit: str = "") -> Bound:
+        """Return so many times the tolerance as a bound."""
+        return Bound(times * self.tolerance, f"{times:g} times its tolerance: {reason}", unit)
+
+
+def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) -> Subject:
+    """Return the reduced models; of a copy of the package, such as one with a fault."""
+
+    def source(case: Case, support: str, *, sample_step: float, rtol: float = rtol, **options: Any) -> Trace:
+        way = {"plane": 0.0} if support == "planar" else {"support": support}
+        found: Trace = module.simulate(case, sample_step=sample_step, rtol=rtol, **way, **options)
+        return found
+
+    return Subject(
+        label="reduced model",
+        source=_remembered(source),
+        supports=("recess", "flat", "planar"),
+        knows=FIELDS,
+        options=frozenset({"rtol", "rest_tilt", "restitution", "plane"}),
+        tolerance=MODEL_TOLERANCE,
+        repeatability=MODEL_TOLERANCE,
+        steps=(1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),
+        at_step=lambda rtol: reduced_model(module, rtol=rtol),
+    )
+
+
+def engine(
+    name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: Any
+) -> Subject:
+    """Return an engine with its settings.
+
+    Raises
+    ------
+    ValueError
+        If there is no such engine, or it is not installed.
+    """
+    found = find_engine(name)
+
+    def source(case: Case, support: str, *, sample_step: float) -> Trace:
+        return simulate_run(case, Run(name, support, time_step, **settings), sample_step=sample_step)
+
+    return Subject(
+        label=name,
+        source=_remembered(source),
+        supports=found.supports,
+        knows=FIELDS.union(_ENGINE_FIELDS) - ({"uplift_time"} if not found.uplifts else set()),
+        options=frozenset({"stepper"}),
+        tolerance=ENGINE_TOLERANCE,
+        repeatability=ENGINE_REPEATABILITY,
+        steps=tuple(times * REFERENCE_TIME_STEP for times in (4.0, 2.0, 1.0)),
+        order=engine_facts(name).order,
+        at_step=lambda step: engine(name, step, reference=reference, **settings),
+        reference=reference or reduced.simulate,
+        run=Run(name, found.supports[0], time_step, **settings),
+    )
+
+
+def external_model(
+    model: Callable[[Case, str], object], *, support: str = "recess", tolerance: float = TOLERANCE
+) -> Subject:
+    """Return a model of somebody else.
+
+    Parameters
+    ----------
+    model : callable
+        Takes a `Case` and a support, and returns a mapping, a table or an object with `time` [s] (n,) and
+        `tilt` [rad] (n,), and, if it knows them, `azimuth` or `rolling_angle`, the direction of the lean
+        [rad] (n,), and `energy` [m^2/s^2] (n,): relative to the ground, per unit mass, zero standing.
+    support : {"recess", "flat"}, optional
+        What it models.
+    tolerance : float, optional
+        How exact it claims to be, relative.
+
+    Raises
+    ------
+    ValueError
+        If support or tolerance is out of range.
+    """
+    _require(support, tolerance)
+
+    def source(case: Case, support: str, *, sample_step: float) -> Trace:
+        return _trace_of(model(case, support), case, support)
+
+    remembered = _remembered(source)
+    try:
+        first = remembered(RELEASE, support, sample_step=SAMPLE_STEP)
+        known = {name for name in ("rolling_angle", "energy") if np.isfinite(getattr(first, name)).any()}
+    except Exception:  # the checks say what it raises, each in its place
+        known = {"rolling_angle", "energy"}
+    return Subject(
+        label=f"{getattr(model, '__module__', '')}:{getattr(model, '__name__', 'model')}",
+        source=remembered,
+        supports=(support,),
+        knows=frozenset({"tilt", *known}),
+        tolerance=tolerance,
+        repeatability=tolerance,
+        reference=reduced.simulate,
+    )
+
+
+def trajectories(
+    traces: Sequence[Trace], *, support: str = "recess", tolerance: float = TOLERANCE
+) -> Subject:
+    """Return the motions of files that `read_trajectory` read, each of the case that it answers.
+
+    Raises
+    ------
+    ValueError
+        If support or tolerance is out of range, or a file tells no tilt.
+    """
+    _require(support, tolerance)
+    answers = {}
+    for trace in traces:
+        poses = measurement(trace).poses
+        if "tilt" not in poses.told:
+            raise ValueError(f"{trace.run.engine} must have tilt, or qw, qx, qy and qz")
+        # at the samples of its file: between them nothing is as exact
+        azimuth = poses.rolling_angle if "azimuth" in poses.told else None
+        columns = {"time": poses.time, "tilt": poses.tilt, "azimuth": azimuth}
+        answers[fingerprint(trace.case)] = _trace_of(columns, trace.case, support)
+    told = all(np.isfinite(trace.rolling_angle).any() for trace in answers.values())
+    return Subject(
+        label=", ".join(str(trace.run.engine) for trace in traces),
+        source=lambda case, support, *, sample_step: answers[fingerprint(case)],
+        supports=(support,),
+        knows=frozenset({"tilt", "rolling_angle"} if told else {"tilt"}),
+        tolerance=tolerance,
+        repeatability=tolerance,
+        reference=reduced.simulate,
+        cases=tuple(trace.case for trace in traces),
+    )
+
+
+def load_model(name: str) -> Callable[[Case, str], object]:
+    """Return the callable that "module:function" names; modules of the working folder are found.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    module, _, function = name.partition(":")
+    if not (module and function):
+        raise ValueError(f"a model must be given as module:function, got {name!r}")
+    if str(Path.cwd()) not in sys.path:
+        sys.path.insert(0, str(Path.cwd()))
+    try:
+        found = getattr(importlib.import_module(module), function)
+    except (ImportError, AttributeError) as error:
+        raise ValueError(f"the model {name} cannot be imported: {error}") from error
+    if not callable(found):
+        raise ValueError(f"the model {name} must be callable, got {type(found).__name__}")  # noqa: TRY004 bad input
+    model: Callable[[Case, str], object] = found
+    return model
+
+
+def largest(values: Array | float) -> float:
+    """Return the largest size of values of any shape; NaN of none."""
+    return float(np.abs(values).max()) if np.size(values) else math.nan
+
+
+def lean(trace: Trace) -> NDArray[np.complex128]:
+    """Return sin(tilt) exp(i rolling angle) over sin(alpha) (n,): smooth where the angle jumps, 0 at rest."""
+    turn = np.exp(1j * np.nan_to_num(trace.rolling_angle))
+    return np.asarray(np.sin(trace.tilt) / math.sin(trace.case.cylinder.alpha) * turn)
+
+
+def turning_points(time: Array, tilt: Array, angle: Array) -> Array:
+    """Return time, tilt, rolling angle and 1 or -1 of each maximum and minimum of sampled tilts (k, 4).
+
+    The vertex of the polynomial through seven samples: exact to rounding where they are dense.
+    """
+    rising = np.diff(tilt) > 0.0
+    rows = []
+    for index in (1 + np.flatnonzero(rising[1:] != rising[:-1])).tolist():
+        low = min(max(index - _VERTEX, 0), len(time) - 2 * _VERTEX - 1)
+        around = slice(low, low + 2 * _VERTEX + 1)
+        unit = float(time[around][-1] - time[around][0])
+        at = (time[around] - time[index]) / unit
+        fit = partial(np.polynomial.Polynomial.fit, at, deg=2 * _VERTEX)
+        curve, turn = fit(y=tilt[around]), fit(y=np.nan_to_num(angle[around]))
+        roots = curve.deriv().roots()
+        vertex = float(min(roots[np.abs(roots.imag) < 1e-9].real, key=abs, default=0.0))
+        kind = -1.0 if float(curve.deriv(2)(vertex)) > 0.0 else 1.0
+        turned = float(turn(vertex)) if np.isfinite(angle[around]).all() else math.nan
+        rows.append([time[index] + vertex * unit, float(curve(vertex)), turned, kind])
+    return np.array(rows).reshape(-1, 4)
+
+
+def _require(support: str, tolerance: float) -> None:
+    if support not in ("recess", "flat"):
+        raise ValueError(f"support must be 'recess' or 'flat', got {support!r}")
+    if not 0.0 < tolerance < 1.0:
+        raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
+
+
+def _remembered(source: Simulate) -> Simulate:
+    """Return the source that runs each case once, since many checks look at one motion."""
+    kept: dict[str, Trace] = {}
+
+    def simulate(case: Case, support: str, **options: Any) -> Trace:
+        key = fingerprint([case, support, options])
+        if key not in kept:
+            kept[key] = source(case, support, **options)
+        return kept[key]
+
+    return simulate
+
+
+def _trace_of(result: object, case: Case, support: str) -> Trace:
+    """Return the output of somebody's model as a trace.
+
+    Raises
+    ------
+    ValueError
+        If time or tilt is missing, or an array has another length or no finite numbers.
+    """
+
+    def taken(*names: str) -> Array | None:
+        get = result.get if isinstance(result, Mapping) else partial(getattr, result)
+        found = next((value for name in names if (value := get(name, None)) is not None), None)
+        return None if found is None else np.asarray(found, dtype=np.float64)
+
+    time, tilt, angle, energy = (
+        taken(*names) for names in (("time",), ("tilt",), ("azimuth", "rolling_angle"), ("energy",))
+    )
+    if time is None or tilt is None:
+        lacking = "time" if time is None else "tilt"
+        raise ValueError(f"the model must return {lacking}, got {type(result).__name__} without it")
+    for name, column in (("time", time), ("tilt", tilt)):
+        if column.ndim != 1 or not np.isfinite(column).all():
+            raise ValueError(f"{name} must be finite numbers in one dimension, got {column!r:.60}")
+    if not (len(time) > 1 and (np.diff(time) > 0.0).all()):
+        raise ValueError("time must rise")
+    for name, other in (("tilt", tilt), ("azimuth", angle), ("energy", energy)):
+        if other is not None and len(other) != len(time):
+            raise ValueError(f"{name} must be as long as time, {len(time)}, got {len(other)}")
+    unknown = np.full(len(time), math.nan)
+    azimuth = unknown if angle is None else angle
+    extrema = turning_points(time, tilt, azimuth) if len(time) > 2 * _VERTEX else np.empty((0, 4))
+    return Trace(
+        case=case,
+        run=Run("external", support),
+        version="",
+        time=time,
+        tilt=tilt,
+        tilt_rate=unknown,
+        rolling_angle=azimuth,
+        twist=unknown,
+        contact_point=np.full((len(time), 2), math.nan),
+        centre_of_mass=np.full((len(time), 3), math.nan),
+        extrema=extrema,
+        peak_tilt=float(tilt.max()),
+        outcome="",
+        uplift_time=math.nan,
+        uplift_direction=math.nan,
+        source=Known({} if energy is None else {"energy": energy}),
+    )
