@@ -146,6 +146,8 @@ class Claim:
     Parameters
     ----------
     quantity : str
+    domain : str
+        Problems for which it was measured.
     bound, measured : float
         The claim holds where what is measured is at most the bound.
     unit : str
@@ -163,6 +165,7 @@ class Claim:
     """
 
     quantity: str
+    domain: str
     bound: float
     measured: float
     unit: str
@@ -202,6 +205,7 @@ def claims_of(results: Iterable[Result]) -> tuple[list[Claim], list[str]]:
             claims.append(
                 Claim(
                     quantity=result.name,
+                    domain="the problems of this check",
                     bound=result.bound,
                     measured=result.value,
                     unit=result.unit,

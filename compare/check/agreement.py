@@ -102,7 +102,8 @@ def ramp(subject: Subject, support: str) -> Iterator[Result]:
 def record(subject: Subject, support: str) -> Iterator[Result]:
     """Tilt and azimuth under El Centro, of a case that shows a size that is 0.1 % wrong."""
     found, model = _both(subject, RECORD, support)
-    bound = subject.within(5.0, "passes magnify the error of the uplift", "alpha")
+    times = 1.0 if subject.run is None else 10.0  # an engine errs at uplift, and passes magnify that
+    bound = subject.within(times, "its accuracy, and what passes make of it", "alpha")
     yield at_most("tilt and azimuth under El Centro", _difference(found, model, RECORD.length), bound)
 
 

@@ -75,8 +75,8 @@ class Checks:
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{count} {outcome}" for outcome, count in self.headline().items() if count)
-        first = [f"{each.group}: {each.name} {each.value:.2g} > {each.bound:.2g}" for each in self.failures]
-        return line("Checks", [f"{', '.join(self.facts['subjects'])}: {counts}", *first])
+        failed = [f"{each.name} {each.value:.2g} > {each.bound:.2g}" for each in self.failures]
+        return line("Checks", [counts, *failed, *self.facts["subjects"]])
 
 
 def check(
@@ -136,7 +136,7 @@ def check(
     --------
     >>> import rockwobble as rw
     >>> rw.check(only=["equations"])
-    Checks(reduced model: 4 passed)
+    Checks(4 passed, reduced model)
     """
     given = [engine, model, trajectory, suite]
     if sum(each is not None for each in given) > 1:
@@ -158,6 +158,7 @@ def check(
     elif trajectory is not None:
         traces = [trajectory] if isinstance(trajectory, Trace) else trajectory
         chosen = [subjects.trajectories(traces, support=support, tolerance=tolerance)]
+        results = [not_run("all other checks", "one motion does not tell: give a model that can be called")]
     else:
         chosen = _of_this_machine()
         missing = [name for name in standard_engines() if name not in available_engines()]
