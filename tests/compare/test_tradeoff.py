@@ -24,6 +24,7 @@ from rockwobble.compare.studies.tradeoff.methods import (
     rest_line,
 )
 from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, Problem
+from rockwobble.multibody.engines import registry
 
 # a release at a tolerance of 1e-8 turns by 1.5e-7 deg too much or too little
 TURN_ERROR = 1e-6
@@ -110,7 +111,10 @@ def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
     # two steps: a cost is that of an error which the next finer one holds
     few = replace(turn, steps=turn.steps[:2], few_steps=turn.steps[:2])
     monkeypatch.setattr(study, "problems", lambda **_: [few])
-    standard_here = lambda: tuple(name for name in standard_engines() if name in own_engines())  # noqa: E731
+
+    def standard_here() -> tuple[str, ...]:
+        return tuple(name for name in registry.standard_engines() if name in registry.own_engines())
+
     for each in ("methods", "scene_cost"):  # what is installed beyond these is timed in the same way
         monkeypatch.setattr(f"rockwobble.compare.studies.tradeoff.{each}.own_engines", standard_here)
     told: list[Progress] = []

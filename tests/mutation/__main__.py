@@ -11,7 +11,7 @@ FOLDER = Path(__file__).resolve().parent
 sys.path.insert(0, str(FOLDER.parent))  # in place of this folder, where the modules of the package lie open
 CHECKOUT = FOLDER.parents[1]
 _EXAMPLES = """examples:
-  python tests/mutation listed --first                          each listed fault against its own layer
+  python tests/mutation listed                                  each listed fault, until a check finds it
   python tests/mutation generated --count 150 --seed 1 --tests  a sample of all, and its page score.md
   python tests/mutation generated --survivors --tests           again, what was not found the last time
   python tests/mutation show reduced/integration/uplift.py:uplift_in:strictness:1
@@ -42,9 +42,8 @@ def _parser() -> argparse.ArgumentParser:
     )
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     listed = commands.add_parser(
-        "listed", help="the faults chosen by hand, each with the layer that must name it"
+        "listed", help="the faults chosen by hand, each of which the check must find"
     )
-    listed.add_argument("--first", action="store_true", help="own layer only, to the first failure")
     listed.add_argument("--only", default="", help="faults whose name holds this text")
     listed.set_defaults(run=_listed)
     generated = commands.add_parser("generated", help="a sample of the faults generated from the sources")
@@ -68,7 +67,7 @@ def _parser() -> argparse.ArgumentParser:
 def _listed(options: argparse.Namespace) -> int:
     from mutation.listed import run
 
-    return run(only=options.only, first=options.first)
+    return run(only=options.only)
 
 
 def _generated(options: argparse.Namespace) -> int:

@@ -1,4 +1,4 @@
-"""Run in a copy of the checkout with a fault: ask the layers of the check one by one, to the first failure.
+"""Run in a copy of the checkout with a fault: ask the groups of checks one by one, to the first failure.
 
 Takes one argument, a JSON object: "layers" that are asked first, "allowances" of processor time by layer
 [s], beyond which the process is ended by the system, "other", the allowance of the rest and of the import,
@@ -20,25 +20,18 @@ def main(wanted: dict[str, Any]) -> None:
     with Path(wanted["report"]).open("a", encoding="utf-8", buffering=1) as report:
         _allow(wanted["other"])
         print(json.dumps({"event": "started", "layer": "import"}), file=report)
-        from rockwobble import multibody, reduced
-        from rockwobble.compare.check import LAYERS, Bench, run_checks
-        from rockwobble.models import Suite, read_suite
+        from rockwobble.compare.check import GROUPS, check
 
         _require_copy(Path(wanted["root"]))
-        quick = read_suite("quick")
-        # as the command does it: an engine without a wheel for this Python is left out
-        runs = [run for run in quick.runs if run.engine in multibody.available_engines()]
-        bench = Bench(reduced=reduced, suite=Suite(quick.cases, runs, quick.bounds), workers=1)
-        order = [name for name in wanted["layers"] if name in LAYERS]
-        for layer in order + [name for name in LAYERS if name not in order]:
+        order = [name for name in wanted["layers"] if name in GROUPS]
+        for layer in order + [name for name in GROUPS if name not in order]:
             begun = _used()
             _allow(wanted["allowances"].get(layer, wanted["other"]))
             print(json.dumps({"event": "started", "layer": layer}), file=report)
-            for finding in run_checks(bench, [layer]):
-                if finding.failed:
-                    told = {"event": "failed", "layer": layer, "check": finding.name, "note": finding.note}
-                    print(json.dumps(told), file=report)
-                    return
+            for result in check(only=[layer]).failures:
+                told = {"event": "failed", "layer": layer, "check": result.name, "note": result.note}
+                print(json.dumps(told), file=report)
+                return
             print(json.dumps({"event": "passed", "layer": layer, "seconds": _used() - begun}), file=report)
         print(json.dumps({"event": "finished"}), file=report)
 

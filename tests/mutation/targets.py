@@ -28,8 +28,8 @@ class Group:
     patterns : tuple of str
         Of their paths in the checkout.
     layers : tuple of str
-        Layers of the check that are likely to find a fault, the likeliest first; the others follow. A
-        layer that the check does not have is passed over.
+        Groups of checks that are likely to find a fault, the likeliest first; the others follow. One that
+        the check does not have is passed over.
     """
 
     name: str
@@ -51,7 +51,7 @@ GROUPS = (
             "models/records/units.py",
             "models/records/component.py",
         ),
-        layers=("records", "exact", "conserved", "invariance", "studies", "residual"),
+        layers=("conserved", "exact", "invariance"),
     ),
     Group(
         name="bodies, cases and suites",
@@ -62,7 +62,7 @@ GROUPS = (
             "models/suites/build.py",
             "models/suites/motion.py",
         ),
-        layers=("records", "exact", "equations", "studies", "residual"),
+        layers=("exact", "equations"),
     ),
     Group(
         name="reduced, compiled",
@@ -84,7 +84,7 @@ GROUPS = (
             "reduced/integration/tsit5.py",
             "reduced/integration/uplift.py",
         ),
-        layers=("exact", "equations", "rest", "properties", "conserved", "residual", "invariance"),
+        layers=("exact", "equations", "rest", "conserved", "invariance"),
     ),
     Group(
         name="reduced, around it",
@@ -99,12 +99,12 @@ GROUPS = (
             "reduced/solution.py",
             "reduced/simulation.py",
         ),
-        layers=("exact", "properties", "rest", "equations", "residual", "conserved", "studies"),
+        layers=("exact", "rest", "equations", "trace"),
     ),
     Group(
         name="exact solutions",
         patterns=("reduced/exact/*.py",),
-        layers=("exact", "properties", "residual"),
+        layers=("exact",),
     ),
     Group(
         name="engines",
@@ -120,7 +120,7 @@ GROUPS = (
             "multibody/scene_of_case.py",
             "multibody/start.py",
         ),
-        layers=("traces", "agreement", "equations", "baseline"),
+        layers=("agreement", "exact", "baseline"),
     ),
     Group(
         name="traces of engines",
@@ -136,7 +136,7 @@ GROUPS = (
             "multibody/recording/uplift.py",
             "multibody/recording/wall_watch.py",
         ),
-        layers=("traces", "agreement", "baseline", "metrics"),
+        layers=("agreement", "exact", "baseline"),
     ),
     Group(
         name="metrics",
@@ -151,7 +151,7 @@ GROUPS = (
             "compare/traces/pair.py",
             "compare/metrics/turning.py",
         ),
-        layers=("metrics", "conserved", "agreement", "baseline", "studies"),
+        layers=("conserved", "agreement"),
     ),
     Group(
         name="studies",
@@ -161,7 +161,7 @@ GROUPS = (
             "compare/studies/spectrum/study.py",
             "compare/studies/sweep/grid.py",
         ),
-        layers=("studies", "metrics"),
+        layers=(),
     ),
 )
 

@@ -130,13 +130,13 @@ def test_tests_that_name_the_module_are_asked_first(tmp_path: Path) -> None:
 def test_the_check_finds_a_fault_in_a_copy_and_no_other_package(tmp_path: Path) -> None:
     copy_tree(CHECKOUT, tmp_path / "copy")
     tree = Tree(tmp_path / "copy", CHECKOUT)
-    source = (CHECKOUT / "models/pulses.py").read_text(encoding="utf-8")
-    faults = {fault.name: fault for fault in faults_of("models/pulses.py", source, {})}
-    with tree.holding(faults["models/pulses.py:pulse:operator:1"]) as root:
-        # a layer that needs no kernel: nothing is to be compiled
-        assert ask_check(root, ("records",), Limits()).found_by == "records"
+    source = (CHECKOUT / "compare/metrics/energy.py").read_text(encoding="utf-8")
+    faults = faults_of("compare/metrics/energy.py", source, {})
+    fault = next(each for each in faults if each.name.startswith("compare/metrics/energy.py:_work:operator"))
+    with tree.holding(fault) as root:
+        assert ask_check(root, ("conserved",), Limits()).found_by == "conserved"
     # without its link nothing is tried, least of all in the name of what is installed
     (tree.root / ".editable/rockwobble/compare").unlink()
-    verdict = ask_check(tree.root, ("records",), Limits())
+    verdict = ask_check(tree.root, ("exact",), Limits())
     assert verdict.found_by == CRASH
     assert "No module named 'rockwobble.compare'" in verdict.detail

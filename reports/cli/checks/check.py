@@ -130,6 +130,9 @@ def _subject_of(
     ValueError
         If two are given, or an option that another leaves without a meaning.
     """
+    from rockwobble.compare.check.subject import load_model
+    from rockwobble.multibody.engines.registry import find_engine
+
     external = model is not None or trajectory is not None
     named = {"--engine": engine, "--model": model, "--trajectory": trajectory}
     named |= {} if trajectory is not None else {"--suite": suite}
@@ -143,19 +146,19 @@ def _subject_of(
         raise ValueError("--time-step belongs to --engine, got it alone")
     if workers is not None and (suite is None or trajectory is not None):
         raise ValueError("--workers belongs to the runs of a --suite, got it without one")
-    found: dict[str, Any] = {
-        "engine": engine,
-        "time_step": time_step,
-        "model": model,
-        "suite": suite,
-        "workers": workers,
-    }
+    if engine is not None:
+        find_engine(engine)  # what is wrong with it is said before anything runs
+    found: dict[str, Any] = {"engine": engine, "time_step": time_step, "workers": workers}
     found |= {"support": support, "tolerance": tolerance}
-    if trajectory is not None:
+    if model is not None:
+        found["model"] = load_model(model)
+    elif trajectory is not None:
         cases = rw.read_suite(suite or "quick").cases
         if len(cases) != 1:
             raise ValueError(f"--trajectory needs a --suite with one case, got {len(cases)}")
-        found |= {"trajectory": rc.read_trajectory(trajectory, cases[0]), "suite": None}
+        found["trajectory"] = rc.read_trajectory(trajectory, cases[0])
+    elif suite is not None:
+        found["suite"] = rw.read_suite(suite)
     return {name: value for name, value in found.items() if value is not None}
 
 
