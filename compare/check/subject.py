@@ -107,7 +107,19 @@ class Subject(Brief):
 
 
 def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) -> Subject:
-    """Return the reduced models; of a copy of the package, such as one with a fault."""
+    """Return the reduced models.
+
+    Parameters
+    ----------
+    module : module, optional
+        Their package; a copy of it, such as one with a fault.
+    rtol : float, optional
+        Relative tolerance of a step.
+
+    Returns
+    -------
+    Subject
+    """
 
     def source(case: Case, support: str, *, sample_step: float, rtol: float = rtol, **options: Any) -> Trace:
         way = {"plane": 0.0} if support == "planar" else {"support": support}
@@ -131,6 +143,20 @@ def engine(
     name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: Any
 ) -> Subject:
     """Return an engine with its settings.
+
+    Parameters
+    ----------
+    name : str
+    time_step : float, "auto" or "extrapolated", optional
+        [s]
+    reference : callable, optional
+        The independent model that it is compared with. Default: `reduced.simulate`.
+    **settings
+        Of the engine.
+
+    Returns
+    -------
+    Subject
 
     Raises
     ------
@@ -174,6 +200,10 @@ def external_model(
     tolerance : float, optional
         How exact it claims to be, relative.
 
+    Returns
+    -------
+    Subject
+
     Raises
     ------
     ValueError
@@ -204,7 +234,20 @@ def external_model(
 def trajectories(
     traces: Sequence[Trace], *, support: str = "recess", tolerance: float = TOLERANCE
 ) -> Subject:
-    """Return the motions of files that `read_trajectory` read, each of the case that it answers.
+    """Return the motions of files.
+
+    Parameters
+    ----------
+    traces : sequence of Trace
+        Of `rockwobble.compare.read_trajectory`, each of the case that it answers.
+    support : {"recess", "flat"}, optional
+        What they are of.
+    tolerance : float, optional
+        How exact they claim to be, relative.
+
+    Returns
+    -------
+    Subject
 
     Raises
     ------
