@@ -149,7 +149,7 @@ def check(
     if suite is not None:
         runs = SuiteRuns(workers=workers, progress=progress)
         results = [*_of_suite(runs, read_suite(suite) if not isinstance(suite, Suite) else suite)]
-        return _summed(results, ["suite"])
+        return _summed(results)
     if engine is not None:
         chosen = [subjects.engine(engine, time_step, **settings)]
     elif model is not None:
@@ -171,7 +171,7 @@ def check(
             if engine is None and each.run is not None and not extra and group not in _OF_ENGINES:
                 continue
             results += run_checks(each, [group], extra=extra and engine is None)
-    return _summed(results, [each.label for each in chosen])
+    return _summed(results)
 
 
 def baseline_subjects() -> list[Subject]:
@@ -201,10 +201,11 @@ def _of_suite(runs: SuiteRuns, suite: Suite) -> Iterator[Result]:
         yield Result(**{**asdict(result), "group": "agreement"})
 
 
-def _summed(results: Sequence[Result], labels: Sequence[str]) -> Checks:
+def _summed(results: Sequence[Result]) -> Checks:
     import pandas as pd
 
     rows = [asdict(result) for result in results]
     table = pd.DataFrame(rows, columns=COLUMNS).astype({"value": float, "bound": float})
+    labels = dict.fromkeys(result.subject for result in results if result.subject)
     facts = {"subjects": list(labels), "versions": package_versions()}
     return Checks(tables={"results": table}, facts=facts)

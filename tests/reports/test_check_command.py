@@ -43,7 +43,7 @@ GOOD, BAD, NONE, LEFT = (
 
 
 def checks(*results: Result) -> Checks:
-    return summary._summed(results, ["one"])
+    return summary._summed(results)
 
 
 def check_of(measure: Any) -> tuple[groups.Check, ...]:
