@@ -142,7 +142,7 @@ def test_a_release_that_passes_upright_gives_no_alarm_and_finds_a_wrong_model(sp
 def test_twice_the_step_or_half_of_it() -> None:
     job = Job(case=SHORT, run=Run("mujoco", "recess"))
     for step, other_one, factor in ((1e-4, 2e-4, 1.0), (1e-3, 5e-4, 2.0), (math.nan, 2e-4, 1.0)):
-        other, given = own_bounds.other_step(job, made(np.zeros(2), np.zeros(2), time_step=step))
+        other, given = own_bounds.other_step(job, made(np.arange(2.0), np.zeros(2), time_step=step))
         assert (other.run.time_step, given) == (other_one, factor)
 
 
@@ -153,7 +153,7 @@ def test_twice_the_step_or_half_of_it() -> None:
 def test_a_run_of_several_steps_has_one_beside_it(way: str, settings: dict[str, float]) -> None:
     run = Run("mujoco", "recess", way, iterations=50, **settings)
     job = Job(case=SHORT, run=run)
-    other, _ = own_bounds.other_step(job, made(np.zeros(2), np.zeros(2), time_step=math.nan))
+    other, _ = own_bounds.other_step(job, made(np.arange(2.0), np.zeros(2), time_step=math.nan))
     assert other.run == Run("mujoco", "recess", 2e-4, iterations=50)
 
 
