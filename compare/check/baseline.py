@@ -91,7 +91,7 @@ def measure(subjects: Iterable[Subject]) -> dict[str, dict[str, float]]:
 def _runs(subject: Subject, support: str) -> Iterator[tuple[Case, Trace, float]]:
     for case, of_models, times in _CASES:
         # planar motion has no rolling rate, and some engines cannot start from a cylinder that stands
-        fits = support != "planar" if case.initial is not None else "uplift_time" in subject.knows
+        fits = support != "planar" if case.initial is not None else subject.uplifts
         fits &= support != "ring" or case.cylinder is SQUAT  # which reaches the walls
         if fits and not (of_models and subject.run is not None):
             yield case, subject.simulate(case, support), times

@@ -52,17 +52,20 @@ def description(subject: Subject, support: str) -> Iterator[Result]:
     plain = json.loads(json.dumps(dict(settings))) == dict(settings)
     right = bool(backend.version()) and support in backend.supports and isinstance(backend.uplifts, bool)
     yield _holds("description of itself", right and plain, f"settings {settings}")
-    for name, run in (
-        ("setting", Run(subject.label, support, no_such_setting=1.0)),
-        ("support", Run(subject.label, "no_such_support")),
-    ):
+    released = Case(PIER, initial=_STATE, duration=0.01)
+    refused = {
+        "setting": (released, Run(subject.label, support, no_such_setting=1.0)),
+        "support": (released, Run(subject.label, "no_such_support")),
+    }
+    if not subject.uplifts:
+        refused["at rest"] = (Case(PIER, duration=0.01), Run(subject.label, support))
+    for name, (case, run) in refused.items():
         try:
-            simulate_run(Case(PIER, initial=_STATE, duration=0.01), run)
-            words = "it is taken"
+            simulate_run(case, run)
+            words = ""
         except ValueError as error:
             words = str(error)
-        refused = "\n" not in words and name in words and words != "it is taken"
-        yield _holds(f"refusal of an unknown {name}", refused, words)
+        yield _holds(f"refusal, {name}", "\n" not in words and name in words, words or "it is taken")
 
 
 def stepping(subject: Subject, support: str) -> Iterator[Result]:

@@ -78,6 +78,8 @@ class Subject(Brief):
         Engine, time step and settings, of an engine.
     cases : tuple of Case, optional
         The only cases that it answers. Default: any.
+    uplifts : bool
+        Whether it can start from a cylinder that stands.
     """
 
     label: str
@@ -93,6 +95,7 @@ class Subject(Brief):
     reference: Simulate | None = None
     run: Run | None = None
     cases: tuple[Case, ...] | None = None
+    uplifts: bool = True
 
     def simulate(
         self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: Any
@@ -172,7 +175,7 @@ def engine(
         label=name,
         source=_remembered(source),
         supports=found.supports,
-        knows=FIELDS.union(_ENGINE_FIELDS) - ({"uplift_time"} if not found.uplifts else set()),
+        knows=FIELDS.union(_ENGINE_FIELDS),
         options=frozenset({"stepper"}),
         tolerance=ENGINE_TOLERANCE,
         repeatability=ENGINE_REPEATABILITY,
@@ -181,6 +184,7 @@ def engine(
         at_step=lambda step: engine(name, step, reference=reference, **settings),
         reference=reference or reduced.simulate,
         run=Run(name, found.supports[0], time_step, **settings),
+        uplifts=found.uplifts,
     )
 
 

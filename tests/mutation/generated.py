@@ -231,8 +231,8 @@ def run(checkout: Path, table: Path, *, count: int, seed: int, only: str = "") -
             print(f"{rows[-1].found_by}: {fault.file}, {fault.change}", flush=True)
     for package in PACKAGES:
         counts = Counter(row.found_by for row in rows if row.file.startswith(f"{package}/"))
-        words = (f"{counts[name]} by {name}" for name in ("check", "tests", "nothing"))
-        print(f"{package}: {', '.join(words)}")
+        shares = (f"{counts[name]} by {name}" for name in ("check", "tests", "nothing"))
+        print(f"{package}: {', '.join(shares)}")
     found = sum(row.found_by != "nothing" for row in rows)
     print(f"{found} of {len(rows)} faults found")
     return 0
