@@ -22,10 +22,11 @@ from ..metrics.tilt import rms
 from ..runs.choice import own_model
 from ..runs.execution import Job
 from . import own_bounds
+from .motion import Array, largest, lean
 from .own_bounds import SuiteRuns, why
 from .result import Bound, Result, at_most
 from .scenes import GRAVITY, PIER, RELEASE, SQUAT, THRESHOLD, released, steady
-from .subject import Array, Subject, largest, lean
+from .subject import Subject
 
 # a squat body with inertias of its own, on ground that accelerates evenly in three components
 BODY = Cylinder(semidiagonal=3.0, tan_alpha=1.0, height=5.0, transverse_inertia=3.0, axial_inertia=1.6)

@@ -11,9 +11,10 @@ from rockwobble.models import Case, GroundMotion, InitialState, el_centro_1940
 
 from ..metrics.energy import energy_loss
 from . import lagrange
+from .motion import largest
 from .result import Result, at_most
 from .scenes import GRAVITY, PIER, RELEASE, released
-from .subject import Subject, largest
+from .subject import Subject
 
 _SPINS = (1e-2, 1e-5)  # whose passes are near, and cost a model of fixed steps all of its digits
 _LEAST_TILT = 1e-3  # [rad] rounding of B is as large as L below

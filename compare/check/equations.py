@@ -15,9 +15,10 @@ import numpy as np
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
 from . import lagrange
+from .motion import Array, largest
 from .result import Result, at_most, worst_of
 from .scenes import GRAVITY
-from .subject import Array, Subject, largest
+from .subject import Subject
 
 # a slender pier, a drum as wide as high, and a squat body with mass and inertias of its own
 CYLINDERS = {

@@ -20,9 +20,10 @@ from rockwobble.models import Case, InitialState
 
 from . import lagrange
 from .lagrange import Shape, kinetic, potential, shape_of
+from .motion import Array, largest
 from .result import Result, at_most
 from .scenes import PIER, RELEASE, SQUAT, released
-from .subject import Array, Subject, largest
+from .subject import Subject
 
 _NODES = 64  # more of them come nearer to the ends, where rounding of the energies counts
 _BISECTIONS = 200

@@ -11,9 +11,10 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 
+from .motion import largest, lean
 from .result import Bound, Result, at_most
 from .scenes import GRAVITY, PIER, SHOCK, SHOCK_TIMES, THRESHOLD, polyline, refined
-from .subject import Subject, largest, lean
+from .subject import Subject
 
 Lean = NDArray[np.complex128]
 # a pulse in both components, weak enough not to overturn the pier, which it meets as it rocks

@@ -10,9 +10,10 @@ import numpy as np
 from rockwobble.models import Case, el_centro_1940
 
 from ..metrics.tilt import rms
+from .motion import largest
 from .result import Bound, Result, at_most
 from .scenes import PIER, SQUAT, released
-from .subject import Subject, largest
+from .subject import Subject
 
 _FREE = released(0.5, 0.05, 20.0, name="free motion")
 _SHAKEN = Case(PIER, el_centro_1940(), duration=12.0, name="El Centro")

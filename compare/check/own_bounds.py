@@ -32,8 +32,9 @@ from ..runs.progress import ProgressCallback
 from ..runs.run_settings import at_step
 from ..storage.fingerprint import fingerprint
 from ..traces.pair import is_release
+from .motion import Array
 from .result import Bound, Result, at_most, not_run
-from .subject import Array, Simulate
+from .subject import Simulate
 
 # times the difference of two steps, of which the error is once or twice as much; `benchmarks false_alarms`
 CLEAN, WIDE = 5.0, 10.0

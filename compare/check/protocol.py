@@ -25,9 +25,10 @@ from rockwobble.multibody.start import starting_state
 
 from ..runs.execution import simulate_run
 from .invariance import ROCKING
+from .motion import largest
 from .result import Bound, Result, at_most
 from .scenes import PIER, RELEASE
-from .subject import Subject, largest
+from .subject import Subject
 
 _ALL = Bound(0.0, "the protocol of an engine")
 _CHUNKS = Bound(1e-9, "what is carried from one call to the next, and no more", "m")

@@ -13,9 +13,10 @@ from rockwobble.models import Case, GroundMotion, InitialState
 from . import lagrange
 from .exact import tilt_inertia
 from .lagrange import shape_of
+from .motion import Array, largest
 from .result import Result, at_most
 from .scenes import GRAVITY, PIER, THRESHOLD, released, steady
-from .subject import Array, Subject, largest
+from .subject import Subject
 
 # two straight pieces; in the second the threshold is crossed inside a sample, as the load turns and the
 # weight falls

@@ -8,9 +8,10 @@ import numpy as np
 
 from rockwobble.models import Case
 
+from .motion import Array, largest, turning_points
 from .result import Result, at_most
 from .scenes import PIER, RELEASE, SHOCK, SHOCK_TIMES, polyline
-from .subject import Array, Subject, largest, turning_points
+from .subject import Subject
 
 _SAMPLE = 0.002  # [s] 1/400 of 1/p, and 1/20 of the shortest pass
 _SHAKEN = Case(PIER, polyline(SHOCK_TIMES, SHOCK, 0.5), duration=8.0)
