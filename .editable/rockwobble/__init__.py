@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from rockwobble import models, multibody, reduced, reports
     from rockwobble.compare import Comparison, External, compare, ensemble, fragility, simulate, sweep
+    from rockwobble.compare.check import check
     from rockwobble.models import (
         Case,
         Cylinder,
@@ -52,6 +53,7 @@ __all__ = [
     "Suite",
     "Trace",
     "WobblingFrame",
+    "check",
     "compare",  # the module, which may be called; to a type checker its function `compare`
     "el_centro_1940",
     "ensemble",
@@ -84,6 +86,8 @@ def __getattr__(name: str) -> object:
         return version("rockwobble")
     if name in _PARTS:
         return importlib.import_module(f"rockwobble.{name}")
+    if name == "check":
+        return importlib.import_module("rockwobble.compare.check").check
     if name in __all__:
         return getattr(
             importlib.import_module(f"rockwobble.{'compare' if name in _OF_COMPARE else 'models'}"), name
