@@ -16,7 +16,8 @@ from ..console.terminal import FAILED, command_line, complain, interruptible, us
 from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible
-from .inputs.problem import Problem, given_options, states_problem
+from .inputs.plan_options import takes_options
+from .inputs.problem import Problem, given_options
 
 Engine = Annotated[
     str | None,
@@ -34,7 +35,7 @@ Support = Annotated[
 Copies = Annotated[int, options.method("Number of perturbed copies.")]
 
 
-@states_problem
+@takes_options
 def advise(
     context: typer.Context,
     problem: Problem,

@@ -18,11 +18,12 @@ from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible, time_needed
 from .inputs.method_values import settings
-from .inputs.problem import Problem, refuse_options_of_engines, states_problem
+from .inputs.plan_options import takes_options
+from .inputs.problem import Problem, refuse_options_of_engines
 from .inputs.suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 
 
-@states_problem
+@takes_options
 def compare(
     context: typer.Context,
     problem: Problem,

@@ -19,7 +19,8 @@ from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible, time_needed
 from .inputs.method_values import settings
-from .inputs.problem import Problem, restated, states_problem
+from .inputs.plan_options import takes_options
+from .inputs.problem import Problem, restated
 
 if TYPE_CHECKING:
     from rockwobble.compare.storage.manifest import Manifest
@@ -30,7 +31,7 @@ RestTilt = Annotated[
 ]
 
 
-@states_problem
+@takes_options
 def simulate(
     context: typer.Context,
     problem: Problem,

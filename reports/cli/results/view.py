@@ -18,7 +18,8 @@ from ...pages.words.cases import describe
 from ..inputs import options
 from ..inputs.estimate import require_feasible, time_needed
 from ..inputs.method_values import settings
-from ..inputs.problem import Problem, given_options, refuse, states_problem
+from ..inputs.plan_options import takes_options
+from ..inputs.problem import Problem, given_options, refuse
 
 Stored = Annotated[
     Path | None,
@@ -37,7 +38,7 @@ Open = Annotated[
 ]
 
 
-@states_problem
+@takes_options
 def view(
     context: typer.Context,
     problem: Problem,
