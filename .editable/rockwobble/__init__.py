@@ -14,7 +14,17 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rockwobble import models, multibody, reduced, reports
-    from rockwobble.compare import Comparison, External, compare, ensemble, fragility, simulate, sweep
+    from rockwobble.compare import (
+        Comparison,
+        External,
+        Grid,
+        compare,
+        ensemble,
+        fragility,
+        simulate,
+        spectrum,
+        sweep,
+    )
     from rockwobble.compare.check import check
     from rockwobble.models import (
         Case,
@@ -47,6 +57,7 @@ __all__ = [
     "Cylinder",
     "Diagnostic",
     "External",
+    "Grid",
     "GroundMotion",
     "InitialState",
     "Run",
@@ -71,12 +82,13 @@ __all__ = [
     "reports",
     "shipped_suites",
     "simulate",
+    "spectrum",
     "sweep",
     "synthetic_motions",
     "with_motions",
 ]
 _PARTS = ("compare", "models", "multibody", "reduced", "reports")
-_OF_COMPARE = ("Comparison", "External", "ensemble", "fragility", "simulate", "sweep")
+_OF_COMPARE = ("Comparison", "External", "Grid", "ensemble", "fragility", "simulate", "spectrum", "sweep")
 
 
 def __getattr__(name: str) -> object:

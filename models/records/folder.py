@@ -31,6 +31,10 @@ def read_records(
     resample : bool, optional
         Take components of different time steps at one that divides all, as `read_record` does.
 
+    Returns
+    -------
+    list of GroundMotion
+
     Raises
     ------
     ValueError

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -55,6 +55,11 @@ def show_and_write(
 
 def show_and_save(found: Results, out: Path) -> None:
     """Write results with their page; then print the page."""
+    save_with_page(found, out)()
+
+
+def save_with_page(found: Results, out: Path) -> Callable[[], None]:
+    """Write results with their page, and return what prints the page."""
     from ..pages.registry import page_of
     from .terminal import command_line
 
@@ -63,6 +68,10 @@ def show_and_save(found: Results, out: Path) -> None:
     pages = page.files()
     with user_input():
         found.save(out, pages=pages)
-    page.show()
-    names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
-    print(f"\nWritten to {out}: {', '.join(names)}")
+
+    def show() -> None:
+        page.show()
+        names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
+        print(f"\nWritten to {out}: {', '.join(names)}")
+
+    return show

@@ -31,7 +31,7 @@ from rockwobble.compare.studies.advice.grades import (
 from rockwobble.compare.studies.advice.members import demands_of, other_records, peak_velocity, ratios_of
 from rockwobble.compare.studies.advice.scales import FACTORS, planar_chances, planar_runs, scan_scales
 from rockwobble.compare.studies.advice.trust import trust_of
-from rockwobble.compare.studies.spectrum.spectrum import intensity_unit, overturning_spectrum, uplift_factor
+from rockwobble.compare.studies.spectrum.maps import intensity_unit, tilt_maps, uplift_factor
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, el_centro_1940, plain_json
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -198,9 +198,7 @@ def test_the_lowest_of_a_release_is_searched_from_still_ground():
 
 
 def test_advice_and_spectrum_uplift_at_the_same_factor(advice):
-    spectrum = overturning_spectrum(
-        0.2, SHORT, semidiagonals=[6.0], intensities=[1.0, 2.0], search_step=1.0, probes=0
-    )
+    spectrum = tilt_maps(0.2, SHORT, semidiagonals=[6.0], intensities=[1.0, 2.0], search_step=1.0, probes=0)
     unit = intensity_unit(0.2, SHORT, 9.81)
     for series, found in advice.lowest.items():
         assert found.start == pytest.approx(unit * spectrum.searched_from[series], rel=1e-12)
