@@ -20,6 +20,7 @@ SCRIPTS = (
     "ensemble_intervals",
     "false_alarms",
     "fragility_coverage",
+    "measured_rods",
     "ring_losses",
     "run_overhead",
     "scene_cost",
