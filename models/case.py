@@ -35,6 +35,9 @@ class Case:
         convention; the reduced models assume that it suffices and say where it would not.
     name : str, optional
         For tables, figures and file names. Default: that of the motion, or "free response".
+    rolling_resistance : float, optional
+        Length delta of the couple of at most delta times the normal force against the rolling of the rim
+        [m], below the base radius: the pressure of a contact stays within the base. 0 loses nothing.
 
     Raises
     ------
@@ -57,6 +60,7 @@ class Case:
     gravity: float = 9.81
     friction: float = 1.0
     name: str = ""
+    rolling_resistance: float = 0.0
 
     def __post_init__(self) -> None:
         for name, kind in (("cylinder", Cylinder), ("motion", GroundMotion), ("initial", InitialState)):
@@ -67,6 +71,13 @@ class Case:
         object.__setattr__(self, "friction", require_finite("friction", self.friction, ""))
         if self.friction < 0.0:
             raise ValueError(f"friction must not be negative, got {self.friction!r}")
+        length = require_finite("rolling_resistance", self.rolling_resistance, "m")
+        object.__setattr__(self, "rolling_resistance", length)
+        if not 0.0 <= length < self.cylinder.base_radius:
+            raise ValueError(
+                f"rolling_resistance must be from 0 to below the base radius, "
+                f"{self.cylinder.base_radius:g} m, got {length!r} m"
+            )
         if not self.name:
             name = "free response" if self.motion is None else self.motion.name
             object.__setattr__(self, "name", name or "record")
@@ -83,7 +94,9 @@ class Case:
             facts += [f"peak {motion.peak:.4g} m/s^2"]
         facts += [f"tilt={self.initial.tilt:.4g}"] if self.initial else []
         facts += [f"{self.length:g} s", f"friction={self.friction:g}"]
-        return line("Case", facts + ([f"gravity={self.gravity:g}"] if self.gravity != 9.81 else []))
+        facts += [f"gravity={self.gravity:g}"] if self.gravity != 9.81 else []
+        length = self.rolling_resistance
+        return line("Case", facts + ([f"rolling_resistance={length:g} m"] if length else []))
 
     @property
     def length(self) -> float:

@@ -35,6 +35,7 @@ def peak_tilts(
     rtol: float = 1e-7,
     rest_tilt: float = REST_TILT,
     gravity: float = 9.81,
+    rolling_resistance: float = 0.0,
     workers: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> NDArray[np.float64]:
@@ -56,6 +57,8 @@ def peak_tilts(
         As in `simulate`.
     gravity : float, optional
         g [m/s^2].
+    rolling_resistance : float, optional
+        As in `Case` [m]: the same length for every size.
     workers : int, optional
         Number of threads; default: that of the cores.
     progress : callable, optional
@@ -81,7 +84,12 @@ def peak_tilts(
     sizes, factors = _axis("semidiagonals", semidiagonals), _axis("scales", scales)
     bodies = [
         make_problem(
-            Case(Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha), motion, gravity=gravity),
+            Case(
+                Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha),
+                motion,
+                gravity=gravity,
+                rolling_resistance=rolling_resistance,
+            ),
             support=support,
             plane=plane,
             restitution=restitution,
@@ -93,7 +101,7 @@ def peak_tilts(
     peaks = np.zeros((len(sizes), len(factors)))
     if peaks.size == 0:
         return peaks
-    make_ready("planar" if bodies[0].is_planar() else support)
+    make_ready(bodies[0].kernel)
 
     def run_cells(column: int, rows: slice) -> None:
         shaking = bodies[0].shaking(float(factors[column]))

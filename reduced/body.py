@@ -13,6 +13,7 @@ C      m^2      I2 + b^2                                                        
 E      m^2      h b                                                             (18)
 g      m/s^2    gravity                                                         (17)
 p      1/s      sqrt(g R/A), frequency parameter; p2 is its square              (23)
+delta  m        length of rolling resistance; 0 in the paper
 ====== ======== =============================================================== ========
 """
 
@@ -41,10 +42,11 @@ class Body(NamedTuple):
     cos_alpha: float
     alpha: float
     p: float
+    delta: float
 
 
-def body_of(cylinder: Cylinder, gravity: float) -> Body:
-    """Return the constants of `cylinder` under `gravity` [m/s^2]."""
+def body_of(cylinder: Cylinder, gravity: float, rolling_resistance: float = 0.0) -> Body:
+    """Return the constants of `cylinder` under `gravity` [m/s^2] with a length of rolling resistance [m]."""
     b, h = cylinder.base_radius, cylinder.mass_centre_height
     height = 2.0 * cylinder.half_height
     I1 = cylinder.transverse_inertia
@@ -71,6 +73,7 @@ def body_of(cylinder: Cylinder, gravity: float) -> Body:
         cos_alpha=h / R,
         alpha=math.atan(cylinder.tan_alpha),
         p=p2**0.5,
+        delta=rolling_resistance,
     )
 
 

@@ -128,7 +128,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     log.steps.append((now, *run.y))
                 if run.resting:
                     log.rests.append((now, np.nan))
-                    run = at_rest(run)
+                    run = at_rest(body, run)
             index += 1
 
         y, peak, status = run.y, run.peak, run.status

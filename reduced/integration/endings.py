@@ -35,7 +35,7 @@ def may_sit_down(
 def may_overturn(body: Body, theta: float, omega: float, L: float, S: float) -> bool:
     """Return whether the energy suffices to pass the balance at alpha over still ground.
 
-    It is conserved there, and no part of it is negative but the potential energy beyond alpha.
+    It does not grow there, and no part of it is negative but the potential energy beyond alpha.
     """
     return theta >= body.alpha or energy(body, theta, omega, L, S) > energy(body, body.alpha, 0.0, 0.0, 0.0)
 
@@ -45,8 +45,9 @@ def surely_overturns(body: Body, theta: float, strongest: float, lightest: float
     """Return whether a tilt above alpha that does not decrease is bound to reach pi/2, without twist.
 
     `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium tilt
-    under these two, theta'' is positive and grows with theta. Spin only adds to it, (18); a twist rate,
-    which the flat-ground model has, may hold a cylinder up.
+    under these two and the couple of rolling resistance, theta'' is positive and grows with theta. Spin
+    only adds to it, (18); a twist rate, which the flat-ground model has, may hold a cylinder up.
     """
     beyond = theta - body.alpha
-    return lightest > 0.0 and lightest * sin(beyond) > strongest * cos(beyond)
+    held = body.delta * body.sin_alpha / body.b
+    return lightest > 0.0 and lightest * (sin(beyond) - held) > strongest * cos(beyond)

@@ -51,6 +51,7 @@ def newton_euler(body: Body, state: State, ground: Vector, recess: bool) -> Moti
     arm = body.h * axis - body.b * radius  # from the contact point to the mass centre
     arm_rate = np.cross(frame_rate, arm)
     inertia = inertia_of(body, axis)
+    rolling = spin - (spin @ e_z) * e_z
 
     # angular acceleration: what the rates give, and one column for theta'', phi'' and psi'' each
     spin_rate = np.cross(frame_rate, state.theta_rate * e_tilt + state.psi_rate * axis)
@@ -71,6 +72,9 @@ def newton_euler(body: Body, state: State, ground: Vector, recess: bool) -> Moti
             matrix[i, 3 + k] = unit[i]
             matrix[3 + i, 3 + k] = -np.cross(arm, unit)[i]
         matrix[3 + i, 6] = (e_z + axis)[i]
+        # rolling resistance: delta times the upward force, against the horizontal part of the spin
+        if body.delta:
+            matrix[3 + i, 5] -= body.delta * rolling[i] / mp.sqrt(rolling @ rolling)
         right[i], right[3 + i] = known_force[i], known_moment[i]
     if recess:  # psi'' = -phi''
         matrix[6, 1] = matrix[6, 2] = 1
