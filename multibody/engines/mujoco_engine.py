@@ -44,6 +44,7 @@ _FACTS = EngineFacts(
     release_error=2e-6,
     uplift_error=5e-6,
     smooth_uplift=True,  # its corners turn under the load
+    rolling_friction=True,
     contact_time="contact_time_constant",
     alternatives={
         **{
