@@ -22,6 +22,7 @@ SCRIPTS = (
     "fragility_coverage",
     "measured_rods",
     "ring_losses",
+    "rolling_losses",
     "run_overhead",
     "scene_cost",
     "speed",
