@@ -184,7 +184,7 @@ def _make_system(model: System, derivative: Callable[..., State], *, spins: bool
             if turning != 0.0 and growth > 0.0:
                 longer = time - excess / growth if time == 0.0 else time
                 longer += _BEFORE_SERIES / body.p
-                return longer if longer > 0.0 else 0.0
+                return longer if longer > _FIRST_STEP / body.p else 0.0
         return time
 
     @jit
