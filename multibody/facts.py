@@ -36,6 +36,8 @@ class EngineFacts(Brief):
         limit.
     carries_slab : bool
         Whether its scenes hold the slab of a frame: one column, under a slab that only translates.
+    rolling_friction : bool
+        Whether it has a couple against rolling, of at most a length times the normal force.
     contact_time : str
         Name of the setting that is the time in which contact removes a velocity [s]; empty without one.
     alternatives : mapping
@@ -52,6 +54,7 @@ class EngineFacts(Brief):
     uplift_error: float = 2.5e-5
     smooth_uplift: bool = False
     carries_slab: bool = False
+    rolling_friction: bool = False
     contact_time: str = ""
     alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)
     standing_alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)

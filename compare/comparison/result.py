@@ -268,6 +268,7 @@ def describe_case(case: Case) -> dict[str, object]:
         "duration": case.length,
         "gravity": case.gravity,
         "friction": case.friction,
+        "rolling_resistance": case.rolling_resistance,
         "motion": None
         if motion is None
         else {

@@ -90,6 +90,12 @@ Friction = Annotated[
         "would not."
     ),
 ]
+RollingResistance = Annotated[
+    float,
+    _ground(
+        "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses nothing."
+    ),
+]
 ReleaseTilt = Annotated[
     float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
 ]

@@ -41,6 +41,7 @@ class Problem:
     scale: options.Scale = 1.0
     gravity: options.Gravity = 9.81
     friction: options.Friction = 1.0
+    rolling_resistance: options.RollingResistance = 0.0
     release_tilt_deg: options.ReleaseTilt = None
     rolling_rate: options.RollingRate = 0.0
     duration: options.Duration = None
@@ -76,6 +77,7 @@ class Problem:
             duration=duration,
             gravity=self.gravity,
             friction=self.friction,
+            rolling_resistance=self.rolling_resistance,
             name=name,
         )
 
