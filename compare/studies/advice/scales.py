@@ -85,7 +85,7 @@ def planar_runs(cases: Sequence[Case], support: str = "recess") -> pd.DataFrame:
     return pd.DataFrame({"member": members, "scale": scales, **peaks})
 
 
-def planar_chances(runs: pd.DataFrame) -> list[dict[str, float]]:
+def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
     """Return for each scale how often 3D tilts more than both planes, and overturns where neither does.
 
     Keys: scale; moving, records that uplift in any; larger and missed, counts of these, with the shares
