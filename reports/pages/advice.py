@@ -7,7 +7,6 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from rockwobble.compare.comparison.prediction import BEATEN
-from rockwobble.compare.metrics.agreement import TESTING
 from rockwobble.compare.metrics.order_statistics import FEWEST
 from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.advice.grades import BROKEN, GRADES, NEAR, SENSITIVE, UNSAFE, Grade
@@ -25,10 +24,10 @@ from .page import Page
 from .table import number
 
 _STANDS: Mapping[Grade, str] = {
-    "satisfied": "It stands",
-    "not tested": "It stands as given, its margin is not tested",
-    "caution": "It may overturn",
-    "not satisfied": "It is not safe against overturning",
+    "satisfied": "it stands",
+    "not tested": "it stands, its margin is not tested",
+    "caution": "it may overturn",
+    "not satisfied": "it is not safe against overturning",
 }
 _USE: Mapping[Grade, str] = {
     "satisfied": "the {} may be used",
@@ -74,8 +73,7 @@ CRITERIA: Mapping[str, Mapping[Grade, str]] = {
         ),
         "engine": (
             "agrees with the model as long as predicted, and to the same end",
-            f"none was run, or it failed; or it agrees more than {BEATEN:g} times as long as predicted, or "
-            f"until the model's tilt has changed by less than {TESTING:g} tolerances",
+            f"not run, failed, agrees {BEATEN:g} times as long as predicted, or hardly any motion",
             "comes to another end, or stays at rest where the model moves",
             "diverges earlier than half of what is predicted",
         ),
@@ -83,18 +81,16 @@ CRITERIA: Mapping[str, Mapping[Grade, str]] = {
 }
 _GROUPS = {
     "copies": "copies, {} off",
-    "acceleration": "other records, same peak acceleration",
-    "velocity": "other records, same peak velocity",
+    "acceleration": "records, same PGA",
+    "velocity": "records, same PGV",
 }
 _DEMANDS = {
     "friction": "friction at the base",
     "shear": "shear (horizontal force) at the base",
-    "force": "vertical force at the base",
     "top_friction": "friction under the slab",
-    "top_shear": "shear under the slab, over its share",
-    "top_force": "vertical force under the slab, over its share",
+    "top_shear": "shear under the slab, of its share",
     "moment": "moment about the vertical through the contact point",
-    "wall_force": "by a wall, at its top: horizontal force",
+    "wall_force": "horizontal force of it on a wall, at its top",
 }
 _UNITS = {"-": "", "weights": " weights", "weights × b": " weights × b"}
 _ENDS = {"methods": "reduced model and engine diverge", "data": "copies are spread over half of the peak tilt"}
@@ -136,7 +132,6 @@ def page_of(found: Advice) -> Page:
         "groups": [{**row, "name": _GROUPS[row["group"]].format(_off(found))} for row in _groups(found)],
         "checks": list(_checks(found)),
         "shares": planar_shares(found.planar) if len(found.planar) else [],
-        "needed": _demands(found).get("friction", math.nan),
         "loss": 1.0 - restitution_from_momentum(found.cylinder),
         "holds": support_named(facts["support"]),
         "slips": found.groups["slip_95"].max() if len(found.groups) else math.nan,
@@ -146,11 +141,12 @@ def page_of(found: Advice) -> Page:
 
 
 def _verdict(found: Advice) -> str:
-    stands = "It overturns as given" if found.overturned else _STANDS[found.grades.get("overturning", "not tested")]
-    use = _USE[found.model_grade].format(found.facts["model"])
-    worst = [t for t, each in found.grades.items() if each == found.model_grade and t != "overturning"]
-    reasons = "" if found.model_grade == "satisfied" else f" ({', '.join(worst)})"
-    return f"{stands}; {use}{reasons}."
+    if found.response["outcome"] == "failed":
+        return f"no advice, the {found.facts['model']} failed"
+    if not found.moves:
+        return "the cylinder stays at rest"
+    stands = "it overturns as given" if found.overturned else _STANDS[found.grades["overturning"]]
+    return f"{stands}; {_USE[found.model_grade].format(found.facts['model'])}"
 
 
 def _groups(found: Advice) -> list[dict[str, Any]]:
@@ -176,14 +172,14 @@ def _runs(found: Advice) -> Iterator[Row]:
         "overturned": "yes" if found.overturned else "no",
     }
     for row in _groups(found):
-        ends = [number(row[f"chance_{end}"], "percent") for end in ("low", "high")]
-        known = row["chance"] == row["chance"]
+        low, high = (number(100.0 * row[f"chance_{end}"], ".2g") for end in ("low", "high"))
+        chance = f"{number(row['chance'], 'percent')} ({low} to {high} %)"
         yield {
             "name": _GROUPS[row["group"]].format(_off(found)),
             **{f"tilt_{share}": alpha * row[f"peak_tilt_{share}"] for share in ("50", "95")},
             **{f"top_{share}": found.top(row[f"peak_tilt_{share}"]) for share in ("50", "95")},
             "overturned": f"{row['overturned']} of {row['runs'] - row['failed']}",
-            "chance": f"{number(row['chance'], 'percent')} ({ends[0]} to {ends[1]})" if known else "one run",
+            "chance": "one run" if math.isnan(row["chance"]) else chance,
         }
 
 
