@@ -56,7 +56,9 @@ def _peaks(found: Advice) -> Panel:
         here = Style(colour=model_style(found.facts["model"]).colour, dash="none", symbol="diamond")
         copies = members[(members["group"] == "copies") & (members["outcome"] != "failed")]
         rank = float((copies["peak_tilt"] < found.peak).mean()) if found.copies_differ else math.nan
-        layers.append(Line(x=np.array([found.peak]), y=np.array([rank]), name="as given", style=here, size=7.0))
+        layers.append(
+            Line(x=np.array([found.peak]), y=np.array([rank]), name="as given", style=here, size=7.0)
+        )
     return Panel(
         x=Axis(label="largest tilt / α", unit="-", low=0.0, high=end),
         y=Axis(label="share of the runs", unit="-", low=0.0, high=1.03),

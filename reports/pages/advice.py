@@ -85,15 +85,18 @@ _GROUPS = {
     "velocity": "records, same PGV",
 }
 _DEMANDS = {
-    "friction": "friction at the base",
-    "shear": "shear (horizontal force) at the base",
+    "friction": "friction",
+    "shear": "shear at the base",
     "top_friction": "friction under the slab",
-    "top_shear": "shear under the slab, of its share",
-    "moment": "moment about the vertical through the contact point",
-    "wall_force": "horizontal force of it on a wall, at its top",
+    "top_shear": "shear under the slab",
+    "moment": "moment about the vertical",
+    "wall_force": "its force on a wall",
 }
 _UNITS = {"-": "", "weights": " weights", "weights × b": " weights × b"}
-_ENDS = {"methods": "reduced model and engine diverge", "data": "copies are spread over half of the peak tilt"}
+_ENDS = {
+    "methods": "reduced model and engine diverge",
+    "data": "copies are spread over half of the peak tilt",
+}
 _PREDICTED = {
     "": "nothing ends it before",
     "pass": "a pass comes closer to upright than contact resolves",
@@ -196,9 +199,17 @@ def _demanded(found: Advice) -> Iterator[Row]:
             "per_tonne": number(row["per_tonne"]) + kilo if row["per_tonne"] == row["per_tonne"] else "",
         }
     if "clearance" in values:
-        tilt = math.degrees(values["tilt"] * found.cylinder.alpha)
-        size = f"{number(1e3 * values['wall_height'])} mm high, clearance {number(1e3 * values['clearance'])} mm"
-        yield {"name": f"wall for a tilt of {number(tilt)}°", "value": size, "per_tonne": ""}
+        tilt = number(math.degrees(values["tilt"] * found.cylinder.alpha))
+        yield {
+            "name": f"wall height, tilt {tilt}°",
+            "value": _millimetres(values["wall_height"]),
+            "per_tonne": "",
+        }
+        yield {"name": "wall clearance", "value": _millimetres(values["clearance"]), "per_tonne": ""}
+
+
+def _millimetres(length: float) -> str:
+    return f"{number(1e3 * length)} mm"
 
 
 def _checks(found: Advice) -> Iterator[Row]:
@@ -241,19 +252,34 @@ def _checks(found: Advice) -> Iterator[Row]:
             of = f"of {ratios['count']} copies {ratios['higher']} tilt more, {ratios['lower']} less"
             if ratios["overturned"] or ratios["against_overturned"]:
                 of += f"; {ratios['overturned']} of {ratios['members']} overturn, "
-                of += f"{ratios['against_overturned']} without" if not name else f"{ratios['against_overturned']} here"
+                of += (
+                    f"{ratios['against_overturned']} without"
+                    if not name
+                    else f"{ratios['against_overturned']} here"
+                )
             if ratios["ratio"] == ratios["ratio"]:
                 of = f"{number(ratios['low'])} to {number(ratios['high'])} (95 %); {of}"
             under = "" if name or ratios["given"] else f" ({ratios['record']} as strong)"
-            label = f"tilt in {name} over that here" if name == "ideal recess" else f"tilt on {name} over that here"
-            yield row(label if name else f"tilt with vertical shaking over that without{under}", ratios["ratio"], of, ".3g")
+            label = (
+                f"tilt in {name} over that here"
+                if name == "ideal recess"
+                else f"tilt on {name} over that here"
+            )
+            yield row(
+                label if name else f"tilt with vertical shaking over that without{under}",
+                ratios["ratio"],
+                of,
+                ".3g",
+            )
     spiked = response["largest_normal_force"]
     if len(found.groups) and spiked > found.groups["force_95"].max():
         yield row("largest normal force as given", spiked, _spike(), ".3g", " weights")
 
 
 def _spike() -> str:
-    return f"for less than {number(SPIKES, 'percent')} of its time: rigid contact near upright, no design load"
+    return (
+        f"for less than {number(SPIKES, 'percent')} of its time: rigid contact near upright, no design load"
+    )
 
 
 def _scaled(found: Advice, row: Any) -> Iterator[Row]:
@@ -269,10 +295,16 @@ def _scaled(found: Advice, row: Any) -> Iterator[Row]:
         if each["factor"] != each["factor"]:
             yield row("lowest scale found to overturn", "none", tested)
             continue
-        reasons = ["below 1: as given it stands in a gap"] if each["factor"] < 1.0 and not found.overturned else []
+        reasons = (
+            ["below 1: as given it stands in a gap"] if each["factor"] < 1.0 and not found.overturned else []
+        )
         if not each["confirmed"]:
-            reasons += [f"by chance: it stands at a tolerance of {number(CHECK_RTOL)} or nudged by {number(NUDGE)}"]
+            reasons += [
+                f"by chance: it stands at a tolerance of {number(CHECK_RTOL)} or nudged by {number(NUDGE)}"
+            ]
         yield row("lowest scale found to overturn", each["factor"], "; ".join(reasons), ".3g")
-    planes = found.lowest[found.lowest["series"].isin([PLANAR_X, PLANAR_Y])] if len(found.lowest) else found.lowest
+    planes = (
+        found.lowest[found.lowest["series"].isin([PLANAR_X, PLANAR_Y])] if len(found.lowest) else found.lowest
+    )
     if len(planes) and planes["factor"].notna().any():
         yield row("the same by planar analysis of each component", planes["factor"].min(), form=".3g")

@@ -265,7 +265,9 @@ def advise(
     if model == other:
         other = Run(None, "recess")
     stage = Stages(progress, [1.0] * (4 if run is None else 5)).stage
-    inputs = fingerprint([*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan])
+    inputs = fingerprint(
+        [*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan]
+    )
     with stage("both reduced models (compiled on their first run)"):
         trace = simulate_run(case, model)
         if trace.time[-1] > case.length:
