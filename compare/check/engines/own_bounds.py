@@ -21,9 +21,10 @@ from rockwobble.models import AGREEMENT, Case, GroundMotion, InitialState, Trace
 from rockwobble.multibody.scene.froude import default_step
 from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
 
-from ...comparison.prediction import early_rms, estimated_error, landings, time_scale
+from ...comparison.prediction import early_rms, estimated_error, time_scale
 from ...metrics.pair import is_release
 from ...metrics.tilt import rms
+from ...metrics.turning import landings
 from ...runs.choice import require_runnable
 from ...runs.execution import Job
 from ...runs.run_settings import at_step

@@ -20,7 +20,7 @@ from ..problems import PIER, released
 from .made_traces import RECESS, made, passes
 
 if TYPE_CHECKING:
-    from ...comparison.error_budget import ErrorBudget
+    from ...comparison.budget import ErrorBudget
 
 ALPHA = PIER.alpha
 STEP = 0.01
