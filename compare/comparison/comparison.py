@@ -291,4 +291,5 @@ def _stacked(tables: Mapping[Any, pd.DataFrame], *names: str) -> pd.DataFrame:
     """One table below the other, each with its key in the first columns."""
     if not tables:
         return pd.DataFrame(columns=list(names))
-    return pd.concat(tables, names=list(names)).reset_index(list(names)).reset_index(drop=True)
+    found: pd.DataFrame = pd.concat(tables, names=list(names)).reset_index(list(names)).reset_index(drop=True)
+    return found
