@@ -38,10 +38,9 @@ def tilt_picture(view: CaseView, name: str = "figure") -> Picture:
         name=name,
         title=f"Tilt: {view.case.name}, R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}",
         caption="Angle of the axis from the vertical over the slenderness, of the runs of each support and "
-        "the model that they are drawn with. Below, the difference from the reference of a run: its "
-        "largest value within the last second. A straight rise on this scale is a difference that grows in "
-        "proportion to itself. Diamonds mark where 1 % of α is first exceeded: beyond it single traces say "
-        "nothing about each other.",
+        "its model. Below, the difference from the reference: its largest value within the last second. "
+        "Diamonds mark where 1 % of α is first exceeded: beyond it single traces say nothing about "
+        "each other.",
         panels=[
             *(_tilts(view, group, support) for group, support in zip(groups, view.supports, strict=True)),
             *(_differences(view, reference) for reference in view.rows["reference"].unique()),

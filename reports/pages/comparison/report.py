@@ -27,7 +27,7 @@ SINGLY = 3
 # points of all lines of a page together: eleven bytes each
 _ALL_POINTS = 60_000
 # more are not to be seen, fewer are no curve
-_MOST_POINTS, _FEWEST_POINTS = 1500, 120
+_MOST_POINTS, _FEWEST_POINTS = 1500, 90
 _ALONE = ("figure", "budget")
 
 
@@ -111,8 +111,7 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
         )
     if not many:
         yield residual_picture(view, f"residuals-{place}")
-    excitation = excitation_picture(view, f"excitation-{place}")
-    yield from () if excitation is None else (excitation,)
+        yield from filter(None, [excitation_picture(view, f"excitation-{place}")])
 
 
 def _thinned(pictures: Sequence[Picture]) -> list[Picture]:

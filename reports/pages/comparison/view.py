@@ -29,11 +29,9 @@ def page_of(found: View) -> Page:
         template="comparison/view",
         values={
             "name": view.case.name,
-            "lines": [
-                headline(view.rows, view.case.length),
-                *filter(None, [notes(view)]),
-                *describe(view.case),
-            ],
+            "headline": headline(view.rows, view.case.length),
+            "notes": notes(view),
+            "lines": describe(view.case),
             "about": found.manifest,
         },
         blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},
