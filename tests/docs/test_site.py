@@ -115,8 +115,10 @@ def test_the_font_of_the_formulas_has_every_character_of_them() -> None:
     for name in names():
         for formula in re.findall(r"<math.*?</math>", (BUILT / name).read_text(encoding="utf-8"), re.DOTALL):
             letters = set(html.unescape(re.sub(r"<[^>]*>", "", formula)))
-            lacking |= {f"{name}: {each}" for each in letters if not each.isspace() and ord(each) not in known}
-            assert "mathvariant=\"bold" not in formula  # which browsers leave out
+            lacking |= {
+                f"{name}: {each}" for each in letters if not each.isspace() and ord(each) not in known
+            }
+            assert 'mathvariant="bold' not in formula  # which browsers leave out
     assert lacking == set()
 
 
