@@ -257,10 +257,10 @@ def trajectories(
     answers = {}
     for trace in traces:
         poses = measurement(trace).poses
-        if "tilt" not in poses.told:
+        if "tilt" not in poses.given:
             raise ValueError(f"{trace.run.engine} must have tilt, or qw, qx, qy and qz")
         # at the samples of its file: between them nothing is as exact
-        azimuth = poses.rolling_angle if "azimuth" in poses.told else None
+        azimuth = poses.rolling_angle if "azimuth" in poses.given else None
         columns = {"time": poses.time, "tilt": poses.tilt, "azimuth": azimuth}
         answers[fingerprint(trace.case)] = trace_of(columns, trace.case, support)
     told = all(np.isfinite(trace.rolling_angle).any() for trace in answers.values())

@@ -9,8 +9,8 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y
-from rockwobble.compare.studies.spectrum.verification import CHECK_RTOL, NUDGE
+from rockwobble.compare.studies.spectrum.spectrum import PLANAR_X, PLANAR_Y
+from rockwobble.compare.studies.spectrum.tables import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT
 from rockwobble.models.diagnostic import CODES
 

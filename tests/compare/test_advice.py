@@ -31,8 +31,7 @@ from rockwobble.compare.studies.advice.grades import (
 from rockwobble.compare.studies.advice.members import demands_of, other_records, peak_velocity, ratios_of
 from rockwobble.compare.studies.advice.scales import FACTORS, planar_chances, planar_runs, scan_scales
 from rockwobble.compare.studies.advice.trust import trust_of
-from rockwobble.compare.studies.spectrum.series import intensity_unit, uplift_factor
-from rockwobble.compare.studies.spectrum.study import overturning_spectrum
+from rockwobble.compare.studies.spectrum.spectrum import intensity_unit, overturning_spectrum, uplift_factor
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, el_centro_1940, plain_json
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

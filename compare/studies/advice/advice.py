@@ -21,7 +21,7 @@ from ...metrics.agreement import tolerance_of
 from ...metrics.distributions import Contrast
 from ...metrics.pair import is_release
 from ...metrics.tilt import overturned
-from ..spectrum.series import SPATIAL, uplift_factor
+from ..spectrum.spectrum import SPATIAL, uplift_factor
 from .grades import (
     Grade,
     grade_engine,
