@@ -42,6 +42,8 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .runs.task import IncompleteError as IncompleteError
     from .storage.files import replace_files as replace_files
     from .storage.manifest import require_writable as require_writable
+    from .studies.advice.advice import Advice as Advice
+    from .studies.advice.advice import advise as advise
     from .studies.ensemble import Ensemble as Ensemble
     from .studies.ensemble import ensemble as ensemble
     from .studies.fragility.intensity import MEASURES as MEASURES
@@ -74,6 +76,7 @@ _MODULES = {
     "runs.task": ("IncompleteError",),
     "storage.files": ("replace_files",),
     "storage.manifest": ("require_writable",),
+    "studies.advice.advice": ("Advice", "advise"),
     "studies.ensemble": ("Ensemble", "ensemble"),
     "studies.fragility.intensity": ("MEASURES",),
     "studies.fragility.samples": ("LIMITS",),

@@ -53,8 +53,8 @@ def show_and_write(
     print(f"\nWritten to {out}: {', '.join(names)}")
 
 
-def show_and_save(found: Results, out: Path) -> None:
-    """Write results with their page; then print the page."""
+def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
+    """Write results with their page; then print the page, with what is folded where `details` are wanted."""
     from ..pages.registry import page_of
     from .terminal import command_line
 
@@ -63,6 +63,6 @@ def show_and_save(found: Results, out: Path) -> None:
     pages = page.files()
     with user_input():
         found.save(out, pages=pages)
-    page.show()
+    page.show(details=details)
     names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
     print(f"\nWritten to {out}: {', '.join(names)}")
