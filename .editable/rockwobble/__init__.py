@@ -14,7 +14,16 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rockwobble import models, multibody, reduced, reports
-    from rockwobble.compare import Comparison, External, compare, ensemble, fragility, simulate, sweep
+    from rockwobble.compare import (
+        Comparison,
+        External,
+        advise,
+        compare,
+        ensemble,
+        fragility,
+        simulate,
+        sweep,
+    )
     from rockwobble.compare.check import check
     from rockwobble.models import (
         Case,
@@ -53,6 +62,7 @@ __all__ = [
     "Suite",
     "Trace",
     "WobblingFrame",
+    "advise",
     "check",
     "compare",  # the module, which may be called; to a type checker its function `compare`
     "el_centro_1940",
@@ -76,7 +86,7 @@ __all__ = [
     "with_motions",
 ]
 _PARTS = ("compare", "models", "multibody", "reduced", "reports")
-_OF_COMPARE = ("Comparison", "External", "ensemble", "fragility", "simulate", "sweep")
+_OF_COMPARE = ("Comparison", "External", "advise", "ensemble", "fragility", "simulate", "sweep")
 
 
 def __getattr__(name: str) -> object:
