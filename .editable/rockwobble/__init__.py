@@ -62,8 +62,8 @@ __all__ = [
     "Suite",
     "Trace",
     "WobblingFrame",
-    "check",
     "advise",
+    "check",
     "compare",  # the module, which may be called; to a type checker its function `compare`
     "el_centro_1940",
     "ensemble",

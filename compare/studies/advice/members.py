@@ -10,8 +10,15 @@ import numpy as np
 import pandas as pd
 from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Case, Cylinder, GroundMotion, Trace, WobblingFrame
-from rockwobble.models import far_field_motions, synthetic_motions
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    Trace,
+    WobblingFrame,
+    far_field_motions,
+    synthetic_motions,
+)
 from rockwobble.models.records import p695
 from rockwobble.models.support import support_named
 from rockwobble.multibody.scene.ring_geometry import rim_overhang
