@@ -47,8 +47,8 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .studies.ensemble import Ensemble as Ensemble
     from .studies.ensemble import ensemble as ensemble
     from .studies.fragility.intensity import MEASURES as MEASURES
-    from .studies.fragility.limits import LIMITS as LIMITS
-    from .studies.fragility.result import Fragility as Fragility
+    from .studies.fragility.samples import LIMITS as LIMITS
+    from .studies.fragility.study import Fragility as Fragility
     from .studies.fragility.study import fragility as fragility
     from .studies.sweep.grid import Grid as Grid
     from .studies.sweep.result import Sweep as Sweep
@@ -79,9 +79,8 @@ _MODULES = {
     "studies.advice.advice": ("Advice", "advise"),
     "studies.ensemble": ("Ensemble", "ensemble"),
     "studies.fragility.intensity": ("MEASURES",),
-    "studies.fragility.limits": ("LIMITS",),
-    "studies.fragility.result": ("Fragility",),
-    "studies.fragility.study": ("fragility",),
+    "studies.fragility.samples": ("LIMITS",),
+    "studies.fragility.study": ("Fragility", "fragility"),
     "studies.sweep.grid": ("Grid",),
     "studies.sweep.result": ("Sweep",),
     "studies.sweep.study": ("read_sweep", "sweep"),

@@ -12,8 +12,8 @@ from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.advice.grades import BROKEN, GRADES, NEAR, SENSITIVE, UNSAFE, Grade
 from rockwobble.compare.studies.advice.members import SPIKES
 from rockwobble.compare.studies.advice.scales import planar_shares
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SPATIAL
-from rockwobble.compare.studies.spectrum.verification import CHECK_RTOL, NUDGE
+from rockwobble.compare.studies.spectrum.spectrum import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.studies.spectrum.tables import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.models.support import support_named

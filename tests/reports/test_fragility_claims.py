@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from rockwobble.compare.storage.manifest import read_results
-from rockwobble.compare.studies.fragility.result import KIND
+from rockwobble.compare.studies.fragility.study import KIND
 
 CHECKOUT = Path(__file__).parents[2]
 PUBLISHED = CHECKOUT / "reports" / "published" / "fragility"

@@ -27,7 +27,7 @@ from ...storage.manifest import Number
 from ...storage.manifest import Results as Stored
 from ...storage.results import Results
 from ..plans import AdvicePlan
-from ..spectrum.series import SPATIAL, uplift_factor
+from ..spectrum.spectrum import SPATIAL, uplift_factor
 from .grades import (
     Grade,
     grade_engine,

@@ -17,9 +17,8 @@ from rockwobble.models.cpus import in_threads
 from ...metrics.order_statistics import share_interval
 from ...metrics.tilt import overturned
 from ..spectrum.search import STEP, Array, lowest_on_grid, run_searches, search_lowest
-from ..spectrum.series import SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
-from ..spectrum.study import RTOL
-from ..spectrum.verification import CHECK_RTOL, NUDGE
+from ..spectrum.spectrum import RTOL, SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
+from ..spectrum.tables import CHECK_RTOL, NUDGE
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given
 FACTORS: Array = 2.0 ** (np.arange(-24, 49) / 12.0)

@@ -3,16 +3,58 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
-from ....metrics.distributions import MARGIN, log_ratios
-from ....metrics.order_statistics import quantile_interval
-from ...ensemble import contrast_row, pairs
-from ..motions import EL_CENTRO
-from ..records import FLAT, HALVED, PERTURBED, RECESS
-from .numbers import Array, Numbers, Tables, column, largest, reached
+from ...metrics.distributions import MARGIN, log_ratios
+from ...metrics.order_statistics import quantile_interval
+from ..ensemble import contrast_row, pairs
+from .plan import EL_CENTRO
+from .records import FLAT, HALVED, PERTURBED, RECESS
+
+Tables = Mapping[str, "pd.DataFrame"]
+Array = NDArray[np.float64]
+Numbers = dict[str, float]
+
+
+def column(table: pd.DataFrame, name: str) -> Array:
+    """Return a column as numbers."""
+    return table[name].to_numpy(dtype=np.float64)
+
+
+def largest(values: Array) -> float:
+    """Return the largest finite value; NaN where there is none."""
+    finite = values[np.isfinite(values)]
+    return float(finite.max()) if len(finite) else math.nan
+
+
+def reached(values: Array, share: float) -> float:
+    """Return a value that a share of all does not exceed, infinite ones included; NaN of nothing."""
+    known = values[~np.isnan(values)]
+    return float(np.quantile(known, share, method="inverted_cdf")) if len(known) else math.nan
+
+
+def up_to(points: Array, holds: NDArray[np.bool_]) -> float:
+    """Return the largest point up to which every point holds; NaN where already the first does not.
+
+    Several rows may share a point; a point holds where all of its rows do.
+    """
+    found = math.nan
+    for point in np.unique(points):
+        if not holds[points == point].all():
+            break
+        found = float(point)
+    return found
+
+
+def first_failing(points: Array, holds: NDArray[np.bool_]) -> float:
+    """Return the smallest point with a row that does not hold; NaN where all do."""
+    failing = points[~holds]
+    return float(failing.min()) if len(failing) else math.nan
+
 
 POINT = ["tan_alpha", "semidiagonal", "intensity"]
 # what is held against what, and its name in the numbers; the last says how far a ring has converged
@@ -54,7 +96,7 @@ def ratios(runs: pd.DataFrame, method: str, against: str) -> Array:
     return np.exp(pairs(runs, method, against, member="motion", peak="peak").log_ratios())
 
 
-def records(tables: Tables) -> Numbers:
+def peak_ratios(tables: Tables) -> Numbers:
     """Return the range over the points of the contrasts of each method.
 
     NAME_least and NAME_largest, of the median ratio to the recess model; NAME_05_least to NAME_95_largest, of

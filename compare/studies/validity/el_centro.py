@@ -1,4 +1,4 @@
-"""Rings, recesses with walls and clearance, of several inclinations and frictions, against the ideal one."""
+"""The engine under El Centro: agreement times, soft contact, and rings, recesses with walls and clearance."""
 
 from __future__ import annotations
 
@@ -13,19 +13,109 @@ from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 from rockwobble.multibody.scene.ring_geometry import clearance_needed
 from rockwobble.multibody.scene.ring_settings import take_ring
+from rockwobble.reduced.body import body_of
 
+from ...comparison.driver import compare
 from ...metrics.pair import FloatArray
+from ...runs.choice import SUPPORTS
 from ...runs.execution import simulate_run
-from .extent import Extent
-from .motions import AMPLE, EL_CENTRO, REFERENCE_SIZE, shaken_case
-from .part import Inputs, Part, Row
+from .plan import AMPLE, EL_CENTRO, REFERENCE_SIZE, Extent, Inputs, Part, Row, release_case, shaken_case
+
+_COLUMNS = (
+    *("support", "reference_support", "outcome", "reference_outcome", "peak_tilt", "reference_peak_tilt"),
+    *("tilt_rms", "tilt_rms_relative", "agreement_time", "predicted_agreement_time", "diverged"),
+    *("agreed_passes", "residual_displacement", "residual_twist"),
+)
+
+
+def _following_tasks(extent: Extent) -> Iterable[Inputs]:
+    for tan_alpha, size, intensity in extent.trace_points:
+        for support in SUPPORTS:
+            yield {
+                "tan_alpha": tan_alpha,
+                "semidiagonal": size,
+                "intensity": intensity,
+                "support": support,
+                "duration": extent.trace_length,
+            }
+
+
+def measure_following(
+    tan_alpha: float, semidiagonal: float, intensity: float, support: str, duration: float
+) -> list[Row]:
+    """Return the summary of a run of the engine against the recess and, on flat ground, the flat model.
+
+    The columns are tan_alpha, semidiagonal, intensity, duration and those of `SUMMARY_COLUMNS`.
+    """
+    case = shaken_case(EL_CENTRO, tan_alpha, semidiagonal, intensity, duration=duration)
+    summary = compare(case, runs=[Run(DEFAULT_ENGINE, support)], workers=1).summary[list(_COLUMNS)]
+    return [{str(name): value for name, value in row.items()} for row in summary.to_dict("records")]
+
+
+FOLLOWING = Part(
+    name="following",
+    title="traces under El Centro in the engine",
+    tasks=_following_tasks,
+    measure=measure_following,
+    keys=("tan_alpha", "semidiagonal", "intensity", "duration"),
+    cost=lambda duration, **_: 0.04 * duration,
+    engine=DEFAULT_ENGINE,
+)
+
+
+_RELEASE, _SPIN, _PASSES = 0.5, 0.1, 4
+_INTENSITY, _LENGTH = 2.0, 10.0
+
+
+def _contact_tasks(extent: Extent) -> Iterable[Inputs]:
+    for tan_alpha in extent.contact_tan_alphas:
+        for time_constant in extent.time_constants:
+            for damping in extent.dampings:
+                yield {"tan_alpha": tan_alpha, "time_constant": time_constant, "damping": damping}
+
+
+def measure_contact(tan_alpha: float, time_constant: float, damping: float) -> list[Row]:
+    """Return a row: what free response in a recess loses, and the peak tilt under El Centro.
+
+    The columns: tan_alpha, time_constant [s] in which contact removes a normal velocity, damping ratio,
+    softness, the time constant times the frequency parameter p; loss of energy per pass over the energy of
+    the release, passes, peak and recess_peak under El Centro over alpha, free_outcome, outcome.
+    """
+    run = Run(DEFAULT_ENGINE, "recess", contact_time_constant=time_constant, contact_damping_ratio=damping)
+    free = simulate_run(release_case(tan_alpha, _RELEASE, _SPIN, _PASSES), run)
+    case = shaken_case(EL_CENTRO, tan_alpha, REFERENCE_SIZE, _INTENSITY, duration=_LENGTH)
+    shaken, recess = simulate_run(case, run), reduced.simulate(case)
+    lost = -float(free.energy_error[-1]) / float(free.energy[0])
+    return [
+        {
+            "softness": time_constant * body_of(case.cylinder, case.gravity).p,
+            "loss": lost / max(len(free.passes), 1),
+            "passes": len(free.passes),
+            "peak": shaken.peak_tilt / case.cylinder.alpha,
+            "recess_peak": recess.peak_tilt / case.cylinder.alpha,
+            "free_outcome": free.outcome,
+            "outcome": shaken.outcome,
+        }
+    ]
+
+
+CONTACT = Part(
+    name="contact",
+    title="contact that gives, in the engine",
+    tasks=_contact_tasks,
+    measure=measure_contact,
+    keys=("tan_alpha", "time_constant", "damping"),
+    cost=lambda **_: 1.0,
+    engine=DEFAULT_ENGINE,
+)
+
 
 # strong rocking without a fall
 INTENSITY = 1.5
 FREE, SHAKEN = "free response", EL_CENTRO
 
 
-def _tasks(extent: Extent) -> Iterable[Inputs]:
+def _rings_tasks(extent: Extent) -> Iterable[Inputs]:
     walls = [
         {"clearance": ring.clearance, "inclination": ring.inclination, "friction": ring.friction}
         for ring in extent.rings
@@ -40,7 +130,7 @@ def _tasks(extent: Extent) -> Iterable[Inputs]:
                 yield {**problem, "support": "ring", **ring}
 
 
-def measure(
+def measure_rings(
     tan_alpha: float,
     turn: float,
     length: float,
@@ -137,11 +227,11 @@ def _rolled_out(trace: Trace) -> FloatArray:
     return distance[np.isfinite(distance)]
 
 
-PART = Part(
+RINGS = Part(
     name="rings",
     title="a ring of walls in the engine",
-    tasks=_tasks,
-    measure=measure,
+    tasks=_rings_tasks,
+    measure=measure_rings,
     keys=(),
     cost=lambda support, length, **_: (0.8 if support == "ring" else 0.25) * length,
     engine=DEFAULT_ENGINE,
