@@ -17,6 +17,7 @@ from rockwobble.compare.studies.spectrum.tables import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.models.support import support_named
+from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.reduced.body import restitution_from_momentum
 
 from ..figures.advice import pictures
@@ -123,6 +124,7 @@ def page_of(found: Advice) -> Page:
         "found": found,
         "about": found.manifest,
         "drawn": bool(drawn),
+        "engine": DEFAULT_ENGINE,
         "verdict": _verdict(found),
         "meanings": [CODES[code][1] for code in found.response["diagnostics"]],
         "criteria": [
@@ -277,9 +279,7 @@ def _checks(found: Advice) -> Iterator[Row]:
 
 
 def _spike() -> str:
-    return (
-        f"for less than {number(SPIKES, 'percent')} of its time: rigid contact near upright, no design load"
-    )
+    return f"for less than {number(SPIKES, 'percent')} of its time: a spike of rigid contact, no design load"
 
 
 def _scaled(found: Advice, row: Any) -> Iterator[Row]:
