@@ -83,13 +83,13 @@ def advice(few_records: None) -> Advice:
 
 def test_demands_of_samples_are_those_of_the_continuous_solution():
     trace = reduced.simulate(Case(PIER, el_centro_1940(), friction=0.15), sample_step=1e-4)
-    found, held = demands_of(trace), trace.assumptions
-    slip = next(breach for breach in held.breaches if breach.code == "friction_needed")
+    found, demands = demands_of(trace), trace.assumptions
+    slip = next(breach for breach in demands.breaches if breach.code == "friction_needed")
     moving = (trace.tilt > 0.0).sum() * 1e-4
     assert found["slip"] == pytest.approx(slip.duration / moving, rel=1e-3)
-    assert 0.1 < found["friction"] < held.largest_friction_needed
-    assert 0.0 < found["moment"] < held.largest_restraining_moment / PIER.base_radius
-    assert 1.0 < found["force"] < held.largest_normal_force
+    assert 0.1 < found["friction"] < demands.largest_friction_needed
+    assert 0.0 < found["moment"] < demands.largest_restraining_moment / PIER.base_radius
+    assert 1.0 < found["force"] < demands.largest_normal_force
     shear = np.hypot(*trace.contact_force[trace.tilt > 0.0, :2].T)
     assert np.mean(shear <= found["shear"]) == pytest.approx(1.0 - SPIKES, abs=1e-4)  # a sample
     assert found["lost"] == 0.0
@@ -300,7 +300,7 @@ def test_a_frame_has_demands_at_base_and_top():
     assert own["top_friction"] > own["friction"]  # a light slab asks for more friction than the ground
 
 
-def test_the_vertical_component_is_told_by_pairs_of_copies():
+def test_the_vertical_component_is_judged_by_pairs_of_copies():
     given = vertical_effect(Case(PIER, el_centro_1940(vertical=True)), RECESS, perturbation=0.01, seed=1)
     missing = vertical_effect(Case(PIER, el_centro_1940()), RECESS, perturbation=0.01, seed=1)
     assert (given["given"], missing["given"]) == (True, False)

@@ -378,7 +378,7 @@ def _problem(case: Case) -> dict[str, Any]:
 def _response(trace: Trace) -> dict[str, Any]:
     """Facts of the run as given; tilts in alpha."""
     moves = math.isfinite(trace.uplift_time) and trace.outcome != "failed"
-    held = trace.assumptions_until(fall_of(trace)) if moves else None
+    assumed = trace.assumptions_until(fall_of(trace)) if moves else None
     own = demands_of(trace)
     return {
         "outcome": trace.outcome,
@@ -388,7 +388,7 @@ def _response(trace: Trace) -> dict[str, Any]:
         "peak_time": trace.peak_time,
         "end": float(trace.time[-1]),
         "in_one_plane": moves and not np.any(trace.rolling_rate),
-        "largest_normal_force": held.largest_normal_force if held else math.nan,
+        "largest_normal_force": assumed.largest_normal_force if assumed else math.nan,
         "slip": own["slip"],
         "lost": own["lost"],
         "tolerance": tolerance_of(trace),
