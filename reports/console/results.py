@@ -66,7 +66,7 @@ def show_and_save(found: Results, out: Path) -> None:
         found.save(out, pages=pages)
     page.show()
     names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
-    print(f"\nWritten to {out}: {', '.join(names)}")
+    print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")
 
 
 def show_stored(folder: Path, kind: str) -> None:
