@@ -47,6 +47,5 @@ def report(folder: Folder, out: Out = None, shared_script: SharedScript = False)
         drawn = {kind: stored_page(kind, folder).files(shared_script=shared_script) for kind in kinds}
         for kind, pages in drawn.items():
             write_pages(place, kind, pages)
-    print(
-        f"Written to {place}: {', '.join(dict.fromkeys(name for pages in drawn.values() for name in pages))}"
-    )
+    names = dict.fromkeys(name for pages in drawn.values() for name in pages)
+    print(f"Written to {place}: {', '.join(names)}")
