@@ -41,11 +41,13 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .runs.task import IncompleteError as IncompleteError
     from .storage.files import replace_files as replace_files
     from .storage.manifest import require_writable as require_writable
+    from .studies.advice.advice import Advice as Advice
+    from .studies.advice.advice import advise as advise
     from .studies.ensemble import Ensemble as Ensemble
     from .studies.ensemble import ensemble as ensemble
     from .studies.fragility.intensity import MEASURES as MEASURES
-    from .studies.fragility.limits import LIMITS as LIMITS
-    from .studies.fragility.result import Fragility as Fragility
+    from .studies.fragility.samples import LIMITS as LIMITS
+    from .studies.fragility.study import Fragility as Fragility
     from .studies.fragility.study import fragility as fragility
     from .studies.sweep.grid import Grid as Grid
     from .studies.sweep.result import Sweep as Sweep
@@ -73,11 +75,11 @@ _MODULES = {
     "runs.task": ("IncompleteError",),
     "storage.files": ("replace_files",),
     "storage.manifest": ("require_writable",),
+    "studies.advice.advice": ("Advice", "advise"),
     "studies.ensemble": ("Ensemble", "ensemble"),
     "studies.fragility.intensity": ("MEASURES",),
-    "studies.fragility.limits": ("LIMITS",),
-    "studies.fragility.result": ("Fragility",),
-    "studies.fragility.study": ("fragility",),
+    "studies.fragility.samples": ("LIMITS",),
+    "studies.fragility.study": ("Fragility", "fragility"),
     "studies.sweep.grid": ("Grid",),
     "studies.sweep.result": ("Sweep",),
     "studies.sweep.study": ("read_sweep", "sweep"),

@@ -79,6 +79,8 @@ def compare(
 
     Raises
     ------
+    TypeError
+        If `case_or_suite` is none.
     ValueError
         If an engine, a support, a setting, a file or the folder is not usable; nothing is written then.
 
@@ -92,6 +94,8 @@ def compare(
     >>> found.summary[["engine", "support", "reference_support", "diverged"]].values.tolist()
     [['mujoco', 'recess', 'recess', False]]
     """
+    if not isinstance(case_or_suite, Case | Suite):
+        raise TypeError(f"a comparison is of a Case or a Suite, got {case_or_suite!r}")
     if out is not None:
         require_writable(out)
     if until is not None and not until > 0.0:

@@ -75,10 +75,13 @@ class UpliftWatch:
     def _reaction_eccentricity(self, poses: Steps, after: Steps, acceleration: Array) -> Array:
         """Where the ground's reaction acts on the base, relative to its centre, shape (n, 2) [m]."""
         body = self._body
-        force = (after.velocity - poses.velocity) / self._step + acceleration
+        # per unit of the driven mass; in a frame the forces at base and top act on opposite sides of it
+        moved = body.moved_mass / body.driven_mass
+        force = moved * (after.velocity - poses.velocity) / self._step + acceleration
         load = np.maximum(force[:, 2] + self._gravity, _MINIMUM_LOAD * self._gravity)
         # upright, the moment about the mass centre is that of the transverse inertia
-        change = body.transverse_inertia * (after.angular_velocity - poses.angular_velocity) / self._step
+        inertia = body.transverse_inertia / body.driven_mass
+        change = inertia * (after.angular_velocity - poses.angular_velocity) / self._step
         height = body.mass_centre_height
         return np.column_stack(
             [-(change[:, 1] + height * force[:, 0]) / load, (change[:, 0] - height * force[:, 1]) / load]

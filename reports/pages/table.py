@@ -135,12 +135,18 @@ class Table:
             body = "".join(self._html_row(cells) for cells in rows)
             if self.folded:
                 parts.append(
-                    f"<details><summary>{html.escape(name)}</summary>{_scrolled(heads, body)}</details>"
+                    f"<details><summary>{html.escape(name)}</summary>{self._scrolled(heads, body)}</details>"
                 )
             else:
                 span = f'<tr class="group"><th colspan="{len(self.columns)}">{html.escape(name)}</th></tr>'
                 parts.append(f"<tbody>{span if name else ''}{body}</tbody>")
-        return "\n".join(parts) if self.folded else _scrolled(heads, "".join(parts))
+        return "\n".join(parts) if self.folded else self._scrolled(heads, "".join(parts))
+
+    def _scrolled(self, heads: str, body: str) -> str:
+        # words alone break where a phone has no room
+        words = ' class="words"' if all(column.text for column in self.columns) else ""
+        table = f"<table{words}><thead><tr>{heads}</tr></thead>{body}</table>"
+        return f'<div class="scroll" tabindex="0">{table}</div>'
 
     def _html_row(self, cells: Sequence[str]) -> str:
         found = []
@@ -196,8 +202,3 @@ def columns_of(given: Iterable[Sequence[str]]) -> list[Column]:
 
 def _class(column: Column) -> str:
     return ' class="words"' if column.text else ""
-
-
-def _scrolled(heads: str, body: str) -> str:
-    table = f"<table><thead><tr>{heads}</tr></thead>{body}</table>"
-    return f'<div class="scroll" tabindex="0">{table}</div>'
