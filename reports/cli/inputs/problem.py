@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 import shlex
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from dataclasses import dataclass, fields
-from functools import wraps
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated
 
 import typer
 
@@ -137,31 +135,6 @@ class Problem:
 
     def _lone_option(self) -> str:
         return "--units" if self.units is not None else "--resample" if self.resample else ""
-
-
-def states_problem(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options of a problem in the place of its parameter `problem`."""
-    types, own = get_type_hints(Problem, include_extras=True), get_type_hints(command, include_extras=True)
-    names = [field.name for field in fields(Problem)]
-    parameters = []
-    for name, parameter in inspect.signature(command).parameters.items():
-        if name == "problem":
-            parameters += [
-                inspect.Parameter(
-                    field.name, parameter.KEYWORD_ONLY, default=field.default, annotation=types[field.name]
-                )
-                for field in fields(Problem)
-            ]
-        else:
-            parameters.append(parameter.replace(kind=parameter.KEYWORD_ONLY, annotation=own[name]))
-
-    @wraps(command)
-    def with_options(**given: Any) -> None:
-        command(problem=Problem(**{name: given.pop(name) for name in names}), **given)
-
-    with_options.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # typer reads it
-    with_options.__annotations__ = {each.name: each.annotation for each in parameters}
-    return with_options
 
 
 def given_options(context: typer.Context) -> list[str]:
