@@ -34,6 +34,8 @@ class EngineFacts(Brief):
     smooth_uplift : bool
         Whether the error of a run that uplifts is a power series in the step, so that finer steps tell its
         limit.
+    rounding : float
+        Relative rounding error of its arithmetic, 2^-53 in double and 2^-24 in single precision.
     contact_time : str
         Name of the setting that is the time in which contact removes a velocity [s]; empty without one.
     alternatives : mapping
@@ -49,6 +51,7 @@ class EngineFacts(Brief):
     release_error: float = 2e-6
     uplift_error: float = 2.5e-5
     smooth_uplift: bool = False
+    rounding: float = 2.0**-53
     contact_time: str = ""
     alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)
     standing_alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)

@@ -46,7 +46,7 @@ def test_our_engines_are_declared_as_anybody_would_declare_them() -> None:
     assert (
         tuple(declared)
         == engine_names()[: len(declared)]
-        == ("mujoco", "pybullet", "dart", "drake", "exudyn")
+        == ("mujoco", "pybullet", "dart", "drake", "exudyn", "rapier")
     )
     assert {point.name: point.value for point in entry_points(group=GROUP)} == declared
     for name in available_engines():
