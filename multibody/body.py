@@ -4,6 +4,9 @@ b     base radius                              [m]
 h     height of the mass centre above the base [m]
 I1    transverse inertia about the mass centre [m^2], per unit mass, equation (16)
 I2    axial inertia                            [m^2], per unit mass, equation (16)
+
+A column of a frame carries its share of a slab, whose mass is `slab_mass_ratio` times its own. Where neither
+end slips, the slab has the velocity of the highest point of the top, twice that of the mass centre.
 """
 
 from __future__ import annotations
@@ -22,6 +25,17 @@ class Body:
     height: float
     transverse_inertia: float
     axial_inertia: float
+    slab_mass_ratio: float = 0.0
+
+    @property
+    def driven_mass(self) -> float:
+        """Mass that gravity and the ground move at the mass centre: the slab goes twice as far [-]."""
+        return 1.0 + 2.0 * self.slab_mass_ratio
+
+    @property
+    def moved_mass(self) -> float:
+        """Mass at the mass centre with the kinetic energy of column and slab [-]."""
+        return 1.0 + 4.0 * self.slab_mass_ratio
 
     @property
     def tan_alpha(self) -> float:
@@ -46,4 +60,5 @@ def scaled_body(cylinder: Cylinder, length: float) -> Body:
         if transverse is None
         else transverse / length**2,
         axial_inertia=0.5 * radius**2 if axial is None else axial / length**2,
+        slab_mass_ratio=cylinder.slab_mass_ratio,
     )

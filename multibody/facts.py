@@ -36,6 +36,8 @@ class EngineFacts(Brief):
         limit.
     rounding : float
         Relative rounding error of its arithmetic, 2^-53 in double and 2^-24 in single precision.
+    carries_slab : bool
+        Whether its scenes hold the slab of a frame: one column, under a slab that only translates.
     contact_time : str
         Name of the setting that is the time in which contact removes a velocity [s]; empty without one.
     alternatives : mapping
@@ -52,6 +54,7 @@ class EngineFacts(Brief):
     uplift_error: float = 2.5e-5
     smooth_uplift: bool = False
     rounding: float = 2.0**-53
+    carries_slab: bool = False
     contact_time: str = ""
     alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)
     standing_alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)

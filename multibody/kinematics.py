@@ -29,7 +29,7 @@ class Kinematics:
     tilt, tilt_rate, azimuth, twist : ndarray
         The azimuth is phi between -pi and pi, the twist as the quaternion tells it: see `unwrap_twist`.
     energy : ndarray
-        Kinetic and potential, per unit mass, zero standing [m^2/s^2].
+        Kinetic and potential, per unit of the driven mass, zero standing [m^2/s^2].
     depth : ndarray
         Of the lowest point of the rim below the ground [m].
     slip_rate : ndarray
@@ -68,7 +68,8 @@ def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinema
     slip_y = vy + wz * reach * out_x - wx * down
     along = wx * ax + wy * ay + wz * az
     transverse, axial = body.transverse_inertia, body.axial_inertia
-    energy = vx * vx + vy * vy + vz * vz + transverse * (wx * wx + wy * wy + wz * wz)
+    energy = body.moved_mass * (vx * vx + vy * vy + vz * vz)
+    energy += transverse * (wx * wx + wy * wy + wz * wz)
     energy += (axial - transverse) * along * along
     return Kinematics(
         # atan2 of both, because the cosine alone loses a tilt below 1e-8
@@ -76,7 +77,7 @@ def kinematics(poses: Steps, after: Steps, body: Body, gravity: float) -> Kinema
         tilt_rate=wy * out_x - wx * out_y,
         azimuth=np.arctan2(ay, ax),
         twist=2.0 * np.arctan2(poses.quaternion[:, 3], poses.quaternion[:, 0]),
-        energy=0.5 * energy + gravity * (z - h),
+        energy=0.5 * energy / body.driven_mass + gravity * (z - h),
         depth=-height,
         slip_rate=np.sqrt(slip_x * slip_x + slip_y * slip_y),
     )
@@ -131,7 +132,8 @@ def rolling_momentum(poses: Steps, after: Steps, body: Body) -> Array:
     sine = np.hypot(axis[:, 0], axis[:, 1])
     lowest = np.column_stack([place.contact_point, place.base_centre[:, 2] - body.base_radius * sine])
     along = np.einsum("ij,ij->i", spin, axis)
-    about_contact = np.cross(poses.position - lowest, velocity) + body.transverse_inertia * spin
+    about_contact = body.moved_mass * np.cross(poses.position - lowest, velocity)
+    about_contact += body.transverse_inertia * spin
     about_contact += (body.axial_inertia - body.transverse_inertia) * along[:, None] * axis
     return np.asarray(np.einsum("ij,ij->i", np.array([0.0, 0.0, 1.0]) - axis, about_contact))
 

@@ -33,7 +33,7 @@ From then on "mine" is the name of an engine wherever one is asked for. What it 
   end of the step.
 * The same run gives the same bits, nothing is printed or written, and what was opened is closed.
 
-`rockwobble.multibody.testing` checks all that, by physics, for any engine.
+`rockwobble.check(engine="mine")` checks all that, by physics, for any engine.
 """
 
 from __future__ import annotations

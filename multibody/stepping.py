@@ -68,7 +68,8 @@ def run_steps(
 def growth_time(body: Body, gravity: float) -> float:
     """Return the time in which a small distance from the balance grows by e, 1/p [s]."""
     b, h = body.base_radius, body.mass_centre_height
-    return math.sqrt((body.transverse_inertia + h * h + b * b) / (gravity * math.hypot(b, h)))
+    inertia = (body.transverse_inertia + body.moved_mass * (h * h + b * b)) / body.driven_mass
+    return math.sqrt(inertia / (gravity * math.hypot(b, h)))
 
 
 def _followed(

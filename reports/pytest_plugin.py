@@ -26,7 +26,7 @@ with a suite (what it may hold is said in the docstring of `rockwobble.models.su
     duration = 20
 
 `pytest tests/pier.suite.toml -k "scale 1.5"` runs a part. An item fails where a bound is exceeded, and then
-says which of engine, time step and model is to blame, and what the difference is made of: model form,
+names a likely cause where a second engine or step tells it, and what the difference is made of: model form,
 numerics, and what stays unexplained. That repeats the run at finer steps; `--no-rockwobble-budget` leaves it
 out. An engine that is not installed is skipped.
 
@@ -46,7 +46,7 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 if TYPE_CHECKING:
-    from rockwobble.compare.check import Finding
+    from rockwobble.compare.check import Result
 # of models.suites.file, which would be imported with every run of pytest
 ENDING = ".suite.toml"
 _OPTION = "--no-rockwobble-budget"
@@ -151,19 +151,19 @@ class SuiteItem(pytest.Item):
 
     def runtest(self) -> None:
         """Run engine and model, and raise what is beyond a bound."""
-        from rockwobble.compare.check import Bench
-        from rockwobble.compare.check.engines.agreement import check_run, reference_of
+        from rockwobble.compare.check.agreement import check_run, reference_of
+        from rockwobble.compare.check.own_bounds import SuiteRuns
         from rockwobble.compare.runs.execution import Job
 
         from .console.budget_of_run import budget_of_run
 
-        bench = Bench(reduced=rw.reduced, suite=self.suite, shipped=False, workers=1)
+        runs, bounds = SuiteRuns(workers=1), self.suite.bounds
         job = Job(case=self.case, run=self.run, label=self.label)
-        (trace,) = bench.traces([job])
-        failed = [finding for finding in check_run(bench, job, trace) if finding.failed]
+        (trace,) = runs.traces([job])
+        failed = [result for result in check_run(runs, job, trace, bounds) if result.failed]
         if failed:
             wanted = trace.outcome != "failed" and not self.config.getoption(_OPTION)
-            reference = reference_of(bench, self.run)
+            reference = reference_of(self.run, bounds)
             budget = budget_of_run(self.case, self.run, reference) if wanted else []
             raise DisagreementError(failed, budget)
 
@@ -186,13 +186,13 @@ class DisagreementError(Exception):
 
     Parameters
     ----------
-    failed : list of Finding
+    failed : list of Result
     budget : list of str
         Lines that say what the difference is made of.
     """
 
-    def __init__(self, failed: list[Finding], budget: list[str]) -> None:
+    def __init__(self, failed: list[Result], budget: list[str]) -> None:
         from .pages.check import in_words
 
-        super().__init__("\n".join([*(in_words(finding) for finding in failed), *budget]))
+        super().__init__("\n".join([*(in_words(result) for result in failed), *budget]))
         self.failed = failed

@@ -14,7 +14,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.compare.storage.fingerprint import fingerprint
-from rockwobble.compare.studies.validity.extent import QUICK, Ring
+from rockwobble.compare.studies.validity.plan import QUICK, Ring
 from rockwobble.compare.studies.validity.study import Validity, measure_all, validity_of
 
 if TYPE_CHECKING:

@@ -14,7 +14,17 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from rockwobble import models, multibody, reduced, reports
-    from rockwobble.compare import Comparison, External, compare, ensemble, fragility, simulate, sweep
+    from rockwobble.compare import (
+        Comparison,
+        External,
+        advise,
+        compare,
+        ensemble,
+        fragility,
+        simulate,
+        sweep,
+    )
+    from rockwobble.compare.check import check
     from rockwobble.models import (
         Case,
         Cylinder,
@@ -52,6 +62,8 @@ __all__ = [
     "Suite",
     "Trace",
     "WobblingFrame",
+    "advise",
+    "check",
     "compare",  # the module, which may be called; to a type checker its function `compare`
     "el_centro_1940",
     "ensemble",
@@ -74,7 +86,7 @@ __all__ = [
     "with_motions",
 ]
 _PARTS = ("compare", "models", "multibody", "reduced", "reports")
-_OF_COMPARE = ("Comparison", "External", "ensemble", "fragility", "simulate", "sweep")
+_OF_COMPARE = ("Comparison", "External", "advise", "ensemble", "fragility", "simulate", "sweep")
 
 
 def __getattr__(name: str) -> object:
@@ -84,6 +96,8 @@ def __getattr__(name: str) -> object:
         return version("rockwobble")
     if name in _PARTS:
         return importlib.import_module(f"rockwobble.{name}")
+    if name == "check":
+        return importlib.import_module("rockwobble.compare.check").check
     if name in __all__:
         return getattr(
             importlib.import_module(f"rockwobble.{'compare' if name in _OF_COMPARE else 'models'}"), name

@@ -1,18 +1,26 @@
 """Certificate of an installation: claims with their evidence, and a fingerprint to verify it by."""
 
-from .certificate import certify, read_certificate, verify
-from .claims import Claim, claims_of
-from .fingerprint import engine_method, reduced_method
+from .certificate import (
+    CLAIMING,
+    Claim,
+    certify,
+    claims_of,
+    models,
+    read_certificate,
+    verify,
+    write_certificate,
+)
 from .verdict import Certificate, FingerprintVerdict
 
 __all__ = [
+    "CLAIMING",
     "Certificate",
     "Claim",
     "FingerprintVerdict",
     "certify",
     "claims_of",
-    "engine_method",
+    "models",
     "read_certificate",
-    "reduced_method",
     "verify",
+    "write_certificate",
 ]

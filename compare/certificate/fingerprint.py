@@ -1,7 +1,7 @@
-"""Fingerprint of a method: twelve short motions, how exactly they repeat, and how long they can agree.
+"""Fingerprint of a subject: twelve short motions, how exactly they repeat, and how long they can agree.
 
-Two installations of one method differ by rounding, and two versions of an engine by a little more. What that
-becomes in time is told by copies of a case whose start or record is off by the accuracy of the method: a
+Two installations of one subject differ by rounding, and two versions of an engine by a little more. What that
+becomes in time is told by copies of a case whose start or record is off by the tolerance of the subject: a
 difference counts where it is larger than ten times theirs. Where the copies differ by 1 % of alpha themselves
 the agreement ends, and the tilts of many copies are kept instead, for their largest from then on. Those
 copies are ten times further off: so much may two versions differ.
@@ -10,105 +10,153 @@ copies are ten times further off: so much may two versions differ.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from random import Random
-from types import ModuleType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble import multibody, reduced
-from rockwobble.models import AGREEMENT, Case, Run, Trace
-from rockwobble.models.case import TimeStep
+from rockwobble.models import AGREEMENT, Case, Cylinder, GroundMotion, InitialState, Trace, el_centro_1940
 from rockwobble.models.members import perturbed
 
-from .short_cases import G, ShortCase, short_cases
+from ..check import Subject
 from .verdict import SAME, Entry, Sample, compare_entries
 
 Array = NDArray[np.float64]
 _SAMPLES = 40  # of each motion
 _BEYOND = 10.0  # what counts is so many times larger than the difference of the copies
 _MEMBERS = 16
+_REPEATS = 10.0  # times the tolerance of a subject: how closely a number repeats
+G = 9.81
+_PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+_SLENDER = Cylinder(semidiagonal=1.0, tan_alpha=0.2)
+_SQUAT = Cylinder(semidiagonal=1.0, tan_alpha=1.0)
+_HOLLOW = Cylinder(semidiagonal=4.0, tan_alpha=0.35, transverse_inertia=7.0, axial_inertia=3.0)
 SIGNALS = ("tilt", "lean_x", "lean_y", "twist", "energy", "force_x", "force_y", "force_z", "moment")
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Method:
-    """The method that is certified.
+class ShortCase:
+    """One case of a fingerprint.
 
     Parameters
     ----------
-    run : Run
-        Engine, or None for the reduced models, time step and settings; each case has its own support.
-    accuracy : float
-        Relative difference of a copy: what the method itself leaves open.
-    repeats : float
-        To how much of its size a number is repeated.
-    simulate : callable
-        Of a short case, and of that with another case in its place.
+    name : str
+    claim : str
+        What holds while it is the same.
+    term : str
+        What it adds to the cases before it.
+    case : Case
+    support : {"recess", "flat"}
+    options : mapping
+        Of the reduced models alone.
     """
 
-    run: Run
-    accuracy: float
-    repeats: float
-    simulate: Callable[[ShortCase, Case], Trace]
+    name: str
+    claim: str
+    term: str
+    case: Case
+    support: str = "recess"
+    options: Mapping[str, object] = field(default_factory=dict)
 
 
-def reduced_method(module: ModuleType = reduced) -> Method:
-    """Return the reduced models at their default tolerance; of a copy of the package, for its tests."""
+def short_cases() -> tuple[ShortCase, ...]:
+    """Return the twelve cases, the simplest first."""
+    return (
+        _release("tilting", "restoring moment p^2 sin(alpha - theta)", _PIER, 0.0, 1.0),
+        _release("rolling", "B and B'/2A of (18) and (19)", _PIER, 0.8, 2.0),
+        _release("near-pass", "J, the limit of B near upright", _PIER, 1e-2, 2.0),
+        _release("inertias", "I1 and I2 of (16)", _HOLLOW, 0.7, 2.0),
+        _release(
+            "flat-ground",
+            "twist of the flat-ground model, N1, and terms in the radius b",
+            _SQUAT,
+            1.5,
+            1.0,
+            support="flat",
+        ),
+        _shaken("uplift", "uplift (25), (26) and a_r of (18)", [[0.0, 0.0], [1.6, 1.9]], 1.4),
+        _shaken("turning-push", "a_t of (19)", [[0.0, 0.0], [2.2, 0.5], [1.0, 1.8]], 0.7),
+        _shaken("vertical", "g + az", [[0.0, 0.0, 0.0], [2.2, 0.5, -1.0], [1.0, 1.8, 1.0]], 0.7),
+        ShortCase(
+            name="planar",
+            claim="the planar model, with the loss of an impact",
+            term="impact, by the momentum about the new pivot",
+            # small and long, so that in an engine its impacts turn rounding into another motion
+            case=Case(_SLENDER, initial=InitialState(0.5 * _SLENDER.alpha, 0.0, 0.3), duration=12.0),
+            options={"plane": 0.3, "restitution": "momentum"},
+        ),
+        _record("el-centro", "all terms together", 1.4, 12.0),
+        _shaken("resting", "rest threshold", [[0.0, 0.0], [1.3, 1.6], [0.0, 0.0]], 1.0, 3.0, rest_tilt=0.02),
+        _record("close-passes", "a hundred passes near upright", 1.05, 9.0),
+    )
 
-    def simulate(short: ShortCase, case: Case) -> Trace:
-        step = case.length / _SAMPLES
-        found: Trace = module.simulate(case, support=short.support, sample_step=step, **short.options)
-        return found
 
-    return Method(run=Run(None, "recess"), accuracy=1e-10, repeats=1e-9, simulate=simulate)
-
-
-def engine_method(engine: str, time_step: TimeStep | None = None, **settings: Any) -> Method:
-    """Return an engine, at its defaults where nothing else is asked for."""
-
-    def simulate(short: ShortCase, case: Case) -> Trace:
-        step = case.length / _SAMPLES
-        return multibody.simulate(
-            case, engine=engine, support=short.support, time_step=time_step, sample_step=step, **settings
-        )
-
-    run = Run(engine, "recess", time_step, **settings)
-    return Method(run=run, accuracy=1e-5, repeats=1e-4, simulate=simulate)
+def _release(
+    name: str, term: str, body: Cylinder, spin: float, length: float, *, support: str = "recess"
+) -> ShortCase:
+    start = InitialState(0.5 * body.alpha, 0.0, 0.3, spin)
+    claim = "free response by (18) and (19)" if support == "recess" else "free response on flat ground"
+    case = Case(body, initial=start, duration=length)
+    return ShortCase(name=name, claim=claim, term=term, case=case, support=support)
 
 
-def fingerprint(method: Method) -> Iterator[Entry]:
+def _shaken(
+    name: str,
+    term: str,
+    samples: list[list[float]],
+    step: float,
+    length: float | None = None,
+    **options: float,
+) -> ShortCase:
+    motion = GroundMotion(np.array(samples), step)
+    case = Case(_PIER, motion, duration=motion.duration if length is None else length)
+    claim = "uplift and motion under a ramp of the ground"
+    return ShortCase(name=name, claim=claim, term=term, case=case, options=options)
+
+
+def _record(name: str, term: str, strength: float, length: float) -> ShortCase:
+    """Return a case under El Centro, so many times as strong as what lifts the pier."""
+    record = el_centro_1940()
+    motion = record.scaled(strength * G * _PIER.tan_alpha / record.peak)
+    case = Case(_PIER, motion, duration=length)
+    return ShortCase(name=name, claim="response to shaking", term=term, case=case)
+
+
+def fingerprint(subject: Subject) -> Iterator[Entry]:
     """Yield the twelve entries, each when it is computed."""
     for short in short_cases():
-        trace = method.simulate(short, short.case)
+        trace = _run(subject, short, short.case)
         found, values = entry(short, trace), _signals(trace)
-        copies = [_signals(method.simulate(short, copy)) for copy in _copies(short.case, method.accuracy)]
+        copies = [_signals(_run(subject, short, copy)) for copy in _copies(short.case, subject.tolerance)]
         spread = _BEYOND * np.array([_apart(copy, values) for copy in copies]).max(axis=0)
         lost = np.flatnonzero(spread[:, SIGNALS.index("tilt")] > AGREEMENT)
-        allowed = method.repeats * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
+        allowed = _REPEATS * subject.tolerance * np.maximum(1.0, np.abs(np.nan_to_num(values))) + spread
         if len(lost):  # from there on copies are no measure
             allowed[lost[0] :] = allowed[max(lost[0] - 1, 0)]
         whole: Entry = {
             **found,
             "agreement_time": found["time"][lost[0]] if len(lost) else None,
-            "repeats": method.repeats,
+            "repeats": _REPEATS * subject.tolerance,
             "allowed": {name: _rounded(allowed[:, k]) for k, name in enumerate(SIGNALS)},
         }
         if len(lost):
-            whole["copies"] = copied_tilts(short, method)
+            whole["copies"] = copied_tilts(short, subject)
         yield whole
 
 
-def repeated(method: Method, old: Sequence[Entry]) -> Iterator[Sample]:
+def repeated(subject: Subject, old: Sequence[Entry]) -> Iterator[Sample]:
     """Yield the parts of the entries needed to hold them against older ones: the copies are theirs."""
     for short, one in zip(short_cases(), old, strict=True):
-        found = entry(short, method.simulate(short, short.case))
+        found = entry(short, _run(subject, short, short.case))
         if one["agreement_time"] is not None and compare_entries(one, found).word != SAME:
-            found["copies"] = copied_tilts(short, method)
+            found["copies"] = copied_tilts(short, subject)
         yield found
+
+
+def _run(subject: Subject, short: ShortCase, case: Case) -> Trace:
+    return subject.simulate(case, short.support, sample_step=case.length / _SAMPLES, **short.options)
 
 
 def entry(short: ShortCase, trace: Trace) -> Sample:
@@ -122,16 +170,17 @@ def entry(short: ShortCase, trace: Trace) -> Sample:
         "outcome": trace.outcome,
         "uplift_time": _known(trace.uplift_time),
         "uplift_direction": _known(trace.uplift_direction),
-        "peak_tilt": _known(trace.peak_tilt / short.case.cylinder.alpha),
+        # as the signals, of the run alone
+        "peak_tilt": _known(trace.peak_within_run / short.case.cylinder.alpha),
         "time": _rounded(trace.time),
         "signals": {name: _listed(values[:, k]) for k, name in enumerate(SIGNALS)},
     }
 
 
-def copied_tilts(short: ShortCase, method: Method) -> list[list[float | None]]:
+def copied_tilts(short: ShortCase, subject: Subject) -> list[list[float | None]]:
     """Return the tilts of many copies, over alpha."""
-    members = _members(short.case, _BEYOND * method.accuracy)
-    return [_listed(method.simulate(short, member).tilt / member.cylinder.alpha) for member in members]
+    members = _members(short.case, _BEYOND * subject.tolerance)
+    return [_listed(_run(subject, short, member).tilt / member.cylinder.alpha) for member in members]
 
 
 def _signals(trace: Trace) -> Array:

@@ -1,20 +1,27 @@
-"""Consistency checks: the reduced model against exact solutions, its baseline and the engines.
+"""Checks of a subject: a reduced model, an engine, somebody's model, or files of trajectories.
 
-Layers of checks, tightest first; every check has a measured value, a bound, the reason for the bound,
-and the part that is suspect where it fails. `rockwobble check` runs them.
+One list of physical checks, in groups, tightest first; every check has a measured value, a bound, and the
+reason of the bound. `rockwobble check` runs them, and `rockwobble.check` in Python.
 """
 
-from .bench import Bench
-from .finding import FAILED, NO_BASELINE, NOT_RUN, PASSED, Finding
-from .layers import LAYERS, run_checks
+from .groups import GROUPS, run_checks
+from .result import FAILED, NO_BASELINE, NOT_RUN, PASSED, Result
+from .subject import Subject, engine, external_model, reduced_model, trajectories
+from .summary import Checks, check
 
 __all__ = [
     "FAILED",
-    "LAYERS",
+    "GROUPS",
     "NOT_RUN",
     "NO_BASELINE",
     "PASSED",
-    "Bench",
-    "Finding",
+    "Checks",
+    "Result",
+    "Subject",
+    "check",
+    "engine",
+    "external_model",
+    "reduced_model",
     "run_checks",
+    "trajectories",
 ]

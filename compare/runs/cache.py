@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Generic, TypeVar
 from rockwobble.models import plain_json
 from rockwobble.models.traces.parquet_file import pack, read
 
-from ..storage.files import remove_leftovers, sole_writer, write_whole
+from ..storage.files import remove_folders, remove_leftovers, sole_writer, write_whole
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -131,7 +131,8 @@ def open_cache(
     """Open the finished tasks of one kind of results in `folder`; nobody else can meanwhile.
 
     What was left half-written is removed. If the block ends well, so are the results that it did not ask
-    for; if it does not, all are kept. See `Cache` for the parameters.
+    for; if it does not, all are kept, and where there are none the folders that were made for them go. See
+    `Cache` for the parameters.
 
     Raises
     ------
@@ -139,11 +140,17 @@ def open_cache(
         If nothing can be written there, or another process has it open.
     """
     path = Path(folder) / CACHE / kind
-    with sole_writer(path):
-        remove_leftovers(path)
-        cache: Cache[T, R] = Cache(path, kind, name=name, pack=pack, unpack=unpack)
-        yield cache
-        cache.complete()
+    made = [each for each in (path, *path.parents) if not each.exists()]
+    try:
+        with sole_writer(path):
+            remove_leftovers(path)
+            cache: Cache[T, R] = Cache(path, kind, name=name, pack=pack, unpack=unpack)
+            yield cache
+            cache.complete()
+    except BaseException:
+        if made and not any(path.glob("*.parquet")):
+            remove_folders(made, without=(_PLAN,))
+        raise
 
 
 def open_table_cache(

@@ -115,9 +115,13 @@ def simulate_run(case: Case, run: Run, *, sample_step: float = SAMPLE_STEP) -> T
 
     Raises
     ------
+    TypeError
+        If `case` is none.
     ValueError
         What `reduced.simulate` or `multibody.simulate` raises.
     """
+    if not isinstance(case, Case):
+        raise TypeError(f"case must be a Case, such as Case(cylinder, motion), got {case!r}")
     if run.engine is None:
         from rockwobble import reduced
 

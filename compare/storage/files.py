@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -125,6 +125,15 @@ def remove_leftovers(folder: Path) -> None:
     """
     for part in folder.glob(f".*{_PART}"):
         part.unlink(missing_ok=True)
+
+
+def remove_folders(folders: Sequence[Path], *, without: Sequence[str] = ()) -> None:
+    """Remove folders, the innermost first, if they hold nothing but a lock and files of these names."""
+    with contextlib.suppress(OSError):
+        for folder in folders:
+            for name in (_LOCK, *without):
+                (folder / name).unlink(missing_ok=True)
+            folder.rmdir()
 
 
 @contextmanager

@@ -1,6 +1,6 @@
 """One manifest.json for every folder of results: what they are, what made them, and which files hold them.
 
-It is written last. So a folder with a manifest is whole, and what was written to it can be checked.
+It gets its name last. So a folder with a manifest is whole, and what was written to it can be checked.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from rockwobble.models import plain_json
 from rockwobble.models.shown import Brief
 from rockwobble.models.traces.parquet_file import pack
 
-from .files import replace_files, require_folder, write_whole
+from .files import replace_files, require_folder
 from .provenance import code_digests, commit, package_versions, processor
 
 if TYPE_CHECKING:
@@ -162,11 +162,10 @@ def write_results(
     whole = dataclasses.replace(manifest, files=hashes, pages=tuple(pages or ()))
     place = Path(folder)
     before = _read_all(place)
-    replace_files(place, {**data, **(pages or {})})
-    written = {*data, *(pages or {})}
+    written = {**data, **(pages or {})}
     # a result that lost a file to this one is not whole any more
-    others = [each for each in before if each.kind != manifest.kind and not written & {*each.files}]
-    _write_all(place, [whole, *others])
+    others = [each for each in before if each.kind != manifest.kind and not written.keys() & {*each.files}]
+    replace_files(place, {**written, MANIFEST: _packed([whole, *others])})
     kept = {name for each in (whole, *others) for name in (*each.files, *each.pages)}
     for each in before:
         for name in {*each.files, *each.pages} - kept if each.kind == manifest.kind else ():
@@ -183,13 +182,11 @@ def write_pages(folder: str | Path, kind: str, pages: Mapping[str, bytes]) -> No
         If the folder cannot be written.
     """
     place = Path(folder)
-    replace_files(place, pages)
     drawn = [
         dataclasses.replace(each, pages=tuple(pages)) if each.kind == kind else each
         for each in _read_all(place)
     ]
-    if drawn:
-        _write_all(place, drawn)
+    replace_files(place, {**pages, **({MANIFEST: _packed(drawn)} if drawn else {})})
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -285,7 +282,7 @@ def _read_all(folder: Path) -> list[Manifest]:
         raise ValueError(f"{path} cannot be read: {error}") from None
 
 
-def _write_all(folder: Path, manifests: list[Manifest]) -> None:
+def _packed(manifests: list[Manifest]) -> bytes:
     top, *others = (dataclasses.asdict(each) for each in manifests)
     content = top | ({"others": others} if others else {})
-    write_whole(folder / MANIFEST, (plain_json.dumps(content, indent=1) + "\n").encode())
+    return (plain_json.dumps(content, indent=1) + "\n").encode()

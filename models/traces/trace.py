@@ -191,8 +191,15 @@ class Trace(Shown):
     @property
     def peak_time(self) -> float:
         """Time of the largest tilt, to a sample, or of the swing after the end that is larger [s]."""
-        within = max(self.tilt.max(), self.extrema[:, 1].max(initial=0.0))
-        return self.followed_until if self.peak_tilt > within else float(self.time[self.tilt.argmax()])
+        later = self.peak_tilt > self.peak_within_run
+        return self.followed_until if later else float(self.time[self.tilt.argmax()])
+
+    @property
+    def peak_within_run(self) -> float:
+        """Largest tilt while the run lasts, of samples and turning points [rad]."""
+        if math.isnan(self.followed_until):
+            return self.peak_tilt
+        return float(max(self.tilt.max(initial=0.0), self.extrema[:, 1].max(initial=0.0)))
 
     @property
     def residual_twist(self) -> float:

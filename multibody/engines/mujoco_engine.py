@@ -34,6 +34,7 @@ _LEANS = 1e-8  # [rad] from which a lean has a direction, which a corner follows
 # the four corners of the first prism alone, early enough for the change to die away before the base opens
 _LOADED, _OPENING = 0.5, 0.98
 _LAST_PRISMS, _OUT_OF_REACH = 1, 1e-3  # [-], [m]
+_FREE = 7  # coordinates of a free body
 # A standing cylinder that runs into a wall, or hops while it slides, leans too and then stands on: only
 # under a load on its rim does a lean mean that it has uplifted, or if it is far larger.
 _ON_RIM, _RISEN_ANYHOW = 0.9, 1e-3  # of b, [rad]
@@ -44,6 +45,7 @@ _FACTS = EngineFacts(
     release_error=2e-6,
     uplift_error=5e-6,
     smooth_uplift=True,  # its corners turn under the load
+    carries_slab=True,
     contact_time="contact_time_constant",
     alternatives={
         **{
@@ -135,7 +137,10 @@ class _MujocoStepper:
         states, sensors = np.empty((steps + 1, len(self._state))), np.empty((steps, self._model.nsensordata))
         states[0] = self._state
         control = np.zeros((steps, self._model.nu))
-        control[:, : len(self._columns)] = -acceleration[:, self._columns]
+        push = -acceleration[:, self._columns]
+        control[:, : len(self._columns)] = push
+        if self._model.nq > _FREE and self._columns:  # the last ones push the slab
+            control[:, -len(self._columns) :] = push
         eccentricity = self._eccentricity(acceleration) if self._standing else None
         done = 0
         while done < steps:
@@ -146,11 +151,12 @@ class _MujocoStepper:
                 end = done + held if self._standing else steps
             self._roll(control[done:end], states[done + 1 : end + 1], sensors[done:end])
             done = end
-        # time, then position, quaternion, velocity in world axes, angular velocity in body axes
+        # time, position, quaternion, place of the slab; velocity in world, angular velocity in body axes
         # stored by component, which the recorder takes one by one
         rows = np.ascontiguousarray(states.T).T
         quaternion = rows[:, 4:8]
-        velocity, spin = rows[:, 8:11], to_world(quaternion, rows[:, 11:14])
+        moving = rows[:, 1 + self._model.nq :]
+        velocity, spin = moving[:, :3], to_world(quaternion, moving[:, 3:6])
         touch = None if self._ring is None else _wall(sensors)
         if self._staggered:
             return Steps(rows[1:, 1:4], quaternion[1:], velocity[1:], spin[1:], touch, self._unsolved())

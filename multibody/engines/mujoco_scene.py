@@ -5,6 +5,8 @@ from __future__ import annotations
 from importlib.resources import as_file, files
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from ..protocol import Scene
 from ..scene.friction import body_friction
 from ..scene.ring_geometry import wall_feet, wall_orientations
@@ -15,6 +17,7 @@ if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]
 
 _PRISMS = 12  # in the scene file; four corners each
+_SLAB_WIDTH, _SLAB_THICKNESS = 4.0, 0.5  # half of them, of the height and in m: wider than a column can fall
 
 
 def compile_scene(
@@ -33,6 +36,8 @@ def compile_scene(
     _set_body(spec, scene)
     if ring is not None:
         _set_walls(spec, ring, scene.body.base_radius)
+    if scene.body.slab_mass_ratio > 0.0:
+        _add_slab(spec, scene, standing and settings.standing_corners > 0)
     _set_contact(spec, scene, settings, standing, ring)
     for component in set("xyz") - set(scene.components):
         spec.delete(spec.actuator(f"push_{component}"))
@@ -77,13 +82,41 @@ def _set_body(spec: Any, scene: Scene) -> None:
         geom.size = [radius, half, 0.0] if geom.name == "cylinder" else [radius / 2**0.5] * 2 + [half]
 
 
+def _add_slab(spec: Any, scene: Scene, standing: bool) -> None:
+    """Put a slab that can only translate on the top; it lies on the first prism, or on the rim."""
+    import mujoco
+
+    shape = scene.body
+    slab = spec.worldbody.add_body(name="slab", pos=[0.0, 0.0, shape.height + _SLAB_THICKNESS])
+    slab.mass, slab.inertia, slab.explicitinertial = shape.slab_mass_ratio, [1.0, 1.0, 1.0], True
+    width = _SLAB_WIDTH * shape.height
+    slab.add_geom(
+        name="slab",
+        type=mujoco.mjtGeom.mjGEOM_BOX,
+        size=[width, width, _SLAB_THICKNESS],
+        contype=0,
+        conaffinity=0,
+    )
+    for name, axis in zip("xyz", np.eye(3), strict=True):
+        slab.add_joint(name=f"slab_{name}", type=mujoco.mjtJoint.mjJNT_SLIDE, axis=axis)
+        if name in scene.components:
+            push = spec.add_actuator(name=f"push_slab_{name}", target=f"slab_{name}")
+            push.trntype = mujoco.mjtTrn.mjTRN_JOINT
+            push.gear[0] = shape.slab_mass_ratio
+    spec.add_pair(geomname1="slab", geomname2="prism0" if standing else "cylinder")
+    # two convex bodies: their point of contact is sought, to rounding, and is one: what a face and a rim next
+    # to it have in common, which 4.0 looks for, is off by 4e-3 m at a tilt of 1e-4 rad
+    spec.option.ccd_tolerance, spec.option.ccd_iterations = 1e-16, 200
+    spec.option.disableflags |= getattr(mujoco.mjtDisableBit, "mjDSBL_MULTICCD", 0)
+
+
 def _set_contact(
     spec: Any, scene: Scene, settings: MujocoSettings, standing: bool, ring: RingSettings | None
 ) -> None:
     count = settings.standing_corners // 4 if standing else 0
     if count:
         # the rounding of the rim's depth would make it hop
-        spec.delete(next(pair for pair in spec.pairs if pair.geomname2 == "cylinder" and _on_ground(pair)))
+        spec.delete(next(pair for pair in spec.pairs if pair.geomname2 == "cylinder" and _bears(pair)))
         # without its pair it would meet the ground as any two geometries do, with a friction of its own
         spec.geom("cylinder").contype = spec.geom("cylinder").conaffinity = 0
     for index in range(_PRISMS):
@@ -99,8 +132,8 @@ def _set_contact(
     spec.option.impratio = _yield(rim) / _yield(settings.impedance)
     ground = body_friction(scene.friction, "pair")
     for pair in spec.pairs:
-        friction = ground if ring is None or _on_ground(pair) else ring.ring_friction
-        impedance = rim if _on_ground(pair) else settings.impedance
+        friction = ground if ring is None or _bears(pair) else ring.ring_friction
+        impedance = rim if _bears(pair) else settings.impedance
         pair.friction = [friction, friction, 0.0, 0.0, 0.0]
         pair.condim = 3
         pair.solref = [settings.contact_time_constant / scene.unit_time, settings.contact_damping_ratio]
@@ -128,8 +161,8 @@ def _set_walls(spec: Any, ring: RingSettings, base_radius: float) -> None:
         spec.add_pair(wall, geomname1=name, geomname2="cylinder")
 
 
-def _on_ground(pair: Any) -> bool:
-    return bool(pair.geomname1 == "ground")
+def _bears(pair: Any) -> bool:
+    return pair.geomname1 in ("ground", "slab")
 
 
 def _yield(impedance: float) -> float:

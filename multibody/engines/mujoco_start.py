@@ -22,12 +22,19 @@ def set_start(model: mujoco.MjModel, data: mujoco.MjData, scene: Scene, staggere
 
     start = scene.start
     inverse = start.quaternion * np.array([1.0, -1.0, -1.0, -1.0])
-    data.qpos[:3], data.qpos[3:] = start.position, start.quaternion
+    data.qpos[:3], data.qpos[3:7] = start.position, start.quaternion
     data.qvel[:3] = start.velocity
-    data.qvel[3:] = to_world(inverse[None], start.angular_velocity[None])[0]
+    data.qvel[3:6] = to_world(inverse[None], start.angular_velocity[None])[0]
+    # a slab has the velocity of the highest point of the top, and so it came to its place
+    data.qpos[7:] = 2.0 * (start.position - [0.0, 0.0, scene.body.mass_centre_height])[: model.nq - 7]
+    data.qvel[6:] = 2.0 * start.velocity[: model.nv - 6]
+    slab_height = data.qpos[9:].copy()
+    share = scene.body.slab_mass_ratio
 
     def rim_acceleration(depth: float) -> float:
         data.qpos[2] = start.position[2] - depth
+        # the top sinks in by the share of the load that it carries
+        data.qpos[9:] = slab_height - depth * (1.0 + share / (1.0 + share))
         data.qacc_warmstart[:] = 0.0
         mujoco.mj_forward(model, data)
         return _rim_acceleration(data, scene)
@@ -52,7 +59,7 @@ def _rim_acceleration(data: mujoco.MjData, scene: Scene) -> float:
         return rise
     b, h = scene.body.base_radius, scene.body.mass_centre_height
     axis = to_world(start.quaternion[None], np.array([[0.0, 0.0, 1.0]]))[0]
-    angular = to_world(start.quaternion[None], np.asarray(data.qacc[3:])[None])[0]
+    angular = to_world(start.quaternion[None], np.asarray(data.qacc[3:6])[None])[0]
     rate = np.cross(start.angular_velocity, axis)
     curve = np.cross(angular, axis) + np.cross(start.angular_velocity, rate)
     # height = z - h cos(theta) - b sin(theta), with cos(theta) the third component of the axis

@@ -26,13 +26,18 @@ _PULL = 1e-3  # weights; far above rounding
 _WEIGHTS: Array = np.hanning(2 * HALF_WINDOW + 3)[1:-1] / (HALF_WINDOW + 1.0)  # of a Hann window; sum 1
 
 
-def force_of_steps(poses: Steps, after: Steps, ground: Array, time_step: float, gravity: float) -> Array:
+def force_of_steps(
+    poses: Steps, after: Steps, ground: Array, time_step: float, gravity: float, share: float = 0.0
+) -> Array:
     """Return the force of the ground and of walls on the cylinder in weights, shape (3, n), world axes.
+
+    In a frame the weight is that of the cylinder and its `share` of the slab, which has twice the velocity.
 
     The velocities of `poses` are those of the step before each, those of `after` one step later;
     `ground` (n, 3) is the acceleration of the ground at the poses [m/s^2].
     """
-    force: Array = (after.velocity.T - poses.velocity.T) / (time_step * gravity) + ground.T / gravity
+    change = (1.0 + 2.0 * share) / (1.0 + share) * (after.velocity.T - poses.velocity.T)
+    force: Array = change / (time_step * gravity) + ground.T / gravity
     force[2] += 1.0
     return force
 

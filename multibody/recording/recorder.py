@@ -193,7 +193,9 @@ class Recorder:
         within = state.tilt < math.atan(body.tan_alpha)
         self.fastest = max(self.fastest, float(np.abs(state.tilt_rate[within]).max(initial=0.0)))
         self._sample(time, rows)
-        force = force_of_steps(poses, after, acceleration, self._scene.time_step, self._scene.gravity)
+        force = force_of_steps(
+            poses, after, acceleration, self._scene.time_step, self._scene.gravity, body.slab_mass_ratio
+        )
         self.forces.add(force)
         # a wall may well push the cylinder down, by its friction or where the rim is below it
         if math.isnan(self.pull_time) and wall is None:

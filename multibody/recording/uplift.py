@@ -19,8 +19,8 @@ from ..protocol import Steps
 Array = NDArray[np.float64]
 
 SURE_TILT = 5e-6  # of alpha; a standing cylinder leans by 1e-9 rad in MuJoCo, 1e-8 rad in Bullet
-# Rounding errors; at 0.98 of the load that uplifts it a standing cylinder leans by up to 120 of them in Rapier,
-# as single precision knows the height of its corners
+# Rounding errors; at 0.98 of the load that uplifts it a standing cylinder leans by up to 120 of them in
+# Rapier, as single precision knows the height of its corners
 _SURE_ROUNDINGS = 150.0
 _MEMORY = 4000  # steps kept before that tilt: it takes a few hundred from the uplift
 # Eccentricities, over b, up to which the reaction may be expected to follow. Contact yields next to the rim,
@@ -78,10 +78,13 @@ class UpliftWatch:
     def _reaction_eccentricity(self, poses: Steps, after: Steps, acceleration: Array) -> Array:
         """Where the ground's reaction acts on the base, relative to its centre, shape (n, 2) [m]."""
         body = self._body
-        force = (after.velocity - poses.velocity) / self._step + acceleration
+        # per unit of the driven mass; in a frame the forces at base and top act on opposite sides of it
+        moved = body.moved_mass / body.driven_mass
+        force = moved * (after.velocity - poses.velocity) / self._step + acceleration
         load = np.maximum(force[:, 2] + self._gravity, _MINIMUM_LOAD * self._gravity)
         # upright, the moment about the mass centre is that of the transverse inertia
-        change = body.transverse_inertia * (after.angular_velocity - poses.angular_velocity) / self._step
+        inertia = body.transverse_inertia / body.driven_mass
+        change = inertia * (after.angular_velocity - poses.angular_velocity) / self._step
         height = body.mass_centre_height
         return np.column_stack(
             [-(change[:, 1] + height * force[:, 0]) / load, (change[:, 0] - height * force[:, 1]) / load]

@@ -131,7 +131,7 @@ def fragility(
 
     with interruptible(out):
         with user_input():
-            from rockwobble.compare.studies.fragility.limits import DEFAULT_LIMITS
+            from rockwobble.compare.studies.fragility.samples import DEFAULT_LIMITS
             from rockwobble.compare.studies.fragility.study import require_asked
             from rockwobble.models.records.plausibility import doubts_of
 
@@ -168,7 +168,7 @@ def fragility(
                 size = f"R = {body.semidiagonal:g} m, tan alpha = {body.tan_alpha:g}"
                 print(f"{name}: {size}" if cylinder else size)
             print(f"Motions: {len(motions)}, {source}", *warnings(doubts_of(motions)), sep="\n")
-        from rockwobble.compare.studies.fragility.result import manifest_of
+        from rockwobble.compare.studies.fragility.study import manifest_of
 
         from ..pages.fragility import count_files, fragility_page
 

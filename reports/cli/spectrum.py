@@ -81,8 +81,7 @@ def spectrum(
         with user_input():
             import numpy as np
 
-            from rockwobble.compare.studies.spectrum.series import intensity_unit
-            from rockwobble.compare.studies.spectrum.study import SUPPORTS
+            from rockwobble.compare.studies.spectrum.spectrum import SUPPORTS, intensity_unit
             from rockwobble.models.number_checks import require_increasing, require_one_of
 
             from .inputs.problem import Problem
@@ -113,7 +112,7 @@ def spectrum(
                 finest = f"--search-step must be at least {_FINEST:g} and finite"
                 raise ValueError(f"{finest}, got {search_step:g}")
             rc.require_writable(out)
-        from rockwobble.compare.studies.spectrum.study import overturning_spectrum
+        from rockwobble.compare.studies.spectrum.spectrum import overturning_spectrum
         from rockwobble.compare.studies.spectrum.tables import manifest_of, tables_of
 
         from ..pages.spectrum import spectrum_page

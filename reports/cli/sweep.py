@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -13,12 +13,16 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.results import show_stored
 from ..console.terminal import command_line, interruptible, user_input
 from .inputs import options
 from .inputs.estimate import require_sweep
 from .inputs.grid import grid_of
 from .inputs.problem import refuse
+
+if TYPE_CHECKING:
+    from rockwobble.compare.storage.manifest import Manifest
+
+    from ..pages.page import Page
 
 _grid = options.panel("Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT")
 # what states a grid: the file of a suite states its own
@@ -120,6 +124,14 @@ def sweep(
         rc.require_writable(out)
     for line in (*_echo(plan), how_long):
         print(line)
+    from ..pages.runs.sweep import sweep_page
+
+    drawn: list[Page] = []
+
+    def pages(found: rc.Sweep, made: Manifest) -> dict[str, bytes]:
+        drawn.append(sweep_page(found, made))
+        return drawn[0].files()
+
     with interruptible(out), user_input(), shown_progress("chunks") as tell:
         rw.sweep(
             plan,
@@ -129,8 +141,10 @@ def sweep(
             chunk_size=chunk,
             progress=tell,
             command=command_line(),
+            pages=pages,
         )
-    show_stored(out, "sweep")
+    drawn[0].show()
+    print(f"\nWritten to {out}: the tables, their manifest and the pages")
 
 
 def _suite(name: str, models: list[str] | None) -> rw.Suite:

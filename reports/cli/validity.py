@@ -39,7 +39,7 @@ def validity(
     with interruptible(out):
         with user_input():
             rc.require_writable(out)
-        from rockwobble.compare.studies.validity.extent import FULL, QUICK
+        from rockwobble.compare.studies.validity.plan import FULL, QUICK
         from rockwobble.compare.studies.validity.study import manifest_of, measure_all, validity_of
 
         from ..pages.validity import limits_table, validity_page

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ..pages.registry import stored_page
 from .terminal import user_input
 
 if TYPE_CHECKING:
@@ -54,8 +53,8 @@ def show_and_write(
     print(f"\nWritten to {out}: {', '.join(names)}")
 
 
-def show_and_save(found: Results, out: Path) -> None:
-    """Write results with their page; then print the page."""
+def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
+    """Write results with their page; then print the page, with what is folded where `details` are wanted."""
     from ..pages.registry import page_of
     from .terminal import command_line
 
@@ -64,18 +63,6 @@ def show_and_save(found: Results, out: Path) -> None:
     pages = page.files()
     with user_input():
         found.save(out, pages=pages)
-    page.show()
+    page.show(details=details)
     names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
     print(f"\nWritten to {out}: {', '.join(names)}")
-
-
-def show_stored(folder: Path, kind: str) -> None:
-    """Draw the page of results that are written already, add it to them, and print it."""
-    from rockwobble.compare.storage.manifest import write_pages
-
-    with user_input():
-        page = stored_page(kind, folder)
-        pages = page.files()
-        write_pages(folder, kind, pages)
-    page.show()
-    print(f"\nWritten to {folder}: the tables, {', '.join(pages)}")

@@ -11,8 +11,8 @@ import pandas as pd
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.limits import OVERTURNED
-from rockwobble.compare.studies.fragility.questions import main_contrasts
+from rockwobble.compare.studies.fragility.samples import OVERTURNED
+from rockwobble.compare.studies.fragility.study import main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL
 
 from .ensemble import margin_rules, ratio_axes
@@ -30,6 +30,7 @@ _COLOURS = (DARK, *ORDER)
 _TICKS = (0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 50.0)
 _RATIOS = (0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0, 3.0, 4.0)
 _LINE = 0.42  # inch for a pair of methods
+_EDGE = 1.02  # a mark keeps so far within the ends of a logarithmic axis
 _MEDIAN = Style(colour=ORDER[0], dash="none", symbol="diamond")
 
 
@@ -73,10 +74,12 @@ def _ratios(found: Fragility) -> Picture | None:
             x = np.clip([row["ratio_low"], row["ratio_high"]], low, high)
             y = np.full(2, float(place))
             layers.append(Line(x=x, y=y, name="95 % interval", style=Style(colour=ORDER[0]), width=3.0))
-            if low <= row["ratio"] <= high:
-                layers.append(
-                    Line(x=np.array([row["ratio"]]), y=y[:1], name="ratio of the medians", style=_MEDIAN)
-                )
+            # beyond the axis a triangle at its end
+            side = "left" if row["ratio"] < low else "right" if row["ratio"] > high else ""
+            x = np.clip([row["ratio"]], low * _EDGE, high / _EDGE)
+            mark = Style(colour=ORDER[0], dash="none", symbol=f"triangle-{side}") if side else _MEDIAN
+            name = "beyond the axis" if side else "ratio of the medians"
+            layers.append(Line(x=x, y=y[:1], name=name, style=mark))
         title = {None: "", ALL: "Mean of all cylinders"}.get(cylinder, str(cylinder))
         height = _LINE * len(pairs) + 1.0
         panels.append(Panel(x=x_axis, y=y_axis, layers=layers, title=title, height=height))
@@ -123,27 +126,27 @@ def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -
     for index, (label, style) in enumerate(mark_styles(labels).items()):
         colour = _COLOURS[index % len(_COLOURS)]
         own = curves[curves["method"] == label]
-        if not len(own):
-            continue
-        x = own["intensity"].to_numpy(float)
-        low, high = (own[end].to_numpy(float) for end in ("low", "high"))
-        shade = "#d9d9d9" if colour == DARK else pale(pale(colour))
-        backs.append(Band(x=x, low=low, high=high, colour=shade))
-        fronts.append(
-            Line(
-                x=x,
-                y=own["probability"].to_numpy(float),
-                name=label,
-                style=Style(colour=colour, dash=style.dash),
-                width=1.8,
+        if len(own):
+            x = own["intensity"].to_numpy(float)
+            low, high = (own[end].to_numpy(float) for end in ("low", "high"))
+            shade = "#d9d9d9" if colour == DARK else pale(pale(colour))
+            backs.append(Band(x=x, low=low, high=high, colour=shade))
+            fronts.append(
+                Line(
+                    x=x,
+                    y=own["probability"].to_numpy(float),
+                    name=label,
+                    style=Style(colour=colour, dash=style.dash),
+                    width=1.8,
+                )
             )
-        )
         part = _grouped(counts[counts["method"] == label])
         mark = Style(colour=colour, dash="none", symbol=style.symbol)
         fronts.append(
             Line(
                 x=part["intensity"].to_numpy(float),
                 y=(part["k"] / part["n"]).to_numpy(float),
+                name="" if len(own) else label,
                 style=mark,
                 size=4.0,
                 notes=[f"{label}: {k} of {n}" for k, n in zip(part["k"], part["n"], strict=True)],

@@ -4,8 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, safe_islands
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL, TITLES
+from rockwobble.compare.studies.spectrum.spectrum import (
+    PLANAR_X,
+    PLANAR_Y,
+    SERIES,
+    SPATIAL,
+    TITLES,
+    OverturningSpectrum,
+    safe_islands,
+)
 from rockwobble.models import Run
 
 from .heat import PEAKS, Heat, peak_map

@@ -1,162 +1,145 @@
-"""Findings of a check: in a terminal, on the page of a CI job, and for programs as JSON and JUnit."""
+"""Results of checks: in a terminal, on the page of a CI job, and for programs as JSON and JUnit."""
 
 from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from rich.console import Console
 
-from rockwobble.compare.check import Finding
+from rockwobble.compare.check import NOT_RUN, PASSED, Checks, Result
+from rockwobble.compare.check.groups import TITLES
 
 from .page import Page
-from .table import NONE, Row, Table, columns_of, number
-
-LAYER_WORDS = {
-    "records": "Records: files of every form, records that ship, pulses, values that are refused",
-    "equations": "Equations: Lagrange's, (18) and (19) on computed motions; accelerations in the engines",
-    "conserved": "Conserved: energy and L in free motion, and the work of the ground",
-    "exact": "Exact solutions: uplift, periods, angles of turn, steady wobble",
-    "rest": "Rest: uplift at once, rest, landings, and what comes after the end of a record",
-    "invariance": "Invariance: mirror, size, rotation, delay, gravity, sampling",
-    "properties": "Properties: one motion stated in several ways; turning points, peaks and passes",
-    "order": "Order: error against tolerance and time step",
-    "residual": "Residual: no displacement and no twist is left",
-    "metrics": "Metrics: differences, agreement times, external trajectories, intervals, on made-up traces",
-    "studies": "Studies: peak_tilts, suites, sweeps and spectra against single runs",
-    "traces": "Traces: every field of an engine's trace",
-    "agreement": "Agreement: engines against the reduced models",
-    "baseline": "Baseline: the numbers that were kept",
-}
-_COLUMNS = columns_of(
-    [
-        ["name", "check", "words"],
-        ["measured", "measured", "words"],
-        ["bound", "bound", "words"],
-        ["outcome", "outcome", "words"],
-        ["reason", "reason of the bound", "words", "wide"],
-    ]
-)
-_LEAST_WIDTH = 150  # where there is no terminal
+from .table import NONE, Row, number
 
 
-def print_layer(console: Console, layer: str, findings: Sequence[Finding]) -> None:
-    """Print one layer, and below it what is wrong."""
-    if not console.is_terminal:
-        console.width = max(console.width, _LEAST_WIDTH)
-    console.print(f"\n{LAYER_WORDS[layer]}", style="bold", highlight=False)
-    console.print(Table(columns=_COLUMNS, rows=[_row(each) for each in findings]).rich(console.width))
-    for finding in findings:
-        if finding.failed:
-            note = f" ({finding.note})" if finding.note else ""
-            said = f" - {finding.name}: {_measured(finding)}, at most {_bound(finding)}{note}"
-            console.print(f"wrong: {finding.part}", style="bold red", highlight=False, markup=False, end="")
-            console.print(said, highlight=False, markup=False)
-        elif finding.outcome != "passed":
-            console.print(f"{finding.name}: {finding.note}", style="yellow", highlight=False, markup=False)
+def print_checks(console: Console, found: Checks) -> None:
+    """Print failures, what has no baseline, what could not run, and one line for each group."""
+    for result in found.results:
+        if result.outcome not in (PASSED, NOT_RUN):
+            style = "bold red" if result.failed else "yellow"
+            text = f"{result.outcome}: {result.subject}, {in_words(result)}"
+            console.print(text, style=style, highlight=False, markup=False, soft_wrap=True)
+    reasons = dict.fromkeys(f"{each.name}: {each.note}" for each in found.results if each.outcome == NOT_RUN)
+    for text in reasons:
+        console.print(f"not run: {text}", highlight=False, markup=False, soft_wrap=True)
+    for group, of_group in _by_group(found.results).items():
+        counts = Counter(result.outcome for result in of_group)
+        words = ", ".join(f"{count} {outcome}" for outcome, count in counts.items())
+        console.print(f"{TITLES.get(group, 'engines')}: {words}", highlight=False, markup=False)
 
 
-def check_page(findings: Sequence[Finding], versions: Mapping[str, str], seconds: float) -> Page:
-    """Return the report: what failed first, then every check, layer by layer."""
+def check_page(found: Checks, seconds: float) -> Page:
+    """Return the report: what failed first, then every check, group by group."""
 
-    def rows(chosen: Sequence[Finding]) -> list[Row]:
+    def rows(chosen: Sequence[Result]) -> list[Row]:
         # as Markdown, where an angle bracket begins a tag
         return [{key: str(cell).replace("<", "&lt;") for key, cell in _row(f).items()} for f in chosen]
 
-    layers = []
-    for layer, found in _by_layer(findings).items():
-        bad = sum(finding.failed for finding in found)
-        state = f"{bad} of {len(found)} failed" if bad else f"{len(found)} checks"
-        layers.append((f"{layer}: {state}", rows(found)))
+    groups = []
+    for group, of_group in _by_group(found.results).items():
+        bad = sum(result.failed for result in of_group)
+        state = f"{bad} of {len(of_group)} failed" if bad else f"{len(of_group)} checks"
+        groups.append((f"{TITLES.get(group, 'engines')}: {state}", rows(of_group)))
     values = {
-        "headline": headline(findings, seconds),
-        "failed": rows([finding for finding in findings if finding.failed]),
-        "layers": layers,
-        "versions": ", ".join(f"{name} {version}" for name, version in versions.items()),
+        "headline": headline(found, seconds),
+        "failed": rows(found.failures),
+        "groups": groups,
+        "versions": ", ".join(f"{name} {version}" for name, version in found.facts["versions"].items()),
     }
     return Page(name="check", template="check", values=values)
 
 
-def as_json(findings: Sequence[Finding], versions: Mapping[str, str], seconds: float) -> str:
+def as_json(found: Checks, seconds: float) -> str:
     """Return everything, with the floats to the last bit."""
     from rockwobble.models.plain_json import dumps
 
     content = {
-        "passed": not any(finding.failed for finding in findings),
-        "counts": Counter(finding.outcome for finding in findings),
+        "passed": found.passed,
+        "counts": found.headline(),
         "seconds": seconds,
-        "versions": versions,
-        "findings": list(findings),
+        **found.facts,
+        "results": found.results,
     }
     return dumps(content, indent=1) + "\n"
 
 
-def as_junit(findings: Sequence[Finding], seconds: float) -> str:
-    """Return a JUnit report with one test case for each check, in a suite for each layer."""
+def as_junit(found: Checks, seconds: float) -> str:
+    """Return a JUnit report with one test case for each check, in a suite for each group."""
     from xml.etree import ElementTree
 
     root = ElementTree.Element("testsuites", name="rockwobble check", time=f"{seconds:.3f}")
-    for layer, found in _by_layer(findings).items():
-        outcomes = Counter(_kind(finding) for finding in found)
-        counts = {"tests": len(found), "failures": outcomes["failure"], "skipped": outcomes["skipped"]}
-        said = {"name": layer, "errors": "0", **{key: str(value) for key, value in counts.items()}}
+    for group, of_group in _by_group(found.results).items():
+        outcomes = Counter(_kind(result) for result in of_group)
+        counts = {"tests": len(of_group), "failures": outcomes["failure"], "skipped": outcomes["skipped"]}
+        said = {
+            "name": group or "engines",
+            "errors": "0",
+            **{key: str(value) for key, value in counts.items()},
+        }
         suite = ElementTree.SubElement(root, "testsuite", said)
-        for finding in found:
-            kind = _kind(finding)
+        for result in of_group:
+            kind = _kind(result)
             case = ElementTree.SubElement(
-                suite, "testcase", classname=f"rockwobble.{layer}", name=_printable(finding.name)
+                suite,
+                "testcase",
+                classname=f"rockwobble.{group}",
+                name=_printable(f"{result.subject}, {result.name}"),
             )
             told = ElementTree.SubElement(case, kind)
             if kind == "skipped":
-                told.set("message", _printable(f"{finding.outcome}: {finding.note}"))
+                told.set("message", _printable(f"{result.outcome}: {result.note}"))
                 continue
-            told.text = _printable(in_words(finding))
+            told.text = _printable(in_words(result))
             if kind == "failure":
-                told.set("message", _printable(f"wrong: {finding.part}"))
+                told.set("message", _printable(_failure(result)))
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
 
 
-def headline(findings: Sequence[Finding], seconds: float) -> str:
+def headline(found: Checks, seconds: float) -> str:
     """Return the result of all checks, in one sentence."""
-    found = Counter(finding.outcome for finding in findings)
-    failed, passed = found.pop("FAILED", 0), found.pop("passed", 0)
-    rest = f" ({', '.join(f'{count} {outcome}' for outcome, count in found.items())})" if found else ""
-    first = f"{failed} of {len(findings)} checks FAILED" if failed else f"{passed} checks passed"
+    counts = {outcome: count for outcome, count in found.headline().items() if count}
+    failed, passed = counts.pop("FAILED", 0), counts.pop("passed", 0)
+    rest = f" ({', '.join(f'{count} {outcome}' for outcome, count in counts.items())})" if counts else ""
+    first = f"{failed} of {len(found.results)} checks FAILED" if failed else f"{passed} checks passed"
     return f"{first}{rest}, in {seconds:.0f} s."
 
 
-def in_words(finding: Finding) -> str:
-    """Return a finding in one sentence."""
-    note = f"; {finding.note}" if finding.note else ""
-    return (
-        f"{finding.name}: measured {_measured(finding)}, at most {_bound(finding)} "
-        f"({finding.reason}){note}. Suspect where it fails: {finding.part}."
-    )
+def in_words(result: Result) -> str:
+    """Return a result in one sentence."""
+    note = f"; {result.note}" if result.note else ""
+    return f"{_failure(result)} ({result.reason}){note}"
 
 
-def _by_layer(findings: Sequence[Finding]) -> dict[str, list[Finding]]:
-    layers = dict.fromkeys(finding.layer for finding in findings)
-    return {layer: [finding for finding in findings if finding.layer == layer] for layer in layers}
+def _failure(result: Result) -> str:
+    cause = f"; likely cause: {result.cause}" if result.cause else ""
+    return f"{result.name}: {_measured(result)}, at most {_bound(result)}{cause}"
 
 
-def _row(finding: Finding) -> Row:
-    said = {name: getattr(finding, name) for name in ("name", "outcome", "reason", "part", "note")}
-    return {**said, "measured": _measured(finding), "bound": _bound(finding)}
+def _by_group(results: Sequence[Result]) -> dict[str, list[Result]]:
+    groups = dict.fromkeys(result.group for result in results)
+    return {group: [result for result in results if result.group == group] for group in groups}
 
 
-def _measured(finding: Finding) -> str:
-    known = math.isfinite(finding.value)
-    return f"{number(finding.value, '.2g')} {finding.unit}".strip() if known else "none"
+def _row(result: Result) -> Row:
+    said = {name: getattr(result, name) for name in ("subject", "name", "outcome", "reason", "cause", "note")}
+    return {**said, "measured": _measured(result), "bound": _bound(result)}
 
 
-def _bound(finding: Finding) -> str:
-    return number(finding.bound, ".2g").replace(NONE, "")
+def _measured(result: Result) -> str:
+    known = math.isfinite(result.value)
+    return f"{number(result.value, '.2g')} {result.unit}".strip() if known else "none"
 
 
-def _kind(finding: Finding) -> str:
-    return {"FAILED": "failure", "passed": "system-out"}.get(finding.outcome, "skipped")
+def _bound(result: Result) -> str:
+    return number(result.bound, ".2g").replace(NONE, "")
+
+
+def _kind(result: Result) -> str:
+    return {"FAILED": "failure", "passed": "system-out"}.get(result.outcome, "skipped")
 
 
 def _printable(text: str) -> str:

@@ -7,12 +7,16 @@ import math
 from typing import Any
 
 from rockwobble.compare import Fragility
+from rockwobble.compare.metrics.order_statistics import FEWEST
 from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER
+from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER, TOO_FEW
 from rockwobble.compare.studies.fragility.intensity import MEASURES
-from rockwobble.compare.studies.fragility.limits import OVERTURNED
-from rockwobble.compare.studies.fragility.questions import main_contrasts
-from rockwobble.compare.studies.fragility.result import stored_fragility
+from rockwobble.compare.studies.fragility.samples import OVERTURNED
+from rockwobble.compare.studies.fragility.study import (
+    FEWEST_LEVELS,
+    main_contrasts,
+    stored_fragility,
+)
 from rockwobble.compare.studies.fragility.tables import ALL
 
 from ..figures.fragility import pictures
@@ -70,7 +74,10 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "overturns": any(row["exceeded"] for row in fallen),
         "curved": [row for row in fallen if row["kind"] == FITTED],
         "extrapolated": [row for row in fallen if row["extrapolated"] and row["kind"] == FITTED],
-        "curveless": [row for row in fits if row["kind"] not in (FITTED, ALWAYS, NEVER)],
+        "curveless": [row for row in fits if row["kind"] not in (FITTED, ALWAYS, NEVER, TOO_FEW)],
+        "few": any(row["kind"] == TOO_FEW for row in fits),
+        "fewest": {"motions": FEWEST, "levels": FEWEST_LEVELS},
+        **_counts(found),
         "poor": [row for row in fallen if row["p"] < _POOR],
         "poor_below": _POOR,
         "states": _states(found),
@@ -81,6 +88,31 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "efficiency": efficiency,
         "best": [row for row in efficiency if row["best"]],
         "islands": found.islands.to_dict("records"),
+    }
+
+
+def _counts(found: Fragility) -> dict[str, object]:
+    """One row for each cylinder, method and limit: motions that exceed it, by level where there are some."""
+    levels: list[float] = [*found.counts["intensity"].unique()] if found.about["levels"] else []
+    rows = [
+        {
+            "cylinder": cylinder,
+            "method": method,
+            "limit": str(limit).replace("_", " "),
+            "all": f"{own['k'].sum()} of {own['n'].sum()}",
+            **{f"{row['intensity']:g}": f"{row['k']} of {row['n']}" for row in own.to_dict("records")},
+        }
+        for (cylinder, method, limit), own in found.counts.groupby(
+            ["cylinder", "method", "limit"], sort=False
+        )
+    ]
+    columns = [("all", "all"), *((f"{level:g}", f"{level:g}") for level in levels)]
+    return {
+        "count_rows": rows,
+        "count_columns": [
+            *([name, name, "words"] for name in ("method", "limit")),
+            *([*each, "words"] for each in columns),
+        ],
     }
 
 

@@ -2,7 +2,9 @@
 
 A template is given plain values and says the words. In it stand ``{{ picture("name") }}``,
 ``{{ table(rows, [["key", "heading [unit]", ".3g"], ...]) }}`` and ``{{ block("name") }}``, each alone in a
-paragraph; numbers in sentences are ``{{ value | number(".3g") }}``, commands ``{{ command | code }}``.
+paragraph; numbers in sentences are ``{{ value | number(".3g") }}``, commands ``{{ command | code }}``. What
+stands between ``{{ fold("Details") }}`` and ``{{ fold() }}`` is opened where a page is read, under a heading
+in a document, and left out of a terminal unless details are asked for.
 `output` is "terminal", "markdown" or "html" where one of the three is to say more or less, and
 `shows("key")` whether a table above has room for a column that a legend is to explain.
 """
@@ -39,6 +41,16 @@ class Safe(str):
     """Text that is Markdown already."""
 
     __slots__ = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Fold:
+    """Beginning of the details under a title, or their end, which has none."""
+
+    title: str
+
+
+Part = str | Picture | Table | Safe | Fold
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -87,16 +99,16 @@ class Page:
     def markdown(self) -> str:
         """Return the document."""
 
-        def shown(thing: Picture | Table | Safe) -> str:
+        def shown(thing: Part) -> str:
+            if isinstance(thing, Fold):
+                return thing.title and f"## {thing.title}"
             if isinstance(thing, Picture):
                 caption = f"*{thing.title}.* {thing.caption}".strip()
                 return f"![{thing.title}]({thing.name}.svg)\n\n{caption}"
             return thing.markdown() if isinstance(thing, Table) else ""
 
-        return (
-            "\n\n".join(part if isinstance(part, str) else shown(part) for part in self._parts("markdown"))
-            + "\n"
-        )
+        parts = (part if isinstance(part, str) else shown(part) for part in self._parts("markdown"))
+        return "\n\n".join(filter(None, parts)) + "\n"
 
     def html(self) -> str:
         """Return the page, which needs nothing else."""
@@ -116,25 +128,33 @@ class Page:
             )
         )
 
-    def show(self, console: Console | None = None) -> None:
-        """Print the report in a terminal: its words and tables."""
+    def show(self, console: Console | None = None, *, details: bool = False) -> None:
+        """Print the report in a terminal: its words and tables, what is folded only with `details`."""
         console = console or Console()
         if not console.is_terminal:
             console.width = max(console.width, _LEAST_WIDTH)
+        folded = after_table = False
         for part in self._parts("terminal", console.width):
-            if isinstance(part, Table):
+            if isinstance(part, Fold):
+                folded = bool(part.title) and not details
+            elif folded:
+                continue
+            elif isinstance(part, Table):
+                if after_table:
+                    console.print()
                 console.print(part.rich(console.width))
             elif isinstance(part, str) and not isinstance(part, Safe):
                 console.print(Markdown(part), highlight=False)
                 console.print()
+            after_table = isinstance(part, Table)
 
-    def _parts(self, output: Output, width: int = 0) -> list[str | Picture | Table | Safe]:
-        """Return the rendered template, cut where a picture, a table or a block stands."""
-        things: list[Picture | Table | Safe] = []
+    def _parts(self, output: Output, width: int = 0) -> list[Part]:
+        """Return the rendered template, cut where a picture, a table, a block or a fold stands."""
+        things: list[Part] = []
         keys: set[str] = set()
         pictures = {picture.name: picture for picture in self.pictures}
 
-        def place(thing: Picture | Table | Safe) -> Safe:
+        def place(thing: Part) -> Safe:
             things.append(thing)
             return Safe(f"@@{len(things) - 1}@@")
 
@@ -157,6 +177,7 @@ class Page:
                     "picture": lambda name: place(pictures[name]),
                     "block": lambda name: place(Safe(self.blocks[name])) if output == "html" else "",
                     "table": table,
+                    "fold": lambda title="": place(Fold(title)),
                     "shows": keys.__contains__,
                 }
             )
@@ -170,7 +191,10 @@ class Page:
         ]
 
 
-def _html(part: str | Picture | Table | Safe) -> str:
+def _html(part: Part) -> str:
+    if isinstance(part, Fold):
+        summary = f'<details class="fold"><summary>{html.escape(part.title)}</summary>'
+        return summary if part.title else "</details>"
     if isinstance(part, Picture):
         panels = "".join(
             f"<div>{f'<h4>{html.escape(title)}</h4>' if title else ''}{plot}</div>"

@@ -9,11 +9,9 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.compare.studies.spectrum.planar_contrast import unconservative_from
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, stored_spectrum
 from rockwobble.compare.studies.spectrum.search import gap_bound
-from rockwobble.compare.studies.spectrum.series import SPATIAL
-from rockwobble.compare.studies.spectrum.verification import AGREEMENT, CHECK_RTOL, NUDGE
+from rockwobble.compare.studies.spectrum.spectrum import SPATIAL, OverturningSpectrum, stored_spectrum
+from rockwobble.compare.studies.spectrum.tables import AGREEMENT, CHECK_RTOL, NUDGE, unconservative_from
 
 from ..figures.spectrum import pictures
 from .page import Page

@@ -9,12 +9,10 @@ import pandas as pd
 
 from rockwobble.compare.metrics.distributions import MARGIN
 from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.compare.studies.validity.extent import LARGEST_PEAK
-from rockwobble.compare.studies.validity.limits import limits_of
-from rockwobble.compare.studies.validity.limits.distributions import cells, contrasts
-from rockwobble.compare.studies.validity.limits.engine import damping
-from rockwobble.compare.studies.validity.limits.needs import needs
-from rockwobble.compare.studies.validity.rings import FREE
+from rockwobble.compare.studies.validity.distributions import cells, contrasts
+from rockwobble.compare.studies.validity.el_centro import FREE
+from rockwobble.compare.studies.validity.limits import damping, limits_of, needs
+from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
 from rockwobble.compare.studies.validity.study import Validity, stored_validity
 
 from ..figures.validity.pictures import METHODS, pictures

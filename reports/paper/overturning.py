@@ -14,9 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast, unconservative_from
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.studies.spectrum.spectrum import PLANAR_X, PLANAR_Y, SPATIAL, OverturningSpectrum
+from rockwobble.compare.studies.spectrum.tables import planar_contrast, unconservative_from
 from rockwobble.models import el_centro_1940
 
 from .statement import Statement, verdict_of

@@ -10,8 +10,11 @@ from rockwobble.compare.runs.progress import ProgressCallback, Stages
 from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.compare.storage.manifest import Manifest, Results, made_now
 from rockwobble.compare.storage.provenance import code_digests, package_versions
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, stored_spectrum
-from rockwobble.compare.studies.spectrum.study import overturning_spectrum
+from rockwobble.compare.studies.spectrum.spectrum import (
+    OverturningSpectrum,
+    overturning_spectrum,
+    stored_spectrum,
+)
 from rockwobble.compare.studies.spectrum.tables import tables_of
 
 from ..pages.page import Page

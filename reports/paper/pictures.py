@@ -10,8 +10,13 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
+from rockwobble.compare.studies.spectrum.spectrum import (
+    PLANAR_X,
+    PLANAR_Y,
+    SERIES,
+    SPATIAL,
+    OverturningSpectrum,
+)
 from rockwobble.models import Run
 
 from ..figures.palette import DARK, ORDER, SHADED, Style, model_style, run_styles

@@ -22,6 +22,7 @@ SCRIPTS = (
     "ensemble_intervals",
     "false_alarms",
     "fragility_coverage",
+    "frames",
     "needs_coverage",
     "named_mistakes",
     "ring_losses",

@@ -12,7 +12,7 @@ import math
 from collections.abc import Sequence
 from functools import partial
 from time import perf_counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -27,8 +27,7 @@ from rockwobble.compare.studies.spectrum.search import (
     run_searches,
     search_lowest,
 )
-from rockwobble.compare.studies.spectrum.series import intensity_unit, uplift_factor
-from rockwobble.compare.studies.spectrum.study import RTOL, SUPPORTS
+from rockwobble.compare.studies.spectrum.spectrum import RTOL, SUPPORTS, intensity_unit, uplift_factor
 from rockwobble.models import GroundMotion, el_centro_1940
 
 from .console import options_of, show, tell
@@ -47,16 +46,15 @@ BLOCK = 50  # levels of a scan between two looks
 
 def scan(size: float, tan_alpha: float, support: str, probes: int, seed: int) -> dict[str, float | str]:
     """Return the boundary without and with probes, that of the scan, the gaps and the cost of either."""
-    whole = el_centro_1940()
-    motion = GroundMotion(whole.acceleration[: round(SECONDS / whole.time_step)], whole.time_step)
+    record = el_centro_1940()
+    motion = GroundMotion(record.acceleration[: round(SECONDS / record.time_step)], record.time_step)
     unit = intensity_unit(tan_alpha, motion, 9.81)
     start = uplift_factor(motion, tan_alpha, 9.81) / unit
     count = 0
 
     def peaks(levels: Array) -> Array:
-        return reduced.peak_tilts(
-            [size], tan_alpha, motion, unit * levels, support=support, rtol=RTOL, workers=1
-        )[0]
+        options: dict[str, Any] = {"support": support, "rtol": RTOL, "workers": 1}
+        return reduced.peak_tilts([size], tan_alpha, motion, unit * levels, **options).ravel()
 
     def at(_: list[int], level: float) -> Array:
         nonlocal count
@@ -108,14 +106,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     random, rows = np.random.default_rng(given.seed), []
     stages = Stages(tell, [1.0] * given.scans)
     for place in range(given.scans):
-        size, tan_alpha = (math.exp(random.uniform(*map(math.log, ends))) for ends in (SIZES, SLENDERNESS))
+        size, tan_alpha = (
+            math.exp(random.uniform(math.log(ends[0]), math.log(ends[1]))) for ends in (SIZES, SLENDERNESS)
+        )
         with stages.stage(f"R = {size:.3g} m, tan alpha = {tan_alpha:.3g}"):
             support = SUPPORTS[place % len(SUPPORTS)]
             rows.append(scan(size, tan_alpha, support, given.probes, given.seed + place))
     table = pd.DataFrame(rows)
-    formats = {
-        name: "" if name == "support" else "d" if table[name].dtype == int else ".4g" for name in table
-    }
+    formats = {str(name): "" if name == "support" else ".4g" for name in table}
     show(table, "Lowest overturning intensity [g tan alpha], and what lies below it", formats)
     for name in ("before", "after"):
         gaps = table[f"gap {name}"]

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rockwobble.compare.certificate.certificate import method_of, read_certificate
+from rockwobble.compare.certificate.certificate import read_certificate, subject_of
 from rockwobble.compare.certificate.fingerprint import repeated
 from rockwobble.compare.certificate.verdict import Entry, Sample, compare_entries
 from rockwobble.compare.storage.provenance import package_versions
@@ -68,8 +68,8 @@ def rows(path: Path) -> pd.DataFrame:
     import pandas as pd
 
     certificate = read_certificate(path)
-    method, old = method_of(certificate), certificate["fingerprint"]
-    engine = method.run.engine
+    subject, old = subject_of(certificate), certificate["fingerprint"]
+    engine = None if subject.run is None else subject.run.engine
     about = {
         "engine": engine or "reduced",
         "certified": certificate["versions"][engine_packages()[engine] if engine else "rockwobble"],
@@ -79,7 +79,7 @@ def rows(path: Path) -> pd.DataFrame:
     }
     found = [
         about | _differences(one, other) | {"case": one["name"], "word": compare_entries(one, other).word}
-        for one, other in zip(old, repeated(method, old), strict=True)
+        for one, other in zip(old, repeated(subject, old), strict=True)
     ]
     return pd.DataFrame(found, columns=list(COLUMNS))
 

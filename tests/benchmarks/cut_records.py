@@ -14,7 +14,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rockwobble import multibody, reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, Trace, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
 from .console import options_of
 
@@ -78,11 +78,6 @@ def cuts(seed: int) -> Iterator[Cut]:
         yield Cut(Cylinder(semidiagonal=size, tan_alpha=tan_alpha), record.scaled(scale), end)
 
 
-def to_the_end(trace: Trace) -> float:
-    """Return the largest tilt while a run lasts [rad]."""
-    return float(max(trace.tilt.max(), trace.extrema[:, 1].max(initial=0.0)))
-
-
 def peaks_of(cut: Cut, options: dict[str, Any]) -> Peaks | None:
     """Return the peaks of one run; None where it overturns or does not uplift."""
     short, long = (reduced.simulate(case, **options) for case in (cut.case, cut.followed_by(STILL)))
@@ -94,7 +89,7 @@ def peaks_of(cut: Cut, options: dict[str, Any]) -> Peaks | None:
     (batch,) = reduced.peak_tilts(
         [body.semidiagonal], body.tan_alpha, cut.ended, [1.0], rtol=1e-8, **options
     )[0]
-    return Peaks(to_the_end(short), short.peak_tilt, float(batch), to_the_end(long))
+    return Peaks(short.peak_within_run, short.peak_tilt, float(batch), long.peak_within_run)
 
 
 def engine_peaks_of(cut: Cut, engine: str) -> Peaks | None:
@@ -104,7 +99,9 @@ def engine_peaks_of(cut: Cut, engine: str) -> Peaks | None:
     )
     if {short.outcome, long.outcome} != {"stands"} or math.isnan(short.uplift_time):
         return None
-    return Peaks(to_the_end(short), short.peak_tilt, reduced.simulate(cut.case).peak_tilt, to_the_end(long))
+    return Peaks(
+        short.peak_within_run, short.peak_tilt, reduced.simulate(cut.case).peak_tilt, long.peak_within_run
+    )
 
 
 def shares(found: Sequence[Peaks]) -> str:

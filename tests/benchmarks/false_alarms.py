@@ -18,11 +18,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.compare.check import FAILED, NOT_RUN, Bench
-from rockwobble.compare.check.bench import engines_here
-from rockwobble.compare.check.engines import agreement
+from rockwobble.compare.check import FAILED, NOT_RUN
+from rockwobble.compare.check.agreement import check_suite
+from rockwobble.compare.check.own_bounds import SuiteRuns
 from rockwobble.compare.runs.choice import SUPPORTS
-from rockwobble.models import Case, Cylinder, GroundMotion, Run, Suite, Trace, el_centro_1940, p695_far_field
+from rockwobble.compare.runs.execution import Job
+from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940, p695_far_field
+from rockwobble.multibody import available_engines
+from rockwobble.multibody.engines.registry import standard_engines
 
 from .console import options_of
 
@@ -35,14 +38,15 @@ PAIRS = (1, 6, 11, 19)  # of FEMA P-695, beside El Centro
 _KEPT = Path("false-alarms.csv")
 
 
-class LargerModels:
-    """The reduced models, with cylinders that are 0.5 % too large."""
+def larger(case: Case, **options: Any) -> Trace:
+    """Return the trace of the reduced model of a cylinder that is 0.5 % too large."""
+    cylinder = dataclasses.replace(case.cylinder, semidiagonal=OFF * case.cylinder.semidiagonal)
+    return reduced.simulate(dataclasses.replace(case, cylinder=cylinder), **options)
 
-    @staticmethod
-    def simulate(case: Case, **options: Any) -> Trace:
-        """Return the trace of a cylinder that is not quite the one of the case."""
-        cylinder = dataclasses.replace(case.cylinder, semidiagonal=OFF * case.cylinder.semidiagonal)
-        return reduced.simulate(dataclasses.replace(case, cylinder=cylinder), **options)
+
+def engines_here() -> tuple[str, ...]:
+    """Return the standard engines that are installed."""
+    return tuple(name for name in standard_engines() if name in available_engines())
 
 
 def records() -> list[GroundMotion]:
@@ -73,13 +77,12 @@ def measure(case: Case, *, workers: int | None = None) -> list[dict[str, Any]]:
     runs = [Run(engine, support) for engine in engines_here() for support in SUPPORTS]
     kept: dict[str, Trace] = {}
     rows = []
-    for model, package in (("right", reduced), ("R 0.5 % off", LargerModels)):
-        suite = Suite([case], runs)
-        bench = Bench(reduced=package, suite=suite, shipped=False, workers=workers, kept=kept)
+    for model, reference in (("right", reduced.simulate), ("R 0.5 % off", larger)):
+        made = SuiteRuns(reference=reference, workers=workers, kept=kept)
         rows += [
             {"case": case.name, "model": model, "motion": "" if case.motion is None else case.motion.name}
-            | {name: getattr(finding, name) for name in ("name", "value", "bound", "outcome", "part", "note")}
-            for finding in agreement.check(bench)
+            | {name: getattr(result, name) for name in ("name", "value", "bound", "outcome", "cause", "note")}
+            for result in check_suite(made, [Job(case=case, run=run) for run in runs], None)
         ]
     return rows
 

@@ -18,8 +18,8 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.compare.runs.progress import Stages
 from rockwobble.compare.storage.manifest import read_results
-from rockwobble.compare.studies.validity.limits.needs import needs
-from rockwobble.compare.studies.validity.motions import AMPLE, GRAVITY, motion_named, record_names
+from rockwobble.compare.studies.validity.limits import needs
+from rockwobble.compare.studies.validity.plan import AMPLE, GRAVITY, motion_named, record_names
 from rockwobble.compare.studies.validity.study import KIND, stored_validity
 from rockwobble.models import Case, Cylinder, GroundMotion, synthetic_motions
 
@@ -45,7 +45,7 @@ def coverage(
     for row in stated.to_dict("records"):
         found = []
         with stages.stage(f"tan alpha {row['tan_alpha']:g}, {row['intensity']:g} g tan alpha"):
-            for size in np.exp(random.uniform(*map(math.log, sizes), draws)):
+            for size in np.exp(random.uniform(math.log(sizes[0]), math.log(sizes[1]), draws)):
                 cylinder = Cylinder(semidiagonal=float(size), tan_alpha=row["tan_alpha"])
                 motion = motions[int(random.integers(len(motions)))]
                 motion = motion.scaled(row["intensity"] * GRAVITY * row["tan_alpha"] / motion.peak)

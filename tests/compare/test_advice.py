@@ -29,10 +29,9 @@ from rockwobble.compare.studies.advice.grades import (
     overall,
 )
 from rockwobble.compare.studies.advice.members import demands_of, other_records, peak_velocity, ratios_of
-from rockwobble.compare.studies.advice.scales import FACTORS, planar_chances, planar_runs, scan_scales
+from rockwobble.compare.studies.advice.scales import FACTORS, planar_runs, planar_shares, scan_scales
 from rockwobble.compare.studies.advice.trust import trust_of
-from rockwobble.compare.studies.spectrum.series import intensity_unit, uplift_factor
-from rockwobble.compare.studies.spectrum.study import overturning_spectrum
+from rockwobble.compare.studies.spectrum.spectrum import intensity_unit, overturning_spectrum, uplift_factor
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, el_centro_1940, plain_json
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -207,11 +206,11 @@ def test_advice_and_spectrum_uplift_at_the_same_factor(advice):
         assert found.start == pytest.approx(unit * spectrum.searched_from[series], rel=1e-12)
 
 
-def test_planar_chances_count_records_that_move():
+def test_planar_shares_count_records_that_move():
     fall = 0.5 * math.pi
     rows = [("a", 0.2, 0.1, 0.1), ("b", fall, 0.3, 0.0), ("c", 0.1, fall, 0.0), ("d", 0.0, 0.0, 0.0)]
     table = pd.DataFrame(rows, columns=["member", "3d", "planar_x", "planar_y"]).assign(scale=1.0)
-    (found,) = planar_chances(table)
+    (found,) = planar_shares(table)
     assert (found["moving"], found["larger"], found["missed"]) == (3, 2, 1)
     assert found["larger_share"] == 2 / 3
     assert found["larger_low"] < 2 / 3 < found["larger_high"]

@@ -17,10 +17,16 @@ from mutation.listed import mutations
 from mutation.mutant import mutated
 
 from rockwobble import reduced
-from rockwobble.compare.certificate import Claim, certify, claims_of, read_certificate, reduced_method, verify
-from rockwobble.compare.certificate.certificate import write_certificate
-from rockwobble.compare.certificate.fingerprint import entry, fingerprint
-from rockwobble.compare.certificate.short_cases import ShortCase, short_cases
+from rockwobble.compare.certificate import (
+    Claim,
+    certify,
+    claims_of,
+    models,
+    read_certificate,
+    verify,
+    write_certificate,
+)
+from rockwobble.compare.certificate.fingerprint import fingerprint, repeated, short_cases
 from rockwobble.compare.certificate.verdict import (
     CHANGED,
     CHAOTIC,
@@ -29,7 +35,8 @@ from rockwobble.compare.certificate.verdict import (
     compare_entries,
     late_peaks,
 )
-from rockwobble.compare.check.finding import Bound, Finding, at_most, not_run
+from rockwobble.compare.check import Result, Subject
+from rockwobble.compare.check.result import Bound, at_most, not_run
 from rockwobble.models import Case, GroundMotion, Trace
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -39,21 +46,21 @@ FAULTS = [one for one in mutations() if one.faults][::10]
 
 @pytest.fixture(scope="module")
 def certificate() -> dict[str, Any]:
-    return certify(reduced_method(), [finding("exact", "period", 1e-13, 1e-12)])
+    return certify(models(), [result("exact", "period", 1e-13, 1e-12)])
 
 
-def finding(layer: str, name: str, value: float, bound: float) -> Finding:
-    return dataclasses.replace(at_most(name, value, Bound(bound, "a reason"), "the model"), layer=layer)
+def result(group: str, name: str, value: float, bound: float) -> Result:
+    return dataclasses.replace(at_most(name, value, Bound(bound, "a reason"), "the model"), group=group)
 
 
-def changed_by(change: Any) -> Any:
-    """The reduced method with a change to each case before it runs."""
-    method = reduced_method()
+def changed_by(change: Any) -> Subject:
+    """The reduced models with a change to each case before it runs."""
+    right = models()
 
-    def simulate(short: ShortCase, case: Case) -> Trace:
-        return method.simulate(short, change(case))
+    def source(case: Case, *given: Any, **options: Any) -> Trace:
+        return right.source(change(case), *given, **options)
 
-    return dataclasses.replace(method, simulate=simulate)
+    return dataclasses.replace(right, source=source)
 
 
 def test_twelve_cases_have_names_claims_and_terms_of_their_own() -> None:
@@ -84,10 +91,8 @@ def test_a_certificate_follows_its_schema(certificate: dict[str, Any]) -> None:
 def test_the_interpreter_without_a_compiler_gives_the_same(certificate: dict[str, Any]) -> None:
     old = certificate["fingerprint"][:-1]  # the last needs minutes there
     with mutated() as copy:
-        method = reduced_method(copy)
-        for one, short in zip(old, short_cases(), strict=False):
-            new = entry(short, method.simulate(short, short.case))
-            assert compare_entries(one, new).word == SAME, short.name
+        for one, new in zip(old, repeated(models(copy), old), strict=False):
+            assert compare_entries(one, new).word == SAME, one["name"]
             # rounding leaves four digits of what is allowed
             for name, wanted in one["signals"].items():
                 apart = np.abs(np.array(wanted) - np.array(new["signals"][name]))
@@ -99,7 +104,7 @@ def test_a_fault_in_the_models_is_a_change_with_its_claim_and_term(
     certificate: dict[str, Any], mutation: Any
 ) -> None:
     with mutated(*mutation.faults) as copy:
-        answer = verify(certificate, reduced_method(copy))
+        answer = verify(certificate, models(copy))
     assert answer.word == CHANGED, mutation.name
     assert answer.claim
     assert answer.term
@@ -147,13 +152,13 @@ def test_a_body_a_thousandth_too_large_is_a_change(certificate: dict[str, Any]) 
 
 def test_copies_are_computed_only_where_something_differs(certificate: dict[str, Any]) -> None:
     runs = []
-    method = reduced_method()
+    right = models()
 
-    def simulate(short: ShortCase, case: Case) -> Trace:
-        runs.append(short.name)
-        return method.simulate(short, case)
+    def source(case: Case, *given: Any, **options: Any) -> Trace:
+        runs.append(case)
+        return right.source(case, *given, **options)
 
-    assert verify(certificate, dataclasses.replace(method, simulate=simulate)).word == SAME
+    assert verify(certificate, dataclasses.replace(right, source=source)).word == SAME
     assert len(runs) == 12
 
 
@@ -269,23 +274,23 @@ def test_what_is_not_validated_cannot_be_called_so() -> None:
         Claim(**about | {"measured": 2.0}, status="verified")
 
 
-def test_findings_become_claims_and_what_did_not_run_is_said() -> None:
+def test_results_become_claims_and_what_did_not_run_is_said() -> None:
     found = [
-        finding("exact", "period", 1e-13, 1e-12),
-        finding("agreement", "peak", 1e-3, 1e-2),
-        finding("records", "files", 0.0, 0.0),
-        not_run("peak, pybullet", "pybullet", "not installed here"),
+        result("exact", "period", 1e-13, 1e-12),
+        result("agreement", "peak", 1e-3, 1e-2),
+        result("protocol", "samples", 0.0, 0.0),
+        not_run("peak, pybullet", "not installed here"),
     ]
     claims, not_covered = claims_of(found)
     assert [claim.status for claim in claims] == ["verified", "cross-validated"]
     assert "peak, pybullet: not installed here" in not_covered
     assert any("no experiment" in point for point in not_covered)
     with pytest.raises(ValueError, match="nothing is certified"):
-        claims_of([finding("exact", "period", 1.0, 1e-12)])
+        claims_of([result("exact", "period", 1.0, 1e-12)])
 
 
 def test_the_fingerprint_is_of_the_model_that_is_installed() -> None:
-    one = next(fingerprint(reduced_method()))
+    one = next(fingerprint(models()))
     short = short_cases()[0]
     trace = reduced.simulate(short.case, support=short.support, sample_step=short.case.length / 40)
     assert one["signals"]["tilt"][-1] == pytest.approx(trace.tilt[-1] / trace.case.cylinder.alpha, rel=1e-11)

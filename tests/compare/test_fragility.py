@@ -13,10 +13,10 @@ import pytest
 from rockwobble import reduced
 from rockwobble.compare import Fragility, IncompleteError, fragility
 from rockwobble.compare.runs import execution
-from rockwobble.compare.studies.fragility import runs as running
-from rockwobble.compare.studies.fragility.islands import incremental, islands
-from rockwobble.compare.studies.fragility.limits import exceeded, require_limits
-from rockwobble.compare.studies.fragility.result import fragility_of
+from rockwobble.compare.studies.fragility import plan as running
+from rockwobble.compare.studies.fragility.samples import exceeded, require_limits
+from rockwobble.compare.studies.fragility.study import fragility_of
+from rockwobble.compare.studies.fragility.tables import incremental, islands
 from rockwobble.models import Case, Cylinder, Run, synthetic_motions
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
@@ -216,6 +216,20 @@ def test_bodies_that_the_kernel_does_not_know_are_solved():
     point = found.points.iloc[0]
     alone = reduced.simulate(Case(hollow, MOTIONS[0].scaled(point["scale"])), rtol=1e-7)
     assert found.runs["peak_tilt"].iloc[0] == pytest.approx(alone.peak_tilt / hollow.alpha, rel=1e-12)
+
+
+@pytest.mark.parametrize(("motions", "levels", "few"), [(5, 3, True), (6, 1, True), (6, 2, False)])
+def test_of_too_few_motions_or_levels_there_are_counts_and_no_curve(
+    motions: int, levels: int, few: bool
+) -> None:
+    options = {"methods": ["recess", "planar-x"], "resamples": 20, "workers": 1}
+    made = fragility(COLUMN, MOTIONS[:motions], levels=LEVELS[3 : 3 + levels], **options)
+    overturned = made.fits[made.fits["limit"] == "overturned"]
+    assert overturned["runs"].to_list() == [motions * levels] * 2
+    assert (overturned["exceeded"].sum() == made.counts.query("limit == 'overturned'")["k"].sum()) > 0
+    fitted = made.fits[["median", "median_low", "median_high", "dispersion"]].notna().to_numpy().any()
+    stated = [fitted, *(len(getattr(made, name)) > 0 for name in ("curves", "contrasts", "islands"))]
+    assert stated == [not few] * 4
 
 
 def test_a_second_call_runs_nothing_again(tmp_path, monkeypatch):

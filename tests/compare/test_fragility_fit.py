@@ -22,14 +22,12 @@ from rockwobble.compare.studies.fragility.fit import (
     NEVER,
     SEPARATED,
     Array,
-    fit_curve,
-    fit_curves,
-    goodness,
-)
-from rockwobble.compare.studies.fragility.resampling import (
     Sample,
     bands,
     expanded_shares,
+    fit_curve,
+    fit_curves,
+    goodness,
     interval,
     resamples,
     spread_interval,

@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 
 from rockwobble import reduced
 from rockwobble.compare.studies.fragility.intensity import MEASURES, Array, intensity, measures_of, velocity
-from rockwobble.compare.studies.fragility.plan import default_levels
+from rockwobble.compare.studies.fragility.methods import methods_of
+from rockwobble.compare.studies.fragility.plan import Plan, default_levels
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -105,6 +106,32 @@ def test_bad_input_and_what_has_no_measure():
         intensity("pga", sine(y=0.0), PIER)
     known = measures_of([sine(y=0.0)], PIER)
     assert [name for name, values in known.items() if math.isnan(values[0])] == ["pga", "pgv", "sa_mean"]
+
+
+@pytest.mark.parametrize("period", [0.3, 1.0, 2.7])
+@pytest.mark.parametrize("measure", MEASURES)
+def test_a_motion_scaled_to_a_level_has_that_intensity_at_any_period(measure: str, period: float) -> None:
+    motions = [el_centro_1940(), sine(3.0, 1.0)]
+    plan = Plan(
+        cylinders={"pier": PIER},
+        motions=motions,
+        methods=methods_of(["recess"]),
+        measure=measure,
+        levels=[0.7, 1.9],
+        period=period,
+    )
+    for motion in motions:
+        for level, factor in zip((0.7, 1.9), plan.factors(PIER, motion), strict=True):
+            own = intensity(measure, motion.scaled(factor), PIER, period=period)
+            assert own == pytest.approx(level, rel=1e-12)  # rounding
+    for name, over in measures_of(motions, PIER, period=period).items():
+        scaled = plan.points["scale"].to_numpy() * np.repeat(over, 2)
+        assert plan.points[name].to_numpy() == pytest.approx(scaled, rel=1e-12)
+    alone = default_levels({"pier": PIER}, motions[:1], measure, period=period)
+    first = intensity(measure, motions[0], PIER, period=period) / intensity(
+        "peak_acceleration", motions[0], PIER
+    )
+    assert alone[0] == pytest.approx(1.25 * first, rel=5e-3)  # of three digits
 
 
 def test_default_levels_are_the_same_shaking_in_every_measure():

@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rockwobble.compare.studies.fragility.fit import fit_curves
-from rockwobble.compare.studies.fragility.resampling import Sample, resamples
+from rockwobble.compare.studies.fragility.fit import Sample, fit_curves, resamples
 from rockwobble.compare.studies.fragility.tables import _differences, contrast_row
 
 X = np.log([2.0, 4.0, 16.0])

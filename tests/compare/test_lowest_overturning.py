@@ -19,7 +19,7 @@ from rockwobble.compare.studies.spectrum.search import (
     run_searches,
     search_lowest,
 )
-from rockwobble.compare.studies.spectrum.series import uplift_factor
+from rockwobble.compare.studies.spectrum.spectrum import uplift_factor
 from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 from rockwobble.models.cpus import in_threads
 

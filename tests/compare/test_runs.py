@@ -14,6 +14,7 @@ from rockwobble.compare import (
     own_model,
     reserved_engines,
     runs_here,
+    simulate,
 )
 from rockwobble.compare.runs.choice import references_of, require_runnable, unsupported
 from rockwobble.compare.runs.labels import labels_beside_references, run_labels
@@ -120,6 +121,12 @@ def test_an_ideal_rim_is_no_default_and_is_refused_where_it_cannot_serve(monkeyp
     assert "exudyn" not in missing_engines()
     with pytest.raises(ValueError, match=r"'exudyn' is not installed here: pip install 'exudyn"):
         require_runnable(released, Run("exudyn", "flat"))
+
+
+def test_what_is_no_case_is_refused_by_its_name(case):
+    for call in (simulate, compare):
+        with pytest.raises(TypeError, match=r"Case.*, got Cylinder\("):
+            call(case.cylinder)
 
 
 def test_unknown_engines_and_supports_are_refused(case):

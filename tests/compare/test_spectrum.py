@@ -7,12 +7,17 @@ import numpy as np
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.studies.spectrum import verification
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum
+from rockwobble.compare.studies.spectrum import tables as verification
 from rockwobble.compare.studies.spectrum.search import STEP
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
-from rockwobble.compare.studies.spectrum.study import overturning_spectrum
-from rockwobble.compare.studies.spectrum.verification import CELLS, check_cells, confirm_lowest
+from rockwobble.compare.studies.spectrum.spectrum import (
+    PLANAR_X,
+    PLANAR_Y,
+    SERIES,
+    SPATIAL,
+    OverturningSpectrum,
+    overturning_spectrum,
+)
+from rockwobble.compare.studies.spectrum.tables import CELLS, check_cells, confirm_lowest
 from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 
 WHOLE = el_centro_1940()

@@ -7,16 +7,21 @@ import numpy as np
 import pytest
 from showing import shows_itself
 
-from rockwobble.compare.studies.spectrum import planar_contrast as bands
-from rockwobble.compare.studies.spectrum.planar_contrast import (
+from rockwobble.compare.studies.spectrum import tables as bands
+from rockwobble.compare.studies.spectrum.search import lowest_on_grid
+from rockwobble.compare.studies.spectrum.spectrum import (
+    PLANAR_X,
+    PLANAR_Y,
+    SPATIAL,
+    OverturningSpectrum,
+    safe_islands,
+)
+from rockwobble.compare.studies.spectrum.tables import (
     edge_difference,
     planar_contrast,
     size_bands,
     unconservative_from,
 )
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum, safe_islands
-from rockwobble.compare.studies.spectrum.search import lowest_on_grid
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.models import GroundMotion
 
 FALL = 0.5 * math.pi

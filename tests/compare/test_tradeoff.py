@@ -11,7 +11,6 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.check.bench import engines_here
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.tradeoff import problem as problems
 from rockwobble.compare.studies.tradeoff import study
@@ -25,6 +24,7 @@ from rockwobble.compare.studies.tradeoff.methods import (
     rest_line,
 )
 from rockwobble.compare.studies.tradeoff.problem import FINE_REST_TILT, PIER, Problem
+from rockwobble.multibody.engines import registry
 
 # a release at a tolerance of 1e-8 turns by 1.5e-7 deg too much or too little
 TURN_ERROR = 1e-6
@@ -111,8 +111,12 @@ def test_all_methods_are_timed_in_turn_and_told_in_times_of_one(
     # two steps: a cost is that of an error which the next finer one holds
     few = replace(turn, steps=turn.steps[:2], few_steps=turn.steps[:2])
     monkeypatch.setattr(study, "problems", lambda **_: [few])
+
+    def standard_here() -> tuple[str, ...]:
+        return tuple(name for name in registry.standard_engines() if name in registry.own_engines())
+
     for each in ("methods", "scene_cost"):  # what is installed beyond these is timed in the same way
-        monkeypatch.setattr(f"rockwobble.compare.studies.tradeoff.{each}.own_engines", engines_here)
+        monkeypatch.setattr(f"rockwobble.compare.studies.tradeoff.{each}.own_engines", standard_here)
     told: list[Progress] = []
     found = study.measure_tradeoff(quick=True, progress=told.append)
     assert (told[-1].state, told[-1].done, told[-1].share) == ("finished", told[-1].total, 1.0)

@@ -17,17 +17,27 @@ from tiny_validity import TINY, kept_engine_runs, tiny_tables, tiny_validity
 from rockwobble.compare.runs.execution import simulate_run
 from rockwobble.compare.runs.progress import Progress
 from rockwobble.compare.studies.validity import study
-from rockwobble.compare.studies.validity.extent import FULL, LARGEST_PEAK, QUICK
-from rockwobble.compare.studies.validity.limits import LIMITS, limits_of
-from rockwobble.compare.studies.validity.limits.distributions import FEWEST, cells, contrasts, vertical
-from rockwobble.compare.studies.validity.limits.engine import damping
-from rockwobble.compare.studies.validity.limits.needs import friction, needs
-from rockwobble.compare.studies.validity.limits.numbers import first_failing, reached, up_to
-from rockwobble.compare.studies.validity.motions import EL_CENTRO, shaken_case, source_of
-from rockwobble.compare.studies.validity.parts import PARTS, part_named
+from rockwobble.compare.studies.validity.distributions import (
+    FEWEST,
+    cells,
+    contrasts,
+    first_failing,
+    reached,
+    up_to,
+    vertical,
+)
+from rockwobble.compare.studies.validity.el_centro import FREE
+from rockwobble.compare.studies.validity.limits import LIMITS, damping, friction, limits_of, needs
+from rockwobble.compare.studies.validity.plan import (
+    EL_CENTRO,
+    FULL,
+    LARGEST_PEAK,
+    QUICK,
+    shaken_case,
+    source_of,
+)
 from rockwobble.compare.studies.validity.records import HALVED, RECESS
-from rockwobble.compare.studies.validity.rings import FREE
-from rockwobble.compare.studies.validity.study import measure_all
+from rockwobble.compare.studies.validity.study import PARTS, measure_all, part_named
 from rockwobble.models import Cylinder, Run
 from rockwobble.reduced import body, problem
 from rockwobble.reduced.body import Body
@@ -150,16 +160,16 @@ def test_over_records_agreement_is_said_where_the_interval_shows_it(
 def test_a_cell_is_of_records_signed_and_knows_who_overturns(tables: Tables) -> None:
     fallen = 0.5 * math.pi / math.atan(0.2)
     rows = {
-        "recess": [0.1, 0.2, 0.4, fallen],
-        "flat": [0.05, 0.1, fallen, fallen],
-        "copy": [0.1, 0.2, 0.4, 0.9],
+        "recess": [0.1, 0.2, 0.4, fallen] * 2,
+        "flat": [0.05, 0.1, fallen, fallen] * 2,
+        "copy": [0.1, 0.2, 0.4, 0.9] * 2,
     }
     nothing = dict.fromkeys(("friction", "least_normal", "moment"), math.nan)
     table = pd.DataFrame(rows).assign(
-        motion=[f"record {n}" for n in range(4)], tan_alpha=0.2, semidiagonal=6.0, intensity=2.0, **nothing
+        motion=[f"record {n}" for n in range(8)], tan_alpha=0.2, semidiagonal=6.0, intensity=2.0, **nothing
     )
     found = cells({**tables, "peaks": table}).iloc[0]
-    assert (found["members"], found["rocked"]) == (4, 4)
+    assert (found["members"], found["rocked"]) == (8, 8)
     assert (found["overturned"], found["flat_overturned"], found["copy_overturned"]) == (0.25, 0.5, 0.0)
     # halved, halved, and one that overturns on flat ground alone; twice overturned there is no ratio
     assert found["flat_ratio"] == pytest.approx(0.5)

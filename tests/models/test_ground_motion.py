@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rockwobble.models import GroundMotion
+from rockwobble.models import GroundMotion, p695_far_field
+from rockwobble.models.records.p695 import missing_packages
 
 ROUNDING = 4e-16  # two products and a sum
 SAMPLES = np.array([[0.0, 0.0], [3.0, -4.0], [1.0, 2.0]])
@@ -119,3 +120,23 @@ def test_refuses_a_factor_or_an_angle_that_is_no_number(bad: Any) -> None:
 def test_refuses_to_scale_beyond_what_a_float_holds() -> None:
     with pytest.raises(ValueError, match=r"^acceleration must be finite, got inf in sample 1 of component x"):
         GroundMotion(SAMPLES, 0.1).scaled(1e308)
+
+
+# FEMA P-695, tables A-4A (larger peak of the two components [g]) and A-4D (factor of normalisation)
+FAR_FIELD = (
+    (0.52, 0.65), (0.48, 0.83), (0.82, 0.63), (0.34, 1.09), (0.35, 1.31), (0.38, 1.01), (0.51, 1.03),
+    (0.24, 1.10), (0.36, 0.69), (0.22, 1.36), (0.24, 0.99), (0.42, 1.15), (0.53, 1.09), (0.56, 0.88),
+    (0.51, 0.79), (0.36, 0.87), (0.45, 1.17), (0.55, 0.82), (0.44, 0.41), (0.51, 0.96), (0.21, 2.10),
+    (0.35, 1.44),
+)  # fmt: skip
+PRINTED = 0.006  # two digits
+
+
+@pytest.mark.skipif(bool(missing_packages()), reason="the records of FEMA P-695 are an extra")
+def test_the_far_field_pairs_have_the_peaks_and_factors_of_their_tables() -> None:
+    for pair, (peak, factor) in enumerate(FAR_FIELD, start=1):
+        recorded, normalised = (p695_far_field(pair, normalised=either) for either in (False, True))
+        assert np.abs(recorded.acceleration).max() / 9.81 == pytest.approx(peak, abs=PRINTED), pair
+        assert normalised.peak / recorded.peak == pytest.approx(factor, abs=PRINTED), pair
+    steps = [p695_far_field(pair).time_step for pair in (1, 6, 11, 12)]
+    assert steps == [0.01, 0.005, 0.02, 0.0025]

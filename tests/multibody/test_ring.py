@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rockwobble import multibody
+from rockwobble import multibody, reduced
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
 from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.kinematics import kinematics
@@ -241,3 +241,15 @@ def test_a_ring_at_an_extreme_says_what_happened(extreme: dict[str, Any], outcom
     run = ring(SQUAT, duration=1.2, **{"friction": 3.0, **extreme})
     assert run.outcome == outcome
     assert said in {fact.code for fact in run.facts}
+
+
+def test_the_first_touch_is_when_the_flat_ground_model_has_rolled_out_by_the_clearance() -> None:
+    body = Cylinder(semidiagonal=3.0, tan_alpha=1.0, height=5.0, transverse_inertia=3.0, axial_inertia=1.6)
+    release = InitialState(0.5 * body.alpha, tilt_rate=-0.1, rolling_angle=0.7, rolling_rate=1.1)
+    case, clearance = Case(body, initial=release, duration=1.0), 0.01
+    walls = {"ring_clearance": clearance, "ring_inclination": 1.0}
+    touched = multibody.simulate(case, support="ring", **walls).first("wall_contact")
+    model = reduced.simulate(case, support="flat", rtol=1e-11, sample_step=1e-3)
+    outside = np.hypot(*model.contact_point.T) / body.base_radius - 1.0
+    # 0.005 s was measured: 128 walls for a circle
+    assert touched == pytest.approx(float(np.interp(clearance, outside, model.time)), abs=0.01)

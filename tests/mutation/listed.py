@@ -1,59 +1,54 @@
-"""Faults chosen by hand: one at a time in a copy of the reduced models, or in the engines' settings.
+"""Faults chosen by hand: one at a time in a copy of the reduced models, or in the settings of an engine.
 
-    python tests/mutation listed            # every fault against every layer
-    python tests/mutation listed --first    # each against its own layer, to the first failure
+    python tests/mutation listed            # every fault
+    python tests/mutation listed --only "1 % off"
 
-A fault that no layer finds, or whose first failure names another part than the one that is wrong, makes
-the exit code 1; and so does, where every layer is asked, a failure in a copy without a fault.
+Each must be found by `rockwobble check`: one that is missed makes the exit code 1, and so does a failure in
+a copy without a fault. What only a test finds is scored by `python tests/mutation generated --tests`.
 """
 
 from __future__ import annotations
 
-import sys
 import time
-from collections.abc import Callable, Sequence
-from contextlib import ExitStack
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
-import rockwobble.reduced
-from rockwobble.compare.check import LAYERS, Bench, Finding, run_checks
-from rockwobble.compare.check.bench import engines_here
-from rockwobble.compare.runs.choice import runs_here
-from rockwobble.models import Run, Suite, read_suite
+from rockwobble.compare.check import GROUPS, Result, Subject, engine, reduced_model, run_checks
+from rockwobble.multibody import available_engines
 
 from .mutant import Fault, mutated
 from .places import after_assignment, appended, before_assignment, scaled_argument, wrapped
 from .term_faults import FILE, term_faults
 
-# asked of a copy without a fault: the others, solutions to 1e-13 and suites, are too long in the interpreter
-_INTERPRETED = [layer for layer in LAYERS if layer not in ("order", "agreement", "baseline")]
+# asked of a copy, which the interpreter runs: the others have solutions to 1e-13 and long records
+INTERPRETED = tuple(group for group in GROUPS if group not in ("order", "baseline"))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Mutation:
-    """One fault, and what must find it.
+    """One fault, and where it is sought first.
 
     Parameters
     ----------
     name : str
+    group : str
+        Group of checks that finds it; the others are asked where it does not.
     faults : tuple of Fault
         In the sources of the reduced models; empty for a fault in an engine.
-    adjust : callable, optional
-        Changes the settings of an engine run.
-    layer : str
-        Which must find it.
-    named : tuple of str
-        Words one of which must be in the part that the first failure names.
+    engine : str
+        Engine whose settings are wrong.
+    settings : mapping
+        Its time step and settings.
     """
 
     name: str
+    group: str
     faults: tuple[Fault, ...] = ()
-    adjust: Callable[[Run], Run] | None = None
-    layer: str
-    named: tuple[str, ...]
+    engine: str = ""
+    settings: Mapping[str, Any] = field(default_factory=dict)
 
 
 def mutations() -> tuple[Mutation, ...]:
@@ -70,7 +65,7 @@ def mutations() -> tuple[Mutation, ...]:
 def _terms(factor: float, word: str) -> list[Mutation]:
     """Every term of (18) and (19), wherever it stands: at the start of a step and in its series."""
     return [
-        Mutation(name=f"{word}: {each.name}", faults=(each.fault,), layer="equations", named=each.equations)
+        Mutation(name=f"{word}: {each.name}", faults=(each.fault,), group="equations")
         for each in term_faults(factor)
     ]
 
@@ -88,8 +83,7 @@ def _constants() -> list[Mutation]:
         Mutation(
             name=f"1 % off everywhere: {name}",
             faults=(Fault(file="body.py", change=change),),
-            layer="equations",
-            named=("(18)", "(19)"),
+            group="equations",
         )
         for name, change in changes.items()
     ]
@@ -103,7 +97,7 @@ def _constants() -> list[Mutation]:
     )
     return [
         *found,
-        Mutation(name="R 1 % off", faults=(size,), layer="exact", named=("size R", "start after the uplift")),
+        Mutation(name="R 1 % off", faults=(size,), group="exact"),
     ]
 
 
@@ -134,120 +128,72 @@ def _structure() -> list[Mutation]:
     )
     leak = Fault(file=FILE, change=after_assignment("expand", "momentum_1", "momentum_1 -= 1e-6 * h * L"))
     return [
-        Mutation(
-            name="a sample of the record skipped", faults=(skipped,), layer="conserved", named=("forcing",)
-        ),
-        Mutation(name="components exchanged", faults=(exchanged,), layer="exact", named=("components",)),
-        Mutation(name="uplift at the next sample", faults=(late,), layer="exact", named=("uplift",)),
-        Mutation(
-            name="no-twist constraint dropped", faults=(rolling,), layer="residual", named=("no twist",)
-        ),
-        Mutation(name="L decays", faults=(leak,), layer="conserved", named=("L",)),
+        Mutation(name="a sample of the record skipped", faults=(skipped,), group="conserved"),
+        Mutation(name="components exchanged", faults=(exchanged,), group="rest"),
+        Mutation(name="uplift at the next sample", faults=(late,), group="rest"),
+        Mutation(name="no-twist constraint dropped", faults=(rolling,), group="trace"),
+        Mutation(name="L decays", faults=(leak,), group="conserved"),
     ]
 
 
 def _engines() -> list[Mutation]:
-    def setting(engine: str, **settings: float) -> Callable[[Run], Run]:
-        def adjust(run: Run) -> Run:
-            if run.engine != engine:
-                return run
-            return Run(run.engine, run.support, run.time_step, **{**run.settings, **settings})
-
-        return adjust
-
-    def coarse(engine: str) -> Callable[[Run], Run]:
-        return lambda run: Run(engine, run.support, 1e-3, **run.settings) if run.engine == engine else run
-
     found = [
         Mutation(
             name="elastic contact, mujoco",
-            adjust=setting("mujoco", contact_damping_ratio=0.01),
-            layer="agreement",
-            named=("contact of mujoco",),
+            group="order",
+            engine="mujoco",
+            settings={"contact_damping_ratio": 0.01},
         )
     ]
-    if "pybullet" in engines_here():
-        margin = setting("pybullet", collision_margin=0.04)
-        named = ("contact of pybullet",)
+    here = [name for name in ("mujoco", "pybullet") if name in available_engines()]
+    if "pybullet" in here:
+        margin = {"collision_margin": 0.04}
         found.append(
-            Mutation(name="default contact margin, pybullet", adjust=margin, layer="agreement", named=named)
+            Mutation(
+                name="default contact margin, pybullet", group="exact", engine="pybullet", settings=margin
+            )
         )
     return found + [
         Mutation(
-            name=f"step ten times too large, {engine}",
-            adjust=coarse(engine),
-            layer="agreement",
-            named=(f"time step of {engine}",),
+            name=f"step ten times too large, {name}", group="exact", engine=name, settings={"time_step": 1e-3}
         )
-        for engine in engines_here()
+        for name in here
     ]
 
 
-def failures(
-    mutation: Mutation, layers: Sequence[str], *, first: bool, kept: dict[str, Any] | None = None
-) -> list[Finding]:
-    """Return what failed in the layers under a fault; with `first`, no more than one finding.
-
-    `kept` holds the engine runs that other faults have needed before.
-    """
-    with ExitStack() as stack:
-        reduced = stack.enter_context(mutated(*mutation.faults)) if mutation.faults else rockwobble.reduced
-        quick = read_suite("quick")
-        suite = Suite(quick.cases, runs_here(quick.runs)[0], quick.bounds)
-        bench = Bench(reduced=reduced, suite=suite, workers=1 if first else None)
-        bench.kept = {} if kept is None else kept
-        if mutation.adjust is not None:
-            bench.adjust = mutation.adjust
-        found = []
-        stack.enter_context(np.errstate(all="ignore"))  # the interpreter warns of what a kernel takes
-        for finding in run_checks(bench, layers):
-            if finding.failed:
-                found.append(finding)
-                if first:
-                    break
-        return found
+def first_failure(mutation: Mutation) -> Result | None:
+    """Return the first check that fails under a fault, those of its own group first; None if none does."""
+    groups = [mutation.group, *(group for group in INTERPRETED if group != mutation.group)]
+    if mutation.engine:
+        subject = engine(mutation.engine, **mutation.settings)
+        return _failed(subject, groups)
+    with mutated(*mutation.faults) as copy:
+        return _failed(reduced_model(copy), groups)
 
 
-def false_alarm(layers: Sequence[str]) -> Finding | None:
+def false_alarm() -> Result | None:
     """Return what fails first in a copy without a fault: then a failure in one with a fault shows nothing."""
     with mutated() as copy:
-        bench = Bench(reduced=copy, suite=read_suite("quick"), workers=1)
-        return next((finding for finding in run_checks(bench, layers) if finding.failed), None)
+        return _failed(reduced_model(copy), INTERPRETED)
 
 
-def names_it(mutation: Mutation, finding: Finding) -> bool:
-    """Return whether a failure names the part that the fault is in."""
-    return any(word in finding.part for word in mutation.named)
+def _failed(subject: Subject, groups: Sequence[str]) -> Result | None:
+    with np.errstate(all="ignore"):  # the interpreter warns of what a kernel takes
+        results = (result for group in groups for result in run_checks(subject, [group]))
+        return next((result for result in results if result.failed), None)
 
 
-def run(*, only: str = "", first: bool = False) -> int:
-    """Try the faults whose name holds the text `only`, print the table, and return the exit code.
-
-    With `first`, each is held against its own layer alone, to the first failure.
-    """
-    kept: dict[str, Any] = {}
-    begun = time.monotonic()
-    alarm = None if first else false_alarm(_INTERPRETED)
+def run(*, only: str = "") -> int:
+    """Try the faults whose name holds the text `only`, print a table, and return the exit code."""
+    begun, missed = time.monotonic(), 0
+    alarm = false_alarm()
     if alarm is not None:
-        print(f"without a fault: {alarm.layer}: {alarm.name}: {alarm.part}; {alarm.note}")
-    missed = 0
+        print(f"without a fault: {alarm.group}: {alarm.name} {alarm.note}")
     chosen = [mutation for mutation in mutations() if only in mutation.name]
     for mutation in chosen:
-        started = time.monotonic()
-        layers = [mutation.layer] if first else LAYERS
-        found = failures(mutation, layers, first=first, kept=kept)
-        own = [finding for finding in found if finding.layer == mutation.layer]
-        right = bool(own) and names_it(mutation, own[0])
-        missed += not right
-        hit = list(dict.fromkeys(finding.layer for finding in found))
-        verdict = "found" if right else ("found, but another part is named" if own else "MISSED")
-        print(f"{verdict:8} {mutation.name} ({time.monotonic() - started:.1f} s)")
-        if own:
-            print(f"         {own[0].layer}: {own[0].part}; {own[0].note}")
-        if not first:
-            print(f"         in {len(found)} checks of {', '.join(hit) or 'no layer'}")
-        sys.stdout.flush()
-    print(
-        f"{len(chosen) - missed} of {len(chosen)} faults found and named, in {time.monotonic() - begun:.0f} s"
-    )
+        found = first_failure(mutation)
+        missed += found is None
+        where = "MISSED" if found is None else f"{found.group}: {found.name}"
+        print(f"{mutation.name}: {where}", flush=True)
+    print(f"{len(chosen) - missed} of {len(chosen)} faults found, in {time.monotonic() - begun:.0f} s")
     return 1 if missed or alarm is not None else 0

@@ -129,3 +129,29 @@ def test_an_option_that_is_no_number_is_told_on_a_line(name, value):
         reduced.simulate(case, **{name: value})
     assert len(str(caught.value)) <= 110
     assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("push", "length", "weight"),
+    [(3.4, 2.0, 1.0), (3.3, 2.0, 0.1), (3.8, 2.5, -0.1)],
+    ids=["later shaking", "a tenth of the weight", "ground that falls faster than g"],
+)
+def test_a_fall_that_later_shaking_stops_is_not_called_certain(push, length, weight):
+    # of falls that half of the shaking, or the whole weight, would make certain ones; the loss at the landing
+    # lets a cylinder that comes back stand
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    times = np.array([0.0, 0.5, 1.0, 2.0, 2.25, 2.25 + length, 2.5 + length, 10.0])
+    at = 0.25 * np.arange(41)
+    options = {"plane": 0.0, "rtol": 1e-9, "rest_tilt": 1e-4, "restitution": 0.6}
+    back = 0
+    for strength in np.arange(0.1, 3.0, 0.1):
+        along = 9.81 * 0.2 * np.array([0.0, -push, 0.0, 0.0, strength, strength, 0.0, 0.0])
+        up = (weight - 1.0) * 9.81 * np.array([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0])
+        columns = [np.interp(at, times, values) for values in (along, 0.0 * along, up)]
+        record = GroundMotion(np.column_stack(columns), 0.25)
+        whole = reduced.simulate(Case(pier, record), sample_step=1.0, **options)
+        # a scale of two on half of the record: the same numbers, and the scale is there
+        early = reduced.peak_tilts([6.0], 0.2, record.scaled(0.5), [2.0], workers=1, **options)[0, 0]
+        assert early == pytest.approx(whole.peak_tilt, abs=1e-12 * pier.alpha), strength
+        back += whole.outcome != "overturned" and whole.peak_tilt > pier.alpha
+    assert back > 0

@@ -42,11 +42,12 @@ def push(time_step: float = 0.01) -> GroundMotion:
 
 @pytest.mark.parametrize("options", [{}, {"support": "flat"}, {"plane": 0.0}, {"plane": math.pi}], ids=str)
 @pytest.mark.parametrize("lean", [0.0, math.pi])  # along the plane of shaking, and the other way
-def test_a_release_without_spin_at_any_azimuth(options: dict[str, Any], lean: float) -> None:
+@pytest.mark.parametrize("shaken", [True, False])
+def test_a_release_without_spin_at_any_azimuth(options: dict[str, Any], lean: float, shaken: bool) -> None:
     def released(azimuth: float) -> Trace:
         given = options | ({"plane": options["plane"] + azimuth} if "plane" in options else {})
         start = InitialState(0.3 * PIER.alpha, tilt_rate=0.01, rolling_angle=azimuth + lean)
-        case = Case(PIER, push().rotated(azimuth), initial=start, duration=2.0)
+        case = Case(PIER, push().rotated(azimuth) if shaken else None, initial=start, duration=2.0)
         return reduced.simulate(case, rtol=1e-10, sample_step=0.02, **given)
 
     first = released(0.0)

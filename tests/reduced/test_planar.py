@@ -148,3 +148,19 @@ def test_what_shakes_across_the_plane_has_no_part_in_forces_either():
     assert np.abs(given.restraining_moment).max() < 1e-12
     needs = [each.assumptions.largest_friction_needed for each in (given, alone)]
     assert needs[0] == pytest.approx(needs[1], rel=1e-9)
+
+
+def test_swings_that_die_away_have_the_heights_and_times_of_momentum_and_quadrature():
+    """Each rises to r^2 of the height before; each half takes the exact quarter period of its tilt."""
+    ratio = (16.0 - 25.0 * math.sin(PIER.alpha) ** 2) / (16.0 - math.sin(PIER.alpha) ** 2)
+    case = Case(PIER, initial=InitialState(0.5 * PIER.alpha), duration=16.0)
+    found = reduced.simulate(case, plane=0.0, rtol=1e-12, rest_tilt=0.0, restitution="momentum")
+    tops = found.extrema[found.extrema[:, 3] > 0.0]
+    assert len(tops) > 8
+    b, h = PIER.base_radius, PIER.mass_centre_height
+    heights = b * np.sin(tops[:, 1]) - 2.0 * h * np.sin(0.5 * tops[:, 1]) ** 2
+    # tilts and times of swings that shrink to a hundredth; 5e-10 was measured
+    assert heights == pytest.approx(heights[0] * ratio ** (2.0 * np.arange(len(tops))), rel=2e-8)
+    quarters = np.array([reduced.planar_quarter_period(PIER, float(tilt)) for tilt in tops[:, 1]])
+    times = np.concatenate([[0.0], np.cumsum(quarters[:-1] + quarters[1:])])
+    assert tops[:, 0] == pytest.approx(times, abs=2e-8 * times[-1])

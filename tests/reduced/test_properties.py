@@ -12,7 +12,7 @@ import pytest
 from shaken_problems import G, Problem, is_firm, joined, problem, resampled
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder, GroundMotion, Trace
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
 
 FIRM = 1e-4  # of the peak that perturbed copies may differ by: beyond it a problem says nothing
 SAME = 2e-3  # of the peak: the tolerance of 1e-9, amplified as that of a perturbed copy of 1e-7 may be
@@ -284,3 +284,21 @@ def test_free_response_run_backwards():
         back = given.simulate(motion=None, duration=duration, rtol=1e-12, initial=end)
         assert back.tilt[-1] == pytest.approx(given.initial.tilt, rel=1e-7)
         assert back.rolling_angle[-1] == pytest.approx(given.initial.rolling_angle, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("scale", "ground", "spin"),
+    [(1.0, (0.0, 0.0, 0.0), 0.01), (1.0, (0.0, 0.0, -0.5 * G), 0.01), (0.5, (0.1 * G, 0.0, 0.0), 0.0)],
+    ids=["still ground", "half the weight", "a push of half the threshold"],
+)
+@pytest.mark.parametrize("planar", [False, True])
+def test_a_release_rests_below_the_energy_of_the_rest_threshold_and_not_above(scale, ground, spin, planar):
+    """A push of half the threshold takes half off restoring moment and bound; weight changes both."""
+    pier, rest = Cylinder(semidiagonal=6.0, tan_alpha=0.2), 1e-2
+    motion = GroundMotion([ground, ground], 10.0)
+    for share, rests in ((0.9, True), (1.1, False)):
+        rate = 0.0 if planar else spin
+        initial = InitialState(share * scale * rest * pier.alpha, rolling_rate=rate)
+        case = Case(pier, motion, initial=initial, duration=2.0)
+        found = reduced.simulate(case, rest_tilt=rest, **({"plane": 0.0} if planar else {}))
+        assert (found.tilt[-1] == found.tilt_rate[-1] == 0.0 and np.isnan(found.rolling_angle[-1])) == rests

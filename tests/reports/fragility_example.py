@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare import Fragility
-from rockwobble.compare.studies.fragility.result import fragility_of
+from rockwobble.compare.studies.fragility.study import fragility_of
 
 LEVELS = (1.5, 2.0, 3.0, 4.0, 6.0, 8.0)
 MOTIONS = 15

@@ -15,8 +15,13 @@ from showing import shows_itself
 
 from rockwobble.compare import Fragility, fragility
 from rockwobble.compare.storage.manifest import Manifest, read_manifests, read_results
-from rockwobble.compare.studies.fragility.questions import main_contrasts
-from rockwobble.compare.studies.fragility.result import KIND, fragility_of, manifest_of, stored_fragility
+from rockwobble.compare.studies.fragility.study import (
+    KIND,
+    fragility_of,
+    main_contrasts,
+    manifest_of,
+    stored_fragility,
+)
 from rockwobble.models import Cylinder, synthetic_motions
 from rockwobble.models.records import p695
 from rockwobble.reports.cli import fragility as command

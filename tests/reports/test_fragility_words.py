@@ -13,9 +13,9 @@ from fragility_example import METHODS, made_up
 from rockwobble.compare import Fragility
 from rockwobble.compare.metrics.order_statistics import Interval
 from rockwobble.compare.storage.manifest import Manifest
-from rockwobble.compare.studies.fragility.questions import main_contrasts
-from rockwobble.compare.studies.fragility.result import KIND, fragility_of
+from rockwobble.compare.studies.fragility.study import KIND, fragility_of, main_contrasts
 from rockwobble.compare.studies.fragility.tables import margin_of
+from rockwobble.reports.figures.fragility import pictures
 from rockwobble.reports.pages.fragility import fragility_page
 
 
@@ -62,6 +62,38 @@ def by_one_method(found: Fragility, **changes: Any) -> str:
     about["cylinders"] = {"pier": {"semidiagonal": 6.0, "tan_alpha": 0.2}}
     one = fragility_of(runs.assign(**changes), points, about)
     return " ".join(fragility_page(one, Manifest(kind=KIND)).markdown().split())
+
+
+def test_what_is_too_few_for_a_curve_is_counted(found):
+    kept = [f"m{n}" for n in range(4)]
+    few = fragility_of(
+        *(table[table["motion"].isin(kept)] for table in (found.runs, found.points)),
+        {**found.about, "motions": 4},
+    )
+    page = fragility_page(few, Manifest(kind=KIND))
+    words = page.markdown()
+    assert "**Too few for a curve" in words
+    assert "Medians" not in words
+    k = few.counts.query("cylinder == 'pier' and method == 'planar x' and limit == 'overturned'")["k"].sum()
+    assert f"| pier | planar x | overturned | {k} of 24 |" in words
+    assert [picture.name for picture in page.pictures] == ["fragility-1", "fragility-2"]
+
+
+@pytest.mark.parametrize("factor", [1.0, 30.0, 1.0 / 30.0])
+def test_every_mark_of_a_ratio_lies_within_its_axis(found, factor):
+    scaled = [name for name in found.contrasts if name.startswith("ratio") and name != "ratio_p"]
+    far = found.contrasts.assign(**{name: found.contrasts[name] * factor for name in scaled})
+    ratios = next(
+        p for p in pictures(dataclasses.replace(found, contrasts=far)) if p.name == "fragility-ratios"
+    )
+    marks = 0
+    for panel in ratios.panels:
+        for layer in panel.layers:
+            if getattr(layer, "style", None) is not None and layer.style.symbol:
+                marks += 1
+                assert ((layer.x > panel.x.low) & (layer.x < panel.x.high)).all()
+                assert (layer.style.symbol == "diamond") == (factor == 1.0)
+    assert marks > 3
 
 
 def test_one_method_is_not_asked_whether_it_agrees(found):

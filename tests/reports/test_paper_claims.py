@@ -11,8 +11,7 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.studies.spectrum.result import OverturningSpectrum
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, PLANAR_Y, SPATIAL
+from rockwobble.compare.studies.spectrum.spectrum import PLANAR_X, PLANAR_Y, SPATIAL, OverturningSpectrum
 from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
 from rockwobble.reports.paper import earthquake, free, overturning, period
 from rockwobble.reports.paper.statement import (

@@ -10,7 +10,7 @@ import pytest
 
 from rockwobble.compare.certificate.verdict import CHANGED
 from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests, read_results
-from rockwobble.compare.studies.validity.limits.needs import needs
+from rockwobble.compare.studies.validity.limits import needs
 from rockwobble.compare.studies.validity.study import stored_validity
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.reports.cli.main import main

@@ -21,7 +21,7 @@ def modules_of_inner_runs() -> None:
     from rockwobble.models import Case, Cylinder, InitialState
     from rockwobble.reports.console import budget_of_run  # noqa: F401
 
-    assert rockwobble.compare.check.LAYERS
+    assert rockwobble.compare.check.GROUPS
     body = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
     for model in ("recess", "flat"):
         reduced.simulate(Case(body, initial=InitialState(0.1), duration=0.1), **reduced.MODELS[model])
@@ -78,7 +78,7 @@ def test_stated_bounds_hold_or_fail_with_the_budget_of_the_difference(suite, in_
     result.stdout.fnmatch_lines(
         [
             "*pier.suite.toml: release: tan_alpha 1, mujoco flat*",
-            "release: tan_alpha 1, mujoco flat against recess: tilt_rms: measured *, at most 1e-5 *",
+            "release: tan_alpha 1, mujoco flat compared with recess: tilt_rms: *, at most 1e-5 *",
             "What the difference is made of (RMS in alpha until *",
             "  whole *engine minus the recess model",
             "  model form *",
@@ -93,7 +93,7 @@ def test_a_run_held_against_another_model_than_it_is_compared_with_says_what_fai
     suite, in_this_process
 ) -> None:
     result = suite(bounded('tilt_rms = 1e-12\nreference = "flat"')).runpytest("-k", "alpha and 1 and recess")
-    result.stdout.fnmatch_lines(["*against flat: tilt_rms: measured *at most 1e-12*", "There is no budget *"])
+    result.stdout.fnmatch_lines(["*compared with flat: tilt_rms: *at most 1e-12*", "There is no budget *"])
     assert "Error" not in result.stdout.str()
 
 
@@ -102,14 +102,14 @@ def test_the_budget_can_be_left_out(suite) -> None:
     result = pytester.runpytest("-k", "0.2 and recess", "--no-rockwobble-budget")
     result.assert_outcomes(failed=1)
     assert "What the difference" not in result.stdout.str()
-    result.stdout.fnmatch_lines(["*tilt_rms: measured *at most 1e-12*"])
+    result.stdout.fnmatch_lines(["*tilt_rms: *at most 1e-12*"])
 
 
 def test_a_run_that_fails_says_why(suite) -> None:
     text = SUITE.replace('support = ["recess", "flat"]', "settings = { contact_damping_ratio = 0.01 }")
     result = suite(text).runpytest("-k", "0.2")
     result.assert_outcomes(failed=1)
-    result.stdout.fnmatch_lines(["*the engine gained energy*contact of mujoco*"])
+    result.stdout.fnmatch_lines(["*contact of mujoco*the engine gained energy*"])
 
 
 def test_a_wrong_file_is_an_error_of_its_own(suite) -> None:

@@ -14,15 +14,17 @@ from rich.console import Console
 
 from rockwobble import reduced
 from rockwobble.compare.storage.manifest import Manifest, read_results
-from rockwobble.compare.studies.spectrum.planar_contrast import planar_contrast
-from rockwobble.compare.studies.spectrum.result import (
+from rockwobble.compare.studies.spectrum.spectrum import (
     KIND,
+    PLANAR_X,
+    SERIES,
+    SPATIAL,
     OverturningSpectrum,
+    overturning_spectrum,
     safe_islands,
     stored_spectrum,
 )
-from rockwobble.compare.studies.spectrum.series import PLANAR_X, SERIES, SPATIAL
-from rockwobble.compare.studies.spectrum.study import overturning_spectrum
+from rockwobble.compare.studies.spectrum.tables import planar_contrast
 from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat

@@ -2,23 +2,233 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
+
+import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, Run
 from rockwobble.models.number_checks import require_increasing, require_positive
 from rockwobble.models.records.plausibility import doubts_of
+from rockwobble.models.shown import Shown
 from rockwobble.models.traces.trace_file import run_to_plain
 
+from ...metrics.order_statistics import FEWEST
 from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint
+from ...storage.manifest import Manifest, Results, made_now
+from .fit import TOO_FEW, resamples
 from .intensity import require_measure
-from .limits import CONTACT_LOST, DEFAULT_LIMITS, require_limits
 from .methods import MODELS, Method, methods_of, own_model
-from .plan import Plan, default_levels
-from .result import KIND, Fragility, fragility_of
-from .runs import run_plan
+from .plan import Plan, default_levels, run_plan
+from .samples import CONTACT_LOST, DEFAULT_LIMITS, OVERTURNED, blocks_of, require_limits
+from .tables import (
+    contrast_table,
+    count_table,
+    curve_table,
+    curves_of,
+    efficiency_table,
+    fit_table,
+    island_table,
+)
+
+KIND = "fragility"
+FEWEST_LEVELS = 2  # of one level a curve has no slope
+_COUNTED = ("cylinder", "method", "limit", "runs", "exceeded", "failed")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Fragility(Shown):
+    """Probabilities of exceeding limits by several methods, under the same motions.
+
+    Intervals are of 95 %, by resampling the motions; their ends are in columns NAME_low and NAME_high.
+
+    Parameters
+    ----------
+    runs : DataFrame
+        One row for each cylinder, motion, step (place of the level) and method: peak_tilt [alpha], outcome,
+        contact_lost (1, 0, NaN where nobody asked).
+    points : DataFrame
+        One row for each cylinder, motion and step: scale, and every intensity of `MEASURES`.
+    counts : DataFrame
+        n runs and k that exceed a limit, by cylinder, method, limit and intensity.
+    fits : DataFrame
+        One row for each cylinder, method and limit: kind ("fitted", "never", "always", "separated", "not
+        increasing"; of fewer motions or levels than a curve takes "too few", and no number but counts; then
+        the tables below are empty), median, dispersion, runs, exceeded, failed, extrapolated, without_curve
+        (share of the resamples), and of the goodness of fit deviance, degrees, p and largest (difference of
+        share and curve).
+    curves : DataFrame
+        The curves point by point: intensity, probability, low, high.
+    contrasts : DataFrame
+        One row for each two methods: ratio of the medians, dispersion_difference, within (least margin that
+        holds the interval of the ratio), verdict for the margin that was stated.
+    efficiency : DataFrame
+        Dispersion of the first method by each measure, and over that of the best.
+    islands : DataFrame
+        Motions that overturn a cylinder which stands under the same motion made stronger, and bias of the
+        median of an analysis that stops at the first overturning.
+    about : mapping
+        What the tables do not hold: cylinders, methods, measure, levels, margin, seed, and the hash of all
+        inputs.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> shaking = rw.synthetic_motions(6, peak=1.0, seed=1)
+    >>> found = rw.fragility(pier, shaking, methods=["recess"], levels=[2, 4, 8], resamples=20, workers=1)
+    >>> overturned = found.fits[found.fits["limit"] == "overturned"]
+    >>> overturned[["method", "runs", "exceeded"]].to_dict("records")
+    [{'method': 'recess model', 'runs': 18, 'exceeded': 10}]
+    """
+
+    runs: pd.DataFrame
+    points: pd.DataFrame
+    counts: pd.DataFrame
+    fits: pd.DataFrame
+    curves: pd.DataFrame
+    contrasts: pd.DataFrame
+    efficiency: pd.DataFrame
+    islands: pd.DataFrame
+    about: Mapping[str, Any]
+
+    def _said(self) -> dict[str, str]:
+        runs = self.runs
+        return {
+            "cylinders": str(runs["cylinder"].nunique()),
+            "motions": str(runs["motion"].nunique()),
+            "runs": str(len(runs)),
+            "failed": str(int((runs["outcome"] == "failed").sum())),
+            "methods": ", ".join(dict.fromkeys(runs["method"])),
+        }
+
+    @property
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """The tables by name."""
+        return {field.name: getattr(self, field.name) for field in fields(self) if field.name != "about"}
+
+
+def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, about: Mapping[str, Any]) -> Fragility:
+    """Return the fragility by the runs of the plan that `about` states."""
+    if (runs["outcome"] == "failed").all():
+        raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")
+    blocks = blocks_of(runs, points, about["limits"], str(about["measure"]))
+    weights = resamples(len(blocks.motions), int(about["resamples"]), int(about["seed"]))
+    fitted, drawn = curves_of(blocks), curves_of(blocks, weights)
+    found = Fragility(
+        runs=runs,
+        points=points,
+        counts=count_table(blocks),
+        fits=fit_table(blocks, fitted, drawn),
+        curves=curve_table(blocks, fitted, drawn),
+        contrasts=contrast_table(blocks, fitted, drawn, weights, float(about["margin"])),
+        efficiency=efficiency_table(blocks, blocks.methods[0], weights),
+        islands=island_table(blocks, weights),
+        about=about,
+    )
+    levels = points.groupby("cylinder")[blocks.measure].nunique()
+    enough = len(blocks.motions) >= FEWEST and levels.min() >= FEWEST_LEVELS
+    return found if enough else _counts_alone(found)
+
+
+def _counts_alone(found: Fragility) -> Fragility:
+    """Return a fragility of too few motions or levels: what was counted, and nothing fitted."""
+    fits = found.fits.assign(kind=TOO_FEW, extrapolated=False)
+    fitted = fits.columns.difference([*_COUNTED, "kind", "extrapolated"])
+    fits[fitted] = float("nan")
+    tables = ("curves", "contrasts", "efficiency", "islands")
+    return replace(found, fits=fits, **{name: getattr(found, name).iloc[:0] for name in tables})
+
+
+def stored_fragility(results: Results) -> Fragility:
+    """Return the fragility that is stored in a folder."""
+    names = [field.name for field in fields(Fragility) if field.name != "about"]
+    return Fragility(**{name: results.table(name) for name in names}, about=results.manifest.about)
+
+
+def manifest_of(found: Fragility, command: str = "") -> Manifest:
+    """Return the manifest of a fragility, with its medians and the contrasts of overturning as headline."""
+    fits = found.fits[found.fits["limit"] == OVERTURNED]
+    headline = {
+        f"{row['cylinder']}, {row['method']}, overturned of {row['runs']}": row["exceeded"]
+        if row["kind"] == TOO_FEW
+        else row["median"]
+        for row in fits.to_dict("records")
+    } | {
+        f"{row['cylinder']}, {row['method']} / {row['against']}": row["ratio"]
+        for row in found.contrasts.to_dict("records")
+        if row["limit"] == OVERTURNED
+    }
+    return made_now(
+        KIND,
+        inputs=str(found.about["inputs"]),
+        command=command,
+        seeds={"resamples": int(found.about["seed"])},
+        headline=headline,
+        about=found.about,
+    )
+
+
+Row = dict[str, Any]
+
+
+def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
+    """Return the rows of the contrasts that answer the three questions on overturning, by question.
+
+    "planar": each planar method against the recess model; "support": the same method on another support
+    against the recess; "engine": an engine against the model of its support, and another engine on it.
+    """
+    methods: Mapping[str, Mapping[str, Any]] = found.about["methods"]
+    answers: dict[str, list[Row]] = {"planar": [], "support": [], "engine": []}
+    rows = found.contrasts.to_dict("records") if len(found.contrasts) else []
+    for row in rows:
+        if row["limit"] != OVERTURNED:
+            continue
+        question, turned = _question(methods, str(row["method"]), str(row["against"]))
+        if question:
+            named = {str(name): value for name, value in row.items()}
+            answers[question].append(_inverted(named) if turned else named)
+    return answers
+
+
+def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: str) -> tuple[str, bool]:
+    """Return the question that a pair answers, and whether the pair is the other way round; "" for none."""
+    one, other = methods[method], methods[against]
+    engines = one["engine"], other["engine"]
+    if engines == (None, None) and "planar" in (one["support"], other["support"]):
+        recess = [each["support"] == "recess" for each in (one, other)]
+        return ("planar", recess[0]) if any(recess) else ("", False)
+    if engines[0] == engines[1]:
+        recess = [each["support"] == "recess" for each in (one, other)]
+        return ("support", recess[0]) if recess[0] != recess[1] else ("", False)
+    if None in engines:
+        turned = engines[0] is None
+        model, engine = (method, other) if turned else (against, one)
+        return ("engine", turned) if engine["own_model"] == model else ("", False)
+    return ("engine", False) if one["support"] == other["support"] else ("", False)
+
+
+def _inverted(row: Row) -> Row:
+    """Return a contrast with its methods exchanged."""
+
+    def inverse(value: float) -> float:
+        return math.inf if value == 0.0 else 1.0 / value
+
+    return row | {
+        "method": row["against"],
+        "against": row["method"],
+        "ratio": inverse(row["ratio"]),
+        "ratio_low": inverse(row["ratio_high"]),
+        "ratio_high": inverse(row["ratio_low"]),
+        "dispersion_difference": -row["dispersion_difference"],
+        "dispersion_difference_low": -row["dispersion_difference_high"],
+        "dispersion_difference_high": -row["dispersion_difference_low"],
+    }
+
 
 # two methods are the same for an engineer whose medians differ by less: the motions of one site differ by
 # several times as much

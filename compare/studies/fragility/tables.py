@@ -1,4 +1,9 @@
-"""The tables of a fragility: counts, fits with their bands, and every method against every other."""
+"""The tables of a fragility: counts, fits with their bands, methods against each other, islands, efficiency.
+
+Islands are levels at which a motion overturns a cylinder that stands under the same motion made stronger. An
+incremental analysis raises each motion until the cylinder overturns and stops. What it takes for overturned
+above that level may stand, so its curve lies to the left of the one of all levels.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +14,24 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from ...metrics.order_statistics import Interval
-from .fit import ALWAYS, FITTED, KINDS, NEVER, Curves, goodness
-from .resampling import Array, Sample, bands, interval, spread_interval
-from .samples import Blocks, Key
+from .fit import (
+    ALWAYS,
+    FITTED,
+    KINDS,
+    NEVER,
+    Array,
+    Curves,
+    Sample,
+    bands,
+    goodness,
+    interval,
+    spread_interval,
+)
+from .intensity import MEASURES
+from .samples import OVERTURNED, Blocks, Key
 
 # of a curve: from half of the lowest intensity to twice the highest
 _POINTS, _BEYOND = 60, 2.0
@@ -179,3 +197,109 @@ def margin_of(ratio: Interval) -> float:
 def curves_of(blocks: Blocks, weights: Array | None = None) -> dict[Key, Curves]:
     """Return by cylinder, method and limit the curve, or with weights (B, R) those of all resamples."""
     return {key: blocks.sample(*key).curves(weights) for key in blocks.known_keys()}
+
+
+def island_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
+    """Return, for each cylinder and method, how many motions have islands and what stopping early does.
+
+    The columns: motions, with_islands (of these), runs, islands (runs that overturn while a stronger one
+    stands), median of all levels and median_incremental, and bias, the second over the first, with the
+    interval of the same resamples.
+    """
+    rows = []
+    motions = len(blocks.motions)
+    for cylinder, method in itertools.product(blocks.cylinders, blocks.methods):
+        sample = blocks.sample(cylinder, method, OVERTURNED)
+        if np.isnan(sample.y).all():
+            continue
+        stopped = Sample(x=sample.x, y=incremental(sample.y))
+        whole, early = sample.curves(), stopped.curves()
+        with np.errstate(invalid="ignore"):
+            value = float(early.centre[0] - whole.centre[0])
+            many_early, many = stopped.curves(weights), sample.curves(weights)
+            low, high = many_early.low - many.high, many_early.high - many.low
+            # of the same counts the same curve, wherever it lies
+            same = (stopped.counts(weights)[2] == sample.counts(weights)[2]).all(axis=1)
+            low, high = (np.where(same, 0.0, end) for end in (low, high))
+        found = islands(sample.y)
+        rows.append(
+            {
+                "cylinder": cylinder,
+                "method": method,
+                "motions": motions,
+                "with_islands": int(found.any(axis=1).sum()),
+                "runs": int((~np.isnan(sample.y)).sum()),
+                "islands": int(found.sum()),
+                "median": float(np.exp(whole.centre[0])),
+                "median_incremental": float(np.exp(early.centre[0])),
+                **interval(value, low, motions, above=high).exponential().columns("bias"),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def islands(y: Array) -> NDArray[np.bool_]:
+    """Return where a run (R, S) overturns while the same motion, stronger, leaves the cylinder standing.
+
+    Parameters
+    ----------
+    y : ndarray, shape (R, S)
+        1, 0, or NaN where a run failed, from the weakest level to the strongest.
+    """
+    stands = np.nan_to_num(y, nan=1.0) == 0.0
+    later = np.zeros_like(stands)
+    later[:, :-1] = np.logical_or.accumulate(stands[:, :0:-1], axis=1)[:, ::-1]
+    return np.asarray((y == 1.0) & later, dtype=np.bool_)
+
+
+def incremental(y: Array) -> Array:
+    """Return the outcome (R, S) of each level as an analysis has it that stops at the first overturning."""
+    fell = np.maximum.accumulate(np.nan_to_num(y, nan=0.0), axis=1)
+    return np.where(np.isnan(y) & (fell == 0.0), np.nan, fell)
+
+
+# Every run has an intensity of its own in each measure but that of the levels, and so many numbers in each
+# resample: as many resamples as keep this many numbers, and no fewer than give an end of an interval.
+_MOST_NUMBERS, _FEWEST = 150_000, 100
+
+
+def efficiency_table(blocks: Blocks, method: str, weights: Array) -> pd.DataFrame:
+    """Return the dispersion of one method by each measure, and over that of the best, of the same resamples.
+
+    The runs are the same for every measure: from where no motion overturns to where nearly all do, so that
+    it matters little by which measure their levels were chosen.
+    """
+    rows = []
+    motions = len(blocks.motions)
+    for cylinder in blocks.cylinders:
+        if (cylinder, method) not in blocks.runs:
+            continue
+        if np.isnan(blocks.exceeded(cylinder, method, OVERTURNED)).all():  # every run failed
+            continue
+        measures = [measure for measure in MEASURES if blocks.known(cylinder, measure)]
+        samples = {m: blocks.sample(cylinder, method, OVERTURNED, m) for m in measures}
+        found = {m: sample.curves() for m, sample in samples.items()}
+        fitted = [m for m in measures if KINDS[found[m].kinds[0]] == FITTED]
+        if not fitted:
+            continue
+        size = samples[fitted[0]].y.size
+        some = weights[: max(_FEWEST, _MOST_NUMBERS // size)]
+        drawn = {m: samples[m].curves(some).dispersion for m in fitted}
+        best = min(fitted, key=lambda m: float(found[m].dispersion[0]))
+        for measure in fitted:
+            spread = float(found[measure].dispersion[0])
+            with np.errstate(divide="ignore", invalid="ignore"):  # separated resamples have no dispersion
+                ratios = np.log(drawn[measure] / drawn[best]) if measure != best else np.zeros(len(some))
+            value = math.log(spread / float(found[best].dispersion[0]))
+            rows.append(
+                {
+                    "cylinder": cylinder,
+                    "method": method,
+                    "measure": measure,
+                    "median": float(np.exp(found[measure].centre[0])),
+                    **spread_interval(spread, drawn[measure], motions).columns("dispersion"),
+                    **interval(value, ratios, motions).exponential().columns("over_best"),
+                    "best": measure == best,
+                }
+            )
+    return pd.DataFrame(rows)

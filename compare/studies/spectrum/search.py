@@ -37,8 +37,9 @@ _COARSEST = 8.0  # of these, where nothing asks for a finer one
 # side, reaches alpha within so many times its length: next to a window the tilt changes fast.
 _REACH, _BESIDE = 6.0, 2
 # Intensities drawn below each lowest. Where 0.6 % of all overturn, none of so many does once in twenty times;
-# they take five times as long as the cells of a spectrum.
+# with them a spectrum takes some five times as many runs as without.
 PROBES = 500
+_SPARE = 10  # as a tenth more are drawn, one that overturns near the lowest asks for no others
 _CLOSE = 1e-6  # relative: so near to uplift there is nothing to draw between
 
 
@@ -100,9 +101,10 @@ def probe_below(
 ) -> Search[tuple[float, int]]:
     """Run intensities drawn at random below the lowest found, until of `probes` none overturns.
 
-    One in each of so many equal parts from `start` to the lowest, or to `stop` where it is NaN; if some
-    overturn, the lowest of them takes its place and others are drawn below it. That none overturns is then
-    less likely than of as many drawn from the whole, whatever share of it would.
+    One in each of so many equal parts, and a tenth more, from `start` to the lowest, or to `stop` where it is
+    NaN; if some overturn, the lowest of them takes its place, and others are drawn if fewer than `probes`
+    are left below it. That none overturns is less likely than of as many drawn from the whole, whatever
+    share of it would.
 
     Returns
     -------
@@ -111,18 +113,21 @@ def probe_below(
     """
     random, missed = np.random.default_rng(seed), 0
     while probes and (end := stop if math.isnan(lowest) else lowest) > start * (1.0 + _CLOSE):
-        edges = np.linspace(start, end, probes + 1)
+        edges = np.linspace(start, end, probes + probes // _SPARE + 1)
         drawn = random.uniform(edges[:-1], edges[1:])
         fell = overturned((yield drawn))
         if not fell.any():
             break
-        lowest, missed = float(drawn[fell.argmax()]), missed + int(fell.sum())
+        first = int(fell.argmax())
+        lowest, missed = float(drawn[first]), missed + int(fell.sum())
+        if first >= probes:
+            break
     return lowest, missed
 
 
 def gap_bound(probes: int) -> float:
     """Return the share of intensities of which none in so many drawn overturns with a chance of 5 %."""
-    return 1.0 - (1.0 - CONFIDENCE) ** (1.0 / probes)
+    return 1.0 - math.pow(1.0 - CONFIDENCE, 1.0 / probes)
 
 
 def run_searches(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
 
@@ -16,7 +16,7 @@ from ...runs.execution import all_makers
 from ...runs.progress import ProgressCallback
 from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import made_now, read_results, write_results
+from ...storage.manifest import Manifest, made_now, read_results, write_results
 from .cases import CaseChunk, chunks_of, describe_suite, runnable_suite
 from .grid import Grid, GridChunk
 from .result import KIND, Sweep, stored_sweep
@@ -36,6 +36,7 @@ def sweep(
     seeds: Mapping[str, int] | None = None,
     progress: ProgressCallback | None = None,
     command: str = "",
+    pages: Callable[[Sweep, Manifest], Mapping[str, bytes]] | None = None,
 ) -> Sweep:
     """Run every combination, and return the tidy table of what became of each.
 
@@ -53,7 +54,7 @@ def sweep(
         Folder of the sweep: sweep.parquet is the table, motions.parquet the ground motions of a grid. The
         chunks of another sweep stay there until this one is complete.
     scheduler : str, optional
-        Address of a Dask scheduler, such as "tcp://10.0.0.1:8786"; its workers must have the same
+        Address of a Dask scheduler, such as `tcp://10.0.0.1:8786`; its workers must have the same
         versions. Default: processes on this machine.
     workers : int, optional
         Number of those processes; 1 runs everything in this one. Default: one for each processor.
@@ -65,6 +66,8 @@ def sweep(
         Told of the start and the end of each chunk.
     command : str, optional
         That asks for it, to be kept with the results.
+    pages : callable, optional
+        Returns the files, by name, that are drawn of the sweep: they are written with it or not at all.
 
     Returns
     -------
@@ -122,6 +125,7 @@ def sweep(
         motions = whole.motions if isinstance(whole, Grid) else [case.motion for case in whole.cases]
         about = whole.describe() if isinstance(whole, Grid) else describe_suite(whole)
         about = {**about, "doubts": doubts_of(motions)}
+        result = Sweep(table=table, about=about)
         if out is not None:
             made = made_now(
                 KIND,
@@ -132,8 +136,9 @@ def sweep(
                 | {str(k): int(n) for k, n in table["outcome"].value_counts().items()},
                 about=about,
             )
-            write_results(out, made, {KIND: table, **_motions(whole)})
-    return Sweep(table=table, about=about)
+            drawn = {} if pages is None else pages(result, made)
+            write_results(out, made, {KIND: table, **_motions(whole)}, pages=drawn)
+    return result
 
 
 def read_sweep(folder: str | Path) -> Sweep:

@@ -1,4 +1,4 @@
-"""Free response over slenderness, release and spin: recess against flat ground, and what the recess needs."""
+"""Free response: recess against flat ground, what the recess needs, and an engine at some of the releases."""
 
 from __future__ import annotations
 
@@ -6,24 +6,27 @@ import math
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
-from rockwobble import reduced
-from rockwobble.models import Assumptions, Case, Trace
+from rockwobble import multibody, reduced
+from rockwobble.models import Assumptions, Case, Run, Trace
+from rockwobble.multibody import DEFAULT_ENGINE
 
-from .extent import Extent
-from .motions import release_case
-from .part import Inputs, Part, Row
+from ...metrics.pair import make_pair
+from ...metrics.tilt import tilt_rms
+from ...runs.choice import SUPPORTS, own_model
+from ...runs.execution import simulate_run
+from .plan import Extent, Inputs, Part, Row, release_case
 
 _RTOL = 1e-10
 _CYCLES = 10.0  # over which the flat-ground model may gather tilt
 _MAXIMUM = 1.0  # in the fourth column of `Trace.extrema`
 
 
-def _tasks(extent: Extent) -> Iterable[Inputs]:
+def _free_response_tasks(extent: Extent) -> Iterable[Inputs]:
     for tan_alpha in extent.tan_alphas:
         yield {"tan_alpha": tan_alpha, "releases": extent.releases, "spins": extent.spins}
 
 
-def measure(tan_alpha: float, releases: Sequence[float], spins: Sequence[float]) -> list[Row]:
+def measure_free_response(tan_alpha: float, releases: Sequence[float], spins: Sequence[float]) -> list[Row]:
     """Return one row for each release and spin.
 
     The columns: tan_alpha, release, spin; period [s] and turn [rad] from tilt maximum to next maximum, exact
@@ -70,11 +73,107 @@ def needs_of(case: Case) -> Assumptions:
     return needs
 
 
-PART = Part(
+FREE_RESPONSE = Part(
     name="free_response",
     title="free response, recess against flat ground",
-    tasks=_tasks,
-    measure=measure,
+    tasks=_free_response_tasks,
+    measure=measure_free_response,
     keys=("tan_alpha",),
     cost=lambda releases, spins, **_: 0.02 * len(releases) * len(spins),
+)
+
+
+_VERIFIED_PERIODS = 2.2  # the second maximum, and a little more, so that it is seen to be one
+_FRICTION = 10.0  # whatever the motion needs: friction is another limit
+
+
+def _verification_tasks(extent: Extent) -> Iterable[Inputs]:
+    for tan_alpha, release, spin in extent.engine_points:
+        yield {"tan_alpha": tan_alpha, "release": release, "spin": spin}
+
+
+def measure_verification(tan_alpha: float, release: float, spin: float) -> list[Row]:
+    """Return a row for each support: what model and engine say of the first pass, and how far tilts differ.
+
+    The columns: tan_alpha, release, spin, support; turn, engine_turn [rad], half_period, engine_half_period
+    [s] to the first tilt minimum; tilt_rms over alpha; resolved, whether the contact of the engine resolves
+    the pass; outcome.
+    """
+    case = replace(release_case(tan_alpha, release, spin, _VERIFIED_PERIODS), friction=_FRICTION)
+    rows: list[Row] = []
+    for support in SUPPORTS:
+        trial = Run(DEFAULT_ENGINE, support)
+        own = simulate_run(case, Run(None, own_model(trial).support, rtol=1e-10))
+        run = simulate_run(case, trial)
+        passes, own_passes = run.passes, own.passes
+        rows.append(
+            {
+                "support": support,
+                "turn": next_maximum(own)[1],
+                "engine_turn": float(passes["angle_of_turn"].iloc[0]) if len(passes) else math.nan,
+                "half_period": float(own_passes["time"].iloc[0]) if len(own_passes) else math.nan,
+                "engine_half_period": float(passes["time"].iloc[0]) if len(passes) else math.nan,
+                "tilt_rms": tilt_rms(make_pair(case.cylinder, own, run)),
+                "resolved": bool(passes["resolved"].iloc[0]) if len(passes) else False,
+                "outcome": run.outcome,
+            }
+        )
+    return rows
+
+
+VERIFICATION = Part(
+    name="verification",
+    title="free response in the engine",
+    tasks=_verification_tasks,
+    measure=measure_verification,
+    keys=("tan_alpha", "release", "spin"),
+    cost=lambda **_: 1.5,
+    engine=DEFAULT_ENGINE,
+)
+
+
+_SLIP_PERIODS = 1.1  # one pass: the friction of the next is the same
+
+
+def _slip_tasks(extent: Extent) -> Iterable[Inputs]:
+    for tan_alpha, release, spin in extent.slip_points:
+        yield {"tan_alpha": tan_alpha, "release": release, "spin": spin, "shares": extent.slip_shares}
+
+
+def measure_slip(tan_alpha: float, release: float, spin: float, shares: Sequence[float]) -> list[Row]:
+    """Return a row for each friction, as a share of what the recess model needs.
+
+    The columns: tan_alpha, release, spin, needed, share, friction, slip of the engine in a recess in one
+    period [b], tilt_rms against the recess model over alpha, outcome. No row where the model loses contact:
+    no friction is enough.
+    """
+    needed = needs_of(release_case(tan_alpha, release, spin)).largest_friction_needed
+    if not math.isfinite(needed):
+        return []
+    case = release_case(tan_alpha, release, spin, _SLIP_PERIODS)
+    recess = reduced.simulate(case, rtol=1e-10)
+    rows: list[Row] = []
+    for share in shares:
+        run = multibody.simulate(replace(case, friction=share * needed))
+        rows.append(
+            {
+                "needed": needed,
+                "share": share,
+                "friction": share * needed,
+                "slip": float(run.slip[-1]) / case.cylinder.base_radius,
+                "tilt_rms": tilt_rms(make_pair(case.cylinder, recess, run)),
+                "outcome": run.outcome,
+            }
+        )
+    return rows
+
+
+SLIP = Part(
+    name="slip",
+    title="the friction at which the engine slips",
+    tasks=_slip_tasks,
+    measure=measure_slip,
+    keys=("tan_alpha", "release", "spin"),
+    cost=lambda shares, **_: 0.5 * len(shares),
+    engine=multibody.DEFAULT_ENGINE,
 )

@@ -17,11 +17,28 @@ from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Manifest, Results, made_now
 from ...storage.provenance import engine_makers, reduced_makers
-from . import motions
-from .extent import Extent
+from .el_centro import CONTACT, FOLLOWING, RINGS
+from .free_response import FREE_RESPONSE, SLIP, VERIFICATION
 from .limits import limits_of
-from .part import Inputs, Part
-from .parts import PARTS, part_named
+from .plan import Extent, Inputs, Part, motion_named, record_names, release_case, shaken_case, source_of
+from .records import PEAKS, RECORDS
+
+PARTS: tuple[Part, ...] = (
+    FREE_RESPONSE,
+    VERIFICATION,
+    PEAKS,
+    SLIP,
+    RINGS,
+    CONTACT,
+    FOLLOWING,
+    RECORDS,
+)
+
+
+def part_named(name: str) -> Part:
+    """Return a part by its name."""
+    return next(part for part in PARTS if part.name == name)
+
 
 KIND = "validity"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
@@ -109,7 +126,7 @@ def measure_task(task: Task) -> pd.DataFrame:
 
 def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
     """Return the result of what was measured here."""
-    return Validity(tables=tables, records=motions.source_of(motions.record_names(extent.members)))
+    return Validity(tables=tables, records=source_of(record_names(extent.members)))
 
 
 def manifest_of(found: Validity, extent: Extent, command: str = "") -> Manifest:
@@ -138,12 +155,12 @@ def task_name(task: Task) -> str:
 
 def _makers(part: Part) -> dict[str, str]:
     """Versions and code on which a part depends."""
-    modules = [inspect.getsourcefile(part.measure), motions.__file__]
-    own = b"".join(Path(str(module)).read_bytes() for module in modules)
+    problems = [inspect.getsource(each) for each in (release_case, motion_named, shaken_case)]
+    own = Path(str(inspect.getsourcefile(part.measure))).read_bytes() + "".join(problems).encode()
     engine = engine_makers(part.engine) if part.engine else {}
     return {
         **reduced_makers(),
         **engine,
         f"code of {part.name}": hashlib.sha256(own).hexdigest()[:16],
-        "records": motions.source_of(motions.record_names(1)),
+        "records": source_of(record_names(1)),
     }

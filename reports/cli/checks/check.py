@@ -1,10 +1,10 @@
-"""`rockwobble check`: consistency checks of the reduced models and of the engines."""
+"""`rockwobble check`: physical checks of models, engines, trajectories and suites."""
 
 from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -14,36 +14,40 @@ import rockwobble.compare as rc
 from ...console.progress import shown_progress
 from ...console.terminal import FAILED, interruptible, user_input
 from ..inputs import options
-from ..inputs.suite_choice import chosen_runs, without_missing
-from .check_outside import (
-    Model,
-    Support,
-    Tolerance,
-    Trajectory,
-    outside_findings,
-    print_outside,
-    require_used,
-)
 
 if TYPE_CHECKING:
-    from rockwobble.compare.check import Bench, Finding
+    from rockwobble.compare.check import Checks
 
+_subject = options.panel("Subject (default: the reduced models, and the engines that are installed)")
 _output = options.panel("Output for programs")
-Suite = Annotated[
+Engine = Annotated[str | None, _subject("Check one engine, the protocol of an engine included.")]
+TimeStep = Annotated[float | None, _subject("Time step of the engine, in s. Default: its own choice.")]
+Model = Annotated[
     str | None,
-    typer.Option(
-        help="Suite for the agreement with the engines: a TOML file, or one that ships. Default: quick."
+    _subject(
+        "Check a model: a function of a rockwobble.Case and a support that returns time, tilt, azimuth.",
+        metavar="MODULE:FUNCTION",
     ),
 ]
+Trajectory = Annotated[
+    Path | None,
+    _subject("Check a trajectory (CSV with time, tilt, azimuth) of the one case of --suite."),
+]
+Suite = Annotated[
+    str | None,
+    _subject("Compare the engine runs of a suite with the models: a TOML file, or one that ships."),
+]
+Support = Annotated[str | None, _subject("What model or trajectory is of: recess or flat. Default: recess.")]
+Tolerance = Annotated[float | None, _subject("How exact model or trajectory claims to be. Default: 0.001.")]
 Only = Annotated[
     list[str] | None,
     typer.Option(
-        metavar="LAYER",
-        help="Run one layer; may be repeated: records, equations, conserved, exact, rest, invariance, "
-        "properties, order, residual, metrics, studies, traces, agreement, baseline. Default: all.",
+        metavar="GROUP",
+        help="Run one group of checks; may be repeated: equations, exact, conserved, rest, invariance, "
+        "order, trace, agreement, protocol, baseline. Default: all.",
     ),
 ]
-Json = Annotated[Path | None, _output("Write all findings as JSON.")]
+Json = Annotated[Path | None, _output("Write all results as JSON.")]
 Junit = Annotated[Path | None, _output("Write a JUnit report (XML).")]
 Markdown = Annotated[Path | None, _output("Append a page for a CI job, such as $GITHUB_STEP_SUMMARY.")]
 Update = Annotated[
@@ -58,135 +62,136 @@ Reason = Annotated[
 
 
 def check(
+    engine: Engine = None,
+    time_step: TimeStep = None,
+    model: Model = None,
+    trajectory: Trajectory = None,
     suite: Suite = None,
+    support: Support = None,
+    tolerance: Tolerance = None,
     only: Only = None,
+    workers: options.Workers = None,
     json: Json = None,
     junit: Junit = None,
     markdown: Markdown = None,
-    workers: options.Workers = None,
     update_baseline: Update = False,
     reason: Reason = None,
-    model: Model = None,
-    trajectory: Trajectory = None,
-    support: Support = None,
-    tolerance: Tolerance = None,
 ) -> None:
-    """Check that the reduced model stays the same model, and stays in agreement with the engines.
+    """Check by physics that reduced models and engines are right, and still do what they did.
 
-    Tightest first: files of records; equations against the energies, term by term, and against
-    accelerations in the engines; conserved quantities; exact solutions; rest, landings and the end of a
-    record; invariances; one motion stated in several ways; order; zero residual displacement; metrics on
-    made-up traces; suites, sweeps and grids against single runs; every field of an engine's trace; agreement
-    with the engines on a suite; stored baselines. Each check says what it measured, what it may be, why, and
-    what is wrong if it is more.
+    One list of checks, tightest first: residuals in the equations of motion, exact solutions, conserved
+    quantities, rest and uplift, invariance, order of convergence, consistency of a trace, agreement with the
+    independent model, the protocol of an engine, stored numbers. Printed are failures, with value and bound,
+    and one line for each group.
 
-    A suite of your own is held against the bounds that it states. One that states none is held against what
-    the time step of each run leaves, which is measured by a second run of twice that step.
-
-    With --model or --trajectory the same is asked of what somebody else made, as far as its outputs allow;
-    each check that cannot run is listed.
+    A suite is compared with the bounds that it states; one that states none, with what the time step of each
+    run leaves, measured by a second run of twice that step.
 
     Exit code 0 if all checks hold, 1 if one does not, 2 for bad input.
     """
     with interruptible():
+        begun = time.monotonic()
         with user_input():
-            from rockwobble.compare.check import LAYERS
             from rockwobble.compare.storage.files import require_file
-            from rockwobble.models.number_checks import require_one_of
 
             if reason is not None and not update_baseline:
                 raise ValueError("--reason belongs to --update-baseline, got it alone")
-            for layer in only or ():
-                require_one_of("--only", layer, LAYERS)
-            of_suite = not only or not {"agreement", "baseline"}.isdisjoint(only)
-            if suite is not None and not of_suite:
-                raise ValueError(f"--suite is for the layer agreement, got --only {' '.join(only or ())}")
             for path in (json, junit, markdown):
                 if path is not None:
                     require_file("a report", path)
-            require_used(model, trajectory, suite, support, tolerance, workers)
-            begun, outside, bench = time.monotonic(), None, None
-            if model is None and trajectory is None:
-                if update_baseline and (suite not in (None, "quick") or only):
-                    raise ValueError(
-                        "--update-baseline goes with neither --suite nor --only: it measures all of quick"
-                    )
-                bench = _bench(suite or "quick", workers, runs=of_suite)
-            elif only or update_baseline:
-                raise ValueError("--only and --update-baseline do not go with --model or --trajectory")
-            else:
-                outside = outside_findings(
-                    model,
-                    trajectory,
-                    suite or "quick",
-                    support or "recess",
-                    1e-3 if tolerance is None else tolerance,
-                )
-        if bench is not None and update_baseline:
-            from ...console.check_update import update
+            subject = _subject_of(engine, time_step, model, trajectory, suite, support, tolerance, workers)
+            if update_baseline:
+                if subject or only:
+                    raise ValueError("--update-baseline goes with no subject and not with --only")
+                from ...console.check_update import update
 
-            with user_input():
-                update(bench, reason)
-            return
-        if bench is not None:
-            findings, seconds = _run(bench, [layer for layer in LAYERS if not only or layer in only])
-        else:
-            findings, seconds = outside or [], time.monotonic() - begun
-            print_outside(findings)
-        with user_input():
-            _write(findings, seconds, json, junit, markdown)
-    if any(finding.failed for finding in findings):
+                update(reason)
+                return
+            found = _run(subject, only)
+            _write(found, time.monotonic() - begun, json, junit, markdown)
+    if not found.passed:
         raise typer.Exit(FAILED)
 
 
-def _bench(suite: str, workers: int | None, *, runs: bool) -> Bench:
-    """Return the bench of a suite, with its engine runs or without."""
-    from rockwobble.compare.check import Bench
+def _subject_of(
+    engine: str | None,
+    time_step: float | None,
+    model: str | None,
+    trajectory: Path | None,
+    suite: str | None,
+    support: str | None,
+    tolerance: float | None,
+    workers: int | None,
+) -> dict[str, Any]:
+    """Return the options of `rockwobble.check` that name the subject.
 
-    read = rw.read_suite(suite)
-    chosen = without_missing(chosen_runs(read, None, None, None), None) if runs else []
-    for case in read.cases:
-        for run in chosen:
-            rc.require_runnable(case, run)
-    cases = rw.Suite(read.cases, chosen, read.bounds)
-    return Bench(reduced=rw.reduced, suite=cases, shipped=suite == "quick", workers=workers)
+    Raises
+    ------
+    ValueError
+        If two are given, or an option that another leaves without a meaning.
+    """
+    from rockwobble.compare.check.subject import load_model
+    from rockwobble.multibody.engines.registry import find_engine
+
+    external = model is not None or trajectory is not None
+    named = {"--engine": engine, "--model": model, "--trajectory": trajectory}
+    named |= {} if trajectory is not None else {"--suite": suite}
+    given = [name for name, value in named.items() if value is not None]
+    if len(given) > 1:
+        raise ValueError(f"one subject may be given, got {' and '.join(given)}")
+    for name, value in (("--support", support), ("--tolerance", tolerance)):
+        if value is not None and not external:
+            raise ValueError(f"{name} belongs to --model or --trajectory, got it without either")
+    if time_step is not None and engine is None:
+        raise ValueError("--time-step belongs to --engine, got it alone")
+    if workers is not None and (suite is None or trajectory is not None):
+        raise ValueError("--workers belongs to the runs of a --suite, got it without one")
+    if engine is not None:
+        find_engine(engine)  # what is wrong with it is said before anything runs
+    found: dict[str, Any] = {"engine": engine, "time_step": time_step, "workers": workers}
+    found |= {"support": support, "tolerance": tolerance}
+    if model is not None:
+        found["model"] = load_model(model)
+    elif trajectory is not None:
+        cases = rw.read_suite(suite or "quick").cases
+        if len(cases) != 1:
+            raise ValueError(f"--trajectory needs a --suite with one case, got {len(cases)}")
+        found["trajectory"] = rc.read_trajectory(trajectory, cases[0])
+    elif suite is not None:
+        found["suite"] = rw.read_suite(suite)
+    return {name: value for name, value in found.items() if value is not None}
 
 
-def _run(bench: Bench, layers: list[str]) -> tuple[list[Finding], float]:
-    """Run the layers, and print each when it is done."""
+def _run(subject: dict[str, Any], only: list[str] | None) -> Checks:
+    """Run the checks, and print them."""
     from rich.console import Console
 
-    from rockwobble.compare.check import run_checks
+    from rockwobble.compare.check import GROUPS, check
+    from rockwobble.models.number_checks import require_one_of
 
-    from ...pages.check import print_layer
+    from ...pages.check import print_checks
 
-    console = Console()
-    begun = time.monotonic()
-    findings: list[Finding] = []
-    for layer in layers:
-        with shown_progress("engine runs", heading=f"checking {layer}") as bench.progress:
-            of_layer = list(run_checks(bench, [layer]))
-        print_layer(console, layer, of_layer)
-        findings += of_layer
-    return findings, time.monotonic() - begun
+    for group in only or ():
+        require_one_of("--only", group, tuple(GROUPS))
+    with shown_progress("engine runs", heading="checking") as progress:
+        found = check(**subject, only=only, progress=progress)
+    print_checks(Console(), found)
+    return found
 
 
 def _write(
-    findings: list[Finding], seconds: float, json: Path | None, junit: Path | None, markdown: Path | None
+    found: Checks, seconds: float, json: Path | None, junit: Path | None, markdown: Path | None
 ) -> None:
-    from rockwobble.compare.storage.provenance import package_versions
-
     from ...pages.check import as_json, as_junit, check_page, headline
 
-    print(f"\n{headline(findings, seconds)}")
-    versions = package_versions()
+    print(headline(found, seconds))
     if json is not None:
-        rc.replace_files(json.parent, {json.name: as_json(findings, versions, seconds).encode()})
+        rc.replace_files(json.parent, {json.name: as_json(found, seconds).encode()})
     if junit is not None:
-        rc.replace_files(junit.parent, {junit.name: as_junit(findings, seconds).encode()})
+        rc.replace_files(junit.parent, {junit.name: as_junit(found, seconds).encode()})
     if markdown is not None:
         try:  # the summary of a CI job may hold pages of other steps
             with markdown.open("a", encoding="utf-8") as file:
-                file.write(check_page(findings, versions, seconds).markdown())
+                file.write(check_page(found, seconds).markdown())
         except OSError as error:
             raise ValueError(f"{markdown} cannot be written: {error.strerror or error}") from None

@@ -7,11 +7,10 @@ from collections.abc import Iterator
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.validity.limits.distributions import CONTRASTS, POINT, ratios
-from rockwobble.compare.studies.validity.limits.engine import models_apart
-from rockwobble.compare.studies.validity.limits.numbers import Array, column
+from rockwobble.compare.studies.validity.distributions import CONTRASTS, POINT, Array, column, ratios
+from rockwobble.compare.studies.validity.el_centro import FREE
+from rockwobble.compare.studies.validity.limits import models_apart
 from rockwobble.compare.studies.validity.records import FLAT, PERTURBED, RECESS
-from rockwobble.compare.studies.validity.rings import FREE
 from rockwobble.compare.studies.validity.study import Validity
 
 from ..palette import DARK, GREY, ORDER, Style, mark_styles

@@ -1,1 +1,0 @@
-"""Checks of record files, ground motions and suites."""

@@ -1,0 +1,202 @@
+"""Changes of frame, scale and statement that must not change the motion."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+
+from .motion import largest, lean
+from .result import Bound, Result, at_most
+from .scenes import GRAVITY, PIER, SHOCK, SHOCK_TIMES, THRESHOLD, polyline, refined
+from .subject import Subject
+
+Lean = NDArray[np.complex128]
+# a pulse in both components, weak enough not to overturn the pier, which it meets as it rocks
+_PULSE = GroundMotion([[0.5, -0.3], [1.5, 0.4], [-1.0, 0.8], [0.3, -1.2], [0.0, 0.0]], 0.3)
+ROCKING = Case(
+    PIER, _PULSE, initial=InitialState(0.5 * PIER.alpha, 0.0, 0.3, 0.5), duration=1.3, name="rocking"
+)
+# without its vertical component, which only some models have
+STANDING = Case(PIER, polyline(SHOCK_TIMES, SHOCK[:, :2], 0.5), duration=4.0, name="from rest")
+_SAMPLE = 0.05  # [s]
+REST = 1e-2  # rest threshold over alpha of a foreshock
+_TURN = 1.234  # [rad]
+
+
+@dataclasses.dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """The same motion, stated in another way.
+
+    Parameters
+    ----------
+    case : Case
+    slower : float
+        By how much its time runs slower.
+    expected : callable, optional
+        Returns the lean that is expected from that of the first statement. Default: the same.
+    """
+
+    case: Case
+    slower: float = 1.0
+    expected: Callable[[Lean], Lean] = lambda lean: lean
+
+
+def frame(subject: Subject, support: str) -> Iterator[Result]:
+    """The rotated problem has the rotated motion, the mirror image the mirror image."""
+    for case in _cases(subject):
+        motion, start = _motion(case), case.initial
+        turned = mirrored = None
+        if start is not None:
+            turned = dataclasses.replace(start, rolling_angle=start.rolling_angle + _TURN)
+            mirrored = dataclasses.replace(
+                start, rolling_angle=-start.rolling_angle, rolling_rate=-start.rolling_rate
+            )
+        flipped = GroundMotion(motion.acceleration * [1.0, -1.0], motion.time_step)
+        yield from _compared(
+            subject,
+            support,
+            case,
+            {
+                "rotated": Change(
+                    case=dataclasses.replace(case, motion=motion.rotated(_TURN), initial=turned),
+                    expected=lambda lean: np.exp(1j * _TURN) * lean,
+                ),
+                "mirror image": Change(
+                    case=dataclasses.replace(case, motion=flipped, initial=mirrored), expected=np.conj
+                ),
+            },
+        )
+
+
+def scale(subject: Subject, support: str) -> Iterator[Result]:
+    """A hundredth of the size moves ten times as fast (Froude); 0.7 of the gravity slower by sqrt(0.7)."""
+    for case in _cases(subject):
+        small = dataclasses.replace(PIER, semidiagonal=PIER.semidiagonal / 100.0)
+        yield from _compared(
+            subject,
+            support,
+            case,
+            {
+                "a hundredth of the size": Change(case=_paced(case, 0.1, cylinder=small), slower=0.1),
+                "0.7 of the gravity": Change(
+                    case=_paced(case, math.sqrt(1.0 / 0.7), 0.7, gravity=0.7 * GRAVITY),
+                    slower=math.sqrt(1.0 / 0.7),
+                ),
+            },
+        )
+
+
+def statement(subject: Subject, support: str) -> Iterator[Result]:
+    """The same function of time, sampled finer, or with still ground after it."""
+    for case in _cases(subject):
+        motion = _motion(case)
+        still = GroundMotion(np.vstack([motion.acceleration, np.zeros((3, 2))]), motion.time_step)
+        changes = {"sampled five times as densely": refined(motion, 5), "still ground in the record": still}
+        others = {
+            words: Change(case=dataclasses.replace(case, motion=each)) for words, each in changes.items()
+        }
+        yield from _compared(subject, support, case, others)
+
+
+def falling_ground(subject: Subject, support: str) -> Iterator[Result]:
+    """Ground that falls with 0.3 g all the time is a gravity of 0.7 g, at uplift and in motion."""
+    samples = np.vstack([0.4 * SHOCK[:-1], SHOCK]) * [0.8, 0.8, 0.0]
+    times = 0.5 * np.arange(len(samples))
+    lighter = Case(PIER, polyline(times, samples, 0.25), duration=times[-1], gravity=0.7 * GRAVITY)
+    fall = polyline(times, samples - [0.0, 0.0, 0.3 * GRAVITY], 0.25)
+    falling = Case(PIER, fall, duration=times[-1])
+    yield from _compared(
+        subject, support, lighter, {"ground that falls with 0.3 g": Change(case=falling)}, rest_tilt=REST
+    )
+
+
+def after_rest(subject: Subject, support: str) -> Iterator[Result]:
+    """A main shock after two weak ones and rest moves the cylinder as the main shock alone."""
+    across = [1.0, 0.0, 0.0] if support == "planar" else [0.6, -0.8, 0.0]
+    weak = 1.1 * THRESHOLD * np.array([[0.0, 0.0, 0.0], across, [0.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+    values = np.vstack([weak[:-1], weak, SHOCK[1:]])
+    times = [0.0, 0.5, 1.0, 2.0, 2.5, 3.0, 4.0, 4.5, 5.0, 5.5, 6.0]
+    options = {"sample_step": _SAMPLE, "rest_tilt": REST}
+    both = subject.simulate(Case(PIER, polyline(times, values, 0.25), duration=8.0), support, **options)
+    alone = subject.simulate(Case(PIER, polyline(SHOCK_TIMES, SHOCK, 0.5), duration=4.0), support, **options)
+    begin = round(4.0 / _SAMPLE)
+    settled = both.tilt[begin] == 0.0 < both.tilt[:begin].max() < REST * PIER.alpha
+    off = largest(both.tilt[begin:] - alone.tilt) / PIER.alpha if settled else math.nan
+    bound = Bound(subject.repeatability, "rounding of its steps", "alpha")
+    yield at_most("a main shock after weak ones and rest", off, bound)
+
+
+def backwards(subject: Subject, support: str) -> Iterator[Result]:
+    """Free motion from where another ended, with its rates turned round, ends where that began."""
+    begin = InitialState(0.5 * PIER.alpha, tilt_rate=0.1, rolling_angle=0.4, rolling_rate=0.3)
+    states = [begin]
+    for _ in range(2):
+        case = Case(PIER, initial=states[-1], duration=2.0)
+        found = subject.simulate(case, support, sample_step=2.0)
+        tilt, tilt_rate, angle, rate = (
+            float(values[-1])
+            for values in (found.tilt, found.tilt_rate, found.rolling_angle, found.rolling_rate)
+        )
+        states.append(InitialState(tilt, -tilt_rate, angle, -rate))
+    last = states[-1]
+    off = max(
+        abs(getattr(begin, name) - getattr(last, name))
+        for name in ("tilt", "tilt_rate", "rolling_angle", "rolling_rate")
+    )
+    bound = Bound(10.0 * subject.repeatability, "no loss: both angles and rates come back", "rad, rad/s")
+    yield at_most("free motion run backwards", off, bound)
+
+
+def _cases(subject: Subject) -> tuple[Case, ...]:
+    # the base of an engine tips on its corners, which no rotation leaves as they are
+    return (ROCKING,) if "stepper" in subject.options else (ROCKING, STANDING)
+
+
+def _motion(case: Case) -> GroundMotion:
+    assert case.motion is not None
+    return case.motion
+
+
+def _paced(
+    case: Case, slower: float, force: float = 1.0, *, cylinder: Cylinder = PIER, gravity: float = GRAVITY
+) -> Case:
+    """Return a case whose time runs slower, under accelerations that are `force` times as large."""
+    motion, start = _motion(case), case.initial
+    if start is not None:
+        start = dataclasses.replace(start, rolling_rate=start.rolling_rate / slower)
+    return dataclasses.replace(
+        case,
+        motion=GroundMotion(force * motion.acceleration, slower * motion.time_step),
+        initial=start,
+        duration=slower * case.length,
+        cylinder=cylinder,
+        gravity=gravity,
+    )
+
+
+def _compared(
+    subject: Subject, support: str, case: Case, changes: dict[str, Change], **options: float
+) -> Iterator[Result]:
+    plain = subject.simulate(case, support, sample_step=_SAMPLE, **options)
+    bound = Bound(subject.repeatability, "rounding, magnified by the passes", "alpha")
+    moved = float(np.ptp(plain.tilt)) > 0.05 * PIER.alpha
+    for words, change in changes.items():
+        found = subject.simulate(change.case, support, sample_step=change.slower * _SAMPLE, **options)
+        own = _on(plain.time, found.time / change.slower, lean(found))
+        off = largest(np.abs(own - change.expected(lean(plain)))) if moved else math.nan
+        yield at_most(f"{words}, {case.name or 'from rest'}", off, bound)
+
+
+def _on(time: NDArray[np.float64], own: NDArray[np.float64], values: Lean) -> Lean:
+    """Return values at other times: a model of somebody else samples as it likes."""
+    if len(own) == len(time) and np.allclose(own, time, rtol=0.0, atol=1e-9):
+        return values
+    from scipy.interpolate import CubicSpline
+
+    return np.asarray(CubicSpline(own, values)(np.clip(time, own[0], own[-1])))

@@ -1,1 +1,0 @@
-"""Checks of metrics, grids and sweeps."""

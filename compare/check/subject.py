@@ -1,0 +1,319 @@
+"""Subjects of the checks: a reduced model, an engine, somebody's model, or files of trajectories."""
+
+from __future__ import annotations
+
+import importlib
+import sys
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from rockwobble import reduced
+from rockwobble.models import Case, Run, Trace
+from rockwobble.models.case import TimeStep
+from rockwobble.models.shown import Brief
+from rockwobble.multibody.engines.registry import engine_facts, find_engine
+from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+
+from ..external.trajectory import measurement
+from ..runs.execution import SAMPLE_STEP, simulate_run
+from ..storage.fingerprint import fingerprint
+from .motion import trace_of
+from .result import Bound
+from .scenes import RELEASE
+
+Simulate = Callable[..., Trace]
+
+FIELDS = frozenset(
+    {"tilt", "tilt_rate", "rolling_angle", "rolling_rate", "twist", "contact_point", "centre_of_mass"}
+    | {"energy", "contact_force", "extrema", "passes", "peak_tilt", "outcome", "uplift_time"}
+)
+_ENGINE_FIELDS = ("slip", "contact_offset", "energy_error", "residual_displacement")
+# relative: what the reduced models leave at rtol 1e-11, and passes magnify; 1e-12 to 3e-11 was measured
+MODEL_TOLERANCE, _MODEL_RTOL = 1e-10, 1e-11
+# relative to alpha: contact at the default step; a tenth to a half of it was measured with all engines
+ENGINE_TOLERANCE = 1e-5
+# of the same motion, turned or mirrored: solvers stop at a tolerance, and a pass magnifies what is left
+ENGINE_REPEATABILITY = 1e-5
+TOLERANCE = 1e-3  # of a model or trajectory of somebody else, where nothing else is said
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, repr=False)
+class Subject(Brief):
+    """One source of motions, as every check sees it.
+
+    Parameters
+    ----------
+    label : str
+    source : callable
+        Returns the `Trace` of a case and a support, with `sample_step` and what `options` names.
+    supports : tuple of str
+        "recess", "flat", "ring" and, of the reduced models, "planar".
+    knows : frozenset of str
+        Fields of a trace that it fills.
+    options : frozenset of str
+        Further options of `source`; "stepper" says that it is an engine of the protocol.
+    tolerance : float
+        Relative accuracy that it claims: of alpha, of a time or of an energy.
+    repeatability : float
+        Difference of the same motion stated in another way, over alpha.
+    steps : tuple of float
+        Accuracy parameters (tolerance or time step) of the check of the order, the coarsest first.
+    order : float
+        Order of the error in that parameter.
+    at_step : callable, optional
+        Returns the subject at another accuracy parameter.
+    reference : callable, optional
+        The independent model that it is compared with, called as `reduced.simulate`.
+    run : Run, optional
+        Engine, time step and settings, of an engine.
+    cases : tuple of Case, optional
+        The only cases that it answers. Default: any.
+    uplifts : bool
+        Whether it can start from a cylinder that stands.
+    """
+
+    label: str
+    source: Simulate
+    supports: tuple[str, ...]
+    knows: frozenset[str]
+    options: frozenset[str] = frozenset()
+    tolerance: float
+    repeatability: float
+    steps: tuple[float, ...] = ()
+    order: float = 1.0
+    at_step: Callable[[float], Subject] | None = None
+    reference: Simulate | None = None
+    run: Run | None = None
+    cases: tuple[Case, ...] | None = None
+    uplifts: bool = True
+
+    def simulate(
+        self, case: Case, support: str, *, sample_step: float = SAMPLE_STEP, **options: Any
+    ) -> Trace:
+        """Return the motion of a case; options that the source does not take are left out."""
+        known = {name: value for name, value in options.items() if name in self.options}
+        return self.source(case, support, sample_step=sample_step, **known)
+
+    def within(self, times: float, reason: str, unit: str = "") -> Bound:
+        """Return so many times the tolerance as a bound."""
+        return Bound(times * self.tolerance, f"{times:g} times its tolerance: {reason}", unit)
+
+
+def reduced_model(module: ModuleType = reduced, *, rtol: float = _MODEL_RTOL) -> Subject:
+    """Return the reduced models.
+
+    Parameters
+    ----------
+    module : module, optional
+        Their package; a copy of it, such as one with a fault.
+    rtol : float, optional
+        Relative tolerance of a step.
+
+    Returns
+    -------
+    Subject
+    """
+
+    def source(case: Case, support: str, *, sample_step: float, rtol: float = rtol, **options: Any) -> Trace:
+        way = {"plane": 0.0} if support == "planar" else {"support": support}
+        found: Trace = module.simulate(case, sample_step=sample_step, rtol=rtol, **way, **options)
+        return found
+
+    return Subject(
+        label="reduced model",
+        source=_remembered(source),
+        supports=("recess", "flat", "planar"),
+        knows=FIELDS,
+        options=frozenset({"rtol", "rest_tilt", "restitution", "plane"}),
+        tolerance=MODEL_TOLERANCE,
+        repeatability=MODEL_TOLERANCE,
+        steps=(1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10),
+        at_step=lambda rtol: reduced_model(module, rtol=rtol),
+    )
+
+
+def engine(
+    name: str, time_step: TimeStep | None = None, *, reference: Simulate | None = None, **settings: Any
+) -> Subject:
+    """Return an engine with its settings.
+
+    Parameters
+    ----------
+    name : str
+    time_step : float, "auto" or "extrapolated", optional
+        [s]
+    reference : callable, optional
+        The independent model that it is compared with. Default: `reduced.simulate`.
+    **settings
+        Of the engine.
+
+    Returns
+    -------
+    Subject
+
+    Raises
+    ------
+    ValueError
+        If there is no such engine, or it is not installed.
+    """
+    found = find_engine(name)
+
+    def source(case: Case, support: str, *, sample_step: float) -> Trace:
+        return simulate_run(case, Run(name, support, time_step, **settings), sample_step=sample_step)
+
+    return Subject(
+        label=name,
+        source=_remembered(source),
+        supports=found.supports,
+        knows=FIELDS.union(_ENGINE_FIELDS),
+        options=frozenset({"stepper"}),
+        tolerance=ENGINE_TOLERANCE,
+        repeatability=ENGINE_REPEATABILITY,
+        steps=tuple(times * REFERENCE_TIME_STEP for times in (4.0, 2.0, 1.0)),
+        order=engine_facts(name).order,
+        at_step=lambda step: engine(name, step, reference=reference, **settings),
+        reference=reference or reduced.simulate,
+        run=Run(name, found.supports[0], time_step, **settings),
+        uplifts=found.uplifts,
+    )
+
+
+def external_model(
+    model: Callable[[Case, str], object], *, support: str = "recess", tolerance: float = TOLERANCE
+) -> Subject:
+    """Return a model of somebody else.
+
+    Parameters
+    ----------
+    model : callable
+        Takes a `Case` and a support, and returns a mapping, a table or an object with `time` [s] (n,) and
+        `tilt` [rad] (n,), and, if it knows them, `azimuth` or `rolling_angle`, the direction of the lean
+        [rad] (n,), and `energy` [m^2/s^2] (n,): relative to the ground, per unit mass, zero standing.
+    support : {"recess", "flat"}, optional
+        What it models.
+    tolerance : float, optional
+        How exact it claims to be, relative.
+
+    Returns
+    -------
+    Subject
+
+    Raises
+    ------
+    ValueError
+        If support or tolerance is out of range.
+    """
+    _require(support, tolerance)
+
+    def source(case: Case, support: str, *, sample_step: float) -> Trace:
+        return trace_of(model(case, support), case, support)
+
+    remembered = _remembered(source)
+    try:
+        first = remembered(RELEASE, support, sample_step=SAMPLE_STEP)
+        known = {name for name in ("rolling_angle", "energy") if np.isfinite(getattr(first, name)).any()}
+    except Exception:  # the checks say what it raises, each in its place
+        known = {"rolling_angle", "energy"}
+    return Subject(
+        label=f"{getattr(model, '__module__', '')}:{getattr(model, '__name__', 'model')}",
+        source=remembered,
+        supports=(support,),
+        knows=frozenset({"tilt", *known}),
+        tolerance=tolerance,
+        repeatability=tolerance,
+        reference=reduced.simulate,
+    )
+
+
+def trajectories(
+    traces: Sequence[Trace], *, support: str = "recess", tolerance: float = TOLERANCE
+) -> Subject:
+    """Return the motions of files.
+
+    Parameters
+    ----------
+    traces : sequence of Trace
+        Of `rockwobble.compare.read_trajectory`, each of the case that it answers.
+    support : {"recess", "flat"}, optional
+        What they are of.
+    tolerance : float, optional
+        How exact they claim to be, relative.
+
+    Returns
+    -------
+    Subject
+
+    Raises
+    ------
+    ValueError
+        If support or tolerance is out of range, or a file tells no tilt.
+    """
+    _require(support, tolerance)
+    answers = {}
+    for trace in traces:
+        poses = measurement(trace).poses
+        if "tilt" not in poses.given:
+            raise ValueError(f"{trace.run.engine} must have tilt, or qw, qx, qy and qz")
+        # at the samples of its file: between them nothing is as exact
+        azimuth = poses.rolling_angle if "azimuth" in poses.given else None
+        columns = {"time": poses.time, "tilt": poses.tilt, "azimuth": azimuth}
+        answers[fingerprint(trace.case)] = trace_of(columns, trace.case, support)
+    told = all(np.isfinite(trace.rolling_angle).any() for trace in answers.values())
+    return Subject(
+        label=", ".join(str(trace.run.engine) for trace in traces),
+        source=lambda case, support, *, sample_step: answers[fingerprint(case)],
+        supports=(support,),
+        knows=frozenset({"tilt", "rolling_angle"} if told else {"tilt"}),
+        tolerance=tolerance,
+        repeatability=tolerance,
+        reference=reduced.simulate,
+        cases=tuple(trace.case for trace in traces),
+    )
+
+
+def load_model(name: str) -> Callable[[Case, str], object]:
+    """Return the callable that "module:function" names; modules of the working folder are found.
+
+    Raises
+    ------
+    ValueError
+        If there is none.
+    """
+    module, _, function = name.partition(":")
+    if not (module and function):
+        raise ValueError(f"a model must be given as module:function, got {name!r}")
+    if str(Path.cwd()) not in sys.path:
+        sys.path.insert(0, str(Path.cwd()))
+    try:
+        found = getattr(importlib.import_module(module), function)
+    except (ImportError, AttributeError) as error:
+        raise ValueError(f"the model {name} cannot be imported: {error}") from error
+    if not callable(found):
+        raise ValueError(f"the model {name} must be callable, got {type(found).__name__}")  # noqa: TRY004 bad input
+    model: Callable[[Case, str], object] = found
+    return model
+
+
+def _require(support: str, tolerance: float) -> None:
+    if support not in ("recess", "flat"):
+        raise ValueError(f"support must be 'recess' or 'flat', got {support!r}")
+    if not 0.0 < tolerance < 1.0:
+        raise ValueError(f"tolerance must be above 0 and below 1, got {tolerance!r}")
+
+
+def _remembered(source: Simulate) -> Simulate:
+    """Return the source that runs each case once, since many checks look at one motion."""
+    kept: dict[str, Trace] = {}
+
+    def simulate(case: Case, support: str, **options: Any) -> Trace:
+        key = fingerprint([case, support, options])
+        if key not in kept:
+            kept[key] = source(case, support, **options)
+        return kept[key]
+
+    return simulate

@@ -1,0 +1,279 @@
+"""What the report measures: its parts, extent and resolution of its maps, releases and ground motions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from functools import cache
+
+from rockwobble import reduced
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    InitialState,
+    el_centro_1940,
+    p695_far_field,
+    synthetic_motions,
+)
+from rockwobble.models.records.p695 import missing_packages
+from rockwobble.multibody.scene.ring_settings import RingSettings
+
+Inputs = Mapping[str, object]  # arguments of `Part.measure` by name: numbers, text and tuples of them
+Row = dict[str, float | str | bool]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Part:
+    """One set of measurements.
+
+    Attributes
+    ----------
+    name : str
+        Of its table.
+    title : str
+        For whoever watches it run.
+    tasks : callable
+        Returns the inputs of each task of an extent.
+    measure : callable
+        Returns the rows of one task; depends on nothing but its inputs.
+    keys : tuple of str
+        Inputs that are the first columns of every row.
+    cost : callable
+        Rough computing time of a task [s], of the same inputs.
+    engine : str
+        The engine that it runs; empty where it runs the reduced models alone.
+    """
+
+    name: str
+    title: str
+    tasks: Callable[[Extent], Iterable[Inputs]]
+    measure: Callable[..., list[Row]]
+    keys: tuple[str, ...]
+    cost: Callable[..., float]
+    engine: str = ""
+
+
+_RING = RingSettings(ring_inclination=0.0)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Ring:
+    """Walls of a ring; see `RingSettings`.
+
+    Attributes
+    ----------
+    clearance : float
+        [b]
+    inclination : float
+        [rad]; 0 stands for alpha.
+    friction : float
+        [-]
+    """
+
+    clearance: float = _RING.ring_clearance
+    inclination: float = 0.0
+    friction: float = _RING.ring_friction
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Extent:
+    """The points at which each part measures.
+
+    Attributes
+    ----------
+    name : str
+    tan_alphas, releases, spins : tuple of float
+        Of the maps of free response: slenderness, tilt over alpha, and rolling rate over that of steady
+        wobble at the tilt.
+    members : int
+        Records.
+    shaken_tan_alphas, sizes, intensities : tuple of float
+        Of the maps under these records: slenderness, semidiagonal [m], and peak resultant over g tan(alpha),
+        as far as an earthquake reaches it: see `LARGEST_PEAK`.
+    engine_points : tuple
+        (tan(alpha), release, spin) at which engines verify the maps of free response.
+    record_points : tuple
+        (tan(alpha), semidiagonal, intensity) at which the engine runs under all records in every support.
+    record_step : float
+        Time step of the engine there [s]; peaks need less than traces.
+    slip_points, slip_shares : tuple
+        (tan(alpha), release, spin), where friction is lowered until the engine slips; friction over that
+        which the recess model needs.
+    trace_points, trace_length : tuple, float
+        (tan(alpha), semidiagonal, intensity) at which traces are followed, for so long [s].
+    ring_tan_alphas, rings, ring_turns, ring_length : tuple of float, tuple of Ring, tuple of float, float
+        Slenderness; walls; azimuth by which the problem is turned [rad]; [s].
+    contact_tan_alphas, time_constants, dampings : tuple of float
+        Of soft contact: slenderness, time constant at R = 6 m [s], damping ratio.
+    """
+
+    name: str
+    tan_alphas: tuple[float, ...]
+    releases: tuple[float, ...]
+    spins: tuple[float, ...]
+    members: int
+    shaken_tan_alphas: tuple[float, ...]
+    sizes: tuple[float, ...]
+    intensities: tuple[float, ...]
+    engine_points: tuple[tuple[float, float, float], ...]
+    record_points: tuple[tuple[float, float, float], ...]
+    record_step: float
+    slip_points: tuple[tuple[float, float, float], ...]
+    slip_shares: tuple[float, ...]
+    trace_points: tuple[tuple[float, float, float], ...]
+    trace_length: float
+    ring_tan_alphas: tuple[float, ...]
+    rings: tuple[Ring, ...]
+    ring_turns: tuple[float, ...]
+    ring_length: float
+    contact_tan_alphas: tuple[float, ...]
+    time_constants: tuple[float, ...]
+    dampings: tuple[float, ...]
+
+
+# of a record: hardly any was ever measured above it [g]
+LARGEST_PEAK = 1.5
+
+QUICK = Extent(
+    name="quick",
+    tan_alphas=(0.1, 0.2, 0.4, 0.7, 1.0),
+    releases=(0.1, 0.3, 0.5, 0.7, 0.9),
+    spins=(0.01, 0.05, 0.1, 0.25, 0.5, 0.9),
+    members=6,
+    shaken_tan_alphas=(0.1, 0.2, 0.4),
+    sizes=(2.0, 8.0, 32.0),
+    intensities=(1.2, 2.0, 3.0),
+    engine_points=((0.1, 0.5, 0.1), (0.2, 0.5, 0.1), (0.4, 0.5, 0.25), (1.0, 0.3, 0.5)),
+    record_points=((0.2, 6.0, 2.0),),
+    record_step=4e-4,
+    slip_points=((0.2, 0.5, 0.25), (0.7, 0.5, 0.25)),
+    slip_shares=(0.6, 0.8, 0.9, 0.95, 1.05, 1.2),
+    trace_points=((0.1, 10.0, 3.0), (0.2, 6.0, 2.0)),
+    trace_length=12.0,
+    ring_tan_alphas=(0.2,),
+    rings=(Ring(), Ring(clearance=1e-2)),
+    ring_turns=(0.0,),
+    ring_length=6.0,
+    contact_tan_alphas=(0.2,),
+    time_constants=(2e-4, 2e-2),
+    dampings=(0.1, 1.0),
+)
+
+FULL = Extent(
+    name="full",
+    tan_alphas=(0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 1.0, 1.25),
+    releases=(0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95),
+    spins=(0.001, 0.003, 0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9),
+    members=22,
+    shaken_tan_alphas=(0.1, 0.2, 0.4),
+    sizes=(1.0, 2.0, 4.0, 8.0, 16.0, 32.0),
+    intensities=(1.1, 1.5, 2.0, 2.5, 3.0, 3.75, 5.0, 7.5),
+    engine_points=tuple(
+        (tan_alpha, release, spin)
+        for tan_alpha in (0.1, 0.2, 0.4, 0.7, 1.0)
+        for release, spin in ((0.3, 0.5), (0.5, 0.1), (0.7, 0.25), (0.5, 0.01))
+    ),
+    record_points=tuple(
+        (tan_alpha, size, intensity)
+        for tan_alpha in (0.1, 0.2, 0.4)
+        for size in (6.0, 16.0)
+        for intensity in (2.0, 3.5)
+    ),
+    record_step=2e-4,
+    slip_points=tuple((tan_alpha, 0.5, 0.25) for tan_alpha in (0.1, 0.2, 0.4, 0.7, 1.0)),
+    slip_shares=(0.4, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 0.99, 1.01, 1.05, 1.2),
+    trace_points=tuple(
+        (tan_alpha, size, intensity)
+        for tan_alpha, intensities in ((0.1, (2.0, 3.0)), (0.2, (1.5, 2.0, 3.0)), (0.4, (1.3, 1.6, 2.0)))
+        for size in (6.0, 12.0)
+        for intensity in intensities
+    ),
+    trace_length=25.0,
+    ring_tan_alphas=(0.1, 0.2, 0.4, 1.0),
+    rings=(
+        *(Ring(clearance=clearance) for clearance in (1e-4, 1e-3, 1e-2, 5e-2)),
+        *(Ring(inclination=inclination) for inclination in (0.3, 0.8)),
+        *(Ring(friction=friction) for friction in (0.0, 1.0)),
+    ),
+    ring_turns=(0.0, 0.1),
+    ring_length=10.0,
+    contact_tan_alphas=(0.1, 0.2, 0.4),
+    time_constants=(2e-4, 2e-3, 1e-2, 2e-2, 5e-2),
+    dampings=(0.1, 0.3, 1.0),
+)
+
+
+EL_CENTRO = "El Centro 1940"
+REFERENCE_SIZE = 6.0  # [m] of free responses: they scale with size (Froude)
+GRAVITY = 9.81
+AMPLE = 3.0  # friction, so that a squat cylinder uplifts and does not slip
+_SYNTHETIC_SEED = 1940
+
+
+def release_case(tan_alpha: float, release: float, spin: float, periods: float = 1.0) -> Case:
+    """Return a free response.
+
+    Parameters
+    ----------
+    tan_alpha : float
+    release : float
+        Tilt over alpha.
+    spin : float
+        Rolling rate over that of steady wobble at the tilt; below 1 the release is a tilt maximum.
+    periods : float, optional
+        Length, in times from tilt maximum to next maximum of the recess model.
+    """
+    cylinder = Cylinder(semidiagonal=REFERENCE_SIZE, tan_alpha=tan_alpha)
+    tilt = release * cylinder.alpha
+    initial = InitialState(tilt=tilt, rolling_rate=spin * reduced.steady_wobble_rate(cylinder, tilt))
+    period = reduced.free_response(cylinder, initial).period
+    return Case(cylinder, initial=initial, duration=periods * period)
+
+
+def record_names(members: int) -> list[str]:
+    """Return the names of an ensemble's motions: records where they are installed, else synthetic ones."""
+    kind = "synthetic" if missing_packages() else "record"
+    return [f"{kind} {number}" for number in range(1, members + 1)]
+
+
+def source_of(names: Iterable[str]) -> str:
+    """Return the source of the motions of an ensemble, in words."""
+    kinds = {name.rsplit(" ", 1)[0] for name in names}
+    return "FEMA P-695 far-field records" if kinds == {"record"} else "synthetic records"
+
+
+@cache
+def motion_named(name: str) -> GroundMotion:
+    """Return a motion: El Centro with its vertical component, "record n" or "synthetic n" without one."""
+    if name == EL_CENTRO:
+        return el_centro_1940(vertical=True)
+    kind, number = name.rsplit(" ", 1)
+    if kind == "record" and not missing_packages():
+        return p695_far_field(int(number))
+    # each with a seed of its own: a larger ensemble begins with a smaller one
+    return synthetic_motions(2, peak=1.0, seed=_SYNTHETIC_SEED + int(number))[0]
+
+
+def shaken_case(
+    name: str,
+    tan_alpha: float,
+    semidiagonal: float,
+    intensity: float,
+    *,
+    duration: float | None = None,
+    vertical: bool = False,
+    turn: float = 0.0,
+) -> Case:
+    """Return a cylinder at rest under a motion by name.
+
+    Its peak resultant is `intensity` times g tan(alpha), and it is turned by an azimuth [rad].
+    """
+    whole = motion_named(name)
+    motion = whole if vertical else GroundMotion(whole.acceleration[:, :2], whole.time_step, whole.name)
+    motion = motion.scaled(intensity * GRAVITY * tan_alpha / motion.peak)
+    cylinder = Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
+    length = motion.duration if duration is None else min(duration, motion.duration)
+    label = f"{name}, tan α {tan_alpha:g}, R {semidiagonal:g} m, {intensity:g} g tan α"
+    case = Case(cylinder, motion, duration=length, friction=AMPLE, name=label)
+    return replace(case, motion=motion.rotated(turn)) if turn else case

@@ -1,0 +1,493 @@
+"""Each check holds for a right subject, and finds a fault of its kind."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from newton_euler import State, kinetic_energy, newton_euler, vector
+
+import rockwobble as rw
+from rockwobble import reduced
+from rockwobble.compare import read_trajectory
+from rockwobble.compare.check import (
+    FAILED,
+    GROUPS,
+    NO_BASELINE,
+    NOT_RUN,
+    PASSED,
+    Result,
+    Subject,
+    baseline,
+    conserved,
+    equations,
+    exact,
+    external_model,
+    invariance,
+    lagrange,
+    order,
+    reduced_model,
+    rest,
+    run_checks,
+    subject,
+    trace,
+    trajectories,
+)
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
+from rockwobble.models.traces.trace_source import Known
+from rockwobble.reduced.body import body_of
+
+CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.4, transverse_inertia=9.0, axial_inertia=2.0)
+SHAPE = lagrange.shape_of(CYLINDER)
+ROUNDING = 1e-12
+Options = dict[str, Any]
+Question = Callable[[Case, Options], Case]
+Answer = Callable[[Trace], Trace]
+
+
+def asked(change: Question) -> Callable[[Subject], Subject]:
+    """A subject that answers another question."""
+
+    def faulty(right: Subject) -> Subject:
+        def source(case: Case, support: str, **options: Any) -> Trace:
+            return right.source(change(case, options), support, **options)
+
+        return dataclasses.replace(right, source=source)
+
+    return faulty
+
+
+def answered(change: Answer) -> Callable[[Subject], Subject]:
+    """A subject that gives another answer."""
+
+    def faulty(right: Subject) -> Subject:
+        return dataclasses.replace(
+            right, source=lambda *given, **options: change(right.source(*given, **options))
+        )
+
+    return faulty
+
+
+def moved(change: Callable[[GroundMotion], GroundMotion]) -> Callable[[Subject], Subject]:
+    """A subject whose ground moves otherwise."""
+
+    def other(case: Case, options: Options) -> Case:
+        motion = None if case.motion is None else change(case.motion)
+        return dataclasses.replace(case, motion=motion, duration=case.length)
+
+    return asked(other)
+
+
+def field(name: str, change: Callable[[Any], Any]) -> Callable[[Subject], Subject]:
+    """A subject that states another value of one field."""
+
+    def other(found: Trace) -> Trace:
+        value = change(getattr(found, name))
+        if name in found.late:
+            return dataclasses.replace(found, source=Known({**found.late, name: value}))
+        return dataclasses.replace(found, **{name: value})
+
+    return answered(other)
+
+
+def heavier(case: Case, options: Options) -> Case:
+    return dataclasses.replace(case, gravity=1.001 * case.gravity, duration=case.length)
+
+
+def larger(case: Case, options: Options) -> Case:
+    size = 1.001 * case.cylinder.semidiagonal
+    return dataclasses.replace(case, cylinder=dataclasses.replace(case.cylinder, semidiagonal=size))
+
+
+def option(name: str, value: Callable[[Any], Any]) -> Callable[[Subject], Subject]:
+    def other(case: Case, options: Options) -> Case:
+        if name in options:
+            options[name] = value(options[name])
+        return case
+
+    return asked(other)
+
+
+def vertical_reversed(motion: GroundMotion) -> GroundMotion:
+    signs = [1.0, 1.0, -1.0][: motion.acceleration.shape[1]]
+    return GroundMotion(motion.acceleration * signs, motion.time_step)
+
+
+def held_after_its_end(motion: GroundMotion) -> GroundMotion:
+    last = np.tile(motion.acceleration[-1:], (round(20.0 / motion.time_step) + 1, 1))
+    return GroundMotion(np.vstack([motion.acceleration, last]), motion.time_step)
+
+
+def half_a_sample_late(motion: GroundMotion) -> GroundMotion:
+    a = motion.acceleration
+    return GroundMotion(np.vstack([a[:1], 0.5 * (a[1:] + a[:-1])]), motion.time_step)
+
+
+def ends_a_sample_early(motion: GroundMotion) -> GroundMotion:
+    a = motion.acceleration
+    return GroundMotion(a[:-1], motion.time_step) if len(a) > 2 else motion
+
+
+def one_sided(motion: GroundMotion) -> GroundMotion:
+    return GroundMotion(motion.acceleration[:, :2] + [0.0, 1e-6], motion.time_step)
+
+
+def never_finer(right: Subject) -> Subject:
+    return dataclasses.replace(right, at_step=lambda _: heavy(right))
+
+
+heavy = asked(heavier)
+
+
+@pytest.fixture(scope="module")
+def right() -> Subject:
+    return reduced_model()
+
+
+@pytest.mark.parametrize("group", [name for name in GROUPS if name not in ("agreement", "protocol")])
+def test_the_reduced_models_hold(right: Subject, group: str) -> None:
+    found = list(run_checks(right, [group]))
+    assert found
+    assert len({result.name for result in found}) == len(found)
+    assert [f"{each.name}: {each.value}, {each.note}" for each in found if each.outcome != PASSED] == []
+    assert all(each.group == group and each.subject == "reduced model" and each.reason for each in found)
+
+
+@pytest.mark.parametrize(
+    ("measure", "support", "fault"),
+    [
+        (equations.residual, "recess", heavy),
+        (equations.residual, "recess", field("contact_force", lambda force: force * [1.0, 1.0, 1.0 + 1e-8])),
+        (equations.residual, "recess", field("tilt_rate", lambda rate: (1.0 + 1e-8) * rate)),
+        (exact.free_response, "recess", asked(larger)),
+        (exact.steady_wobble, "flat", heavy),
+        (exact.vanishing_spin, "recess", answered(lambda found: dataclasses.replace(
+            found, passes=found.passes.assign(angle_of_turn=1.00001 * found.passes["angle_of_turn"])))),
+        (exact.planar_rocking, "planar", heavy),
+        (conserved.free_motion, "recess", field("energy", lambda e: e * (1.0 + 1e-7 * np.arange(len(e))))),
+        (conserved.free_motion, "recess", field("rolling_rate", lambda rate: 1.0001 * rate)),
+        (conserved.work_of_the_ground, "flat", moved(vertical_reversed)),
+        (conserved.work_of_the_ground, "recess", moved(held_after_its_end)),
+        (conserved.work_of_a_record, "flat", moved(half_a_sample_late)),
+        (rest.stands, "recess", moved(lambda motion: motion.scaled(1.02))),
+        (rest.uplift, "recess", moved(lambda motion: motion.scaled(1.001))),
+        (rest.uplift, "flat", moved(vertical_reversed)),
+        (rest.after_uplift, "recess", field("tilt", lambda tilt: 1.001 * tilt)),
+        (rest.force_at_rest, "recess", field("contact_force", lambda force: force * [1.0, 1.0, 0.9])),
+        (rest.falls, "recess", field("peak_tilt", lambda peak: 0.9 * peak)),
+        (rest.landing, "planar", option("restitution", lambda ratio: ratio**2 if ratio < 1.0 else 0.99)),
+        (invariance.frame, "recess", moved(one_sided)),
+        (invariance.scale, "flat", answered(lambda found: dataclasses.replace(
+            found, tilt=found.tilt + 1e-6 / found.case.cylinder.semidiagonal))),
+        (invariance.statement, "recess", moved(half_a_sample_late)),
+        (invariance.statement, "flat", moved(ends_a_sample_early)),
+        (invariance.falling_ground, "planar", moved(vertical_reversed)),
+        (invariance.after_rest, "recess", option("rest_tilt", lambda _: 0.0)),
+        (invariance.backwards, "recess", field("tilt_rate", lambda rate: 1.0001 * rate)),
+        (order.tolerance, "recess", never_finer),
+        (trace.place, "recess", field("twist", lambda twist: twist + 1e-6)),
+        (trace.place, "recess", field("contact_point", lambda point: 1.0001 * point)),
+        (trace.place, "recess", field("centre_of_mass", lambda place: 1.0001 * place)),
+        (trace.turning, "recess", field("peak_tilt", lambda peak: 0.999 * peak)),
+        (trace.turning, "flat", field("extrema", lambda rows: rows * [1.0001, 1.0, 1.0, 1.0])),
+        (baseline.kept_numbers, "recess", field("tilt", lambda tilt: tilt + 1e-6)),
+    ],
+)  # fmt: skip
+def test_a_check_finds_a_fault_of_its_kind(right: Subject, measure: Any, support: str, fault: Any) -> None:
+    assert not [result for result in measure(right, support) if result.failed]
+    assert [result for result in measure(fault(right), support) if result.failed]
+
+
+def test_a_cause_is_named_where_it_stands_alone(right: Subject) -> None:
+    def causes(fault: Callable[[Subject], Subject]) -> list[str]:
+        return [result.cause for result in equations.residual(fault(right), "recess") if result.failed]
+
+    assert causes(field("tilt_rate", lambda rate: 1.001 * rate)) == ["tilt rate"]
+    assert set(causes(heavy)) == {""}
+
+
+def test_a_subject_that_raises_fails_its_checks_and_the_others_run(right: Subject) -> None:
+    def source(case: Case, *_: Any, **__: Any) -> Trace:
+        raise ZeroDivisionError("division by zero")
+
+    found = list(run_checks(dataclasses.replace(right, source=source), ["trace"]))
+    assert [(each.failed, each.note) for each in found] == [(True, "ZeroDivisionError: division by zero")] * 3
+
+
+PERIOD, RECORD = "period of a release, tan alpha = 0.2", "tilt and azimuth under El Centro"
+
+
+def ours(case: Case, support: str) -> Trace:
+    return reduced.simulate(case, support=support, rtol=1e-9, sample_step=case.length / 1000)
+
+
+def without(*names: str) -> Callable[[Case, str], dict[str, Any]]:
+    def model(case: Case, support: str) -> dict[str, Any]:
+        found = ours(case, support)
+        columns = {"time": found.time, "tilt": found.tilt, "azimuth": found.rolling_angle}
+        return {
+            name: column for name, column in {**columns, "energy": found.energy}.items() if name not in names
+        }
+
+    return model
+
+
+def outcomes(results: list[Result], outcome: str) -> set[str]:
+    return {result.name.removesuffix(", recess") for result in results if result.outcome == outcome}
+
+
+@pytest.mark.parametrize("support", ["recess", "flat"])
+def test_a_right_model_of_somebody_else_passes_tightly(support: str) -> None:
+    found = rw.check(model=without(), support=support, tolerance=1e-5).results
+    assert outcomes(found, FAILED) == set()
+    assert len(outcomes(found, PASSED)) > 12
+    # what asks for a field that it does not return is said
+    lacking = {"work of the ground", "uplift", "force at rest", "falls", "turning", "fields", "place"}
+    assert outcomes(found, NOT_RUN) == lacking
+
+
+def test_what_a_model_does_not_return_is_said_and_the_rest_is_checked() -> None:
+    found = rw.check(model=without("azimuth", "energy")).results
+    assert {"free motion", "frame"} <= outcomes(found, NOT_RUN)
+    assert outcomes(found, FAILED) == set()
+    assert {"period of a release, tan alpha = 0.2", "a hundredth of the size, rocking"} <= outcomes(
+        found, PASSED
+    )
+
+
+def of_another_size(case: Case, support: str) -> Trace:
+    body = dataclasses.replace(case.cylinder, semidiagonal=1.01 * case.cylinder.semidiagonal)
+    return ours(dataclasses.replace(case, cylinder=body), support)
+
+
+def left_handed(case: Case, support: str) -> dict[str, Any]:
+    found = ours(case, support)
+    azimuth = found.rolling_angle if case.motion is None else -found.rolling_angle
+    return {"time": found.time, "tilt": found.tilt, "azimuth": azimuth}
+
+
+def fixed_tolerance(case: Case, support: str) -> dict[str, Any]:
+    found = ours(case, support)
+    return {"time": found.time, "tilt": found.tilt + 1e-4 * found.time / case.cylinder.semidiagonal**2}
+
+
+def lossy(case: Case, support: str) -> dict[str, Any]:
+    found = ours(case, support)
+    tilt = found.tilt * np.exp(-0.02 * found.time)
+    return {"time": found.time, "tilt": tilt, "azimuth": found.rolling_angle}
+
+
+def restless(case: Case, support: str) -> dict[str, Any]:
+    found = ours(case, support)
+    return {"time": found.time, "tilt": np.maximum(found.tilt, 1e-3)}
+
+
+@pytest.mark.parametrize(
+    ("model", "fails", "holds"),
+    [
+        (of_another_size, {PERIOD, RECORD}, {"rotated, rocking"}),
+        (left_handed, {RECORD}, {"angle of turn of a release, tan alpha = 0.2"}),
+        (fixed_tolerance, {"a hundredth of the size, rocking"}, set()),
+        (lossy, {"tilt that a release returns to, tan alpha = 1"}, {"rotated, rocking"}),
+        (restless, {"tilt below the threshold of uplift"}, {PERIOD}),
+    ],
+)
+def test_a_wrong_model_of_somebody_else_fails_where_it_is_wrong(
+    model: Callable[[Case, str], Any], fails: set[str], holds: set[str]
+) -> None:
+    found = rw.check(model=model).results
+    assert fails <= outcomes(found, FAILED)
+    assert holds <= outcomes(found, PASSED)
+
+
+def test_a_model_that_cannot_do_a_case_is_said_and_the_others_run() -> None:
+    def only_releases(case: Case, support: str) -> Trace:
+        if case.initial is None:
+            raise NotImplementedError("it must be released")
+        return ours(case, support)
+
+    found = rw.check(model=only_releases).results
+    notes = {each.name: each.note for each in found if "must be released" in each.note}
+    assert notes == dict.fromkeys(
+        [f"{name}, recess" for name in ("stands", "frame", "scale", "statement", "ramp", "record")],
+        "NotImplementedError: it must be released",
+    )  # fmt: skip
+    assert "tilt and azimuth of a release" in outcomes(found, PASSED)
+
+
+@pytest.mark.parametrize(
+    ("result", "reason"),
+    [
+        ({"tilt": [0.1, 0.2]}, "must return time"),
+        ({"time": [0.0, 1.0], "tilt": [0.1, math.nan]}, "finite numbers"),
+        ({"time": [0.0, 0.0], "tilt": [0.1, 0.1]}, "time must rise"),
+        ({"time": [0.0, 1.0], "tilt": [0.1]}, "as long as time"),
+    ],
+)
+def test_what_is_no_motion_is_said(result: dict[str, Any], reason: str) -> None:
+    found = list(run_checks(external_model(lambda case, support: result), ["exact"]))
+    assert all(each.outcome == NOT_RUN and reason in each.note for each in found)
+
+
+def test_a_model_is_found_by_its_name(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "my_rocking.py").write_text("def model(case, support):\n    return {}\n")
+    monkeypatch.chdir(tmp_path)
+    assert subject.load_model("my_rocking:model")(None, "recess") == {}  # type: ignore[arg-type]
+    for name, reason in (("my_rocking", "module:function"), ("my_rocking:other", "cannot be imported")):
+        with pytest.raises(ValueError, match=reason):
+            subject.load_model(name)
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"engine": "mujoco", "model": "a:b"}, "one of engine, model"),
+        ({"time_step": 1e-4}, "belong to an engine"),
+        ({"only": ["equation"]}, "a group must be one of equations, "),
+        ({"model": "a:b"}, "cannot be imported"),
+        ({"engine": "chrono"}, "engine must be one of mujoco"),
+        ({"model": ours, "support": "ring"}, "support must be 'recess' or 'flat'"),
+        ({"model": ours, "tolerance": 0.0}, "tolerance must be above 0"),
+    ],
+)
+def test_bad_input_is_refused(options: dict[str, Any], words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        rw.check(**options)
+
+
+def test_the_results_are_a_table_and_a_line() -> None:
+    found = rw.check(model=restless, only=["rest", "equations"])
+    assert list(found.tables["results"]["name"]) == [each.name for each in found.results]
+    assert found.headline()["FAILED"] == len(found.failures) == 1
+    assert not found.passed
+    assert repr(found).startswith("Checks(")
+    assert "tilt below the threshold of uplift, recess" in repr(found)
+
+
+RELEASE = Case(
+    Cylinder(semidiagonal=6.0, tan_alpha=0.2), initial=InitialState(0.0987, 0.0, 0.3, 0.5), duration=5.0
+)
+
+
+def table(found: Trace, head: str, every: int = 1) -> str:
+    """The file of a motion, with tilt and azimuth in degrees, the tilt alone, or quaternions."""
+    half, twist = 0.5 * found.tilt, 0.7  # about its axis, which is nobody's concern
+    angle = found.rolling_angle - 0.5 * twist
+    turn = (np.cos(half) * np.cos(0.5 * twist), -np.sin(half) * np.sin(angle))
+    turn += (np.sin(half) * np.cos(angle), np.cos(half) * np.sin(0.5 * twist))
+    known = {"time [s]": found.time, "tilt [deg]": np.degrees(found.tilt)}
+    known |= {"azimuth [deg]": np.degrees(found.rolling_angle)}
+    known |= dict(zip(("qw", "qx", "qy", "qz"), turn, strict=True))
+    known |= dict(zip("xyz", found.centre_of_mass.T, strict=True))
+    rows = np.column_stack([known[name] for name in head.split(", ")])[::every]
+    return "\n".join([head, *(", ".join(f"{value:.12g}" for value in row) for row in rows)]) + "\n"
+
+
+def checked(place: Path, text: str, **given: Any) -> list[Result]:
+    path = place / "mine.csv"
+    path.write_text(text)
+    return list(run_checks(trajectories([read_trajectory(path, RELEASE)], **given)))
+
+
+@pytest.mark.parametrize("head", ["tilt [deg], azimuth [deg]", "qw, qx, qy, qz", "tilt [deg]"])
+def test_a_trajectory_is_compared_as_far_as_one_motion_tells(tmp_path: Path, head: str) -> None:
+    # at its own samples, 0.03 s apart: between them nothing is as exact
+    found = checked(tmp_path, table(ours(RELEASE, "recess"), f"time [s], {head}", 6), tolerance=1e-6)
+    assert outcomes(found, PASSED) == {"tilt at release", "tilt and azimuth up to 5 s", "peak tilt"}
+    assert len(found) == 3
+
+
+def test_a_trajectory_of_another_body_fails(tmp_path: Path) -> None:
+    found = checked(
+        tmp_path, table(of_another_size(RELEASE, "recess"), "time [s], tilt [deg], azimuth [deg]")
+    )
+    assert outcomes(found, FAILED) == {"tilt and azimuth up to 5 s"}
+
+
+def test_a_trajectory_without_tilt_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ValueError, match="must have tilt, or qw, qx, qy and qz"):
+        checked(tmp_path, table(ours(RELEASE, "recess"), "time [s], x, y, z"))
+
+
+def test_a_version_without_a_baseline_is_no_failure_but_said(right: Subject) -> None:
+    kept = baseline.read_baseline()
+    known = next(name for name in kept.values if name.startswith("mujoco "))
+    engine = dataclasses.replace(right, label="mujoco", run=rw.Run("mujoco", "recess"))
+    found = list(baseline.kept_numbers(engine, "recess"))
+    assert {each.outcome for each in found} == {NO_BASELINE}
+    assert all(
+        each.note.startswith(f"no baseline for mujoco {rw.__version__}; compared with {known}")
+        for each in found
+    )
+
+
+def test_an_update_keeps_the_reason_and_the_other_groups() -> None:
+    import json
+
+    old = baseline.Baseline(values={"a 1": {"x": 1.0}, "b 1": {"y": 2.0}}, reasons=({"reason": "first"},))
+    new = {"a 1": {"x": 1.5, "z": 3.0}}
+    assert baseline.changes(old, new) == [("a 1", "x", 1.0, 1.5), ("a 1", "z", None, 3.0)]
+    made_with = {"date": "2026-11-21", "versions": {"numpy": "2"}}
+    found = json.loads(baseline.updated(old, new, reason=" a  new kernel ", **made_with))
+    assert found["values"] == {"a 1": {"x": 1.5, "z": 3.0}, "b 1": {"y": 2.0}}
+    assert [entry["reason"] for entry in found["reasons"]] == ["first", "a new kernel"]
+    with pytest.raises(ValueError, match="a reason must be given"):
+        baseline.updated(old, new, reason="  ", **made_with)
+
+
+def one(*values: float) -> list[np.ndarray]:
+    return [np.array([value]) for value in values]
+
+
+def state_of(*values: float) -> State:
+    return State(*(vector(value)[0] for value in values))
+
+
+def test_kinetic_energy_is_that_of_vectors() -> None:
+    theta, phi, theta_rate, phi_rate = 0.3, 1.1, 0.7, -0.9
+    expected = kinetic_energy(body_of(CYLINDER, 9.81), state_of(theta, theta_rate, phi, phi_rate, -phi_rate))
+    found = lagrange.kinetic(SHAPE, *one(theta, phi, theta_rate, phi_rate))[0]
+    assert found == pytest.approx(float(expected), rel=ROUNDING)
+
+
+def test_accelerations_of_newton_and_euler_leave_no_residual() -> None:
+    theta, phi, theta_rate, phi_rate = 0.5, -0.4, 0.3, 0.8
+    ground = (1.1, -0.7, 0.4)
+    motion = newton_euler(
+        body_of(CYLINDER, 9.81), state_of(theta, theta_rate, phi, phi_rate, -phi_rate), vector(*ground), True
+    )
+    arguments = (one(theta, phi), one(theta_rate, phi_rate))
+    found, wrong = (
+        lagrange.residuals(
+            SHAPE, *arguments, one(factor * float(motion.theta), float(motion.phi)), np.array([ground])
+        )
+        for factor in (1.0, 1.01)
+    )
+    # rounding of differences 0.01 s apart, of energies of 60 m^2/s^2
+    assert max(abs(value[0]) for value in found) < 1e-10
+    assert abs(wrong[0][0]) > 1e-2
+
+
+def test_differences_are_exact_for_polynomials_and_good_for_sines() -> None:
+    time = 0.05 * np.arange(17)
+    assert lagrange.rate(time**5, 0.05) == pytest.approx(5.0 * time[6:-6] ** 4, rel=1e-10)
+    assert lagrange.curve(np.sin(time), 0.05) == pytest.approx(-np.sin(time[6:-6]), abs=1e-12)
+
+
+def test_quadratures_are_the_exact_solutions_of_the_package() -> None:
+    tilt = 0.4 * CYLINDER.alpha
+    _, turn = exact.period_and_turn(SHAPE, tilt, 0.3)
+    # rounding of the energies near both ends
+    stated = reduced.angle_of_turn(CYLINDER, InitialState(tilt=tilt, rolling_rate=0.3))
+    assert turn == pytest.approx(stated, abs=1e-9)
+    quarter = reduced.planar_quarter_period(CYLINDER, tilt)
+    assert exact.planar_quarter(SHAPE, tilt) == pytest.approx(quarter, rel=1e-10)
+    assert exact.steady_rate(SHAPE, tilt) == pytest.approx(
+        reduced.steady_wobble_rate(CYLINDER, tilt), rel=ROUNDING
+    )
+    assert exact.tilt_inertia(SHAPE) == pytest.approx(9.0 + 36.0, rel=ROUNDING)

@@ -1,0 +1,147 @@
+"""Engines by the checks of any engine: those that are installed hold, and each fault is found."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from declared_engines import Install, installer
+
+from rockwobble.compare.check import (
+    GROUPS,
+    Subject,
+    agreement,
+    conserved,
+    engine,
+    exact,
+    invariance,
+    order,
+    protocol,
+    rest,
+    trace,
+)
+from rockwobble.models import Trace
+from rockwobble.models.traces.trace_source import Known
+from rockwobble.multibody import available_engines
+from rockwobble.multibody.engines.registry import engine_facts, standard_engines
+
+SLOW = 1e-4  # [s] of a step
+# one run of a case serves every test of this file
+ENGINES = {name: engine(name) for name in available_engines()}
+
+
+def asked_of(name: str) -> tuple[str, ...]:
+    """Groups that an engine is asked here: a step of some takes ten times as long as one of others."""
+    if name in standard_engines():
+        return tuple(group for group in GROUPS if group not in ("equations", "baseline"))
+    quick = engine_facts(name).step_time < SLOW
+    return (
+        ("exact", "rest", "invariance", "protocol", "agreement")
+        if quick
+        else ("exact", "protocol", "agreement")
+    )
+
+
+@pytest.mark.parametrize(
+    ("name", "group"), [(name, group) for name in available_engines() for group in asked_of(name)]
+)
+def test_an_engine_that_is_installed_holds(name: str, group: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    # 72 deg apart, close to between the corners of any polygon of 4, 8 or 12 of them; all directions are
+    # tried by `tests/benchmarks version_figures`
+    monkeypatch.setattr(rest, "DIRECTIONS", 5)
+    monkeypatch.setattr(rest, "SLENDERNESS", (0.1, 1.0))
+    subject, brief = ENGINES[name], name not in standard_engines()
+    # of an engine that is an extra with its first support, and of the agreement what `check` asks of it, too
+    chosen = [each for each in GROUPS[group] if each.extra or not (brief and group == "agreement")]
+    found = [result for each in chosen if each.applies(subject) for result in each.run(subject, brief=brief)]
+    assert found
+    assert [f"{each.name}: {each.value}, {each.note}" for each in found if each.failed] == []
+
+
+@pytest.mark.parametrize(
+    ("fault", "measure"),
+    [
+        ("Backwards", agreement.fields),
+        ("OneSided", invariance.frame),
+        ("Heavy", exact.steady_wobble),
+        ("Heavy", conserved.free_motion),
+        ("Random", protocol.repetition),
+        ("Loud", protocol.repetition),
+        ("Careless", protocol.description),
+        ("Absolute", invariance.scale),
+        ("Early", protocol.stepping),
+        ("Slippery", trace.slip),
+    ],
+)
+def test_a_fault_of_an_engine_is_found(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, fault: str, measure: Any
+) -> None:
+    install: Install = installer(tmp_path, monkeypatch)
+    install(faulty=f"external_engine:{fault}", sound="external_engine:Sound")
+    assert [each for each in measure(engine("faulty"), "flat") if each.failed]
+    assert not [each for each in measure(engine("sound"), "flat") if each.failed]
+
+
+def changed(field: str, change: Any) -> Subject:
+    right = ENGINES["mujoco"]
+
+    def source(*given: Any, **options: Any) -> Trace:
+        found = right.source(*given, **options)
+        value = change(getattr(found, field))
+        if field in found.late:
+            return dataclasses.replace(found, source=Known({**found.late, field: value}))
+        return dataclasses.replace(found, **{field: value})
+
+    return dataclasses.replace(right, source=source)
+
+
+@pytest.mark.parametrize(
+    ("measure", "field", "change"),
+    [
+        (agreement.fields, "tilt_rate", lambda values: 1.001 * values),
+        (agreement.fields, "twist", lambda values: values + 1e-4),
+        (agreement.fields, "contact_force", lambda values: values * [1.0, 1.0, 0.9]),
+        (agreement.fields, "contact_point", lambda values: values + 1e-4),
+        (agreement.fields, "energy", lambda values: 1.001 * values),
+        (agreement.fields, "energy_error", lambda values: values + 1e-3),
+        (agreement.release, "rolling_angle", lambda values: values + 1e-3),
+        (agreement.ramp, "tilt", lambda values: 1.1 * values),
+        (agreement.record, "tilt", lambda values: 1.01 * values),
+        (rest.uplift, "uplift_time", lambda value: value + 1e-3),
+        (rest.uplift, "uplift_direction", lambda value: -value),
+        (trace.slip, "slip", lambda values: values + 1e-2),
+        (protocol.time_grid, "time", lambda values: values + 1e-6),
+    ],
+)
+def test_a_wrong_field_is_found(measure: Any, field: str, change: Any) -> None:
+    assert not [each for each in measure(ENGINES["mujoco"], "flat") if each.failed]
+    assert [each for each in measure(changed(field, change), "flat") if each.failed]
+
+
+def test_walls_that_let_the_cylinder_out_are_found() -> None:
+    wrong = changed("residual_displacement", lambda value: value + 1.0)
+    assert not [each for each in agreement.ring(ENGINES["mujoco"], "ring") if each.failed]
+    assert [each.cause for each in agreement.ring(wrong, "ring") if each.failed] == ["the walls let it out"]
+
+
+def test_samples_at_the_nearest_step_are_found() -> None:
+    right = ENGINES["mujoco"]
+
+    def nearest(*given: Any, **options: Any) -> Trace:
+        found = right.source(*given, **options)
+        off = found.time - np.round(found.time / found.time_step) * found.time_step
+        return dataclasses.replace(found, rolling_angle=found.rolling_angle - off * found.rolling_rate)
+
+    found = agreement.fields(dataclasses.replace(right, source=nearest), "flat")
+    assert {each.name for each in found if each.failed} >= {"rolling_angle"}
+
+
+@pytest.mark.parametrize(
+    ("measure", "settings"),
+    [(order.time_step, {"contact_damping_ratio": 0.01}), (exact.free_response, {"time_step": 1e-3})],
+)
+def test_settings_that_spoil_contact_are_found(measure: Any, settings: dict[str, float]) -> None:
+    assert [each for each in measure(engine("mujoco", **settings), "recess") if each.failed]

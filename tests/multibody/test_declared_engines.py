@@ -1,0 +1,85 @@
+"""Engines that other packages declare: found, run, and kept from breaking ours."""
+
+from __future__ import annotations
+
+import tomllib
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+from declared_engines import Install, installer
+
+from rockwobble import multibody
+from rockwobble.compare import default_runs, require_runnable, reserved_engines
+from rockwobble.models import Case, Cylinder, InitialState, Run
+from rockwobble.multibody import available_engines, engine_names
+from rockwobble.multibody.engines.registry import GROUP, find_engine
+
+PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+
+
+@pytest.fixture
+def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
+    return installer(tmp_path, monkeypatch)
+
+
+def test_an_engine_of_another_package_is_found_and_runs(install: Install) -> None:
+    install(sound="external_engine:Sound")
+    assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn", "rapier", "sound")
+    assert multibody.available_engines()[-1] == "sound"
+    release = InitialState(PIER.alpha / 2, rolling_rate=0.5)
+    run = multibody.simulate(Case(PIER, initial=release, duration=0.5), engine="sound", support="flat")
+    assert run.run.engine == "sound"
+    assert run.outcome != "failed"
+
+
+def test_our_engines_are_declared_as_anybody_would_declare_them() -> None:
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
+    declared = project["entry-points"][GROUP]
+    assert (
+        tuple(declared)
+        == engine_names()[: len(declared)]
+        == ("mujoco", "pybullet", "dart", "drake", "exudyn", "rapier")
+    )
+    assert {point.name: point.value for point in entry_points(group=GROUP)} == declared
+    for name in available_engines():
+        assert declared[name] == f"{type(find_engine(name)).__module__}:{type(find_engine(name)).__name__}"
+
+
+@pytest.mark.parametrize(
+    ("factory", "words"),
+    [
+        ("external_engine:Missing", "does not load: AttributeError: "),
+        ("no_such_module:Engine", "does not load: ModuleNotFoundError: No module named 'no_such_module'"),
+        ("external_engine:fails", "does not load: RuntimeError: no licence"),
+        ("external_engine:Half", "is no engine: it has no uplifts, facts, settings, open"),
+        ("not an object reference", "does not load: "),
+    ],
+)
+def test_a_broken_engine_is_named_and_breaks_no_other(install: Install, factory: str, words: str) -> None:
+    ours = default_runs()
+    install(broken=factory)
+    with pytest.raises(multibody.BrokenEngineError) as caught:
+        find_engine("broken")
+    assert str(caught.value).startswith(f"engine 'broken' of the package external {words}")
+    assert "\n" not in str(caught.value)
+    assert default_runs() == ours
+    assert reserved_engines()["broken"] == str(caught.value)
+    with pytest.raises(ValueError, match=r"engine must be one of mujoco, .*broken, got 'chrono'"):
+        find_engine("chrono")
+    still = Case(PIER, duration=1.0, name="still")
+    require_runnable(still, Run("mujoco", "recess"))
+
+
+def test_a_name_that_two_packages_claim_is_nobodys(install: Install) -> None:
+    install("one", shared="external_engine:Sound")
+    install("two", shared="external_engine:Loud")
+    assert multibody.engine_names().count("shared") == 1
+    with pytest.raises(multibody.BrokenEngineError, match="declared more than once, by one, two: uninstall"):
+        find_engine("shared")
+
+
+def test_our_names_are_taken(install: Install) -> None:
+    install(mujoco="external_engine:fails")
+    assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn", "rapier")
+    assert type(find_engine("mujoco")).__module__ == "rockwobble.multibody.engines.mujoco_engine"
