@@ -61,14 +61,14 @@ class RapierSettings:
         Natural frequency of contact [1/s]. Rapier's own, 30 1/s, lets a base lean by 4e-4 alpha under 0.9
         of the load that uplifts it (tan alpha 0.1).
     contact_damping_ratio : float
-        1 is critical, 10 Rapier's default.
+        1 is critical, and lets a base under 0.98 of its uplift lean by twice as much as 10, Rapier's own.
     depth : float
         At which the rim is kept, at the reference size [m].
     depth_gain : float
         Share of a change of depth that one step takes back.
     substeps, iterations : int
-        Of a step; one contact needs one of each, since what is left of an iteration starts the next step.
-        Four iterations change no error by more than rounding does.
+        Of a step. A rim needs one of each, since what is left of an iteration starts the next step; with four
+        iterations the horizontal force on a standing base scatters by 1.7e-3 weights, with one by 3.1e-3.
     """
 
     guide_stiffness: float
@@ -77,7 +77,7 @@ class RapierSettings:
     depth: float = 1e-6
     depth_gain: float = 0.3
     substeps: int = 1
-    iterations: int = 1
+    iterations: int = 4
 
     @classmethod
     def resolve(cls, given: Mapping[str, Any], time_step: float) -> RapierSettings:
