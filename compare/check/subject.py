@@ -39,7 +39,7 @@ MODEL_TOLERANCE, _MODEL_RTOL = 1e-10, 1e-11
 ENGINE_TOLERANCE = 1e-5
 # Rounding errors that the tolerance allows: thousands of steps add them up in part. In single precision they
 # are more than what the finest steps leave, and the order shows at coarse ones, in multiples of the default
-_ROUNDINGS = 8e3
+_ROUNDINGS = 1e4
 _STEPS, _COARSE_STEPS = (4.0, 2.0, 1.0), (10.0, 7.0, 4.0)
 # of the same motion, turned or mirrored: solvers stop at a tolerance, and a pass magnifies what is left
 ENGINE_REPEATABILITY = 1e-5
