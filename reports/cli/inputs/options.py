@@ -123,7 +123,7 @@ def _named(names: list[str] | None) -> list[str] | None:
     return _standing_alone(names)
 
 
-ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
+ENGINES = "mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, by engines that have them)"
 Engine = Annotated[str | None, method(f"{ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"
