@@ -96,18 +96,6 @@ def test_extremes() -> None:
     assert numbers(headline("extremes/extremes.md")) == [counts[order].sum(), *counts[order]]
 
 
-@pytest.mark.parametrize("page", ["spectrum/spectrum", "paper/paper"])
-def test_spectrum(page: str) -> None:
-    cells = table(f"{page.split('/')[0]}/spectrum").pivot_table(
-        index=["semidiagonal", "intensity"], columns="series", values="overturned", aggfunc="first"
-    )
-    falls, planes = cells["3d"], cells["planar_x"] | cells["planar_y"]
-    shares = [falls.mean(), planes.mean(), (falls & ~planes).mean(), (planes & ~falls).mean()]
-    said = re.findall(r"([\d.]+) %", headline(f"{page}.md"))
-    assert said == [f"{100 * share:.2g}" for share in shares]
-    assert f"of {len(cells)} cells" in headline(f"{page}.md")
-
-
 @pytest.mark.parametrize("folder", ENSEMBLES, ids=lambda folder: folder.name)
 def test_ensemble(folder: Path) -> None:
     members = pd.read_parquet(folder / "members.parquet")
