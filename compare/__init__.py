@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:  # under its own name again: that is how a type checker knows a name for a public one
     from inspect import Signature
 
+    from .comparison.budget import LARGEST_SHARE as LARGEST_SHARE
+    from .comparison.budget import WORTH_EXPLAINING as WORTH_EXPLAINING
+    from .comparison.budget import ErrorBudget as ErrorBudget
+    from .comparison.budget import findings as findings
+    from .comparison.comparison import Comparison as Comparison
     from .comparison.driver import compare as compare
-    from .comparison.error_budget import LARGEST_SHARE as LARGEST_SHARE
-    from .comparison.error_budget import WORTH_EXPLAINING as WORTH_EXPLAINING
-    from .comparison.error_budget import ErrorBudget as ErrorBudget
-    from .comparison.error_budget import findings as findings
-    from .comparison.result import Comparison as Comparison
-    from .comparison.result import describe_case as describe_case
     from .comparison.summary import SUMMARY_COLUMNS as SUMMARY_COLUMNS
     from .external.trajectory import External as External
     from .external.trajectory import read_trajectory as read_trajectory
@@ -57,8 +56,8 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
 
 _MODULES = {
     "comparison.driver": ("compare",),
-    "comparison.error_budget": ("LARGEST_SHARE", "WORTH_EXPLAINING", "ErrorBudget", "findings"),
-    "comparison.result": ("Comparison", "describe_case"),
+    "comparison.budget": ("LARGEST_SHARE", "WORTH_EXPLAINING", "ErrorBudget", "findings"),
+    "comparison.comparison": ("Comparison",),
     "comparison.summary": ("SUMMARY_COLUMNS",),
     "metrics.contact": ("TILTED",),
     "runs.choice": (

@@ -138,19 +138,20 @@ def _line(drawn: go.Figure, line: Line, panel: Panel, shown: set[str]) -> None:
     modes = [*([] if style.dash == "none" else ["lines"]), *(["markers"] if style.symbol else [])]
     notes = [line.notes[place].replace("\n", "<br>") for place in keep] if line.notes else None
     hover = f"%{{y:.4~g}}{_unit(panel.y)} at %{{x:.4~g}}{_unit(panel.x)}"
+    marker = {"symbol": symbol, "color": style.colour, "size": 1.6 * line.size, "line": {"width": 1.0}}
     drawn.add_scatter(
         x=small(line.x[keep]),
         y=small(line.y[keep]),
         mode="+".join(modes),
         line={
             "color": style.colour,
-            "dash": "solid" if style.dash == "none" else style.dash,
+            "dash": None if style.dash in ("none", "solid") else style.dash,
             "width": line.width,
-            "shape": "hv" if line.steps else "linear",
+            "shape": "hv" if line.steps else None,
         },
-        marker={"symbol": symbol, "color": style.colour, "size": 1.6 * line.size, "line": {"width": 1.0}},
-        opacity=line.opacity,
-        cliponaxis=line.clip,
+        marker=marker if style.symbol else None,
+        opacity=None if line.opacity == 1.0 else line.opacity,
+        cliponaxis=None if line.clip else False,
         text=notes,
         hovertemplate=hover + ("<br>%{text}" if notes else ""),
         **_entry(line.name, shown),

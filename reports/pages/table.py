@@ -51,7 +51,9 @@ def _percent(share: float) -> str:
 
 
 def _short(text: str) -> str:
-    """Return 1e-7 for 1e-07, which is how a computer writes it."""
+    """Return 1e-7 for 1e-07 and 0.00 for -0.00, which is how a computer writes them."""
+    if not float(text):
+        text = text.removeprefix("-")
     return re.sub(r"e([+-])0*(\d)", lambda m: f"e{m[1].replace('+', '')}{m[2]}", text)
 
 
@@ -156,20 +158,24 @@ class Table:
         return f"<tr>{''.join(found)}</tr>"
 
     def shown(self, width: int) -> Sequence[Column]:
-        """Return the columns that a terminal of so many columns shows: what is wide only if it has room."""
-        from rich.console import Console
-
-        narrow = [column for column in self.columns if not column.wide]
-        if len(narrow) == len(self.columns):
-            return self.columns
-        needed = Console(width=10_000).measure(self._rich(self.columns)).maximum
-        return self.columns if needed <= width else narrow
+        """Return the columns for which a terminal of this width has room: the last wide ones go first."""
+        columns = list(self.columns)
+        while self._needed(columns, stacked=True) > width and any(column.wide for column in columns):
+            columns.remove(next(column for column in reversed(columns) if column.wide))
+        return columns
 
     def rich(self, width: int) -> RichTable:
         """Return the table for a terminal of so many columns."""
-        return self._rich(self.shown(width))
+        columns = self.shown(width)
+        return self._rich(columns, stacked=self._needed(columns) > width)
 
-    def _rich(self, columns: Sequence[Column]) -> RichTable:
+    def _needed(self, columns: Sequence[Column], *, stacked: bool = False) -> int:
+        from rich.console import Console
+
+        return Console(width=10_000).measure(self._rich(columns, stacked=stacked)).maximum
+
+    def _rich(self, columns: Sequence[Column], *, stacked: bool = False) -> RichTable:
+        """Return the table, `stacked` with one word of a heading above the next."""
         from rich import box
         from rich.table import Table as RichTable
         from rich.text import Text
@@ -177,7 +183,7 @@ class Table:
         table = RichTable(box=box.SIMPLE_HEAD, padding=0, pad_edge=False, show_edge=False)
         for column in columns:
             # as a text, because brackets are markup; the unit in a line of its own
-            heading = Text(column.heading.replace(" [", "\n["))
+            heading = Text(column.heading.replace(" " if stacked else " [", "\n" if stacked else "\n["))
             table.add_column(heading, justify="left" if column.text else "right", overflow="fold")
         kept = [self.columns.index(column) for column in columns]
         for name, rows in self.groups():
