@@ -255,6 +255,15 @@ def advise(
     ------
     ValueError
         If the engine cannot run the case, or an option is out of range.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> found = rw.advise(rw.Case(pier, initial=release, duration=4.0), copies=20)
+    >>> found.trust.kind, found.grades["engine"]
+    ('trace', 'not tested')
     """
     plan = AdvicePlan(**({} if run is None else {"support": run.support}) | options)
     if run is not None:
