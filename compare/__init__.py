@@ -14,13 +14,12 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:  # under its own name again: that is how a type checker knows a name for a public one
     from inspect import Signature
 
+    from .comparison.budget import LARGEST_SHARE as LARGEST_SHARE
+    from .comparison.budget import WORTH_EXPLAINING as WORTH_EXPLAINING
+    from .comparison.budget import ErrorBudget as ErrorBudget
+    from .comparison.budget import findings as findings
+    from .comparison.comparison import Comparison as Comparison
     from .comparison.driver import compare as compare
-    from .comparison.error_budget import LARGEST_SHARE as LARGEST_SHARE
-    from .comparison.error_budget import WORTH_EXPLAINING as WORTH_EXPLAINING
-    from .comparison.error_budget import ErrorBudget as ErrorBudget
-    from .comparison.error_budget import findings as findings
-    from .comparison.result import Comparison as Comparison
-    from .comparison.result import describe_case as describe_case
     from .comparison.summary import SUMMARY_COLUMNS as SUMMARY_COLUMNS
     from .external.trajectory import External as External
     from .external.trajectory import read_trajectory as read_trajectory
@@ -42,6 +41,8 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .runs.task import IncompleteError as IncompleteError
     from .storage.files import replace_files as replace_files
     from .storage.manifest import require_writable as require_writable
+    from .studies.advice.advice import Advice as Advice
+    from .studies.advice.advice import advise as advise
     from .studies.ensemble import Ensemble as Ensemble
     from .studies.ensemble import ensemble as ensemble
     from .studies.fragility.intensity import MEASURES as MEASURES
@@ -56,8 +57,8 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
 
 _MODULES = {
     "comparison.driver": ("compare",),
-    "comparison.error_budget": ("LARGEST_SHARE", "WORTH_EXPLAINING", "ErrorBudget", "findings"),
-    "comparison.result": ("Comparison", "describe_case"),
+    "comparison.budget": ("LARGEST_SHARE", "WORTH_EXPLAINING", "ErrorBudget", "findings"),
+    "comparison.comparison": ("Comparison",),
     "comparison.summary": ("SUMMARY_COLUMNS",),
     "metrics.contact": ("TILTED",),
     "runs.choice": (
@@ -75,6 +76,7 @@ _MODULES = {
     "runs.task": ("IncompleteError",),
     "storage.files": ("replace_files",),
     "storage.manifest": ("require_writable",),
+    "studies.advice.advice": ("Advice", "advise"),
     "studies.ensemble": ("Ensemble", "ensemble"),
     "studies.fragility.intensity": ("MEASURES",),
     "studies.fragility.samples": ("LIMITS",),

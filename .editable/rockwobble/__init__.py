@@ -18,6 +18,7 @@ if TYPE_CHECKING:
         Comparison,
         External,
         Grid,
+        advise,
         compare,
         ensemble,
         fragility,
@@ -64,6 +65,7 @@ __all__ = [
     "Suite",
     "Trace",
     "WobblingFrame",
+    "advise",
     "check",
     "compare",  # the module, which may be called; to a type checker its function `compare`
     "el_centro_1940",
@@ -88,7 +90,9 @@ __all__ = [
     "with_motions",
 ]
 _PARTS = ("compare", "models", "multibody", "reduced", "reports")
-_OF_COMPARE = ("Comparison", "External", "Grid", "ensemble", "fragility", "simulate", "spectrum", "sweep")
+_OF_COMPARE = (
+    *("Comparison", "External", "Grid", "advise", "ensemble", "fragility", "simulate", "spectrum", "sweep"),
+)
 
 
 def __getattr__(name: str) -> object:

@@ -23,9 +23,10 @@ from rockwobble.multibody.engines.registry import available_engines, find_engine
 from rockwobble.multibody.scene.froude import default_step
 from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
 
-from ..comparison.prediction import early_rms, estimated_error, landings, time_scale
+from ..comparison.prediction import early_rms, estimated_error, time_scale
 from ..metrics.pair import is_release
 from ..metrics.tilt import rms
+from ..metrics.turning import landings
 from ..runs.choice import require_runnable
 from ..runs.execution import Job, simulate_all
 from ..runs.progress import ProgressCallback

@@ -24,10 +24,9 @@ from ..runs.labels import labels_beside_references
 from ..runs.progress import ProgressCallback
 from ..storage.manifest import require_writable
 from ..storage.provenance import package_versions
-from .case_budgets import case_budgets
-from .error_budget import ErrorBudget
+from .budget import ErrorBudget, case_budgets
+from .comparison import Comparison, comparison_of
 from .prediction import Prediction, Simulate, estimated_error, measured_error, predict
-from .result import KIND, Comparison
 from .summary import SUMMARY_COLUMNS, external_row, lost_row, summary_row
 
 
@@ -52,9 +51,9 @@ def compare(
     runs : iterable of Run, optional
         Default: those of the suite, else every installed engine with supports "recess" and "flat".
     reference : Run, optional
-        What every run is held against, such as ``Run(None, "flat")`` or another engine. Default: the recess
-        model; runs on flat ground also the flat-ground model, and those in a ring themselves at half the
-        step.
+        What every run is compared with, such as ``Run(None, "flat")`` or another engine. Default: the recess
+        model; runs on flat ground also the flat-ground model, and those in a recess with clearance
+        themselves at half the step.
     out : str or Path, optional
         Folder to save the results in; checked before anything runs.
     until : float, optional
@@ -108,10 +107,10 @@ def compare(
             require_runnable(case, run)
     labels, named = labels_beside_references(chosen, reference)
     by_label = dict(zip(labels, chosen, strict=True))
-    held_against = {named or "recess model": Run(None, "recess") if reference is None else reference}
-    jobs = _jobs(cases, by_label, reference, named, also=held_against if external else {})
+    compared_with = {named or "recess model": Run(None, "recess") if reference is None else reference}
+    jobs = _jobs(cases, by_label, reference, named, also=compared_with if external else {})
     brought = read_trajectories(external, cases, taken={label for _, label in jobs})
-    with nullcontext() if resume is None else open_trace_cache(resume, KIND) as cache:
+    with nullcontext() if resume is None else open_trace_cache(resume, Comparison.kind) as cache:
 
         def run_all(jobs: list[Job]) -> list[Trace]:
             return simulate_all(jobs, workers=workers, progress=progress, cache=cache)
@@ -132,11 +131,11 @@ def compare(
     rows += [
         external_row(cases[0], other, found[name, other], label, trajectory, until=until)
         for (name, label), trajectory in brought.items()
-        for other in held_against
+        for other in compared_with
     ]
     table = pd.DataFrame(rows, columns=list(SUMMARY_COLUMNS))
-    comparison = Comparison(
-        summary=table.astype({"diverged": bool, "left_tolerance": bool, "agreed_passes": int}),
+    comparison = comparison_of(
+        table.astype({"diverged": bool, "left_tolerance": bool, "agreed_passes": int}),
         cases={case.name: case for case in cases},
         traces=found | brought,
         versions=package_versions(),

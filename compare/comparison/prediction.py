@@ -29,7 +29,8 @@ from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
 from ..metrics.agreement import agreement_time, tolerance_of
 from ..metrics.pair import FloatArray, is_release, make_pair, start_of
 from ..metrics.tilt import rms
-from .error_budget import ErrorBudget
+from ..metrics.turning import landings
+from .budget import ErrorBudget
 
 # a prediction is in time if the measured agreement time is within this factor of it, either way
 IN_TIME = 2.0
@@ -47,8 +48,6 @@ _LARGEST = 1e-2
 NUDGE = 1e-6
 
 _SMALLEST_ERROR = 1e-9  # [alpha] no engine is better than its contact
-
-_HALF_A_TURN = 1e-9  # [rad] rounding of half a turn: motion with spin takes longer than a sample for it
 
 Simulate = Callable[[Case, Run], Trace]
 
@@ -177,15 +176,6 @@ def verdict(measured: float, diverged: bool, predicted: float, reason: str) -> s
     if reason and measured > predicted * IN_TIME:
         return "later"
     return "in time"
-
-
-def landings(response: Trace) -> FloatArray:
-    """Return the times at which a reduced model goes through upright itself (n,) [s], to a sample.
-
-    Its contact then jumps to the other end of the diameter. A fall that follows makes no pass of it.
-    """
-    turned = np.abs(np.diff(response.rolling_angle))
-    return np.asarray(response.time)[1:][np.abs(turned - np.pi) < _HALF_A_TURN]
 
 
 def early_rms(case: Case, time: FloatArray, difference: FloatArray, start: float) -> float:

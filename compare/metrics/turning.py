@@ -8,7 +8,9 @@ import numpy as np
 
 from rockwobble.models import Trace
 
-from .pair import Pair
+from .pair import FloatArray, Pair
+
+_HALF_A_TURN = 1e-9  # [rad] rounding of half a turn: motion with spin takes longer than a sample for it
 
 
 def direction_difference(reference: Trace, trial: Trace) -> float:
@@ -57,3 +59,12 @@ def first_unresolved_pass(trial: Trace, *, start: float = 0.0) -> float:
     times = np.asarray(passes["time"], dtype=np.float64)
     counts = ~np.asarray(passes["resolved"], dtype=bool) & (times > start)
     return float(times[counts][0]) if counts.any() else math.inf
+
+
+def landings(response: Trace) -> FloatArray:
+    """Return the times at which a reduced model goes through upright itself (n,) [s], to a sample.
+
+    Its contact then jumps to the other end of the diameter. A fall that follows makes no pass of it.
+    """
+    turned = np.abs(np.diff(response.rolling_angle))
+    return np.asarray(response.time)[1:][np.abs(turned - np.pi) < _HALF_A_TURN]

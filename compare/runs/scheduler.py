@@ -49,7 +49,7 @@ def run_tasks(
         Processes, of which no more than tasks are started; 1 runs one task after the other in this one.
         Default: one for each processor that this process may use, and this one for a single task.
     scheduler : str, optional
-        Address of a Dask scheduler, such as "tcp://10.0.0.1:8786"; then `workers` has no part in it.
+        Address of a Dask scheduler, such as `tcp://10.0.0.1:8786`; then `workers` has no part in it.
     cost : callable, optional
         Rough computing time of a task in any unit, by which the longest begin first; infinite: before all, of
         unknown length. Default: all alike, in their order.

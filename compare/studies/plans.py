@@ -26,6 +26,25 @@ class Copies(Plan):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class AdvicePlan(Copies):
+    """Advice on one case: its copies, of which 5 % have to be a run or more, and its support."""
+
+    copies: int = option(100, "Number of perturbed copies.", group="Members", least=20, most=10_000)
+    seed: int = option(1, "Seed of the perturbations.", group="Members", least=0)
+    support: str = option(
+        "recess",
+        "Support: recess (ideal recess), flat (flat ground) or ring (recess with clearance).",
+        group="Method",
+    )
+
+    def __post_init__(self) -> None:
+        from rockwobble.models.support import support_named  # with numpy, which help can do without
+
+        Plan.__post_init__(self)
+        support_named(self.support)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class FragilityPlan(Plan):
     """Fragility: intensities, limits, statistics, and what its methods have in common."""
 
@@ -34,6 +53,7 @@ class FragilityPlan(Plan):
         "Intensity: peak_acceleration (over g tan alpha), peak_velocity (times p over g tan alpha), pga, "
         "pgv, sa or sa_mean.",
         group="Intensity",
+        choices=("peak_acceleration", "peak_velocity", "pga", "pgv", "sa", "sa_mean"),
     )
     levels: Sequence[float] | None = option(
         None,
@@ -55,6 +75,7 @@ class FragilityPlan(Plan):
         'Limit: uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned or contact_lost; may '
         "be repeated. Default: all but the last, which takes the forces of every run.",
         group="Statistics",
+        choices=("uplift", "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", "overturned", "contact_lost"),
         flag="--limit",
     )
     margin: float = option(
@@ -80,22 +101,17 @@ class FragilityPlan(Plan):
     gravity: float = option(9.81, "g, in m/s2.", above=0.0)
 
     def __post_init__(self) -> None:
-        from rockwobble.models.number_checks import (
-            require_increasing,
-        )  # with numpy, which help can do without
-
-        from .fragility.intensity import require_measure
-        from .fragility.samples import require_limits
+        # with numpy, which help can do without
+        from rockwobble.models.number_checks import require_increasing
 
         Plan.__post_init__(self)
-        require_measure(self.measure)
         if self.levels is not None and self.scales is not None:
             raise ValueError("levels scale the motions, scales take them as they are: got both")
         for name in ("levels", "scales"):
             if getattr(self, name) is not None:
                 require_increasing(name, getattr(self, name))
-        if self.limits is not None:
-            require_limits(self.limits)
+        if self.limits is not None and not list(self.limits):
+            raise ValueError("a fragility needs at least one limit, got none")
 
 
 # Finest step of a search, over the intensity at which the peak of the horizontal resultant is g tan(alpha):
@@ -132,7 +148,9 @@ class SpectrumPlan(Plan):
         0.0, "Mass of a rigid slab over that of the cylinders that carry it.", group="Cylinder", least=0.0
     )
     gravity: float = option(9.81, "g, in m/s2.", group="Ground motion", above=0.0)
-    support: str = option("recess", "Support of the model in three dimensions: recess or flat.")
+    support: str = option(
+        "recess", "Support of the model in three dimensions: recess or flat.", choices=("recess", "flat")
+    )
     search_step: float = option(
         STEP,
         "Finest step of the search for the lowest intensity that overturns, in g tan alpha.",
@@ -146,10 +164,9 @@ class SpectrumPlan(Plan):
     )
 
     def __post_init__(self) -> None:
-        from rockwobble.models.number_checks import require_increasing, require_one_of
+        from rockwobble.models.number_checks import require_increasing
 
         Plan.__post_init__(self)
-        require_one_of("support", self.support, ("recess", "flat"))
         for name in ("semidiagonals", "intensities"):
             given = getattr(self, name)
             if given is not None and len(require_increasing(name, given)) > self._MOST:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import html
 import re
+import unicodedata
 from typing import Any
 
 from docutils import nodes
@@ -13,10 +15,20 @@ from sphinx.writers.html5 import HTML5Translator
 # the converter leaves no space between a factor and the function behind it
 _FUNCTION = re.compile(r"<mi>(sin|cos|tan|sgn|atan)</mi>")
 _SPACED = r'<mrow><mspace width="0.17em"/><mi>\1</mi></mrow>'
+# browsers know no bold variant of a letter, but bold letters
+_BOLD = re.compile(r'<mi mathvariant="(bold|bold-italic)">(&#x[0-9A-F]+;|[A-Za-z])</mi>')
 
 
 def _mathml(source: str, display: str) -> str:
-    return _FUNCTION.sub(_SPACED, convert(source, display=display))
+    return _BOLD.sub(_bold, _FUNCTION.sub(_SPACED, convert(source, display=display)))
+
+
+def _bold(found: re.Match[str]) -> str:
+    letter = html.unescape(found[2])
+    kind = "GREEK" if "\u0370" <= letter <= "\u03ff" else "LATIN"
+    name = unicodedata.name(letter).replace(f"{kind} ", "").replace("LETTER ", "")
+    style = found[1].upper().replace("-", " ")
+    return f"<mi>{unicodedata.lookup(f'MATHEMATICAL {style} {name}')}</mi>"
 
 
 def _inline(writer: HTML5Translator, node: nodes.math) -> None:

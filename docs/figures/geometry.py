@@ -188,13 +188,13 @@ def frame() -> list[str]:
     return found
 
 
-def drawing(title: str, parts: list[str]) -> str:
+def drawing(title: str, parts: list[str], *, definitions: str = "") -> str:
     """Return a whole drawing as SVG."""
     whole = [
         '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 760 460" '
         'font-family="Georgia, serif" font-size="17">',
         f"<title>{title}</title>",
-        f"<defs>{head('soft', SOFT)}{head('blue', BLUE)}</defs>",
+        f"<defs>{head('soft', SOFT)}{head('blue', BLUE)}{definitions}</defs>",
         '<rect width="760" height="460" fill="#ffffff"/>',
         *parts,
         "</svg>",
@@ -202,10 +202,15 @@ def drawing(title: str, parts: list[str]) -> str:
     return "\n".join(whole) + "\n"
 
 
+def figures() -> dict[str, str]:
+    """Return the drawings by the names of their files."""
+    cylinder = seen_from_the_side() + seen_from_above()
+    return {
+        "geometry": drawing("The tilted cylinder from the side and from above", cylinder),
+        "frame": drawing("The tilted frame", frame()),
+    }
+
+
 if __name__ == "__main__":
-    here = Path(__file__)
-    cylinder = drawing(
-        "The tilted cylinder from the side and from above", seen_from_the_side() + seen_from_above()
-    )
-    here.with_name("geometry.svg").write_text(cylinder, encoding="utf-8")
-    here.with_name("frame.svg").write_text(drawing("The tilted frame", frame()), encoding="utf-8")
+    for name, words in figures().items():
+        Path(__file__).with_name(f"{name}.svg").write_text(words, encoding="utf-8")

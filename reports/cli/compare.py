@@ -13,7 +13,8 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
+from ..console.results import show_and_save
+from ..console.terminal import FAILED, complain, interruptible, user_input
 from ..pages.words.cases import describe
 from .inputs import options
 from .inputs.estimate import require_feasible, time_needed
@@ -45,12 +46,12 @@ def compare(
     ideal recess and on flat ground.
 
     With a SUITE: its cases and runs, among which --engine and --support choose. A suite that was ended
-    before its end goes on where it was when it is started again with the same folder.
+    before its end resumes when it is started again with the same folder.
 
-    With --engine all: every installed engine that can run the problem, and who agrees with whom.
+    With --engine all: every installed engine that can run the problem, and their agreement matrix.
 
     With --trajectory: that of a shake table or of another code is one more run. With --engine none it is
-    held against the reduced model alone.
+    compared with the reduced model alone.
 
     Writes summary.csv, the samples as Parquet, report.html and figure.svg.
     """
@@ -85,7 +86,7 @@ def compare(
         elif not engine and suite is None:
             _say_what_is_left_out(support or [])
         with user_input(), shown_progress() as tell:
-            comparison = rw.compare(
+            found = rw.compare(
                 rw.Suite(cases, runs),
                 runs=runs,
                 progress=tell,
@@ -93,15 +94,8 @@ def compare(
                 resume=None if suite is None else out,
                 budget=budget,
             )
-        from ..pages.comparison.report import comparison_page
-
-        page = comparison_page(comparison, command_line())
-        pages = page.files()
-        with user_input():
-            comparison.save(out, command=command_line(), pages=pages)
-        page.show()
-    print(f"\nWritten to {out}: manifest.json, {', '.join(pages)} and the tables")
-    if (comparison.summary["outcome"] == "failed").any():
+        show_and_save(found, out)
+    if (found.summary["outcome"] == "failed").any():
         raise typer.Exit(FAILED)
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import math
+import sys
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import typer
 
@@ -13,17 +13,13 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.results import show_and_write
-from ..console.terminal import FAILED, command_line, complain, interruptible, user_input
-from ..pages.words.cases import describe
+from ..console.results import show_and_save
+from ..console.terminal import FAILED, complain, interruptible, user_input
 from .inputs import options
 from .inputs.estimate import require_feasible, time_needed
 from .inputs.method_values import settings
 from .inputs.plan_options import takes_options
 from .inputs.problem import Problem, restated
-
-if TYPE_CHECKING:
-    from rockwobble.compare.storage.manifest import Manifest
 
 RestTilt = Annotated[
     float | None,
@@ -53,6 +49,10 @@ def simulate(
     and radians.
     """
     with interruptible():
+        from rockwobble.compare.studies.single_run import single_run
+
+        from ..pages.words.diagnostics import remarks
+
         with user_input():
             case = problem.case()
             if plane is not None and case.initial is not None:  # it leans in the plane that holds it
@@ -62,16 +62,17 @@ def simulate(
             run = _with_settings(case, rw.Run(engine, support, time_step), setting, model)
             require_feasible([case], [run])
             rc.require_runnable(case, run)
-        for line in (*describe(case), *time_needed([case], [run])):
-            print(line)
-        job = rc.Job(case=case, run=run)
-        trace, until = _run(job)
-        from ..pages.runs.run import run_page
-
-        answer = restated(context, "advise", also=("support",))
-        made, files = _results(job, trace, {"until": until, "answer": answer})
-        show_and_write(out, run_page(trace, made), made, {}, files)
-    if trace.outcome == "failed":
+        for line in time_needed([case], [run]):
+            print(line, file=sys.stderr)
+        with user_input(), shown_progress() as tell:
+            found = single_run(
+                case, run, answer=restated(context, "advise", also=("support",)), progress=tell
+            )
+        if not len(found.trace.time):
+            complain(f"{run} left no result: {remarks(found.trace.facts)}")
+            raise typer.Exit(FAILED)
+        show_and_save(found, out)
+    if found.trace.outcome == "failed":
         raise typer.Exit(FAILED)
 
 
@@ -87,57 +88,3 @@ def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model:
         raise ValueError(f"{min(twice)} is given twice, by an option and by --set")
     (whole,) = rc.with_settings(case, [run], settings(setting) | model)
     return whole
-
-
-def _run(job: rc.Job) -> tuple[rw.Trace, float]:
-    """Return the trace, and until when it is reproducible [s], by copies of its reduced model."""
-    from rockwobble.compare.comparison.prediction import nudged, reproducible_until
-
-    from ..pages.words.diagnostics import remarks
-
-    model = job.run if job.run.engine is None else rc.own_model(job.run)
-    cases = [*([job.case] if model != job.run else []), *nudged(job.case)]
-    beside = [rc.Job(case=case, run=model, label=f"copy of the {model}") for case in cases]
-    with user_input(), shown_progress() as tell:
-        # in a process of its own, so that Ctrl-C also stops an engine in the middle of a long call
-        trace, *others = rc.simulate_all([job, *beside], workers=2, progress=tell)
-    if not len(trace.time):
-        complain(f"{job.label} left no result: {remarks(trace.facts)}")
-        raise typer.Exit(FAILED)
-    *own, first, second = [*([trace] if model == job.run else []), *others]
-    known = all(len(each.time) for each in (*own, first, second))
-    return trace, reproducible_until(own[0], (first, second)) if known else math.inf
-
-
-def _results(job: rc.Job, trace: rw.Trace, single: dict[str, Any]) -> tuple[Manifest, dict[str, bytes]]:
-    """Return what made a run, and its files of data."""
-    from rockwobble.compare.runs.execution import job_fingerprint
-    from rockwobble.compare.storage.manifest import made_now
-    from rockwobble.models.traces.trace_file import COLUMNS, PASS_COLUMNS, case_to_plain, packed
-
-    case, found = case_to_plain(job.case), trace.to_plain()
-    motion = job.case.motion
-    about = {
-        "run": job.label,
-        "case": case | {"motion": motion and {"name": motion.name, "time_step": motion.time_step}},
-        "result": {
-            key: value for key, value in found.items() if key not in ("rest_intervals", "extrema", "passes")
-        },
-        "single_trace": single,
-        "columns": {"run.csv": COLUMNS, "passes.csv": PASS_COLUMNS},
-    }
-    headline: dict[str, float | int | str | None] = {
-        "outcome": trace.outcome,
-        "peak tilt [alpha]": trace.peak_tilt / trace.case.cylinder.alpha,
-        "uplift [s]": trace.uplift_time,
-        "passes": len(trace.passes),
-    }
-    files = {
-        "run.parquet": packed(trace.to_frame(), trace.to_plain(), trace.case),
-        "run.csv": trace.to_frame().to_csv(index=False).encode(),
-        "passes.csv": trace.passes.to_csv(index=False).encode(),
-    }
-    made = made_now(
-        "run", inputs=job_fingerprint(job), command=command_line(), headline=headline, about=about
-    )
-    return made, files

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import rockwobble as rw
-from rockwobble.compare.comparison.error_budget import COVERED
+from rockwobble.compare.comparison.budget import COVERED
 
 from ..pages.words.sentences import lines
 

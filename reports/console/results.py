@@ -50,15 +50,15 @@ def show_and_write(
         write_results(out, manifest, tables, files=files, pages=pages)
     page.show()
     names = [MANIFEST, *(f"{name}.parquet" for name in tables), *(files or ()), *pages]
-    print(f"\nWritten to {out}: {', '.join(names)}")
+    print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")
 
 
-def show_and_save(found: Results, out: Path) -> None:
-    """Write results with their page; then print the page."""
-    save_with_page(found, out)()
+def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
+    """Write results with their page; then print the page, with what is folded where `details` are wanted."""
+    save_with_page(found, out, details=details)()
 
 
-def save_with_page(found: Results, out: Path) -> Callable[[], None]:
+def save_with_page(found: Results, out: Path, *, details: bool = False) -> Callable[[], None]:
     """Write results with their page, and return what prints the page."""
     from ..pages.registry import page_of
     from .terminal import command_line
@@ -70,8 +70,8 @@ def save_with_page(found: Results, out: Path) -> Callable[[], None]:
         found.save(out, pages=pages)
 
     def show() -> None:
-        page.show()
+        page.show(details=details)
         names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
-        print(f"\nWritten to {out}: {', '.join(names)}")
+        print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")
 
     return show

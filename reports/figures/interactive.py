@@ -10,7 +10,7 @@ from .heat import Heat
 from .interactive_heat import add_heat, small
 from .palette import DARK
 from .picture import MOST_ENTRIES, Axis, Band, Bars, Line, Panel, Picture, Rule, Text
-from .thinning import kept_points
+from .thinning import POINTS, kept_points
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -68,7 +68,7 @@ def _figure(panel: Panel, picture: Picture) -> go.Figure:
     shown: set[str] = set()  # names in the legend
     for layer in panel.layers:
         if isinstance(layer, Line):
-            _line(drawn, layer, panel, shown)
+            _line(drawn, layer, panel, shown, picture.points)
         elif isinstance(layer, Band):
             _band(drawn, layer, shown)
         elif isinstance(layer, Bars):
@@ -128,9 +128,9 @@ def _entry(name: str, shown: set[str]) -> dict[str, Any]:
     return {"name": name, "legendgroup": name, "showlegend": first}
 
 
-def _line(drawn: go.Figure, line: Line, panel: Panel, shown: set[str]) -> None:
-    keep = kept_points(line.x, line.y)
+def _line(drawn: go.Figure, line: Line, panel: Panel, shown: set[str], points: int) -> None:
     style = line.style
+    keep = kept_points(line.x, line.y, points=POINTS if style.dash == "none" else points)
     symbol: str | list[str] = style.symbol or "circle"
     if style.symbol and line.filled is not True:
         filled = np.broadcast_to(line.filled, line.x.shape)[keep]
@@ -138,19 +138,20 @@ def _line(drawn: go.Figure, line: Line, panel: Panel, shown: set[str]) -> None:
     modes = [*([] if style.dash == "none" else ["lines"]), *(["markers"] if style.symbol else [])]
     notes = [line.notes[place].replace("\n", "<br>") for place in keep] if line.notes else None
     hover = f"%{{y:.4~g}}{_unit(panel.y)} at %{{x:.4~g}}{_unit(panel.x)}"
+    marker = {"symbol": symbol, "color": style.colour, "size": 1.6 * line.size, "line": {"width": 1.0}}
     drawn.add_scatter(
         x=small(line.x[keep]),
         y=small(line.y[keep]),
         mode="+".join(modes),
         line={
             "color": style.colour,
-            "dash": "solid" if style.dash == "none" else style.dash,
+            "dash": None if style.dash in ("none", "solid") else style.dash,
             "width": line.width,
-            "shape": "hv" if line.steps else "linear",
+            "shape": "hv" if line.steps else None,
         },
-        marker={"symbol": symbol, "color": style.colour, "size": 1.6 * line.size, "line": {"width": 1.0}},
-        opacity=line.opacity,
-        cliponaxis=line.clip,
+        marker=marker if style.symbol else None,
+        opacity=None if line.opacity == 1.0 else line.opacity,
+        cliponaxis=None if line.clip else False,
         text=notes,
         hovertemplate=hover + ("<br>%{text}" if notes else ""),
         **_entry(line.name, shown),

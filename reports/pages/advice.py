@@ -1,82 +1,288 @@
-"""Values for the page of an advice: its words are in the template advice.md.j2."""
+"""Values for the page of an advice: its sentences are in the template advice.md.j2."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
-import pandas as pd
-
-from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y
+from rockwobble.compare.comparison.prediction import BEATEN
+from rockwobble.compare.metrics.order_statistics import FEWEST
+from rockwobble.compare.studies.advice.advice import Advice
+from rockwobble.compare.studies.advice.grades import BROKEN, GRADES, NEAR, SENSITIVE, UNSAFE, Grade
+from rockwobble.compare.studies.advice.members import COPIES, SPIKES
+from rockwobble.compare.studies.advice.scales import planar_shares
+from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.tables import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT
-from rockwobble.models.diagnostic import CODES
+from rockwobble.models.diagnostic import CODES, parted
+from rockwobble.models.support import support_named
+from rockwobble.multibody import DEFAULT_ENGINE
+from rockwobble.reduced.body import restitution_from_momentum
 
-from ..figures.advice import GROUPS, SHORT, advice_pictures
+from ..figures.advice import pictures
 from .page import Page
-from .words.criteria import CRITERIA
+from .table import number
+
+_STANDS: Mapping[Grade, str] = {
+    "satisfied": "it stands",
+    "not tested": "it stands, its margin is not tested",
+    "caution": "it may overturn",
+    "not satisfied": "it is not safe against overturning",
+}
+_USE: Mapping[Grade, str] = {
+    "satisfied": "the {} may be used",
+    "not tested": "whether the {} may be used is not tested",
+    "caution": "use the {} with caution",
+    "not satisfied": "do not rely on the {}",
+}
+_FEW = f"fewer than {FEWEST} runs that differ"
+_BRIEFLY = f"for at most {100 * BROKEN:g} % of the time in motion"
+# topic: the criterion of each of `GRADES`
+CRITERIA: Mapping[str, Mapping[Grade, str]] = {
+    topic: dict(zip(GRADES, criteria, strict=True))
+    for topic, criteria in {
+        "overturning": (
+            f"no run overturns, nor any scale up to {NEAR:g} times this shaking",
+            "no run overturns, but no other scales of this shaking were run",
+            f"at most {100 * UNSAFE:g} % of a group overturn, or a scale below {NEAR:g} does",
+            f"the case as given overturns, or more than {100 * UNSAFE:g} % of a group",
+        ),
+        "friction": (
+            "the friction given suffices in 95 % of all runs",
+            _FEW,
+            f"not given, or too little {_BRIEFLY}",
+            "too little for longer, or below b/h: it slides before it uplifts",
+        ),
+        "contact": (
+            "never lost in 95 % of all runs",
+            _FEW,
+            f"lost {_BRIEFLY}",
+            "lost for longer: the models do not know flight",
+        ),
+        "trace": (
+            "the largest tilt comes before two methods, or the copies, diverge",
+            "the copies are all one run",
+            "the largest tilt comes after methods or copies diverge: trust statistics",
+            "the run failed",
+        ),
+        "intensity": (
+            f"12 % more or less shaking changes the tilt by less than {SENSITIVE:g} times",
+            "no other scales of this shaking were run",
+            f"12 % more or less shaking changes the tilt by {SENSITIVE:g} times, or overturns",
+            "never: the percentiles say it",
+        ),
+        "engine": (
+            "agrees with the model as long as predicted, and to the same end",
+            f"not run, failed, agrees {BEATEN:g} times as long as predicted, or hardly any motion",
+            "comes to another end, or stays at rest where the model moves",
+            "diverges earlier than half of what is predicted",
+        ),
+    }.items()
+}
+_GROUPS = {
+    "copies": "copies, {} off",
+    "acceleration": "records, same PGA",
+    "velocity": "records, same PGV",
+}
+_DEMANDS = {
+    "friction": "friction",
+    "shear": "shear at the base",
+    "top_friction": "friction under the slab",
+    "top_shear": "shear under the slab",
+    "moment": "moment about the vertical",
+    "wall_force": "its force on a wall",
+}
+_ENDS = {
+    "methods": "reduced model and engine diverge",
+    "data": "copies are spread over half of the peak tilt",
+}
+_PREDICTED = {
+    "": "nothing ends it before",
+    "pass": "a pass comes closer to upright than contact resolves",
+    "growth": "near-upright passes have multiplied the error of an engine's step",
+    "model form": "the reduced models of the two supports diverge",
+}
+_DIVERGENCE = {
+    "never, as predicted": "as predicted",
+    "in time": "as predicted",
+    "later": "longer than predicted",
+    "much later": "more than ten times as long as predicted, which tests nothing",
+    "too little motion": "the model's tilt hardly changes, which tests nothing",
+    "earlier": "less than half as long as predicted: rely on neither before you know why",
+}
+Row = dict[str, object]
 
 
-def advice_page(tables: Mapping[str, pd.DataFrame], manifest: Manifest) -> Page:
-    """Return the page of an advice, from its tables and its manifest alone."""
-    facts = manifest.about["advice"]
-    pictures = advice_pictures(facts, tables)
-    values = {**advice_values(facts), "about": manifest, "drawn": bool(pictures)}
-    return Page(name="advice", template="advice", values=values, pictures=pictures)
+def page_of(found: Advice) -> Page:
+    """Return the page of an advice."""
+    drawn = list(pictures(found))
+    facts, grades = found.facts, found.grades
+    values = {
+        **facts,
+        "found": found,
+        "about": found.manifest,
+        "drawn": bool(drawn),
+        "engine": DEFAULT_ENGINE,
+        "verdict": _verdict(found),
+        "meanings": [CODES[code][1] for code in found.response["diagnostics"]],
+        "criteria": [
+            {"topic": topic, "grade": grade, "criterion": CRITERIA[topic][grade], **CRITERIA[topic]}
+            for topic, grade in grades.items()
+        ],
+        "grades": grades,
+        "runs": list(_runs(found)),
+        "demanded": list(_demanded(found)),
+        "groups": _groups(found),
+        "checks": list(_checks(found)),
+        "shares": planar_shares(found.planar) if len(found.planar) else [],
+        "loss": 1.0 - restitution_from_momentum(found.cylinder),
+        "holds": support_named(facts["support"]),
+        "slips": found.groups["slip_95"].max() if len(found.groups) else math.nan,
+        "lost": found.groups["lost_95"].max() if len(found.groups) else math.nan,
+    }
+    return Page(name="advice", template="advice", values=values, pictures=drawn)
 
 
-def stored_page(results: Results) -> Page:
-    """Return the page of the advice that is stored.
-
-    Raises
-    ------
-    ValueError
-        If a version made it that graded otherwise.
-    """
-    if "bound" not in results.manifest.about["advice"]:
-        raise ValueError(f"{results.folder} holds grades by other criteria: run its command again")
-    names = ("members", "band", "scales", "trace", "engine")
-    return advice_page({name: results.table(name) for name in names}, results.manifest)
+def _verdict(found: Advice) -> str:
+    if found.response["outcome"] == "failed":
+        return f"no advice, the {found.facts['model']} failed"
+    if not found.moves:
+        return "the cylinder stays at rest"
+    stands = "it overturns as given" if found.overturned else _STANDS[found.grades["overturning"]]
+    return f"{stands}; {_USE[found.model_grade].format(found.facts['model'])}"
 
 
-def advice_values(facts: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of the template of an advice, from `Advice.facts`."""
-    b, h, alpha = facts["b"], facts["h"], facts["alpha"]
+def _groups(found: Advice) -> list[dict[str, Any]]:
+    off = number(found.facts["perturbation"], "percent")
+    named = found.groups.assign(name=[_GROUPS[group].format(off) for group in found.groups.get("group", [])])
+    return [{str(key): value for key, value in row.items()} for row in named.to_dict("records")]
 
-    def moved(tilt: float) -> dict[str, float]:
-        """Displacement of the centre of the top and uplift of the rim [m]; infinite where it overturns."""
-        if not math.isfinite(tilt):
-            return {"top": tilt, "rim": tilt}
-        theta = tilt * alpha
-        return {
-            "top": b * (1.0 - math.cos(theta)) + 2.0 * h * math.sin(theta),
-            "rim": 2.0 * b * math.sin(theta),
+
+def _runs(found: Advice) -> Iterator[Row]:
+    """Rows of the three numbers: as given, and the median and 95th percentile of each group."""
+    alpha = math.degrees(found.cylinder.alpha)
+    given = math.inf if found.overturned else found.peak
+    yield {
+        "name": "as given",
+        "tilt_50": alpha * given,
+        "top_50": found.top(given),
+        "overturned": "yes" if found.overturned else "no",
+    }
+    for row in _groups(found):
+        low, high = (number(100.0 * row[f"chance_{end}"], ".2g") for end in ("low", "high"))
+        chance = f"{number(row['chance'], 'percent')} ({low} to {high} %)"
+        yield {
+            "name": row["name"],
+            **{f"tilt_{share}": alpha * row[f"peak_tilt_{share}"] for share in ("50", "95")},
+            **{f"top_{share}": found.top(row[f"peak_tilt_{share}"]) for share in ("50", "95")},
+            "overturned": f"{row['overturned']} of {row['runs'] - row['failed']}",
+            "chance": "one run" if math.isnan(row["chance"]) else chance,
         }
 
-    groups = []
-    for row in facts["answers"]:
-        name = "copies of this release" if facts["released"] else GROUPS[row["group"]]  # it has no others
-        group = {**row, "name": name, "short": SHORT[row["group"]]}
-        for share in ("05", "50", "95"):
-            group |= {f"{name}_{share}": value for name, value in moved(row[f"peak_tilt_{share}"]).items()}
-        groups.append(group)
-    planar = [each["factor"] for name, each in facts["lowest"].items() if name in (PLANAR_X, PLANAR_Y)]
-    known = [factor for factor in planar if math.isfinite(factor)]
-    return {
-        **facts,
-        "given": moved(facts["peak"]) if facts["moves"] and not facts["overturned"] else None,
-        "groups": groups,
-        "spread": [group for group in groups if not math.isnan(group["friction_95"])],
-        "here": next((row for row in facts["planar"] if row["scale"] == 1.0), None),
-        "planar_lowest": min(known) if known else math.nan,
-        "space": facts["lowest"].get("3d"),
-        "meanings": [CODES[code][1] for code in facts["failure"]],
-        "criteria": [
-            {"topic": topic, "grade": grade, **CRITERIA[topic]} for topic, grade in facts["grades"].items()
-        ],
-        "agreement": AGREEMENT,
-        "tolerance": CHECK_RTOL,
-        "nudge": NUDGE,
-    }
+
+def _demanded(found: Advice) -> Iterator[Row]:
+    """Rows of the design demands, as a designer enters them."""
+    values = dict(zip(found.demands["demand"], found.demands["value"], strict=True))
+    for row in found.demands.to_dict("records"):
+        name, unit, tonne = row["demand"], row["unit"], row["per_tonne"]
+        if name in _DEMANDS:
+            kilo = "" if math.isnan(tonne) else f"{number(tonne)} {'kNm' if name == 'moment' else 'kN'}"
+            value = number(row["value"]) + ("" if unit == "-" else f" {unit}")
+            yield {"name": _DEMANDS[name], "value": value, "per_tonne": kilo}
+    if "clearance" in values:
+        tilt = number(math.degrees(values["tilt"] * found.cylinder.alpha))
+        for name, part in ((f"wall height, tilt {tilt}°", "wall_height"), ("wall clearance", "clearance")):
+            yield {"name": name, "value": f"{number(1e3 * values[part])} mm", "per_tonne": ""}
+
+
+def _checks(found: Advice) -> Iterator[Row]:
+    """Rows of what the grades rest on."""
+    if not found.moves:
+        return
+    response, groups, copies = found.response, found.groups, found.members
+    copies = copies[(copies["group"] == COPIES) & (copies["outcome"] != "failed")]
+    if response["uplift_time"] > 0.0:
+        yield _check("uplift", f"{number(response['uplift_time'], '.4g')} s")
+    below = f"{number((copies['peak_tilt'] < found.peak).mean(), 'percent')} of the copies tilt less"
+    name = "fall" if found.overturned else "largest tilt"
+    yield _check(name, f"{number(response['peak_time'], '.4g')} s", below if found.copies_differ else "")
+    yield from _agreement(found)
+    yield from _scales(found)
+    yield from _ratios(found)
+    spike = response["largest_normal_force"]
+    if len(groups) and spike > groups["force_95"].max():
+        briefly = f"for less than {number(SPIKES, 'percent')} of its time: rigid contact, no design load"
+        yield _check("largest normal force as given", f"{number(spike)} weights", briefly)
+
+
+def _check(name: str, value: str, note: str = "") -> Row:
+    return {"name": name, "value": value, "note": note}
+
+
+def _agreement(found: Advice) -> Iterator[Row]:
+    trust, prediction, engine = found.trust, found.facts["prediction"], found.verification
+    until, note = "its end", ""
+    if trust.kind != "trace":
+        until, note = f"{number(trust.until, '.4g')} s", f"then {_ENDS[trust.because]}"
+    yield _check("the trace can be trusted until", until, note)
+    reason, tolerance = prediction["reason"], min(AGREEMENT, found.response["tolerance"])
+    end = found.response["uplift_time"] + prediction["length"]
+    until = f"{number(end, '.4g')} s" if reason else "the end"
+    name = f"model and engine agree within {number(tolerance)} α, predicted, until"
+    yield _check(name, until, _PREDICTED[reason])
+    if engine is None:
+        return
+    method = f"{engine.label} {engine.version}, step {number(engine.time_step)} s, agrees until"
+    if engine.outcome == "failed":
+        failure = "; ".join(CODES[code][1] for code in parted(engine.diagnostics))
+        yield _check(method, "failed", failure)
+        return
+    until = f"{number(engine.agreed_until, '.4g')} s" if engine.diverged else "the end"
+    tilt = f"largest tilt {number(engine.peak_tilt)} α" if engine.moves else "it stays at rest"
+    tilt = "it overturns" if engine.outcome == "overturned" else tilt
+    yield _check(method, until, f"{_DIVERGENCE[engine.divergence]}; {tilt}")
+
+
+def _scales(found: Advice) -> Iterator[Row]:
+    low, high = found.beside
+    if not math.isnan(low) and not found.overturned:
+        span = f"{number(low)} to {number(high)} α"
+        yield _check(
+            "largest tilt for 12 % more or less shaking", span, "∞: overturns" if math.isinf(high) else ""
+        )
+    lowest = found.lowest.set_index("series")
+    if not len(lowest):
+        return
+    name, factor, notes = "lowest scale found to overturn", found.lowest_factor, []
+    if math.isnan(factor):
+        notes = [f"up to {number(found.scales['factor'].max())} times; gaps may lie between the scales run"]
+    elif not lowest["confirmed"][SPATIAL]:
+        notes = [
+            f"by chance: it stands at a tolerance of {number(CHECK_RTOL)} or perturbed by {number(NUDGE)}"
+        ]
+    if factor < 1.0 and not found.overturned:
+        notes = ["as given it stands in a gap", *notes]
+    yield _check(name, "none" if math.isnan(factor) else number(factor), "; ".join(notes))
+    planar = float(lowest["factor"].reindex([PLANAR_X, PLANAR_Y]).min())
+    if not math.isnan(planar):
+        yield _check("the same by planar analysis of each component", number(planar))
+
+
+def _ratios(found: Advice) -> Iterator[Row]:
+    """Rows of the largest tilts of copies by one of two ways over those by the other."""
+    facts, vertical = found.facts, found.facts["vertical"]
+    flat = "recess" in support_named(facts["support"]).compared_with[-1:]
+    other = "tilt on flat ground over that here" if flat else "tilt in an ideal recess over that here"
+    shaken = "tilt with vertical shaking over that without"
+    if vertical and not vertical["given"]:
+        shaken += f" ({vertical['record']} as strong)"
+    for name, ratios in ((other, facts["other_support"]), (shaken, vertical)):
+        if ratios is None:
+            continue
+        note = f"of {ratios['count']} copies {ratios['higher']} tilt more, {ratios['lower']} less"
+        if not math.isnan(ratios["ratio"]):
+            note = f"{number(ratios['low'])} to {number(ratios['high'])} (95 %); {note}"
+        fell = ratios["overturned"], ratios["against_overturned"]
+        note += f"; {fell[0]} of {ratios['members']} overturn, {fell[1]} otherwise" if any(fell) else ""
+        yield _check(name, number(ratios["ratio"]), note)

@@ -2,7 +2,9 @@
 
 A template is given plain values and says the words. In it stand ``{{ picture("name") }}``,
 ``{{ table(rows, [["key", "heading [unit]", ".3g"], ...]) }}`` and ``{{ block("name") }}``, each alone in a
-paragraph; numbers in sentences are ``{{ value | number(".3g") }}``, commands ``{{ command | code }}``.
+paragraph; numbers in sentences are ``{{ value | number(".3g") }}``, commands ``{{ command | code }}``. What
+stands between ``{{ fold("Details") }}`` and ``{{ fold() }}`` is opened where a page is read, under a heading
+in a document, and left out of a terminal unless details are asked for.
 `output` is "terminal", "markdown" or "html" where one of the three is to say more or less, and
 `shows("key")` whether a table above has room for a column that a legend is to explain.
 """
@@ -29,6 +31,7 @@ from .table import Row, Table, columns_of, number
 from .words.sentences import environment
 
 Output = Literal["terminal", "markdown", "html"]
+SCRIPT = "plotly.min.js"
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")
 # what Markdown would take for markup in a name; an underscore only where a word begins or ends
 _MARKUP = re.compile(r"([\\`*<])|(?<!\w)_|_(?!\w)")
@@ -39,6 +42,16 @@ class Safe(str):
     """Text that is Markdown already."""
 
     __slots__ = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Fold:
+    """Beginning of the details under a title, or their end, which has none."""
+
+    title: str
+
+
+Part = str | Picture | Table | Safe | Fold
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -71,12 +84,20 @@ class Page:
     blocks: Mapping[str, str] = field(default_factory=dict)
     outputs: Sequence[Output] = ("markdown", "html")
 
-    def files(self) -> dict[str, bytes]:
-        """Return the files by name: NAME.md with its pictures as SVG beside it, and NAME.html."""
-        texts = {"markdown": ("md", self.markdown), "html": ("html", self.html)}
-        titled = self.alone is not None
+    def files(self, *, shared_script: bool = False) -> dict[str, bytes]:
+        """Return the files by name: NAME.md with its pictures as SVG beside it, and NAME.html.
+
+        With `shared_script`, what draws in a browser is a file of its own, which the pages of a folder share.
+        """
+        titled, texts = self.alone is not None, {}
+        if "markdown" in self.outputs:
+            texts[f"{self.name}.md"] = self.markdown()
+        if "html" in self.outputs:
+            texts[f"{self.name}.html"] = self.html(shared_script=shared_script)
+            if shared_script:
+                texts[SCRIPT] = _script()
         return {
-            **{f"{self.name}.{texts[output][0]}": texts[output][1]().encode() for output in self.outputs},
+            **{name: text.encode() for name, text in texts.items()},
             **{
                 f"{picture.name}.svg": svg(picture, titled=titled)
                 for picture in self.pictures
@@ -87,21 +108,19 @@ class Page:
     def markdown(self) -> str:
         """Return the document."""
 
-        def shown(thing: Picture | Table | Safe) -> str:
+        def shown(thing: Part) -> str:
+            if isinstance(thing, Fold):
+                return thing.title and f"## {thing.title}"
             if isinstance(thing, Picture):
                 caption = f"*{thing.title}.* {thing.caption}".strip()
                 return f"![{thing.title}]({thing.name}.svg)\n\n{caption}"
             return thing.markdown() if isinstance(thing, Table) else ""
 
-        return (
-            "\n\n".join(part if isinstance(part, str) else shown(part) for part in self._parts("markdown"))
-            + "\n"
-        )
+        parts = (part if isinstance(part, str) else shown(part) for part in self._parts("markdown"))
+        return "\n\n".join(filter(None, parts)) + "\n"
 
-    def html(self) -> str:
-        """Return the page, which needs nothing else."""
-        from plotly.offline import get_plotlyjs
-
+    def html(self, *, shared_script: bool = False) -> str:
+        """Return the page, which needs nothing else, or nothing but the `shared_script` beside it."""
         parts = self._parts("html")
         body = "\n".join(_html(part) for part in parts)
         title = re.search(r"<h1.*?>(.*?)</h1>", body)
@@ -112,29 +131,39 @@ class Page:
             .render(
                 title=re.sub("<.*?>", "", title[1]) if title else self.name,
                 body=body,
-                plotly_js=get_plotlyjs() if drawn else "",
+                drawn=drawn,
+                script="" if shared_script or not drawn else _script(),
+                script_file=SCRIPT,
             )
         )
 
-    def show(self, console: Console | None = None) -> None:
-        """Print the report in a terminal: its words and tables."""
+    def show(self, console: Console | None = None, *, details: bool = False) -> None:
+        """Print the report in a terminal: its words and tables, what is folded only with `details`."""
         console = console or Console()
         if not console.is_terminal:
             console.width = max(console.width, _LEAST_WIDTH)
+        folded = after_table = False
         for part in self._parts("terminal", console.width):
-            if isinstance(part, Table):
+            if isinstance(part, Fold):
+                folded = bool(part.title) and not details
+            elif folded:
+                continue
+            elif isinstance(part, Table):
+                if after_table:
+                    console.print()
                 console.print(part.rich(console.width))
             elif isinstance(part, str) and not isinstance(part, Safe):
                 console.print(Markdown(part), highlight=False)
                 console.print()
+            after_table = isinstance(part, Table)
 
-    def _parts(self, output: Output, width: int = 0) -> list[str | Picture | Table | Safe]:
-        """Return the rendered template, cut where a picture, a table or a block stands."""
-        things: list[Picture | Table | Safe] = []
+    def _parts(self, output: Output, width: int = 0) -> list[Part]:
+        """Return the rendered template, cut where a picture, a table, a block or a fold stands."""
+        things: list[Part] = []
         keys: set[str] = set()
         pictures = {picture.name: picture for picture in self.pictures}
 
-        def place(thing: Picture | Table | Safe) -> Safe:
+        def place(thing: Part) -> Safe:
             things.append(thing)
             return Safe(f"@@{len(things) - 1}@@")
 
@@ -157,6 +186,7 @@ class Page:
                     "picture": lambda name: place(pictures[name]),
                     "block": lambda name: place(Safe(self.blocks[name])) if output == "html" else "",
                     "table": table,
+                    "fold": lambda title="": place(Fold(title)),
                     "shows": keys.__contains__,
                 }
             )
@@ -170,7 +200,16 @@ class Page:
         ]
 
 
-def _html(part: str | Picture | Table | Safe) -> str:
+def _script() -> str:
+    from plotly.offline import get_plotlyjs
+
+    return str(get_plotlyjs())
+
+
+def _html(part: Part) -> str:
+    if isinstance(part, Fold):
+        summary = f'<details class="fold"><summary>{html.escape(part.title)}</summary>'
+        return summary if part.title else "</details>"
     if isinstance(part, Picture):
         panels = "".join(
             f"<div>{f'<h4>{html.escape(title)}</h4>' if title else ''}{plot}</div>"

@@ -51,7 +51,8 @@ def _percent(share: float) -> str:
 
 
 def _short(text: str) -> str:
-    """Return 1e-7 for 1e-07, which is how a computer writes it."""
+    """Return 1e-7 for 1e-07 and 0.00 for -0.00, which is how a computer writes them."""
+    text = re.sub(r"^-(?=0[0.]*(e|$))", "", text)
     return re.sub(r"e([+-])0*(\d)", lambda m: f"e{m[1].replace('+', '')}{m[2]}", text)
 
 
@@ -134,12 +135,18 @@ class Table:
             body = "".join(self._html_row(cells) for cells in rows)
             if self.folded:
                 parts.append(
-                    f"<details><summary>{html.escape(name)}</summary>{_scrolled(heads, body)}</details>"
+                    f"<details><summary>{html.escape(name)}</summary>{self._scrolled(heads, body)}</details>"
                 )
             else:
                 span = f'<tr class="group"><th colspan="{len(self.columns)}">{html.escape(name)}</th></tr>'
                 parts.append(f"<tbody>{span if name else ''}{body}</tbody>")
-        return "\n".join(parts) if self.folded else _scrolled(heads, "".join(parts))
+        return "\n".join(parts) if self.folded else self._scrolled(heads, "".join(parts))
+
+    def _scrolled(self, heads: str, body: str) -> str:
+        # words alone break where a phone has no room
+        words = ' class="words"' if all(column.text for column in self.columns) else ""
+        table = f"<table{words}><thead><tr>{heads}</tr></thead>{body}</table>"
+        return f'<div class="scroll" tabindex="0">{table}</div>'
 
     def _html_row(self, cells: Sequence[str]) -> str:
         found = []
@@ -150,20 +157,24 @@ class Table:
         return f"<tr>{''.join(found)}</tr>"
 
     def shown(self, width: int) -> Sequence[Column]:
-        """Return the columns that a terminal of so many columns shows: what is wide only if it has room."""
-        from rich.console import Console
-
-        narrow = [column for column in self.columns if not column.wide]
-        if len(narrow) == len(self.columns):
-            return self.columns
-        needed = Console(width=10_000).measure(self._rich(self.columns)).maximum
-        return self.columns if needed <= width else narrow
+        """Return the columns for which a terminal of this width has room: the last wide ones go first."""
+        columns = list(self.columns)
+        while self._needed(columns, stacked=True) > width and any(column.wide for column in columns):
+            columns.remove(next(column for column in reversed(columns) if column.wide))
+        return columns
 
     def rich(self, width: int) -> RichTable:
         """Return the table for a terminal of so many columns."""
-        return self._rich(self.shown(width))
+        columns = self.shown(width)
+        return self._rich(columns, stacked=self._needed(columns) > width)
 
-    def _rich(self, columns: Sequence[Column]) -> RichTable:
+    def _needed(self, columns: Sequence[Column], *, stacked: bool = False) -> int:
+        from rich.console import Console
+
+        return Console(width=10_000).measure(self._rich(columns, stacked=stacked)).maximum
+
+    def _rich(self, columns: Sequence[Column], *, stacked: bool = False) -> RichTable:
+        """Return the table, `stacked` with one word of a heading above the next."""
         from rich import box
         from rich.table import Table as RichTable
         from rich.text import Text
@@ -171,7 +182,7 @@ class Table:
         table = RichTable(box=box.SIMPLE_HEAD, padding=0, pad_edge=False, show_edge=False)
         for column in columns:
             # as a text, because brackets are markup; the unit in a line of its own
-            heading = Text(column.heading.replace(" [", "\n["))
+            heading = Text(column.heading.replace(" " if stacked else " [", "\n" if stacked else "\n["))
             table.add_column(heading, justify="left" if column.text else "right", overflow="fold")
         kept = [self.columns.index(column) for column in columns]
         for name, rows in self.groups():
@@ -191,8 +202,3 @@ def columns_of(given: Iterable[Sequence[str]]) -> list[Column]:
 
 def _class(column: Column) -> str:
     return ' class="words"' if column.text else ""
-
-
-def _scrolled(heads: str, body: str) -> str:
-    table = f"<table><thead><tr>{heads}</tr></thead>{body}</table>"
-    return f'<div class="scroll" tabindex="0">{table}</div>'

@@ -11,16 +11,17 @@ import pytest
 
 from rockwobble import multibody, reduced
 from rockwobble.compare import compare
-from rockwobble.compare.comparison.error_budget import (
+from rockwobble.compare.comparison.budget import (
     LARGEST_SHARE,
     WORTH_EXPLAINING,
     ErrorBudget,
     Limit,
+    Refined,
     error_budget,
     extrapolated,
     findings,
+    limits,
 )
-from rockwobble.compare.comparison.refinement import Refined, limits
 from rockwobble.compare.metrics.agreement import Agreement
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Suite
 from rockwobble.models.traces.lost_trace import lost_trace

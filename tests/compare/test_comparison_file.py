@@ -94,7 +94,7 @@ def test_the_tables_say_what_made_them(saved, tmp_path):
 
 
 def test_the_manifest_has_the_main_numbers(saved, tmp_path):
-    saved[0].save(tmp_path, command="rockwobble compare", pages={"report.md": b"# Report"})
+    saved[0].made_by("rockwobble compare").save(tmp_path, pages={"report.md": b"# Report"})
     made = read_results(tmp_path, "comparison").manifest
     assert made.headline["rows"] == len(saved[0].summary)
     assert made.headline["largest relative RMS"] == saved[0].summary["tilt_rms_relative"].max()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from rockwobble.compare.comparison.matrix import MATRIX_COLUMNS, agreement_matrix
+from rockwobble.compare.comparison.summary import MATRIX_COLUMNS, agreement_matrix
 from rockwobble.models import Case, InitialState, Run
 from rockwobble.reports.pages.comparison.tables import matrix_tables
 
@@ -62,8 +62,8 @@ def test_the_table_has_a_row_and_a_column_for_each(matrix) -> None:
     assert [heading for _, heading, _ in table["columns"]] == ["recess", "mujoco", "dart", "model"]
     first = table["rows"][0]
     assert first["mujoco recess"] is None
-    assert str(first["dart recess"]).startswith("0.50, ")
-    assert str(first["recess model"]).startswith("1.00+, ")
+    assert str(first["dart recess"]).startswith("0.50 s, ")
+    assert str(first["recess model"]).startswith("1.00+ s, ")
 
 
 def test_many_cases_are_counted(matrix) -> None:

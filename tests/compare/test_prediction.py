@@ -9,12 +9,12 @@ from rockwobble import reduced
 from rockwobble.compare.comparison.prediction import (
     close_pass,
     estimated_error,
-    landings,
     nudged,
     predict,
     reproducible_until,
     verdict,
 )
+from rockwobble.compare.metrics.turning import landings
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, el_centro_1940
 
 TIME = np.arange(1001) * 0.01

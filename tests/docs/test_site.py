@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import html
 import os
 import re
 from html.parser import HTMLParser
@@ -13,6 +14,7 @@ from urllib.parse import unquote, urlsplit
 
 import pytest
 from browser import complaints_of_all, needs_chromium
+from fontTools.ttLib import TTFont
 
 BUILT = Path(os.environ.get("ROCKWOBBLE_SITE", Path(__file__).parents[2] / "docs" / "_build" / "html"))
 TEACHING = ("guide/", "theory/", "notebooks/", "start.html", "index.html")
@@ -99,6 +101,25 @@ def test_every_link_inside_resolves(pages: dict[str, Page]) -> None:
                 if unquote(parts.fragment) not in known:
                     broken.append(f"{name}: {link}")
     assert broken == []
+
+
+def test_nothing_outside_is_a_link_but_a_page(pages: dict[str, Page]) -> None:
+    schemes = {(name, urlsplit(link).scheme) for name, page in pages.items() for link in page.links}
+    # a page in the sense of a browser: the address of a scheduler in a text is none
+    assert {each for each in schemes if each[1] not in ("", "https", "data")} == set()
+
+
+def test_the_font_of_the_formulas_has_every_character_of_them() -> None:
+    known = set(TTFont(BUILT / "_static" / "math.woff").getBestCmap())
+    lacking = set()
+    for name in names():
+        for formula in re.findall(r"<math.*?</math>", (BUILT / name).read_text(encoding="utf-8"), re.DOTALL):
+            letters = set(html.unescape(re.sub(r"<[^>]*>", "", formula)))
+            lacking |= {
+                f"{name}: {each}" for each in letters if not each.isspace() and ord(each) not in known
+            }
+            assert 'mathvariant="bold' not in formula  # which browsers leave out
+    assert lacking == set()
 
 
 def test_no_term_is_used_before_it_is_a_link_to_the_glossary(pages: dict[str, Page]) -> None:

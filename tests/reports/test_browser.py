@@ -10,13 +10,10 @@ from test_published import WHOLE
 
 from rockwobble import compare
 from rockwobble.compare import Comparison
-from rockwobble.compare.storage.manifest import made_now
 from rockwobble.models import Case, Cylinder, InitialState
 from rockwobble.reports.pages.comparison import report
-from rockwobble.reports.pages.comparison.report import comparison_page
-from rockwobble.reports.pages.comparison.view import KIND, view_page
 from rockwobble.reports.pages.ensemble import page_of as ensemble_page
-from rockwobble.reports.pages.registry import stored_page
+from rockwobble.reports.pages.registry import page_of, stored_page
 
 # of a player: moved, it must say where it is
 PLAYER = """
@@ -53,12 +50,12 @@ def test_page_of_a_study_is_drawn(kind: str, tmp_path: Path):
 
 @needs_chromium
 def test_pages_of_a_comparison_are_drawn(comparison: Comparison, tmp_path: Path, monkeypatch):
-    assert complaints(comparison_page(comparison).html(), tmp_path, figures=15, further=PLAYER) == []
-    played = view_page(comparison, made_now(KIND))
+    assert complaints(page_of(comparison.made_by()).html(), tmp_path, figures=15, further=PLAYER) == []
+    played = page_of(comparison.of_case("El Centro 1940").made_by())
     # drawn without a graphics card, a player takes its time: the page above had it at both widths
     assert complaints(played.html(), tmp_path, figures=0, further=PLAYER, widths=["phone"]) == []
     monkeypatch.setattr(report, "SINGLY", 0)
-    assert complaints(comparison_page(comparison).html(), tmp_path, figures=7, further=CHOOSER) == []
+    assert complaints(page_of(comparison.made_by()).html(), tmp_path, figures=6, further=CHOOSER) == []
 
 
 @needs_chromium

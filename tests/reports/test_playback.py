@@ -6,12 +6,11 @@ import numpy as np
 import pytest
 
 from rockwobble.compare import compare
-from rockwobble.compare.storage.manifest import made_now
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.comparison.playback import playback
 from rockwobble.reports.figures.comparison.view import case_views
-from rockwobble.reports.pages.comparison.view import KIND, view_page
+from rockwobble.reports.pages.comparison.view import page_of
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 # a page plays in float32: seven digits of some metres
@@ -40,9 +39,9 @@ def test_the_pose_of_the_page_puts_the_mass_centre_where_the_run_has_it(comparis
         x = _numbers(body["contact_x"]) + radial * np.cos(phi)
         y = _numbers(body["contact_y"]) + radial * np.sin(phi)
         # an engine sinks in by 1e-6 m
-        np.testing.assert_allclose(x, trace.centre_of_mass[:, 0], atol=10.0 * SINGLE)
-        np.testing.assert_allclose(y, trace.centre_of_mass[:, 1], atol=10.0 * SINGLE)
-        np.testing.assert_allclose(_numbers(body["time"]), trace.time, atol=SINGLE)
+        np.testing.assert_allclose(x, trace.centre_of_mass[::2, 0], atol=10.0 * SINGLE)
+        np.testing.assert_allclose(y, trace.centre_of_mass[::2, 1], atol=10.0 * SINGLE)
+        np.testing.assert_allclose(_numbers(body["time"]), trace.time[::2], atol=SINGLE)
 
 
 def test_each_run_is_shown_with_the_model_of_its_support(comparison):
@@ -69,7 +68,7 @@ def test_nothing_is_played_where_nothing_moves():
     comparison = compare(Case(PIER, still, name="still"), runs=[Run("mujoco", "recess", 1e-3)], workers=1)
     assert playback(case_views(comparison)[0]) is None
     with pytest.raises(ValueError, match="there is nothing to play in 'still'"):
-        view_page(comparison, made_now(KIND))
+        page_of(comparison.of_case("still"))
 
 
 def test_stored_results_are_played_and_drawn_again_without_a_run(comparison, tmp_path, monkeypatch, capsys):

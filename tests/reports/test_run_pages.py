@@ -13,14 +13,14 @@ from browser import complaints_of_all, needs_chromium
 import rockwobble as rw
 import rockwobble.compare as rc
 from rockwobble.compare.runs import execution
-from rockwobble.compare.storage.manifest import made_now
+from rockwobble.compare.studies.single_run import single_run_of
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat
 from rockwobble.reports.figures.runs import sweep as figure
 from rockwobble.reports.figures.runs import trace as trace_figure
 from rockwobble.reports.pages import registry
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.runs.run import run_page
+from rockwobble.reports.pages.runs.run import page_of
 
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0)
@@ -32,10 +32,10 @@ GRID = rc.Grid(
 )
 
 
-def page_of(case: rw.Case, run: rw.Run) -> Page:
+def page_of_run(case: rw.Case, run: rw.Run) -> Page:
     settings = dict(run.settings)
     trace = rw.simulate(case, engine=run.engine, support=run.support, time_step=run.time_step, **settings)
-    return run_page(trace, made_now("run", about={"run": str(run)}))
+    return page_of(single_run_of(trace).made_by())
 
 
 def facts(page: Page) -> dict[str, str]:
@@ -52,25 +52,26 @@ def swept() -> dict[str, Page]:
 
 def test_a_run_says_what_its_method_gives_and_no_more():
     shaken = rw.Case(PIER, rw.el_centro_1940(), duration=15.0)
-    said = facts(page_of(shaken, rw.Run(None, "recess")))
-    assert said["peak tilt"] == "0.2471 α = 2.7950 deg"
+    page = page_of_run(shaken, rw.Run(None, "recess"))
+    title, opening = page.markdown().split("\n\n")[:2]
+    assert title.endswith(": stands")
+    assert "0.2471 α = 2.7950 deg" in opening
+    said = facts(page)
     assert said["uplift"] == "2.0885 s towards 121.56 deg"
-    assert (said["passes"], said["friction needed"]) == ("18", "0.221")
+    assert (said["near-upright passes"], said["friction demand"]) == ("18", "0.221")
     assert said["end"] == "15 s, moving, followed over still ground to 15.86 s"
     assert {"closest pass", "restraining moment", "computing time"} < set(said)
     assert not {"time step", "residual twist", "wall contact"} & set(said)
-    engine = facts(page_of(RELEASE, rw.Run("mujoco", "recess", 1e-3)))
+    engine = facts(page_of_run(RELEASE, rw.Run("mujoco", "recess", 1e-3)))
     assert engine["time step"] == "0.001 s"
     assert {"residual twist", "residual displacement"} < set(engine)
     assert "uplift" not in engine  # a release leans from the start
-    assert not {"wall contact", "friction needed", "restraining moment", "closest pass"} & set(engine)
+    assert not {"wall contact", "friction demand", "restraining moment", "closest pass"} & set(engine)
 
 
 def test_a_planar_run_says_in_which_plane_and_with_what_loss():
     shaken = rw.Case(PIER, rw.el_centro_1940(), duration=6.0)
-    said = facts(
-        run_page(rw.simulate(shaken, plane=-4.0, restitution=0.95), made_now("run", about={"run": ""}))
-    )
+    said = facts(page_of_run(shaken, rw.Run(None, "recess", plane=-4.0, restitution=0.95)))
     assert (said["plane"], said["restitution"]) == ("-229.18 deg", "0.95")
     assert re.fullmatch(r"\d\.\d{4} s towards 130\.82 deg", said["uplift"])
 
@@ -79,18 +80,18 @@ def test_a_run_that_falls_after_its_end_says_over_what():
     cut = rw.Case(
         rw.Cylinder(semidiagonal=2.9744, tan_alpha=0.2), rw.el_centro_1940().scaled(1.909), duration=3.93
     )
-    said = facts(page_of(cut, rw.Run(None, "recess")))
+    said = facts(page_of_run(cut, rw.Run(None, "recess")))
     assert re.fullmatch(r"8\.4\d+ s, over still ground from 3\.93 s on", said["end"])
 
 
 def test_a_run_that_fails_or_falls_says_so():
     steep = rw.Case(PIER, rw.el_centro_1940().scaled(5.0))
-    page = page_of(steep, rw.Run(None, "recess"))
-    assert facts(page)["peak tilt"].endswith("= 90.0000 deg")
-    assert facts(page)["friction needed"] == "contact lost"
-    assert "recess model: overturned\n\n**Contact is lost at 6.523 s" in page.markdown()
+    page = page_of_run(steep, rw.Run(None, "recess"))
+    assert "= 90.0000 deg; the cylinder overturns" in page.markdown()
+    assert facts(page)["friction demand"] == "contact lost"
+    assert "Contact is lost at 6.523 s" in page.markdown()
     soft = rw.Run("mujoco", "recess", contact_damping_ratio=0.01)
-    assert facts(page_of(RELEASE, soft))["peak tilt"] == "unknown: the run failed"
+    assert "its peak tilt is unknown" in page_of_run(RELEASE, soft).markdown()
 
 
 def test_a_sweep_counts_each_part(swept):
@@ -194,12 +195,12 @@ def test_a_stored_folder_draws_its_pages_again(tmp_path, monkeypatch, capsys, co
     after = {path.name: path.read_bytes() for path in (tmp_path / "made").glob("*.*")}
     assert names < set(before)
     assert after == before
-    assert "peak tilt" in capsys.readouterr().out
+    assert "eak tilt" in capsys.readouterr().out
 
 
 @needs_chromium
 def test_pages_of_runs_are_drawn(swept, tmp_path: Path):
-    pages = [page_of(RELEASE, rw.Run(None, "recess")), swept["grid"]]
+    pages = [page_of_run(RELEASE, rw.Run(None, "recess")), swept["grid"]]
     found = complaints_of_all([page.html() for page in pages], tmp_path, figures=2)
     assert found == {0: [], 1: []}
     (wrong,) = complaints_of_all([swept["cases"].html()], tmp_path, figures=1).values()

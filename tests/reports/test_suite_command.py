@@ -4,7 +4,6 @@ import dataclasses
 import math
 import re
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -14,6 +13,7 @@ from plotly.offline import get_plotlyjs
 from rockwobble import reduced
 from rockwobble.compare import Comparison, compare
 from rockwobble.compare.comparison import driver
+from rockwobble.compare.comparison.comparison import comparison_of
 from rockwobble.compare.runs import execution
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, read_suite
 from rockwobble.reports.cli.inputs.suite_choice import chosen_runs
@@ -22,7 +22,7 @@ from rockwobble.reports.pages.comparison import report
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.words.cases import describe, group_of
 
-PAGE_LIMIT = 8_000_000  # [bytes]
+PAGE_LIMIT = 2_000_000  # [bytes] beside the script that draws
 CASES = 6
 SUITE = """
 [[runs]]
@@ -123,8 +123,7 @@ def test_a_suite_is_echoed_run_summed_up_and_written(folder, no_engines, capsys)
     assert "Suite mine.suite.toml: 4 cases x 2 runs = 8 runs of engines" in out
     assert "Cases: release (4)" in out
     assert re.search(r"release\s+mujoco recess +4 +4 +100 %", out)
-    words = "8 of 8 runs stay within 1 % of alpha, and a tenth of the peak, of the model of their support"
-    assert f"{words} to the end." in " ".join(out.split())
+    assert "8 of 8 runs stay within 1 % of alpha" in " ".join(out.split())
     summary = pd.read_csv(folder / "results" / "summary.csv")
     assert summary["case"].nunique() == 4
     page = (folder / "results" / "report.html").read_text()
@@ -138,7 +137,7 @@ def test_runs_of_a_suite_that_part_are_named_the_worst_first(folder, no_engines,
     assert call("compare", "mine.suite.toml", "--engine", "mujoco", "--support", "recess") == 0
     out = capsys.readouterr().out
     assert re.search(r"release\s+mujoco recess +4 +0 +0 %", out)
-    assert "release: tan_alpha 0.1: mujoco recess agrees with the recess model until 0.00 s of 2 s" in out
+    assert re.search(r"tan_alpha 0.1 +mujoco recess +0.00 +2 ", out)
 
 
 @pytest.mark.parametrize(
@@ -223,12 +222,12 @@ def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, 
     runs = [Run(engine, support) for engine in ("mujoco", "pybullet") for support in ("recess", "flat")]
     comparison = compare(one, runs=runs, workers=1)
     # with as many points for six cases as 44 would get, all of them would fit
-    monkeypatch.setattr(report, "_ALL_POINTS", 115_000 * CASES // 44)
-    page = report.comparison_page(_repeated(comparison, CASES)).html()
+    monkeypatch.setattr(report, "_ALL_POINTS", report._ALL_POINTS * CASES // 44)
+    page = report.page_of(_repeated(comparison, CASES)).html()
     assert page.count("<template id=") == CASES
     assert page.count("Plotly.newPlot(") >= CASES * 4
     of_a_case = (len(page.encode()) - len(get_plotlyjs().encode())) / CASES
-    assert len(get_plotlyjs().encode()) + 44 * of_a_case < PAGE_LIMIT
+    assert 44 * of_a_case < PAGE_LIMIT
     assert page.count("</script>") == page.count("<script")
     assert "&lt;/script&gt;" in page
 
@@ -236,10 +235,13 @@ def test_the_page_of_many_cases_stays_small_and_draws_one_at_a_time(no_engines, 
 def _repeated(comparison: Comparison, count: int) -> Comparison:
     names = [f"</script>: copy {index}" for index in range(count)]
     (case,) = comparison.cases.values()
-    fields: dict[str, Any] = {
-        "cases": {name: dataclasses.replace(case, name=name) for name in names},
-        "summary": pd.concat([comparison.summary.assign(case=name) for name in names], ignore_index=True),
-    }
-    traces = comparison.traces.items()
-    fields["traces"] = {(name, label): trace for name in names for (_, label), trace in traces}
-    return dataclasses.replace(comparison, **fields)
+    return comparison_of(
+        pd.concat([comparison.summary.assign(case=name) for name in names], ignore_index=True),
+        cases={name: dataclasses.replace(case, name=name) for name in names},
+        traces={
+            (name, label): dataclasses.replace(trace, case=dataclasses.replace(case, name=name))
+            for name in names
+            for (_, label), trace in comparison.traces.items()
+        },
+        versions=comparison.versions,
+    ).made_by()

@@ -1,26 +1,32 @@
-"""Result of an advice: the runs of one case, and the numbers that they come to."""
+"""Advice on one case before its results are used: all of its runs, and the numbers that they come to."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from rockwobble.models import Case, Run, Trace
-from rockwobble.models.shown import Shown
-from rockwobble.multibody.scene.ring_geometry import rim_overhang
+from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940, perturbed_copies
+from rockwobble.models.cylinder import cylinder_of
+from rockwobble.models.records.plausibility import doubts_of
+from rockwobble.models.support import support_named
 
-from ...comparison.prediction import Prediction
 from ...metrics.agreement import tolerance_of
-from ...metrics.distributions import Contrast
-from ...metrics.pair import is_release
+from ...metrics.distributions import Contrast, contrast
 from ...metrics.tilt import overturned
+from ...runs.choice import require_runnable
+from ...runs.execution import SAMPLE_STEP, Job, job_fingerprint, simulate_run
+from ...runs.progress import ProgressCallback, Stages
+from ...storage.fingerprint import fingerprint
+from ...storage.manifest import Number
+from ...storage.manifest import Results as Stored
+from ...storage.results import Results
+from ..plans import AdvicePlan
 from ..spectrum.maps import SPATIAL, uplift_factor
 from .grades import (
     Grade,
@@ -31,112 +37,137 @@ from .grades import (
     grade_trace,
     overall,
 )
-from .members import COPIES, answers, demands_of, fall_of, ratios_of
-from .scales import BESIDE, Lowest, planar_chances
-from .trust import Trust, Verification
+from .members import (
+    COPIES,
+    OTHER,
+    VELOCITY,
+    demand_table,
+    demands_of,
+    fall_of,
+    group_table,
+    member_rows,
+    other_records,
+    ratios_of,
+    top_displacement,
+)
+from .scales import BESIDE, planar_runs, scan_scales
+from .trust import BAND_STEP, Trust, Verification, band_of, predicted, spread_from, trust_of, verified
 
 KIND = "advice"
-OTHER = "other support"  # group of the copies on the other support
+_VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class Advice(Shown):
+class Advice(Results, kind=KIND):
     """Advice on one case.
 
-    Attributes
-    ----------
-    case : Case
-        As it was run: where it falls after the end of what was asked, until its side is down, over still
-        ground.
-    support : str
-        What holds the cylinder in place.
-    friction_given : bool
-        Whether the friction of the case is known, not a default.
-    trace, other_trace, engine_trace : Trace
-        By the reduced model of the support, by the other one, and by the engine (None without one).
+    Tables
+    ------
     members : DataFrame
         A row for each run of the groups, see `member_rows`.
+    groups, demands : DataFrame
+        Percentiles of the groups, see `group_table`, and the design demands, see `demand_table`.
     band : DataFrame
-        Of the copies, see `band_of`.
-    scales, planar : DataFrame
-        See `scan_scales` and `planar_runs`.
-    lowest : mapping
-        Of each series of `scales`.
-    prediction : Prediction
-        Predicted agreement time of reduced model and engine.
-    verification : Verification or None
-    trust : Trust
-    form : Contrast or None
-        Largest tilts of the copies on the other support over those on this one.
-    vertical : mapping or None
-        See `vertical_effect`.
-    records : {"p695", "synthetic", ""}
-        What the other records are.
-    perturbation : float
-        Of the copies, relative.
-    seed : int
+        Of the tilts of the copies, see `band_of`.
+    scales, lowest, planar : DataFrame
+        Other scales of the ground motion and the lowest that overturns, see `scan_scales`; and planar
+        analysis of other records, see `planar_runs`.
+    trace, engine : DataFrame
+        time [s], tilt [alpha] and, of the reduced model, friction_needed [-]; no row without an engine.
+
+    Its facts are the problem (case, cylinder, motion, release, length, gravity, friction: None unless it was
+    given), the support with its model and the other_model; the response of the model; trust, prediction and
+    verification as in `Trust`, `Prediction` and `Verification`; other_support and vertical, ratios of the
+    largest tilts there, and with the vertical component (`ratios_of`), None where there are none; what the
+    records are; perturbation and seed of the copies, and the hash of all inputs.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> found = rw.advise(rw.Case(pier, rw.el_centro_1940()), copies=20)
+    >>> found.trust.kind, found.grades["overturning"]
+    ('statistics', 'caution')
     """
 
-    case: Case
-    support: str
-    friction_given: bool
-    trace: Trace
-    other_trace: Trace
-    engine_trace: Trace | None
-    members: pd.DataFrame
-    band: pd.DataFrame
-    scales: pd.DataFrame
-    planar: pd.DataFrame
-    lowest: Mapping[str, Lowest]
-    prediction: Prediction
-    verification: Verification | None
-    trust: Trust
-    form: Contrast | None
-    vertical: Mapping[str, object] | None
-    records: str
-    perturbation: float
-    seed: int
+    @classmethod
+    def of_stored(cls, stored: Stored) -> Advice:
+        """Return the advice of what is stored: what is concluded from its runs is computed anew."""
+        names = ("members", "band", "scales", "lowest", "planar", "trace", "engine")
+        found = advice_of({name: stored.table(name) for name in names}, stored.manifest.about)
+        return dataclasses.replace(found, manifest=stored.manifest)
+
+    def headline(self) -> dict[str, Number]:
+        """Return outcome, grade, the shares that overturn, and the largest tilt as given."""
+        return {
+            "case": self.facts["case"],
+            "outcome as given": self.response["outcome"],
+            "grade": overall(self.grades.values()),
+            **{f"overturning, {row['group']}": row["chance"] for row in self.groups.to_dict("records")},
+            "largest tilt as given [deg]": math.degrees(self.peak * self.cylinder.alpha),
+            "displacement of the top as given [m]": self.top(self.peak),
+        }
 
     def _said(self) -> dict[str, str]:
-        tilt = "overturns" if self.overturned else f"{self.peak:.3g} alpha"
         return {
-            "case": self.case.name,
-            "run": str(self.model),
-            "outcome": self.trace.outcome,
-            "largest tilt": tilt,
+            "case": self.facts["case"],
+            "run": self.facts["model"],
+            "outcome": self.response["outcome"],
+            "largest tilt": "overturns" if self.overturned else f"{self.peak:.3g} alpha",
             "grade": overall(self.grades.values()),
         }
 
     @property
-    def model(self) -> Run:
-        """The reduced model of the support."""
-        return self.trace.run
+    def cylinder(self) -> Cylinder:
+        """The cylinder, or the frame."""
+        return cylinder_of(self.facts["cylinder"])
+
+    @property
+    def response(self) -> Mapping[str, Any]:
+        """Facts of the run of the reduced model as given."""
+        found: Mapping[str, Any] = self.facts["response"]
+        return found
+
+    @property
+    def trust(self) -> Trust:
+        """Time until which the trace can be trusted."""
+        return Trust(**self.facts["trust"])
+
+    @property
+    def verification(self) -> Verification | None:
+        """The run of the engine."""
+        found = self.facts["verification"]
+        return None if found is None else Verification(**found)
 
     @property
     def moves(self) -> bool:
         """Whether the cylinder ever tilts."""
-        return math.isfinite(self.trace.uplift_time) and self.trace.outcome != "failed"
+        return math.isfinite(self.response["uplift_time"]) and self.response["outcome"] != "failed"
 
     @property
     def overturned(self) -> bool:
         """Whether it overturns as given."""
-        return self.trace.outcome == "overturned"
-
-    @cached_property
-    def answers(self) -> pd.DataFrame:
-        """The groups of members, one row each, see `members.answers`; without the other support."""
-        return answers(self.members[self.members["group"] != OTHER])
+        return bool(self.response["outcome"] == "overturned")
 
     @property
     def copies_differ(self) -> bool:
         """Whether the copies of the case are more than one run."""
-        copies = self.answers[self.answers["group"] == COPIES]
-        return bool(copies["chance"].notna().all())
+        return _differ(self.groups)
 
     @property
     def peak(self) -> float:
         """Largest tilt of the case as given [alpha]."""
-        return self.trace.peak_tilt / self.case.cylinder.alpha
+        return float(self.response["peak_tilt"])
+
+    def top(self, tilt: float) -> float:
+        """Return the displacement of the top at a tilt [alpha], infinite where it overturns [m]."""
+        return float(top_displacement(self.cylinder, tilt * self.cylinder.alpha))
+
+    @property
+    def lowest_factor(self) -> float:
+        """Lowest scale of the ground motion found to overturn; NaN where none is."""
+        factors = self.lowest["factor"].to_numpy(float)[self.lowest["series"] == SPATIAL]
+        return float(factors[0]) if len(factors) else math.nan
 
     @property
     def beside(self) -> tuple[float, float]:
@@ -145,160 +176,284 @@ class Advice(Shown):
         if not len(space):
             return math.nan, math.nan
         here = int((space["factor"] - 1.0).abs().argmin())
-        tilts = space["peak_tilt"].to_numpy()[here - BESIDE : here + BESIDE + 1]
-        tilts = np.where(overturned(tilts), math.inf, tilts / self.case.cylinder.alpha)
+        tilts = space["peak_tilt"].to_numpy(float)[here - BESIDE : here + BESIDE + 1]
+        tilts = np.where(overturned(tilts), math.inf, tilts / self.cylinder.alpha)
         return float(np.nanmin(tilts)), float(np.nanmax(tilts))
 
     @property
     def grades(self) -> dict[str, Grade]:
         """Grade of each topic that there is something to say about; the criteria are in `grades`."""
-        if self.trace.outcome == "failed":
+        response, facts, engine = self.response, self.facts, self.verification
+        if response["outcome"] == "failed":
             return {"trace": "not satisfied"}
         if not self.moves:
             return {}
-        motion, engine = self.case.motion, self.verification
-        worst, own = self.answers.max(numeric_only=True), demands_of(self.trace)
+        shaken, friction = facts["motion"] is not None, facts["friction"]
+        worst = self.groups.max(numeric_only=True)
         spread = not math.isnan(worst["lost_95"])
-        lacking = {name: worst[f"{name}_95"] if spread else own[name] for name in ("slip", "lost")}
-        lowest = self.lowest[SPATIAL].factor if self.lowest else math.nan
-        slides = self.friction_given and self.case.friction < self.case.cylinder.tan_alpha
+        lacking = {name: worst[f"{name}_95"] if spread else response[name] for name in ("slip", "lost")}
+        slides = friction is not None and friction < self.cylinder.tan_alpha and response["uplift_time"] > 0.0
         found: dict[str, Grade] = {
             "overturning": grade_overturning(
                 self.overturned,
-                lowest,
-                self.answers["chance"],
-                tested=bool(self.lowest) or (motion is None and self.copies_differ),
+                self.lowest_factor,
+                self.groups["chance"],
+                tested=len(self.lowest) > 0 or (not shaken and self.copies_differ),
             ),
             "friction": grade_share(
-                lacking["slip"] if self.friction_given else 0.0,
-                asked=self.friction_given,
+                0.0 if friction is None else lacking["slip"],
+                asked=friction is not None,
                 tested=spread,
-                slides=slides and self.trace.uplift_time > 0.0,
+                slides=slides,
             ),
             "contact": grade_share(lacking["lost"], tested=spread),
             "trace": grade_trace(self.trust.kind, tested=self.copies_differ),
         }
-        if motion is not None and not self.overturned:
+        if shaken and not self.overturned:
             low, high = self.beside
             found["intensity"] = grade_intensity(low, self.peak, high)
-        differs = engine is not None and (
-            (engine.outcome == "overturned") != self.overturned or not engine.moves
-        )
-        found["engine"] = (
-            "not tested"
-            if engine is None
-            else grade_engine(engine.outcome, engine.divergence, differs=differs)
-        )
+        found["engine"] = "not tested"
+        if engine is not None:
+            differs = (engine.outcome == "overturned") != self.overturned or not engine.moves
+            found["engine"] = grade_engine(engine.outcome, engine.divergence, differs=differs)
         return found
 
-    def recess(self) -> dict[str, float] | None:
-        """Return the design demands of a recess, by the worst 95th percentiles of groups that stand.
+    @property
+    def model_grade(self) -> Grade:
+        """Whether the model may be used, whatever becomes of the cylinder."""
+        return overall(grade for topic, grade in self.grades.items() if topic != "overturning")
 
-        None on flat ground, and where no group stands.
 
-        Returns
-        -------
-        dict
-            tilt [alpha]; force [weights] on the wall, the least that the restraining moment asks of it: the
-            moment about the vertical through the contact point over the lever arm b; height of the wall, at
-            which the rim stands out farthest, and clearance, by which a vertical wall of this height must
-            stand back [m].
-        """
-        if self.support == "flat" or not len(self.answers):  # nothing was run of what never moves
-            return None
-        rows = self.answers[np.isfinite(self.answers["peak_tilt_95"])]
-        if not len(rows):
-            return None
-        cylinder, tilt = self.case.cylinder, float(rows["peak_tilt_95"].max())
-        theta, b = tilt * cylinder.alpha, cylinder.base_radius
-        overhang, height = (b * part for part in rim_overhang(theta))
-        return {
-            "tilt": tilt,
-            "force": (1.0 + math.cos(theta)) * float(rows["moment_95"].max()),
-            "height": height,
-            "clearance": max(overhang, height * math.tan(theta)),
-        }
+def advise(
+    case: Case,
+    run: Run | None = None,
+    *,
+    friction_given: bool = True,
+    progress: ProgressCallback | None = None,
+    **options: Any,
+) -> Advice:
+    """Run what it takes to say how far the results of one case can be trusted.
 
-    def facts(self) -> dict[str, Any]:
-        """Return every number behind the advice, as plain values; SI units, tilts in alpha."""
-        case, trace, cylinder = self.case, self.trace, self.case.cylinder
-        copies = self.members[self.members["group"] == COPIES]
-        known = copies.loc[copies["outcome"] != "failed", "peak_tilt"]
-        moved = case.motion is not None and not is_release(case)
-        held = trace.assumptions_until(fall_of(trace)) if self.moves else None
-        return {
-            "name": case.name,
-            "support": self.support,
-            "model": str(self.model),
-            "other": str(self.other_trace.run),
-            "friction": case.friction if self.friction_given else None,
-            "outcome": trace.outcome,
-            "failure": [fact.code for fact in trace.facts],
-            "moves": self.moves,
-            "overturned": self.overturned,
-            "end": float(trace.time[-1]),
-            "length": case.length,
-            "uplift_time": trace.uplift_time,
-            "uplift_factor": uplift_factor(case.motion, cylinder.tan_alpha, case.gravity, until=case.length)
-            if moved and case.motion is not None
-            else math.nan,
-            "peak": self.peak,
-            "peak_deg": math.degrees(trace.peak_tilt),
-            "peak_time": trace.peak_time,
-            "peak_rank": float((known < self.peak).mean()) if len(known) and self.copies_differ else math.nan,
-            "in_one_plane": self.moves and not np.any(trace.rolling_rate),
-            "released": is_release(case),
-            "shaken": case.motion is not None,
-            "has_vertical": case.motion is not None and case.motion.has_vertical,
-            "alpha": cylinder.alpha,
-            "b": cylinder.base_radius,
-            "h": cylinder.half_height,
-            "tan_alpha": cylinder.tan_alpha,
-            "grades": self.grades,
-            "grade": overall(self.grades.values()),
-            # whether the model may be used, whatever becomes of the cylinder
-            "model_grade": overall(grade for topic, grade in self.grades.items() if topic != "overturning"),
-            "answers": self.answers.to_dict("records"),
-            "largest": dataclasses.asdict(held) if held else None,
-            "recess": self.recess(),
-            "beside": self.beside,
-            "lowest": {name: dataclasses.asdict(each) for name, each in self.lowest.items()},
-            "highest": float(self.scales["factor"].max()) if len(self.scales) else math.nan,
-            "planar": planar_chances(self.planar) if len(self.planar) else [],
-            "bound": tolerance_of(trace),
-            "predicted": {
-                "until": trace.uplift_time + self.prediction.length,
-                "reason": self.prediction.reason,
-            },
-            "engine": None if self.verification is None else dataclasses.asdict(self.verification),
-            "trust": dataclasses.asdict(self.trust),
-            "form": ratios_of(self.form) if self.form is not None and self.copies_differ else None,
-            "vertical": self.vertical,
-            "records": self.records,
-            "perturbation": self.perturbation,
-            "seed": self.seed,
-            "rtol": trace.settings["rtol"],
-        }
+    Parameters
+    ----------
+    case : Case
+        Of a cylinder or of a frame.
+    run : Run, optional
+        Engine that verifies the prediction; without one it stays unverified.
+    friction_given : bool, optional
+        Whether the friction of the case is known, not a default.
+    progress : callable, optional
+        Called with a `Progress` at the start and at the end of each stage.
+    **options
+        See `AdvicePlan`: support ("recess", or that of the run), copies (100), perturbation (0.01), seed (1).
 
-    def tables(self) -> dict[str, pd.DataFrame]:
-        """Return the tables by name; tilts of the traces in alpha."""
-        alpha = self.case.cylinder.alpha
-        engine = self.engine_trace
-        return {
-            "members": self.members,
-            "band": self.band,
-            "scales": self.scales,
-            "planar": self.planar,
-            "trace": pd.DataFrame(
-                {
-                    "time": self.trace.time,
-                    "tilt": self.trace.tilt / alpha,
-                    "friction_needed": self.trace.friction_needed,
-                }
-            ),
-            "engine": pd.DataFrame(
-                {"time": np.empty(0), "tilt": np.empty(0)}
-                if engine is None
-                else {"time": engine.time, "tilt": engine.tilt / alpha}
-            ),
-        }
+    Returns
+    -------
+    Advice
+
+    Raises
+    ------
+    ValueError
+        If the engine cannot run the case, or an option is out of range.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> found = rw.advise(rw.Case(pier, initial=release, duration=4.0), copies=20)
+    >>> found.trust.kind, found.grades["engine"]
+    ('trace', 'not tested')
+    """
+    plan = AdvicePlan(**({} if run is None else {"support": run.support}) | options)
+    if run is not None:
+        if run.support != plan.support:
+            raise ValueError(f"support must be that of the run, {run.support}, got {plan.support}")
+        require_runnable(case, run)
+    model, other = Run(None, support_named(plan.support).compared_with[-1]), Run(None, "flat")
+    if model == other:
+        other = Run(None, "recess")
+    stage = Stages(progress, [1.0] * (4 if run is None else 5)).stage
+    inputs = fingerprint(
+        [*(job_fingerprint(Job(case=case, run=each)) for each in (model, run) if each), plan]
+    )
+    with stage("both reduced models (compiled on their first run)"):
+        trace = simulate_run(case, model)
+        if trace.time[-1] > case.length:
+            case = _to_the_fall(case, float(trace.time[-1]))
+            trace = simulate_run(case, model)
+    failed = trace.outcome == "failed"
+    moves = math.isfinite(trace.uplift_time) and not failed
+    copies: list[Trace] = []
+    others: list[Trace] = []
+    drawn: dict[str, Any] = {"perturbation": plan.perturbation, "seed": plan.seed}
+    with stage(f"{plan.copies} perturbed copies"):
+        if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
+            cases = perturbed_copies(case, plan.copies, **drawn)
+            copies = [simulate_run(each, model) for each in cases]
+            others = [simulate_run(each, other, sample_step=BAND_STEP) for each in cases]
+        rows = [*member_rows(COPIES, copies), *member_rows(OTHER, others)]
+    with stage("other records as strong, and planar analysis"):
+        records, source = ({}, "") if failed else other_records(case)
+        for name, cases in records.items():
+            rows += member_rows(name, (simulate_run(each, model) for each in cases))
+        planar = planar_runs(records[VELOCITY], model.support) if records else pd.DataFrame()
+    with stage("other scales of the ground motion"):
+        scales, lowest = scan_scales(case, model.support)
+        vertical = vertical_effect(case, model, **drawn) if records else None
+    prediction, verification, engine = predicted(case, trace, run), None, None
+    if run is not None:
+        with stage(str(run)):
+            if moves:
+                verification, prediction, engine = verified(case, run, model)
+    alpha, band = case.cylinder.alpha, band_of(case, copies)
+    trust = Trust(kind="trace", until=case.length, because="")
+    if moves:
+        methods = trace.uplift_time + prediction.length if prediction.reason else math.inf
+        if verification is not None and verification.outcome != "failed":
+            methods = verification.agreed_until if verification.diverged else math.inf
+        data = spread_from(band, trace.peak_tilt / alpha)
+        trust = trust_of(methods, data, trace.peak_time, float(trace.time[-1]))
+    members = pd.DataFrame(rows, columns=None if rows else ["group", "outcome", "peak_tilt", "member"])
+    tables = {
+        "members": members,
+        "band": band,
+        "scales": scales,
+        "lowest": lowest,
+        "planar": planar,
+        "trace": _samples(trace, alpha).assign(friction_needed=trace.friction_needed),
+        "engine": _samples(engine, alpha),
+    }
+    form = _contrast(others, copies) if _differ(group_table(members)) else None
+    facts = {
+        **_problem(case),
+        "friction": case.friction if friction_given else None,
+        "support": plan.support,
+        "model": str(model),
+        "other_model": str(other),
+        "response": _response(trace),
+        "trust": dataclasses.asdict(trust),
+        "prediction": dataclasses.asdict(prediction),
+        "verification": None if verification is None else dataclasses.asdict(verification),
+        "other_support": None if form is None else ratios_of(form),
+        "vertical": vertical,
+        "records": source,
+        "doubts": doubts_of([case.motion]),
+        **drawn,
+        "inputs": inputs,
+    }
+    return advice_of(tables, facts)
+
+
+def advice_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, Any]) -> Advice:
+    """Return the advice of its runs, with the tables that are concluded from them."""
+    groups = group_table(tables["members"])
+    demands = demand_table(groups, cylinder_of(facts["cylinder"]), facts["gravity"], facts["support"])
+    return Advice(tables={**tables, "groups": groups, "demands": demands}, facts=facts)
+
+
+def _differ(groups: pd.DataFrame) -> bool:
+    copies = groups[groups["group"] == COPIES] if len(groups) else groups
+    return bool(len(copies) and copies["chance"].notna().all())
+
+
+def _samples(trace: Trace | None, alpha: float) -> pd.DataFrame:
+    if trace is None:
+        return pd.DataFrame({"time": np.empty(0), "tilt": np.empty(0)})
+    return pd.DataFrame({"time": trace.time, "tilt": trace.tilt / alpha})
+
+
+def _problem(case: Case) -> dict[str, Any]:
+    """Facts of a case, without the samples of its motion."""
+    motion, cylinder = case.motion, case.cylinder
+    shaking = motion and {
+        "name": motion.name,
+        "samples": len(motion.acceleration),
+        "time_step": motion.time_step,
+        "peak": motion.peak,
+        "has_vertical": motion.has_vertical,
+        "uplift_factor": uplift_factor(motion, cylinder.tan_alpha, case.gravity, until=case.length),
+    }
+    return {
+        "case": case.name,
+        "cylinder": dataclasses.asdict(cylinder),
+        "motion": shaking,
+        "release": dataclasses.asdict(case.initial) if case.is_release and case.initial else None,
+        "length": case.length,
+        "gravity": case.gravity,
+    }
+
+
+def _response(trace: Trace) -> dict[str, Any]:
+    """Facts of the run as given; tilts in alpha."""
+    moves = math.isfinite(trace.uplift_time) and trace.outcome != "failed"
+    assumed = trace.assumptions_until(fall_of(trace)) if moves else None
+    own = demands_of(trace)
+    return {
+        "outcome": trace.outcome,
+        "diagnostics": [fact.code for fact in trace.facts],
+        "uplift_time": trace.uplift_time,
+        "peak_tilt": trace.peak_tilt / trace.case.cylinder.alpha,
+        "peak_time": trace.peak_time,
+        "end": float(trace.time[-1]),
+        "in_one_plane": moves and not np.any(trace.rolling_rate),
+        "largest_normal_force": assumed.largest_normal_force if assumed else math.nan,
+        "slip": own["slip"],
+        "lost": own["lost"],
+        "tolerance": tolerance_of(trace),
+    }
+
+
+def vertical_effect(case: Case, model: Run, *, perturbation: float, seed: int) -> dict[str, object] | None:
+    """Return the effect of the vertical component of ground motion on the largest tilt, copy by copy.
+
+    Of the record itself or, where it has none, of El Centro 1940 as strong: what it usually changes.
+
+    Returns
+    -------
+    dict
+        given, record, and the ratios of the largest tilts, with over without it: see `ratios_of`.
+    """
+    motion = case.motion
+    assert motion is not None
+    record = motion
+    if not motion.has_vertical:
+        record = el_centro_1940(vertical=True)
+        record = record.scaled(motion.peak / record.peak)
+    shaken = dataclasses.replace(case, motion=record, duration=case.duration if motion.has_vertical else None)
+    cases = perturbed_copies(shaken, _VERTICAL_COUNT, perturbation=perturbation, seed=seed)
+    flat = [dataclasses.replace(each, motion=_horizontal(each.motion)) for each in cases]
+    found = _contrast(
+        *([simulate_run(each, model, sample_step=1.0) for each in part] for part in (cases, flat))
+    )
+    if found is None or not found.compared:
+        return None
+    return {"given": motion.has_vertical, "record": record.name, **ratios_of(found)}
+
+
+def _horizontal(motion: GroundMotion | None) -> GroundMotion:
+    assert motion is not None
+    return GroundMotion(motion.acceleration[:, :2], motion.time_step, motion.name)
+
+
+def _contrast(traces: Sequence[Trace], against: Sequence[Trace]) -> Contrast | None:
+    peaks, others = (np.array([trace.peak_tilt for trace in part]) for part in (traces, against))
+    fell, fell_there = (
+        np.array([trace.outcome == "overturned" for trace in part]) for part in (traces, against)
+    )
+    if np.count_nonzero(np.isfinite(peaks) & np.isfinite(others)) < 2:
+        return None
+    return contrast(peaks, others, fell, fell_there)
+
+
+def _to_the_fall(case: Case, end: float) -> Case:
+    """Return a case that takes until its fall at `end` [s], after what was asked for, over still ground.
+
+    All that is run for it then sees the fall: the engine, the copies, and when two methods diverge.
+    """
+    motion = case.motion
+    if motion is not None and case.length < motion.duration:
+        kept = math.floor(case.length / motion.time_step * (1.0 + 1e-12)) + 1
+        motion = GroundMotion(motion.acceleration[: max(kept, 2)], motion.time_step, motion.name)
+    duration = math.ceil(end / SAMPLE_STEP) * SAMPLE_STEP
+    return dataclasses.replace(case, motion=motion, duration=duration)

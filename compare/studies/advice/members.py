@@ -8,26 +8,36 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from rockwobble.models import Case, GroundMotion, Trace, far_field_motions, synthetic_motions
+from rockwobble.models import (
+    Case,
+    Cylinder,
+    GroundMotion,
+    Trace,
+    WobblingFrame,
+    far_field_motions,
+    synthetic_motions,
+)
 from rockwobble.models.records import p695
+from rockwobble.models.support import support_named
+from rockwobble.multibody.scene.ring_geometry import rim_overhang
 
 from ...metrics.distributions import Contrast
 from ...metrics.order_statistics import Interval, quantile_interval, share_interval, stated
-from ...metrics.pair import is_release
 from ..fragility.intensity import largest_resultant, velocity
 
 Array = NDArray[np.float64]
 
 COPIES, ACCELERATION, VELOCITY = "copies", "acceleration", "velocity"
-_SEED = 1  # of motions that are made up where the records are not installed
+OTHER = "other support"  # group of the copies on the other support
+_SEED = 1  # of synthetic ground motions where the records are not installed
 # what is not exceeded in 99 % of the moving time leaves out the spikes of the nearest passes
 SPIKES = 0.01
 _QUANTILES = {"05": 0.05, "50": 0.5, "95": 0.95}
-# what each run asks, and of which it has a percentile over the members
-DEMANDS = ("friction", "moment", "force", "slip", "lost")
-_MOTION = ["peak_tilt", *DEMANDS]
+_BASE, _TOP = ("friction", "shear", "force"), ("top_friction", "top_shear", "top_force")
+# demands of a run, of which there are percentiles over the members; those at the top only in a frame
+DEMANDS = (*_BASE, *_TOP, "moment", "slip", "lost")
 
 
 def fall_of(trace: Trace) -> float:
@@ -39,27 +49,61 @@ def fall_of(trace: Trace) -> float:
 
 
 def demands_of(trace: Trace) -> dict[str, float]:
-    """Return the demands of a run on ground and recess, until it last passes alpha if it overturns.
+    """Return the demands of a run on ground, recess and slab, until it last passes alpha if it overturns.
 
     Returns
     -------
     dict
-        friction [-], moment of the recess [weights times b] and normal force [weights], each not exceeded in
-        99 % of the moving time; slip and lost, shares of that time in which the friction of the case does not
-        suffice and in which contact is lost. All zero, and a force of one weight, where nothing moves.
+        friction [-], shear and (normal) force [weights] at the base and, as top_friction, top_shear and
+        top_force, under the slab of a frame [weights of the share of the slab]; moment of the recess [weights
+        times b]: each not exceeded in 99 % of the moving time. slip and lost, shares of that time in which
+        the friction of the case does not suffice and in which contact is lost, at base or top. All zero, and
+        a force of one weight, where nothing moves.
     """
     moving = (trace.tilt > 0.0) & (trace.time <= fall_of(trace))
+    ends = {_BASE: (trace.contact_force, trace.friction_needed)}
+    if trace.case.cylinder.slab_mass_ratio > 0.0:
+        ends[_TOP] = (trace.top_contact_force, trace.top_friction_needed)
+    found: dict[str, float] = {}
     if not moving.any():
-        return dict(zip(DEMANDS, (0.0, 0.0, 1.0, 0.0, 0.0), strict=True))
+        for names in ends:
+            found |= dict(zip(names, (0.0, 0.0, 1.0), strict=True))
+        return found | {"moment": 0.0, "slip": 0.0, "lost": 0.0}
     lengths = np.diff(trace.time, append=trace.time[-1])[moving]
-    needed, force = trace.friction_needed[moving], trace.contact_force[moving, 2]
-    lost = force <= 0.0
-    values = (needed, np.abs(trace.restraining_moment[moving]) / trace.case.cylinder.base_radius, force)
-    # a value of the sample, because a mean with infinity is none
-    usual = [float(np.quantile(each, 1.0 - SPIKES, method="inverted_cdf")) for each in values]
+    lost, slips = np.zeros(len(lengths), dtype=bool), np.zeros(len(lengths), dtype=bool)
+    for names, (force, friction) in ends.items():
+        x, y, normal = force[moving].T
+        values = (friction[moving], np.hypot(x, y), normal)
+        found |= {name: _usual(each) for name, each in zip(names, values, strict=True)}
+        lost |= normal <= 0.0
+        slips |= friction[moving] > trace.case.friction
+    found["moment"] = _usual(np.abs(trace.restraining_moment[moving]) / trace.case.cylinder.base_radius)
     time = max(float(lengths.sum()), 1e-300)
-    slip = (needed > trace.case.friction) & ~lost
-    return dict(zip(DEMANDS, (*usual, lengths[slip].sum() / time, lengths[lost].sum() / time), strict=True))
+    return found | {"slip": lengths[slips & ~lost].sum() / time, "lost": lengths[lost].sum() / time}
+
+
+def _usual(values: Array) -> float:
+    # a value of the sample, because a mean with infinity is none
+    return float(np.quantile(values, 1.0 - SPIKES, method="inverted_cdf"))
+
+
+def top_displacement(cylinder: Cylinder, tilt: ArrayLike) -> Array:
+    """Return the horizontal displacement of the top, over a circle of contact that stays [m].
+
+    Of the centre of the top of a cylinder or, in a frame, of the slab: over it the rim of the top rolls as
+    that of the base rolls over the ground.
+
+    Parameters
+    ----------
+    cylinder : Cylinder
+    tilt : array_like
+        [rad]; infinite where it overturns, and so is then the displacement.
+    """
+    theta = np.asarray(tilt, dtype=np.float64)
+    ends = 2.0 if isinstance(cylinder, WobblingFrame) else 1.0
+    stands = np.where(np.isinf(theta), 0.0, theta)
+    moved = ends * cylinder.base_radius * (1.0 - np.cos(stands)) + 2.0 * cylinder.half_height * np.sin(stands)
+    return np.where(np.isinf(theta), math.inf, moved)
 
 
 def peak_velocity(motion: GroundMotion) -> float:
@@ -70,11 +114,11 @@ def peak_velocity(motion: GroundMotion) -> float:
 def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
     """Return the case under other records, as strong as its own by peak acceleration and by peak velocity.
 
-    Those of FEMA P-695 where they are installed, else made-up ones; and "p695" or "synthetic". None for a
+    Those of FEMA P-695 where they are installed, else synthetic ones; and "p695" or "synthetic". None for a
     release and without a ground motion.
     """
     motion = case.motion
-    if motion is None or motion.peak == 0.0 or is_release(case):
+    if motion is None or motion.peak == 0.0 or case.is_release:
         return {}, ""
     source = "synthetic" if p695.missing_packages() else "p695"
     motions = (
@@ -94,7 +138,7 @@ def other_records(case: Case) -> tuple[dict[str, list[Case]], str]:
 
 
 def member_rows(group: str, traces: Iterable[Trace]) -> list[dict[str, float | str]]:
-    """Return a row for each run: group, member, model, outcome, peak_tilt [alpha], and what it asks."""
+    """Return a row for each run: group, member, model, outcome, peak_tilt [alpha], and its demands."""
     return [
         {
             "group": group,
@@ -132,18 +176,20 @@ def ratios_of(found: Contrast) -> dict[str, float]:
     }
 
 
-def answers(members: pd.DataFrame) -> pd.DataFrame:
-    """Return one row for each group of members: how many overturn, and percentiles of the rest.
+def group_table(members: pd.DataFrame) -> pd.DataFrame:
+    """Return one row for each group of members but the other support: how many overturn, and percentiles.
 
     Columns: group, runs, failed, overturned, single, whether all moved alike, which makes them one run;
     chance with chance_low and chance_high, and for peak_tilt [alpha], infinite where it overturns, and each
     of `DEMANDS` the percentiles _05, _50 and _95. NaN where too few runs differ, see `stated`.
     """
     rows = []
-    for group, runs in members.groupby("group", sort=False):
+    demands = [name for name in DEMANDS if name in members.columns]
+    for group, runs in members[members["group"] != OTHER].groupby("group", sort=False):
         known = runs[runs["outcome"] != "failed"]
         # of records that differ none move alike, but many not at all
-        single = len(known) > 1 and known["peak_tilt"].min() > 0.0 and known[_MOTION].nunique().max() == 1
+        motion = known[["peak_tilt", *demands]]
+        single = len(known) > 1 and known["peak_tilt"].min() > 0.0 and motion.nunique().max() == 1
         failed, counted = len(runs) - len(known), int((known["outcome"] == "overturned").sum())
         chance = Interval(value=math.nan, low=math.nan, high=math.nan)
         if not single:
@@ -152,7 +198,7 @@ def answers(members: pd.DataFrame) -> pd.DataFrame:
         fell = known["outcome"] == "overturned"
         numbers: Mapping[str, Array] = {
             "peak_tilt": known["peak_tilt"].mask(fell, math.inf).to_numpy(float),
-            **{name: known[name].to_numpy(float) for name in DEMANDS},
+            **{name: known[name].to_numpy(float) for name in demands},
         }
         rows.append(
             {
@@ -170,3 +216,49 @@ def answers(members: pd.DataFrame) -> pd.DataFrame:
             }
         )
     return pd.DataFrame(rows)
+
+
+def demand_table(groups: pd.DataFrame, cylinder: Cylinder, gravity: float, support: str) -> pd.DataFrame:
+    """Return the design demands on ground, recess and slab: the worst 95th percentiles of the groups.
+
+    Columns: demand, value, unit, and per_tonne: that times g [kN], or times g b [kNm], for a mass of 1 t of
+    what is carried, the cylinder or, in a frame, a column with its share of the slab or, at the top, this
+    share. Demands: friction, shear and force at the base, with top_ before them those of a frame under its
+    slab; and where a recess is built, of groups that stand to their 95th percentile: tilt; moment about the
+    vertical through the contact point, (1 + cos(tilt)) kappa; wall_force, the least by which a wall supplies
+    it, over the lever arm b; wall_height, at which the rim stands out farthest and the force acts; and
+    clearance, by which a vertical wall of this height must stand back.
+    """
+    rows: list[tuple[str, float, str]] = []
+    if len(groups):
+        worst = groups.max(numeric_only=True)
+        units = ("-", "weights", "weights")
+        rows += [
+            (name, float(worst.get(f"{name}_95", math.nan)), unit)
+            for names in (_BASE, _TOP)
+            for name, unit in zip(names, units, strict=True)
+        ]
+        standing = groups[np.isfinite(groups["peak_tilt_95"])]
+        facts = support_named(support)
+        if facts.guided or facts.walls:
+            rows += _recess(standing, cylinder)
+    table = pd.DataFrame(rows, columns=["demand", "value", "unit"])
+    arms = {"weights": gravity, "weights × b": gravity * cylinder.base_radius}
+    table["per_tonne"] = table["value"] * table["unit"].map(arms).astype(float)
+    return table[table["value"].notna()].reset_index(drop=True)
+
+
+def _recess(standing: pd.DataFrame, cylinder: Cylinder) -> list[tuple[str, float, str]]:
+    if not len(standing):
+        return []
+    tilt, b = float(standing["peak_tilt_95"].max()), cylinder.base_radius
+    theta = tilt * cylinder.alpha
+    moment = (1.0 + math.cos(theta)) * float(standing["moment_95"].max())
+    overhang, height = (b * part for part in rim_overhang(theta))
+    return [
+        ("tilt", tilt, "alpha"),
+        ("moment", moment, "weights × b"),
+        ("wall_force", moment, "weights"),
+        ("wall_height", height, "m"),
+        ("clearance", max(overhang, height * math.tan(theta)), "m"),
+    ]

@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
@@ -16,7 +15,6 @@ from rockwobble.models import Case
 from rockwobble.models.cpus import in_threads
 
 from ...metrics.order_statistics import share_interval
-from ...metrics.pair import is_release
 from ...metrics.tilt import overturned
 from ..plans import STEP
 from ..spectrum.maps import RTOL, SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
@@ -25,52 +23,36 @@ from ..spectrum.tables import CHECK_RTOL, NUDGE
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given
 FACTORS: Array = 2.0 ** (np.arange(-24, 49) / 12.0)
-# nobody knows the intensity of shaking to better than this: two steps of the scales either way
+# shaking is known no better than to 12 %: two steps of the scales either way
 BESIDE = 2
-# scales of the records at which planar analysis is held against 3D
+# scales of the records at which planar analysis is compared with 3D
 PLANAR_SCALES = (0.5, 2.0**-0.5, 1.0, 2.0**0.5, 2.0)
 # ratio of peak tilts from which one is larger: below it is rounding and the step of the solution
 LARGER = 1.01
+_LOWEST = ["series", "factor", "confirmed", "start"]
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Lowest:
-    """The lowest factor on the ground motion found to overturn, of one series.
-
-    Attributes
-    ----------
-    factor : float
-        NaN where none is.
-    confirmed : bool
-        Whether it overturns to a tighter tolerance and under a record that differs by a hair, too.
-    start : float
-        Factor at which it uplifts, from which was searched; 0 for a release, inf where it uplifts at none.
-    """
-
-    factor: float
-    confirmed: bool
-    start: float
-
-
-def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, dict[str, Lowest]]:
+def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, pd.DataFrame]:
     """Run a case over scales of its ground motion; nothing where there is none to scale.
 
     Returns
     -------
-    DataFrame
+    scales : DataFrame
         series, factor [-], peak_tilt [rad]: "3d", and "planar_x" and "planar_y" unless the case is a release,
         of which a planar analysis knows nothing.
-    dict
-        The lowest that overturns, of each series.
+    lowest : DataFrame
+        Of each series the lowest factor that was found to overturn, NaN where none does; confirmed, whether
+        it does so to a tighter tolerance and under a record that differs by `NUDGE`, too; and start, the
+        factor at which it uplifts and from which was searched: 0 for a release, inf where it never uplifts.
     """
     motion = case.motion
     if motion is None or motion.peak == 0.0:
-        return pd.DataFrame(columns=["series", "factor", "peak_tilt"]), {}
+        return pd.DataFrame(columns=["series", "factor", "peak_tilt"]), pd.DataFrame(columns=_LOWEST)
     tan_alpha, gravity = case.cylinder.tan_alpha, case.gravity
     step = STEP * intensity_unit(tan_alpha, motion, gravity)
-    tables, lowest = [], {}
-    for name in (SPATIAL,) if is_release(case) else SERIES:
-        run = partial(_peak, case, name, support)
+    tables, lowest = [], []
+    for name in (SPATIAL,) if case.is_release else SERIES:
+        run = partial(_peak, case, series=name, support=support)
 
         def at(_: list[int], factor: float, run: Callable[[float], float] = run) -> Array:
             return np.array([run(factor)])
@@ -78,15 +60,15 @@ def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, dict
         run(FACTORS[0])  # compiles, where that is due, once and not in each thread
         peaks = np.array(list(in_threads(run, FACTORS)))
         start = 0.0
-        if not is_release(case):
+        if not case.is_release:
             start = uplift_of_series(name, motion, tan_alpha, gravity, until=case.length)
         search = search_lowest(FACTORS, peaks, start=start, step=step, alpha=case.cylinder.alpha)
         found = run_searches([search], at)[0]
         factor = float(np.fmin(found, lowest_on_grid(FACTORS, peaks[None])[0]))
         again = [run(factor * nudge, rtol=CHECK_RTOL) for nudge in (1.0, 1.0 - NUDGE, 1.0 + NUDGE)]
-        lowest[name] = Lowest(factor=factor, confirmed=bool(overturned(again).all()), start=start)
+        lowest.append((name, factor, bool(overturned(again).all()), start))
         tables.append(pd.DataFrame({"series": name, "factor": FACTORS, "peak_tilt": peaks}))
-    return pd.concat(tables, ignore_index=True), lowest
+    return pd.concat(tables, ignore_index=True), pd.DataFrame(lowest, columns=_LOWEST)
 
 
 def planar_runs(cases: Sequence[Case], support: str = "recess") -> pd.DataFrame:
@@ -94,26 +76,16 @@ def planar_runs(cases: Sequence[Case], support: str = "recess") -> pd.DataFrame:
 
     Columns: member, scale, and the peak tilts 3d, planar_x, planar_y [rad].
     """
-    tables = []
-    for case in cases:
-        assert case.motion is not None
-        peaks = {
-            name: reduced.peak_tilts(
-                [case.cylinder.semidiagonal],
-                case.cylinder.tan_alpha,
-                case.motion,
-                PLANAR_SCALES,
-                gravity=case.gravity,
-                rtol=RTOL,
-                **series_options(name, support),
-            )[0]
-            for name in SERIES
-        }
-        tables.append(pd.DataFrame({"member": case.name, "scale": PLANAR_SCALES, **peaks}))
-    return pd.concat(tables, ignore_index=True)
+    rows = [(case, scale) for case in cases for scale in PLANAR_SCALES]
+    peaks = {
+        name: list(in_threads(partial(_peak, series=name, support=support), *zip(*rows, strict=True)))
+        for name in SERIES
+    }
+    members, scales = [case.name for case, _ in rows], [scale for _, scale in rows]
+    return pd.DataFrame({"member": members, "scale": scales, **peaks})
 
 
-def planar_chances(runs: pd.DataFrame) -> list[dict[str, float]]:
+def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
     """Return for each scale how often 3D tilts more than both planes, and overturns where neither does.
 
     Keys: scale; moving, records that uplift in any; larger and missed, counts of these, with the shares
@@ -137,7 +109,7 @@ def planar_chances(runs: pd.DataFrame) -> list[dict[str, float]]:
     return rows
 
 
-def _peak(case: Case, series: str, support: str, factor: float, rtol: float = RTOL) -> float:
+def _peak(case: Case, factor: float, *, series: str, support: str, rtol: float = RTOL) -> float:
     assert case.motion is not None
     if math.isnan(factor):
         return math.nan

@@ -37,7 +37,7 @@ class Trust:
     until : float
         [s] in the time of the run.
     because : {"", "methods", "data"}
-        What ends it: two sound methods diverge there, or the copies do.
+        What ends it: reduced model and engine diverge there, or the copies do.
     """
 
     kind: Literal["trace", "peak", "statistics"]
@@ -47,7 +47,7 @@ class Trust:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verification:
-    """One run of an engine, held against the reduced model of its support.
+    """One run of an engine, compared with the reduced model of its support.
 
     Attributes
     ----------
@@ -101,7 +101,7 @@ def band_of(case: Case, traces: Sequence[Trace]) -> pd.DataFrame:
     """Return the tilts [alpha] that 5 % and 95 % of the copies do not exceed at each time [s]: low, high."""
     time = np.arange(0.0, case.length, BAND_STEP)
     known = [trace for trace in traces if trace.outcome != "failed"]
-    # one that fell stays on its side
+    # one that overturned stays on its side
     tilts = [np.interp(time, trace.time, trace.tilt / case.cylinder.alpha) for trace in known]
     low, high = np.quantile(tilts, [0.05, 0.95], axis=0) if known else np.full((2, len(time)), math.nan)
     return pd.DataFrame({"time": time, "low": low, "high": high})

@@ -10,7 +10,6 @@ from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
 from rockwobble.models.traces.trace_file import run_to_plain
 
-from ...comparison.result import describe_case
 from ...metrics.tilt import outcome_of
 from ...runs.choice import require_runnable
 from ...runs.execution import Job, job_fingerprint, run_job
@@ -85,11 +84,44 @@ def describe_suite(suite: Suite) -> dict[str, object]:
     return {
         "plan": "cases and runs",
         "runs": len(suite.cases) * len(suite.runs),
-        "cases": {case.name: describe_case(case) for case in suite.cases},
+        "cases": {case.name: _described(case) for case in suite.cases},
         "runs of each": [
             {"label": label, **run_to_plain(run)}
             for run, label in zip(suite.runs, run_labels(suite.runs), strict=True)
         ],
+    }
+
+
+def _described(case: Case) -> dict[str, object]:
+    """Return the numbers that state a case; SI units and radians."""
+    cylinder, motion, initial = case.cylinder, case.motion, case.initial
+    return {
+        "semidiagonal": cylinder.semidiagonal,
+        "tan_alpha": cylinder.tan_alpha,
+        "alpha": cylinder.alpha,
+        "base_radius": cylinder.base_radius,
+        "height": 2.0 * cylinder.half_height,
+        "duration": case.length,
+        "gravity": case.gravity,
+        "friction": case.friction,
+        "rolling_resistance": case.rolling_resistance,
+        "motion": None
+        if motion is None
+        else {
+            "name": motion.name,
+            "time_step": motion.time_step,
+            "samples": len(motion.acceleration),
+            "components": int(motion.acceleration.shape[1]),
+            "peak": motion.peak,
+        },
+        "initial": None
+        if initial is None
+        else {
+            "tilt": initial.tilt,
+            "tilt_rate": initial.tilt_rate,
+            "rolling_angle": initial.rolling_angle,
+            "rolling_rate": initial.rolling_rate,
+        },
     }
 
 

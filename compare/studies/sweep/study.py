@@ -51,7 +51,7 @@ def sweep(
         Folder of the sweep: sweep.parquet is the table, motions.parquet the ground motions of a grid. The
         chunks of another sweep stay there until this one is complete.
     scheduler : str, optional
-        Address of a Dask scheduler, such as "tcp://10.0.0.1:8786"; its workers must have the same
+        Address of a Dask scheduler, such as `tcp://10.0.0.1:8786`; its workers must have the same
         versions. Default: processes on this machine.
     workers : int, optional
         Number of those processes; 1 runs everything in this one. Default: one for each processor.

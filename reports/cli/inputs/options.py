@@ -98,6 +98,12 @@ Friction = Annotated[
         "would not."
     ),
 ]
+RollingResistance = Annotated[
+    float,
+    _ground(
+        "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses nothing."
+    ),
+]
 ReleaseTilt = Annotated[
     float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
 ]
@@ -125,7 +131,7 @@ def _named(names: list[str] | None) -> list[str] | None:
     return _standing_alone(names)
 
 
-ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
+ENGINES = "mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, by engines that have them)"
 Engine = Annotated[str | None, method(f"{ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"

@@ -167,6 +167,7 @@ class Problem(Release, Record, Body):
 
     gravity: options.Gravity = 9.81
     friction: options.Friction = 1.0
+    rolling_resistance: options.RollingResistance = 0.0
 
     def case(self) -> rw.Case:
         """Return the case that they state.
@@ -186,6 +187,7 @@ class Problem(Release, Record, Body):
             duration=FREE_DURATION if motion is None and self.duration is None else self.duration,
             gravity=self.gravity,
             friction=self.friction,
+            rolling_resistance=self.rolling_resistance,
             name="free response" if motion is None else motion.name + scaled,
         )
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -13,7 +12,8 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ...console.progress import shown_progress
-from ...console.terminal import command_line, complain, interruptible, user_input
+from ...console.results import show_and_save
+from ...console.terminal import complain, interruptible, user_input
 from ...pages.words.cases import describe
 from ..inputs import options
 from ..inputs.estimate import require_feasible, time_needed
@@ -79,14 +79,7 @@ def view(
                 print(line)
             with user_input(), shown_progress() as tell:
                 comparison = rw.compare(case, runs=[run], progress=tell)
-        with user_input():
-            from ...pages.comparison.view import KIND, view_page
-
-            shown = comparison.of_case(name)
-            made = dataclasses.replace(shown.manifest(command_line()), kind=KIND)
-            pages = view_page(shown, made).files()
-            shown.save(out, pages=pages, manifest=made)
-    print(f"\nWritten to {out}: {', '.join(pages)}, the comparison that it plays, manifest.json")
+        show_and_save(comparison.of_case(name), out)
     if sys.stdout.isatty() if opened is None else opened:
         import webbrowser
 

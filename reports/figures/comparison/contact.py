@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from rockwobble.compare import TILTED
+from rockwobble.models.support import SUPPORTS
 from rockwobble.reduced import limiting_angle_of_turn
 
 from ..palette import SYMBOLS, Style
@@ -55,8 +56,9 @@ def _drift(view: CaseView, support: str) -> Panel:
     """(|T| - b)/b, where the tilt is so large that a contact point means something."""
     layers = []
     for label, trace in view.traces.items():
-        # the recess model keeps to the circle: that line is zero
-        if trace.run.support != support or (label not in view.runs and support == "recess"):
+        # a guided model keeps to the circle: that line is zero
+        guided = support in SUPPORTS and SUPPORTS[support].guided
+        if trace.run.support != support or (label not in view.runs and guided):
             continue
         tilted = trace.tilt > TILTED * np.nanmax(trace.tilt)
         drift: Array = 100.0 * trace.contact_offset / trace.case.cylinder.base_radius

@@ -13,8 +13,8 @@ from rockwobble.models import Trace
 
 from .view import CaseView
 
-# a screen shows 60 pictures a second; a slower clock repeats some
-_PICTURES = 100.0
+# in a second: a motion is smooth from half of them on
+_PICTURES = 50.0
 _TRANSLUCENT, _SOLID = 0.35, 1.0
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from rockwobble.compare import Comparison, make_pair
 from rockwobble.models import AGREEMENT
+from rockwobble.models.support import SUPPORTS
 
 from ..palette import Style
 from ..picture import TILT, TIME, Axis, Layer, Line, Panel, Picture, Rule
@@ -19,12 +20,6 @@ from .view import CaseView, case_views
 SMALLEST = 1e-7
 _CUT = 1.5  # [alpha] where tilts are cut if one goes farther
 _HEIGHT = 2.3  # [inch]
-_WHERE = {
-    "recess": "in an ideal recess",
-    "flat": "on flat ground",
-    "ring": "in a ring of walls",
-    "external": "external trajectory",
-}
 
 
 def pictures(comparison: Comparison) -> Iterator[Picture]:
@@ -43,10 +38,9 @@ def tilt_picture(view: CaseView, name: str = "figure") -> Picture:
         name=name,
         title=f"Tilt: {view.case.name}, R = {cylinder.semidiagonal:g} m, tan α = {cylinder.tan_alpha:g}",
         caption="Angle of the axis from the vertical over the slenderness, of the runs of each support and "
-        "the model that they are drawn with. Below, the difference from what a run is held against: its "
-        "largest value within the last second. A straight rise on this scale is a difference that grows in "
-        "proportion to itself. Diamonds mark where 1 % of α is first exceeded: beyond it single traces say "
-        "nothing about each other.",
+        "its model. Below, the difference from the reference: its largest value within the last second. "
+        "Diamonds mark where 1 % of α is first exceeded: beyond it single traces say nothing about "
+        "each other.",
         panels=[
             *(_tilts(view, group, support) for group, support in zip(groups, view.supports, strict=True)),
             *(_differences(view, reference) for reference in view.rows["reference"].unique()),
@@ -71,7 +65,13 @@ def _tilts(view: CaseView, runs: Sequence[str], support: str) -> Panel:
     # a fall would leave nothing to be seen of the rest
     cut = any(float(np.nanmax(line.y, initial=0.0)) > _CUT for line in layers)
     y = replace(TILT, high=_CUT if cut else None)
-    return Panel(x=TIME, y=y, layers=layers, title=_WHERE[support], height=_HEIGHT)
+    return Panel(
+        x=TIME,
+        y=y,
+        layers=layers,
+        title=SUPPORTS[support].words if support in SUPPORTS else "external trajectory",
+        height=_HEIGHT,
+    )
 
 
 def _differences(view: CaseView, reference: str) -> Panel:

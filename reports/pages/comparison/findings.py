@@ -1,10 +1,9 @@
-"""Findings of a comparison: sentences on each row of the summary, on budgets and on divergences."""
+"""Findings of a comparison: causes of divergence, and sentences on what its tables do not say."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Mapping
 from typing import Any
 
 import pandas as pd
@@ -13,122 +12,41 @@ from rockwobble.compare import LARGEST_SHARE, WORTH_EXPLAINING
 from rockwobble.compare import findings as unexplained
 from rockwobble.compare.comparison.prediction import BEATEN
 from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
+from rockwobble.compare.external.verdict import mistakes_of
 from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.runs.labels import REDUCED
-from rockwobble.models import Case, Run, Trace
+from rockwobble.models import AGREEMENT, Run
 from rockwobble.models.diagnostic import parted
+from rockwobble.models.support import FLAT, RECESS, SUPPORTS
 
 from ...figures.comparison.view import CaseView, own_rows, rows_of
 from ..words.diagnostics import counted, failure, remarks
 from ..words.sentences import sentence, the
-from .external import explains_divergence, external_sentences, scope, within
 
 WORDS = "comparison/findings.md.j2"
 _LISTED = 10
-# of the tilt at release, which an engine is given as a pose
-_SAME_TILT = 1e-6
+# why a run diverges from its reference, as a table says it
+CAUSES: Mapping[str, str] = {
+    "support": "support",
+    "walls": "walls",
+    "mistake": "likely mistake",
+    "pass": "unresolved pass",
+    "near passes": "near passes",
+    "method": "method",
+    "failed": "failure",
+}
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
-class Finding:
-    """Finding on one row of the summary.
-
-    Attributes
-    ----------
-    row : namedtuple
-    failed : str
-        Why there is nothing to compare; empty where there is.
-    uplifted, reference_uplifted : bool
-    reason : str
-        Why they diverge: "support", "walls", "pass" (one that contact does not resolve), "near passes",
-        "mistake" (of an external trajectory), or "" (no pass: not chance).
-    bound : str
-        What agreement means, in words.
-    passes : int
-        Passes of the reference while they agree.
-    end : float
-        Up to when traces of different length are compared [s]; NaN where it is to the end.
-    released : bool
-        Whether the peak tilt of both is that of the release, which tells nothing of either.
-    """
-
-    row: Any
-    failed: str
-    uplifted: bool
-    reference_uplifted: bool
-    reason: str
-    bound: str
-    passes: int
-    end: float
-    released: bool = False
-
-    @property
-    def external(self) -> bool:
-        """Whether it is of an external trajectory."""
-        return bool(self.row.support == EXTERNAL)
-
-    @property
-    def peak_share(self) -> float:
-        """Difference of the peak tilts over that of the reference."""
-        ours, theirs = self.row.peak_tilt, self.row.reference_peak_tilt
-        return abs(ours - theirs) / theirs if theirs > 0.0 else math.inf
+def cause_of(view: CaseView, row: Any) -> str:
+    """Return the cause of a row of a case."""
+    if "failed" in (row.outcome, row.reference_outcome):
+        return "failed"
+    touched = any(fact.code == "wall_contact" for fact in view.facts[row.run])
+    return cause(row, view.case.length, touched=touched, models_differ=_models_differ(view, row))
 
 
-def findings(view: CaseView) -> Iterator[Finding]:
-    """Yield the finding on each row of a case."""
-    traces, length = view.traces, view.case.length
-    for row in rows_of(view.rows):
-        lost = [
-            f"{label} failed: {failure(view.facts.get(label, ()))}"
-            for label, outcome in ((row.run, row.outcome), (row.reference, row.reference_outcome))
-            if outcome == "failed"
-        ]
-        pair = [traces[label] for label in (row.run, row.reference) if label in traces]
-        moved = [math.isfinite(trace.uplift_time) for trace in pair] if len(pair) == 2 else [True, True]
-        end = min((float(trace.time[-1]) for trace in pair), default=length)
-        yield Finding(
-            row=row,
-            failed="; ".join(lost),
-            uplifted=moved[0],
-            reference_uplifted=moved[1],
-            reason=reason(
-                row,
-                length,
-                touched=any(fact.code == "wall_contact" for fact in view.facts[row.run]),
-                models_differ=_models_differ(view, row),
-            ),
-            bound=within(row),
-            passes=_passes_before(row.within_tolerance_until, traces.get(row.reference)),
-            end=end if end < length * (1.0 - 1e-9) else math.nan,
-            released=_is_release(view.case, row.peak_tilt)
-            and _is_release(view.case, row.reference_peak_tilt),
-        )
-
-
-def _passes_before(end: float, reference: Trace | None) -> int:
-    return 0 if reference is None else int((reference.passes["time"] <= end).sum())
-
-
-def _is_release(case: Case, peak: float) -> bool:
-    """Whether a peak tilt [alpha] is the tilt at release."""
-    if case.initial is None:
-        return False
-    tilt = case.initial.tilt / case.cylinder.alpha
-    return abs(peak - tilt) <= _SAME_TILT * tilt
-
-
-def _models_differ(view: CaseView, row: Any) -> bool:
-    """Whether half of what ends an agreement lies between the models of recess and flat ground by then."""
-    traces = view.traces
-    models = [traces.get(str(Run(None, support))) for support in ("recess", "flat")]
-    if not row.left_tolerance or row.reference not in traces or models[0] is None or models[1] is None:
-        return True
-    pair = make_pair(view.case.cylinder, models[0], models[1], until=row.within_tolerance_until)
-    return bool((abs(pair.tilt_difference) > 0.5 * row.tolerance).any())
-
-
-def reason(row: Any, length: float, *, touched: bool = False, models_differ: bool = True) -> str:
-    """Return why a run diverges from its reference, see `Finding`.
+def cause(row: Any, length: float, *, touched: bool = False, models_differ: bool = True) -> str:
+    """Return why a run diverges from its reference: one of `CAUSES`.
 
     Parameters
     ----------
@@ -140,12 +58,21 @@ def reason(row: Any, length: float, *, touched: bool = False, models_differ: boo
         Whether the run met a wall.
     models_differ : bool, optional
         Whether the models of recess and flat ground differ by then: else it is not for the support.
+
+    Returns
+    -------
+    str
+        "support" or "walls", a difference of support, not of accuracy; "mistake" of an external trajectory;
+        "pass", one that contact does not resolve; "near passes", which amplify what small difference there
+        is; "method", without a pass, so that it is not chance.
     """
-    against_recess = row.reference_support == "recess"
-    if row.support == "flat" and against_recess and models_differ:
+    support, reference = SUPPORTS.get(row.support), SUPPORTS.get(row.reference_support)
+    guided = reference is not None and reference.guided
+    if support and support.walls:
+        if not (reference and reference.walls) and (guided or touched):
+            return "walls"
+    elif support and not support.guided and guided and models_differ:
         return "support"
-    if row.support == "ring" and row.reference_support != "ring" and (against_recess or touched):
-        return "walls"
     if row.support == EXTERNAL and explains_divergence(row):
         return "mistake"
     by_pass = row.predicted_by == "pass" and row.support != EXTERNAL and row.predicted_until < length
@@ -153,22 +80,69 @@ def reason(row: Any, length: float, *, touched: bool = False, models_differ: boo
     agreed, predicted = row.within_tolerance_until - start, row.predicted_until - start
     if by_pass and predicted <= agreed <= BEATEN * predicted:  # one that was survived for longer left nothing
         return "pass"
-    return "near passes" if math.isfinite(row.closest_pass) else ""
+    return "near passes" if math.isfinite(row.closest_pass) else "method"
 
 
-def finding(found: Finding) -> str:
-    """Return the sentences on one row: how long it agrees, and why it diverges."""
-    more = external_sentences(found.row) if found.external and not found.failed else ""
-    return f"{sentence(WORDS, 'finding', found)} {more}".strip()
+def explains_divergence(row: Any) -> bool:
+    """Whether a likely mistake is a reason for the tilts to diverge: a turn of the axes is none."""
+    return any(mistake.changes_tilt for mistake in mistakes_of(row))
 
 
-def finding_sentences(view: CaseView) -> list[str]:
-    """Return one or two sentences on each row of a case, and what limits each run by its own account."""
-    said = [finding(found) for found in findings(view)]
-    # of a run that failed its finding says why
-    sound = [row for row in rows_of(view.rows) if "failed" not in (row.outcome, row.reference_outcome)]
-    runs = [run for run in dict.fromkeys(row.run for row in sound) if view.facts[run]]
-    return [*said, *(sentence(WORDS, "remark", run, remarks(view.facts[run])) for run in runs)]
+def _models_differ(view: CaseView, row: Any) -> bool:
+    """Whether half of what ends an agreement lies between the models of recess and flat ground by then."""
+    recess, flat = (view.traces.get(str(Run(None, support.name))) for support in (RECESS, FLAT))
+    if not row.left_tolerance or row.reference not in view.traces or recess is None or flat is None:
+        return True
+    pair = make_pair(view.case.cylinder, recess, flat, until=row.within_tolerance_until)
+    return bool((abs(pair.tilt_difference) > 0.5 * row.tolerance).any())
+
+
+def within(row: Any) -> str:
+    """Return what agreement of the tilts means for a run."""
+    noise = row.tilt_bound - AGREEMENT if row.support == EXTERNAL else 0.0
+    return sentence(WORDS, "within", row.tolerance, noise, AGREEMENT)
+
+
+def notes(view: CaseView) -> str:
+    """Return the paragraph on a case: failures, causes of divergence, mistakes, budgets and diagnostics."""
+    rows = list(rows_of(view.rows))
+    sound = [row for row in rows if "failed" not in (row.outcome, row.reference_outcome)]
+    runs = dict.fromkeys(row.run for row in sound)
+    causes: dict[str, list[Any]] = {}
+    for row in sound:
+        if row.left_tolerance:
+            causes.setdefault(cause_of(view, row), []).append(row)
+    lost = dict.fromkeys(
+        label
+        for row in rows
+        for label, outcome in ((row.run, row.outcome), (row.reference, row.reference_outcome))
+        if outcome == "failed"
+    )
+    values = {
+        "failed": {label: failure(view.facts.get(label, ())) for label in lost},
+        "still": bool(runs) and not any(math.isfinite(each.uplift_time) for each in view.traces.values()),
+        "causes": causes,
+        "external": [_mistakes(row) for row in sound if row.support == EXTERNAL],
+        "remarks": _together({run: remarks(view.facts[run]) for run in runs}),
+    }
+    parts = [sentence(WORDS, macro, values) for macro in ("failures", "parted", "mistakes")]
+    parts += [*early_sentences(view.rows), *budget_sentences(view.rows), sentence(WORDS, "remarks", values)]
+    return " ".join(filter(None, parts))
+
+
+def _mistakes(row: Any) -> dict[str, Any]:
+    """Return the likely mistakes of an external trajectory in words, and whether they explain it."""
+    words = [mistake.words for mistake in mistakes_of(row)]
+    return {"row": row, "mistakes": words, "explained": explains_divergence(row)}
+
+
+def _together(words: Mapping[str, str]) -> list[tuple[list[str], str]]:
+    """Return each text once, with the names that have it; of empty ones nothing."""
+    return [
+        ([name for name in words if words[name] == text], text)
+        for text in dict.fromkeys(words.values())
+        if text
+    ]
 
 
 def counted_remarks(summary: pd.DataFrame) -> list[str]:
@@ -176,48 +150,44 @@ def counted_remarks(summary: pd.DataFrame) -> list[str]:
     runs = summary[(summary["outcome"] != "failed") & (summary["reference_outcome"] != "failed")]
     runs = runs.drop_duplicates(["case", "run"])
     counts = counted(map(parted, runs["diagnostics"]))
-    return [sentence(WORDS, "remarks", counts)] if counts else []
+    return [sentence(WORDS, "counts", counts)] if counts else []
 
 
 def headline(rows: pd.DataFrame, length: float) -> str:
     """Return the headline above the rows of a case: how long runs of each support follow their own model."""
     rows = own_rows(rows[rows["outcome"] != "failed"])
-    parts, diverged = [], False
+    groups: list[pd.DataFrame] = []
     for support in rows["support"].unique():
         of_support = rows[rows["support"] == support]
         # external trajectories have little in common
-        single = support == EXTERNAL
-        groups = [[index] for index in of_support.index] if single else [list(of_support.index)]
-        parts += [sentence(WORDS, "followed", _group(of_support.loc[group], length)) for group in groups]
-        diverged = diverged or any(
-            row.left_tolerance and not (single and explains_divergence(row)) for row in rows_of(of_support)
+        groups += (
+            [row for _, row in of_support.groupby("run", sort=False)] if support == EXTERNAL else [of_support]
         )
-    if not parts:
+    if not groups:
         return "No run could be compared."
-    return " ".join([*parts, *(["Once traces have diverged, compare distributions."] if diverged else [])])
+    return " ".join(sentence(WORDS, "followed", _group(group, length)) for group in groups)
 
 
 def _group(rows: pd.DataFrame, length: float) -> dict[str, object]:
-    """Headline on the runs of one support, held against their own model."""
+    """Headline on the runs of one support, compared with their own model."""
     first = next(iter(rows_of(rows)))
-    external = first.support == EXTERNAL
+    external, support = first.support == EXTERNAL, SUPPORTS.get(first.support)
     names = {the(row.run, REDUCED) if row.engine == REDUCED else row.engine: None for row in rows_of(rows)}
-    references = {the(row.reference, row.reference_engine): None for row in rows_of(rows)}
     ends = rows["within_tolerance_until"]
     last = float(ends.max())
     return {
-        "support": str(first.support),
+        "support": support.words if support else "external trajectory" if external else str(first.support),
         "names": list(names),
-        "references": list(references),
-        "rows": len(rows),
+        "references": list({the(row.reference, row.reference_engine): None for row in rows_of(rows)}),
         "bound": within(first),
         "diverged": bool(rows["left_tolerance"].any()),
         "first": float(ends.min()),
         "last": last,
         # the file of an external trajectory may end before the run does
-        "length": min(length, last) if external else length,
         "short": external and last < length * (1.0 - 1e-9),
-        "scope": scope(first) if external else "",
+        "differs": [part for part in first.differs_in if part != "tilt"] if external else [],
+        "not_compared": list(first.not_compared) if external else [],
+        "mistakes": [mistake.words for mistake in mistakes_of(first)] if external else [],
     }
 
 
@@ -233,28 +203,26 @@ def budget_sentences(summary: pd.DataFrame) -> list[str]:
         "more": len(found) - _LISTED,
         "worth": len(worth),
         "explained": len(worth) - len(found),
-        "cases": worth["case"].nunique(),
-        "explained_cases": worth["case"].nunique() - found["case"].nunique(),
         "small": len(known) - len(large),
         "not_split": large.loc[large["not_split"] != "", "not_split"].value_counts().to_dict(),
         "missing": len(summary) - len(known),
         "largest": LARGEST_SHARE,
         "bound": WORTH_EXPLAINING,
     }
-    said = [
-        sentence(WORDS, macro, counts)
-        for macro in ("more_unexplained", "explained", "not_split", "no_budget")
-    ]
-    return [*lines, *filter(None, said)]
+    return [*lines, *filter(None, [sentence(WORDS, "budgets", counts)])]
 
 
-def divergence_sentences(summary: pd.DataFrame) -> list[str]:
-    """Return whether traces diverged as predicted, those that did so too early by name.
+def early_sentences(summary: pd.DataFrame) -> list[str]:
+    """Return a sentence on each row whose traces diverged earlier than predicted.
 
     Of external trajectories nobody can predict that: the prediction rests on the errors of an engine.
     """
-    summary = summary[summary["support"] != EXTERNAL]
-    counts = summary["divergence"].value_counts()
-    said = [f"{counts[verdict]} {verdict}" for verdict in counts.index if verdict]
-    early = [sentence(WORDS, "early", row) for row in rows_of(summary[summary["divergence"] == "earlier"])]
-    return [*early, sentence(WORDS, "in_time", said)] if said else early
+    early = (summary["divergence"] == "earlier") & (summary["support"] != EXTERNAL)
+    return [sentence(WORDS, "early", row) for row in rows_of(summary[early])]
+
+
+def divergence_counts(summary: pd.DataFrame) -> list[str]:
+    """Return one sentence on how many rows diverged as predicted; none if of none it is known."""
+    counts = summary.loc[summary["support"] != EXTERNAL, "divergence"].value_counts()
+    said = [f"{count} {verdict}" for verdict, count in counts.items() if verdict]
+    return [sentence(WORDS, "in_time", said)] if said else []

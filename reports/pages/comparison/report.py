@@ -6,7 +6,6 @@ import dataclasses
 from collections.abc import Iterator, Sequence
 
 from rockwobble.compare import WORTH_EXPLAINING, Comparison
-from rockwobble.compare.storage.manifest import Results
 
 from ...figures.comparison.budget import all_budgets_picture, budget_picture, parts_picture
 from ...figures.comparison.contact import azimuth_picture, contact_picture, turn_picture
@@ -15,77 +14,64 @@ from ...figures.comparison.place import orbit_picture, residual_picture
 from ...figures.comparison.playback import playback
 from ...figures.comparison.tilt import tilt_picture
 from ...figures.comparison.view import CaseView, case_views, own_rows
-from ...figures.picture import Layer, Line, Picture
-from ...figures.thinning import kept_points
+from ...figures.picture import Line, Picture
 from ..page import Page
 from ..words.cases import describe, group_of
 from ..words.sentences import fragment
-from .external import external_rows
-from .findings import budget_sentences, counted_remarks, divergence_sentences, finding_sentences, headline
-from .tables import all_columns, diverging_runs, group_rows, main_rows, matrix_tables, meanings, worst_first
+from .findings import budget_sentences, counted_remarks, divergence_counts, early_sentences, headline, notes
+from .tables import all_columns, external_rows, group_rows, main_rows, matrix_tables, worst_rows
 
 # up to so many cases each has a part of the report of its own
 SINGLY = 3
-# points of all lines of a page together: ten bytes each, and the page stays below 8 MB
-_ALL_POINTS = 115_000
+# points of all lines of a page together: eleven bytes each
+_ALL_POINTS = 60_000
 # more are not to be seen, fewer are no curve
-_MOST_POINTS, _FEWEST_POINTS = 1500, 120
+_MOST_POINTS, _FEWEST_POINTS = 1500, 90
 _ALONE = ("figure", "budget")
-_NAMED = 10  # runs that diverge, by name
 
 
-def stored_page(results: Results) -> Page:
-    """Return the report of a comparison that is stored."""
-    return comparison_page(Comparison.load(results.folder))
-
-
-def comparison_page(comparison: Comparison, command: str = "") -> Page:
-    """Return the report; `command` made the comparison, where this does not say so itself."""
-    views = case_views(comparison)
+def page_of(found: Comparison) -> Page:
+    """Return the report of a comparison."""
+    views = case_views(found)
     many = len(views) > SINGLY
-    summary, lengths = comparison.summary, {view.case.name: view.case.length for view in views}
+    summary, lengths = found.summary, {view.case.name: view.case.length for view in views}
     pictures = {place: list(_pictures(view, place, many)) for place, view in enumerate(views)}
-    whole = [picture for of_case in pictures.values() for picture in of_case]
-    if many:
-        whole = _thinned(whole)
-    bars = all_budgets_picture(comparison) if comparison.budgets else None
+    whole = _thinned([picture for of_case in pictures.values() for picture in of_case])
+    bars = all_budgets_picture(found) if found.budgets else None
     if bars is not None:
         whole.append(bars)
     blocks = _blocks(views, many=many)
-    diverging = diverging_runs(summary, lengths) if many else []
-    matrix = comparison.matrix()
+    values: dict[str, object] = {
+        "many": many,
+        "about": found.manifest,
+        "budgets": bars is not None,
+        "cases": [
+            {
+                **_case(view),
+                "matrices": matrix_tables(found.matrix[found.matrix["case"] == view.case.name]),
+                "pictures": [picture.name for picture in pictures[place]],
+                "player": name if (name := f"player-{place}") in blocks else "",
+            }
+            for place, view in enumerate(views)
+        ],
+    }
+    if many:
+        values |= {
+            "group_rows": group_rows(summary, lengths),
+            "worst": worst_rows(summary, lengths),
+            "failed": int((own_rows(summary)["outcome"] == "failed").sum()),
+            "matrices": matrix_tables(found.matrix),
+            "remarks": [
+                *budget_sentences(summary),
+                *early_sentences(summary),
+                *divergence_counts(summary),
+                *counted_remarks(summary),
+            ],
+        }
     return Page(
         name="report",
         template="comparison/report",
-        values={
-            "many": many,
-            "command": command or comparison.command,
-            "versions": comparison.versions,
-            "budgets": bars is not None,
-            "group_rows": group_rows(summary, lengths) if many else [],
-            "worst": worst_first(summary, lengths) if many else [],
-            "diverging": diverging[:_NAMED],
-            "others": len(diverging[_NAMED:]),
-            "remarks": [
-                *budget_sentences(summary),
-                *divergence_sentences(summary),
-                *counted_remarks(summary),
-            ]
-            if many
-            else [],
-            "matrices": matrix_tables(matrix) if many else [],
-            "meanings": meanings(),
-            "failed": int((own_rows(summary)["outcome"] == "failed").sum()),
-            "cases": [
-                {
-                    **_case(view),
-                    "matrices": matrix_tables(matrix[matrix["case"] == view.case.name]),
-                    "pictures": [picture.name for picture in pictures[place]],
-                    "player": name if (name := f"player-{place}") in blocks else "",
-                }
-                for place, view in enumerate(views)
-            ],
-        },
+        values=values,
         pictures=whole,
         alone=_ALONE,
         blocks=blocks,
@@ -93,14 +79,14 @@ def comparison_page(comparison: Comparison, command: str = "") -> Page:
 
 
 def _case(view: CaseView) -> dict[str, object]:
-    rows, length = view.rows, view.case.length
+    rows = view.rows
     numbers, columns = all_columns(rows)
     return {
         "name": view.case.name,
         "lines": describe(view.case),
-        "headline": headline(rows, length),
-        "findings": [*finding_sentences(view), *budget_sentences(rows), *divergence_sentences(rows)],
-        "rows": main_rows(rows, length),
+        "headline": headline(rows, view.case.length),
+        "notes": notes(view),
+        "rows": main_rows(view),
         "external": external_rows(rows),
         "numbers": numbers,
         "columns": columns,
@@ -124,41 +110,15 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
         )
     if not many:
         yield residual_picture(view, f"residuals-{place}")
-    excitation = excitation_picture(view, f"excitation-{place}")
-    yield from () if excitation is None else (excitation,)
+        yield from filter(None, [excitation_picture(view, f"excitation-{place}")])
 
 
 def _thinned(pictures: Sequence[Picture]) -> list[Picture]:
-    """Return the pictures with as many points as the page can hold, the same for every line."""
-    curves = [
-        layer
-        for picture in pictures
-        for panel in picture.panels
-        for layer in panel.layers
-        if _is_curve(layer)
-    ]
-    points = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // max(1, len(curves))))
-
-    def fewer(layer: Layer) -> Layer:
-        if not (isinstance(layer, Line) and _is_curve(layer)):
-            return layer
-        keep = kept_points(layer.x, layer.y, points=points)
-        return dataclasses.replace(layer, x=layer.x[keep], y=layer.y[keep])
-
-    return [
-        dataclasses.replace(
-            picture,
-            panels=[
-                dataclasses.replace(panel, layers=[fewer(layer) for layer in panel.layers])
-                for panel in picture.panels
-            ],
-        )
-        for picture in pictures
-    ]
-
-
-def _is_curve(layer: Layer) -> bool:
-    return isinstance(layer, Line) and layer.style.dash != "none"
+    """Return the pictures with as many points as the page can hold, the same for every curve."""
+    layers = [layer for picture in pictures for panel in picture.panels for layer in panel.layers]
+    curves = sum(isinstance(layer, Line) and layer.style.dash != "none" for layer in layers)
+    points = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // max(1, curves)))
+    return [dataclasses.replace(picture, points=points) for picture in pictures]
 
 
 def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:

@@ -1,4 +1,4 @@
-"""The tables of a comparison: main columns, all columns, many cases together, and who agrees with whom."""
+"""The tables of a comparison: main columns, all columns, many cases together, and the agreement matrix."""
 
 from __future__ import annotations
 
@@ -9,44 +9,66 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.compare import SUMMARY_COLUMNS
+from rockwobble.compare.external.trajectory import SUPPORT as EXTERNAL
 from rockwobble.compare.external.verdict import lists_in_words
 from rockwobble.models import Run
 
-from ...figures.comparison.view import own_rows, rows_of
+from ...figures.comparison.view import CaseView, own_rows, rows_of
 from ..table import Row, number
 from ..words.cases import group_of
+from .findings import CAUSES, cause_of
 
 
-def main_rows(rows: pd.DataFrame, length: float) -> list[Row]:
-    """Return the main columns of the summary; what fell or failed has a word for its peak.
-
-    Parameters
-    ----------
-    rows : DataFrame
-        Of the summary.
-    length : float
-        Of the run [s]; times are those of the run.
-    """
+def main_rows(view: CaseView) -> list[Row]:
+    """Return the main columns of the rows of a case; what overturned or failed has a word for its peak."""
     return [
         {
             **row._asdict(),
-            "against": row.reference.removesuffix(" model").removesuffix("-ground"),
+            "reference": row.reference.removesuffix(" model"),
             "peak": _peak(row.peak_tilt, row.outcome),
             "reference_peak": _peak(row.reference_peak_tilt, row.reference_outcome),
-            "agrees": _until(row, row.reference_uplift_time, open_end="+", other=" "),
-            "predicted": min(row.reference_uplift_time + row.predicted_agreement_time, length),
+            "agrees": _until(row, row.reference_uplift_time),
+            "predicted": min(row.reference_uplift_time + row.predicted_agreement_time, view.case.length),
+            "cause": CAUSES[cause_of(view, row)] if row.diverged else None,
         }
-        for row in rows_of(rows)
+        for row in rows_of(view.rows)
     ]
 
 
-def _until(row: Any, start: float, *, open_end: str, other: str = "") -> str:
-    """Return the end of an agreement within 1 % of alpha in the time of the run, or of the run."""
-    return f"{row.agreement_time + (start if row.diverged else 0.0):.2f}{other if row.diverged else open_end}"
+def _until(row: Any, start: float) -> str:
+    """Return the end of an agreement within 1 % of alpha, in the time of the run; that of the run with +."""
+    return f"{row.agreement_time + start:.2f}" if row.diverged else f"{row.agreement_time:.2f}+"
 
 
 def _peak(value: float, outcome: str) -> float | str:
     return outcome if outcome in ("overturned", "failed") else value
+
+
+def external_rows(summary: pd.DataFrame) -> list[Row]:
+    """Return one line of numbers and codes for each external trajectory."""
+    return [
+        {
+            **row._asdict(),
+            "uplift": row.uplift_time_difference if math.isfinite(row.uplift_time_uncertainty) else None,
+            "direction": _degrees(row.uplift_direction_difference, row.uplift_direction_uncertainty),
+            "direction_uncertainty": _degrees(
+                # beyond half a turn there is nothing left to know
+                min(row.uplift_direction_uncertainty, math.pi),
+                row.uplift_direction_uncertainty,
+            ),
+            "differs_in": "; ".join(row.differs_in) or None,
+            "likely_mistake": "; ".join(
+                f"{part}: {code}"
+                for part, code in zip(row.likely_mistake_in, row.likely_mistake, strict=True)
+            )
+            or None,
+        }
+        for row in rows_of(summary[summary["support"] == EXTERNAL])
+    ]
+
+
+def _degrees(angle: float, uncertainty: float) -> float | None:
+    return math.degrees(angle) if math.isfinite(uncertainty) else None
 
 
 def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
@@ -61,16 +83,8 @@ def all_columns(rows: pd.DataFrame) -> tuple[list[Row], list[list[str]]]:
         for name, (unit, _) in SUMMARY_COLUMNS.items()
         if name not in ("case", "run", "reference")
     ]
-    columns = [[str(index), f"{row.run} against {row.reference}", ".4g"] for index, row in enumerate(found)]
+    columns = [[str(index), f"{row.run} − {row.reference}", ".4g"] for index, row in enumerate(found)]
     return lines, [["name", "column", "words"], *columns]
-
-
-def meanings() -> list[Row]:
-    """Return what each column of summary.csv means, and its unit."""
-    return [
-        {"all": "Columns of summary.csv", "name": name, "unit": unit or "-", "meaning": meaning}
-        for name, (unit, meaning) in SUMMARY_COLUMNS.items()
-    ]
 
 
 def group_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]:
@@ -85,41 +99,38 @@ def group_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]
     """
     rows = _with_shares(summary, lengths)
     shortest = rows.groupby("group")["share"].min().sort_values(kind="stable")
-    found: list[Row] = []
-    for group in shortest.index:
-        inside = rows[rows["group"] == group]
-        for run in inside["run"].unique():
-            chosen = inside[inside["run"] == run]
-            found.append(
-                {
-                    "group": group,
-                    "run": run,
-                    "cases": len(chosen),
-                    "agree": int((~chosen["left_tolerance"]).sum()),
-                    "least": float(chosen["share"].min()),
-                    "rms": float(chosen["tilt_rms_relative"].median()),
-                    "worst": float(chosen["tilt_rms_relative"].max()),
-                    "peak": float(chosen["peak_tilt_difference"].abs().max()),
-                    "time": float(chosen["wall_time"].sum(min_count=1)),
-                }
-            )
-    return found
+    return [
+        {
+            "group": group,
+            "run": run,
+            "cases": len(chosen),
+            "agree": int((~chosen["left_tolerance"]).sum()),
+            "least": float(chosen["share"].min()),
+            "rms": float(chosen["tilt_rms_relative"].median()),
+            "worst": float(chosen["tilt_rms_relative"].max()),
+            "peak": float(chosen["peak_tilt_difference"].abs().max()),
+            "time": float(chosen["wall_time"].sum(min_count=1)),
+        }
+        for group in shortest.index
+        for run, chosen in rows[rows["group"] == group].groupby("run", sort=False)
+    ]
 
 
-def worst_first(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Any]:
-    """Return the worst run of each case, the worst case first; with its share and the length of its run."""
+def worst_rows(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Row]:
+    """Return the worst run of each case, the worst case first, with the place of the case on the page."""
     rows = _with_shares(summary, lengths)
     worst = rows.sort_values(["share", "tilt_rms_relative"], ascending=[True, False], kind="stable")
-    order = {name: index for index, name in enumerate(lengths)}
-    once = worst.drop_duplicates("case")
-    return list(rows_of(once.assign(length=once["case"].map(lengths), place=once["case"].map(order))))
-
-
-def diverging_runs(summary: pd.DataFrame, lengths: Mapping[str, float]) -> list[Any]:
-    """Return the runs that diverge from the model of their support, the first to do so first."""
-    rows = _with_shares(summary, lengths)
-    found = rows[rows["left_tolerance"]].sort_values("share", kind="stable")
-    return list(rows_of(found.assign(length=found["case"].map(lengths))))
+    places = {name: place for place, name in enumerate(lengths)}
+    return [
+        {
+            **row._asdict(),
+            "place": places[row.case],
+            "length": lengths[row.case],
+            "peak": abs(row.peak_tilt_difference),
+            "agrees": f"{row.within_tolerance_until:.2f}{'' if row.left_tolerance else '+'}",
+        }
+        for row in rows_of(worst.drop_duplicates("case"))
+    ]
 
 
 def _with_shares(summary: pd.DataFrame, lengths: Mapping[str, float]) -> pd.DataFrame:
@@ -152,10 +163,10 @@ def _matrix(support: str, part: pd.DataFrame) -> dict[str, Any]:
 
 
 def _cell(rows: pd.DataFrame) -> str:
-    difference = number(float(rows["tilt_rms_relative"].median()), ".1e")
+    difference = number(float(rows["tilt_rms_relative"].median()), "percent")
     if len(rows) == 1:
         (row,) = rows_of(rows)
-        return f"{_until(row, row.other_uplift_time, open_end='+')}, {difference}"
+        return f"{_until(row, row.other_uplift_time)} s, {difference}"
     return f"{int((~rows['diverged']).sum())} of {len(rows)}, {difference}"
 
 

@@ -1,22 +1,18 @@
-"""Values for the page that plays a comparison of one case: its words are in comparison/view.md.j2."""
+"""The page that plays a comparison of one case: its words are in comparison/view.md.j2."""
 
 from __future__ import annotations
 
-from rockwobble.compare import Comparison
-from rockwobble.compare.comparison.file import load_fields
-from rockwobble.compare.storage.manifest import Manifest, Results
+from rockwobble.compare.comparison.comparison import View
 
 from ...figures.comparison.playback import playback
 from ...figures.comparison.view import case_views
 from ..page import Page
 from ..words.cases import describe
 from ..words.sentences import fragment
-from .findings import finding_sentences
-
-KIND = "view"
+from .findings import headline, notes
 
 
-def view_page(comparison: Comparison, manifest: Manifest) -> Page:
+def page_of(found: View) -> Page:
     """Return the page of a comparison of one case.
 
     Raises
@@ -24,7 +20,7 @@ def view_page(comparison: Comparison, manifest: Manifest) -> Page:
     ValueError
         If nothing moves.
     """
-    (view,) = case_views(comparison)
+    (view,) = case_views(found)
     spec = playback(view)
     if spec is None:
         raise ValueError(f"there is nothing to play in {view.case.name!r}: the cylinder never uplifts")
@@ -33,15 +29,11 @@ def view_page(comparison: Comparison, manifest: Manifest) -> Page:
         template="comparison/view",
         values={
             "name": view.case.name,
+            "headline": headline(view.rows, view.case.length),
+            "notes": notes(view),
             "lines": describe(view.case),
-            "findings": finding_sentences(view),
-            "about": manifest,
+            "about": found.manifest,
         },
         blocks={"player": fragment("comparison/player.html.j2", name="player", spec=spec)},
         outputs=["html"],  # without the player there is nothing to see
     )
-
-
-def stored_page(results: Results) -> Page:
-    """Return the page of the view that is stored."""
-    return view_page(Comparison(**load_fields(results)), results.manifest)

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from typing import Any
 
 from rockwobble.compare.comparison.prediction import NUDGE
-from rockwobble.compare.storage.manifest import Manifest, Results
-from rockwobble.models import Trace
+from rockwobble.compare.studies.single_run import SingleRun
+from rockwobble.models.support import SUPPORTS
 
 from ...figures.runs.trace import pictures
 from ..page import Page
@@ -16,40 +14,17 @@ from ..words.cases import describe
 from ..words.diagnostics import remarks
 
 
-def run_page(trace: Trace, manifest: Manifest) -> Page:
-    """Return the page of a run."""
+def page_of(found: SingleRun) -> Page:
+    """Return the page of a run; numbers are NaN or infinite where there is none."""
+    trace, single = found.trace, found.facts.get("single_trace", {})
+    cylinder, held, engine = trace.case.cylinder, trace.assumptions, trace.run.engine is not None
+    until = single.get("until", math.inf)  # of earlier versions nothing is known
+    support = SUPPORTS.get(trace.run.support)
     values = {
         "trace": trace,
-        "label": manifest.about["run"],
+        "label": found.facts["run"],
         "lines": describe(trace.case),
         "said": remarks(trace.diagnostics),
-        **_numbers(trace),
-        **_reproducible(trace, manifest.about.get("single_trace", {})),
-        "about": manifest,
-    }
-    return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))
-
-
-def stored_page(results: Results) -> Page:
-    """Return the page of the run that is stored."""
-    return run_page(Trace.load(results.folder / "run.parquet"), results.manifest)
-
-
-def _reproducible(trace: Trace, single: Mapping[str, Any]) -> dict[str, object]:
-    """Return until when one trace is reproducible, whether the peak comes later, and what answers then."""
-    until = single.get("until", math.inf)  # of earlier versions nothing is known
-    return {
-        "until": until,
-        "peak_later": float(trace.time[int(trace.tilt.argmax())]) > until,
-        "nudge": NUDGE,
-        "answer": single.get("answer", ""),
-    }
-
-
-def _numbers(trace: Trace) -> dict[str, object]:
-    """Return the main numbers, NaN or infinite where there is none."""
-    cylinder, held, engine = trace.case.cylinder, trace.assumptions, trace.run.engine is not None
-    return {
         "alpha": cylinder.alpha,
         "peak": trace.peak_tilt,
         "end": float(trace.time[-1]),
@@ -63,7 +38,13 @@ def _numbers(trace: Trace) -> dict[str, object]:
         "friction": held.largest_friction_needed if held else math.nan,
         "moment": held.largest_restraining_moment if held else math.nan,
         "engine": engine,
-        "moves": engine or trace.run.support != "recess",  # out of its place
+        "moves": engine or not (support and support.guided),  # out of its place
         "displacement": trace.residual_displacement / cylinder.base_radius,
         "first_touch": trace.first("wall_contact"),
+        "until": until,
+        "peak_later": float(trace.time[int(trace.tilt.argmax())]) > until,
+        "nudge": NUDGE,
+        "answer": single.get("answer", ""),
+        "about": found.manifest,
     }
+    return Page(name="run", template="runs/run", values=values, pictures=pictures(trace))

@@ -33,3 +33,7 @@ function pin(x) {
   return { name: "pin", type: "line", x0: x, x1: x, y0: 0, y1: 1, yref: "paper", line: { color: "#888", width: 1 } };
 }
 linkFigures(document);
+// a figure that is folded has no width until it is opened
+document.querySelectorAll("details").forEach((fold) => fold.addEventListener("toggle", () => {
+  fold.querySelectorAll(".plotly-graph-div").forEach((plot) => Plotly.Plots.resize(plot));
+}));

@@ -1,0 +1,514 @@
+"""Error budget: the parts of a difference between an engine and a reduced model, sample by sample.
+
+    engine - reference = (engine - limit) + (limit - own) + (own - reference)
+                       =     numerics     +  unexplained  +   model form
+
+limit is the engine extrapolated to a time step of zero, own the reduced model of the engine's support
+(see `own_model`) or, where that goes through upright itself, planar motion with the loss of a base that
+lands flat. The three are signed traces of the tilt, and add up exactly.
+Tilt itself is never negative, so it folds where a motion goes past upright; as long as two motions agree
+within the tolerance of `tolerance_of` they are on the same side of that fold, which is why the budget ends
+with the agreement.
+
+Numerics and unexplained rest on the limit. Where it cannot be known they are not stated: see
+`ErrorBudget.not_split`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from rockwobble.models import Case, Cylinder, Run, Trace
+from rockwobble.models.shown import Brief
+from rockwobble.multibody.engines.registry import engine_facts
+from rockwobble.multibody.time_step.extrapolated import EXTRAPOLATED, to_zero_step
+
+from ..metrics.agreement import Agreement, agreement_time, tolerance_of
+from ..metrics.pair import is_release, make_pair, start_of
+from ..metrics.tilt import rms
+from ..metrics.turning import first_unresolved_pass, landings
+from ..runs.choice import own_model, references_of
+from ..runs.execution import SAMPLE_STEP, Job
+from ..runs.run_settings import at_step
+
+Array = NDArray[np.float64]
+
+# share of the agreement that the RMS of a budget covers: its end is where everything grows at once
+COVERED = 0.8
+# smaller differences are not worth explaining [alpha]
+WORTH_EXPLAINING = 1e-4
+# largest share of the whole that may stay unexplained
+LARGEST_SHARE = 0.2
+# smallest order in the step at which finer runs tend to a limit
+LEAST_ORDER = 0.5
+# samples are multiples of one step; two that differ by less are the same [s]
+_SAME_TIME = 1e-9
+
+# of the step of the run: always two, and one more where the limit is uncertain
+_ALWAYS, _AT_MOST = 2, 3
+# uncertainty of a limit, over the whole difference, that asks for a finer step
+_UNCERTAIN = 0.1
+# planar in the x z plane, with the loss of a base that lands flat
+_IMPACT = Run(None, "recess", plane=0.0, restitution="momentum")
+Simulate = Callable[[list[Job]], list[Trace]]
+Key = tuple[str, str]
+BUDGET_COLUMNS = (
+    "whole_rms",
+    "model_form_rms",
+    "numerics_rms",
+    "unexplained_rms",
+    "unexplained_share",
+    "limit_error",
+    "step_order",
+    "finest_step",
+    "not_split",
+)
+# of a row without a budget
+NO_BUDGET: Mapping[str, float | str] = MappingProxyType(
+    {**dict.fromkeys(BUDGET_COLUMNS, math.nan), "not_split": ""}
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class Limit(Brief):
+    """An engine extrapolated in its time step.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        [s]
+    tilt : ndarray, shape (n,)
+        [rad]; an extrapolation may be slightly negative next to upright.
+    error : ndarray, shape (n,)
+        By how much the finest step has moved it [rad]: its uncertainty.
+    steps : tuple of float
+        Time steps that it rests on, the coarsest first [s].
+    order : float
+        Order in the step as measured from the three finest runs; NaN where there are only two.
+    """
+
+    time: Array
+    tilt: Array
+    error: Array
+    steps: tuple[float, ...]
+    order: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
+class ErrorBudget(Brief):
+    """Signed parts of a tilt difference, in units of alpha.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        From uplift or release to the end of the agreement [s].
+    whole : ndarray, shape (n,)
+        Engine minus reference: the sum of the three parts.
+    model_form, numerics, unexplained : ndarray, shape (n,)
+    limit_error : ndarray, shape (n,)
+        Uncertainty of the extrapolation, by which numerics and unexplained may be off.
+    covered : float
+        End of the stretch that the RMS values cover, 80 % of the agreement [s].
+    steps, order : tuple of float, float
+        Of the `Limit` that the numerics rest on.
+    unresolved : float
+        First pass of the engine that is closer to upright than its contact resolves [s]; infinite if none.
+    """
+
+    time: Array
+    whole: Array
+    model_form: Array
+    numerics: Array
+    unexplained: Array
+    limit_error: Array
+    covered: float
+    steps: tuple[float, ...]
+    order: float
+    unresolved: float = math.inf
+
+    @property
+    def not_split(self) -> str:
+        """Why numerics and unexplained are not stated; empty where they are.
+
+        Where the model form is nearly all of the difference, they are. Else "unresolved_pass": a pass within
+        the agreement is left to chance, at any step; "order": finer runs tend to no limit, in an order below
+        a half; "error": the uncertainty of the limit is larger than both parts.
+        """
+        parts, error = max(self.rms("numerics"), self.rms("unexplained")), self.rms("limit_error")
+        if max(parts, error) <= LARGEST_SHARE * self.rms("whole"):
+            return ""
+        if len(self.time) and self.unresolved <= self.time[-1]:
+            return "unresolved_pass"
+        return "order" if self.order < LEAST_ORDER else "error" if error > parts else ""
+
+    def rms(self, part: str) -> float:
+        """Return the RMS of one part until 80 % of the agreement [alpha]; NaN without a sample."""
+        return rms(getattr(self, part)[self.time <= self.covered + _SAME_TIME])
+
+    def columns(self) -> dict[str, float | str]:
+        """Return the columns of the summary; NaN for what is not stated."""
+        whole, lack = self.rms("whole"), self.not_split
+        numerics, unexplained = (math.nan if lack else self.rms(part) for part in ("numerics", "unexplained"))
+        return {
+            "whole_rms": whole,
+            "model_form_rms": self.rms("model_form"),
+            "numerics_rms": numerics,
+            "unexplained_rms": unexplained,
+            "unexplained_share": unexplained / whole if whole > 0.0 else math.nan,
+            "limit_error": self.rms("limit_error"),
+            "step_order": self.order,
+            "finest_step": self.steps[-1],
+            "not_split": lack,
+        }
+
+    def to_frame(self) -> pd.DataFrame:
+        """Return the samples as a table, in units of alpha."""
+        names = ("time", "whole", "model_form", "numerics", "unexplained", "limit_error")
+        return pd.DataFrame({name: getattr(self, name) for name in names})
+
+
+def error_budget(
+    cylinder: Cylinder, engine: Trace, reference: Trace, own: Trace, limit: Limit, agreement: Agreement
+) -> ErrorBudget:
+    """Return the budget of `engine` minus `reference` over their agreement.
+
+    Parameters
+    ----------
+    cylinder : Cylinder
+    engine : Trace
+        Trajectory of the engine.
+    reference : Trace
+        Response of the reduced model that it is compared with.
+    own : Trace
+        Response of the reduced model of the engine's support; may be the reference itself.
+    limit : Limit
+        The engine extrapolated in its step.
+    agreement : Agreement
+        Agreement of engine and reference.
+    """
+    start = start_of(reference)
+    times = (engine.time, reference.time, own.time, limit.time)
+    count = common_count(times)
+    keep = slice(
+        int(np.searchsorted(engine.time[:count], start - _SAME_TIME)),
+        int(np.searchsorted(engine.time[:count], agreement.end + _SAME_TIME)),
+    )
+    alpha = cylinder.alpha
+    tilts = (engine.tilt, reference.tilt, own.tilt, limit.tilt)
+    measured, asked, explained, extrapolated = (tilt[keep] / alpha for tilt in tilts)
+    return ErrorBudget(
+        time=engine.time[keep],
+        whole=measured - asked,
+        model_form=explained - asked,
+        numerics=measured - extrapolated,
+        unexplained=extrapolated - explained,
+        limit_error=limit.error[keep] / alpha,
+        covered=start + COVERED * (agreement.end - start),
+        steps=limit.steps,
+        order=limit.order,
+        unresolved=first_unresolved_pass(engine, start=start),
+    )
+
+
+def extrapolated(time: Array, tilts: Sequence[Array], steps: Sequence[float], *, smooth: bool) -> Limit:
+    """Return the limit of a run for a vanishing step, from runs at steps that halve.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        [s]
+    tilts : sequence of ndarray, shape (n,)
+        One for each step [rad], at least two.
+    steps : sequence of float
+        The coarsest first [s], each half the one before.
+    smooth : bool
+        Whether the error is a power series in the step, as after a release: then its first and its
+        second order are removed, which takes three runs. From rest the instant of uplift falls
+        anywhere within a step, and that error has no series: then only the first order is removed,
+        with as little weight on the single runs as that takes.
+
+    Raises
+    ------
+    ValueError
+        If there are fewer than two runs.
+    """
+    if len(tilts) < 2:
+        raise ValueError(f"an extrapolation needs runs at two steps or more, got {len(tilts)}")
+    now = _intercept(tilts, smooth=smooth)
+    before = _intercept(tilts[:-1], smooth=smooth) if len(tilts) > 2 else tilts[-1]
+    return Limit(time=time, tilt=now, error=np.abs(now - before), steps=tuple(steps), order=_order(tilts))
+
+
+def _intercept(tilts: Sequence[Array], *, smooth: bool) -> Array:
+    """Value at step zero of a polynomial through the finest runs."""
+    if smooth and len(tilts) > 2:
+        # the first order, and then the second
+        return to_zero_step([to_zero_step(tilts[-3:-1], 1), to_zero_step(tilts[-2:], 1)], 2)
+    if smooth or len(tilts) == 2:
+        return to_zero_step(tilts[-2:], 1)
+    # least squares of a straight line over all runs, by the step: one that is off by chance weighs little
+    steps = 0.5 ** np.arange(len(tilts))
+    design = np.column_stack([np.ones_like(steps), steps]) / steps[:, None]  # scatter goes with the step
+    weights = np.linalg.pinv(design)[0] / steps
+    return np.asarray(np.tensordot(weights, np.stack(tilts), axes=1))
+
+
+def _order(tilts: Sequence[Array]) -> float:
+    if len(tilts) < 3:
+        return math.nan
+    coarse, middle, fine = tilts[-3:]
+    first, second = rms(coarse - middle), rms(middle - fine)
+    return math.log2(first / second) if first > 0.0 and second > 0.0 else math.nan
+
+
+def common_count(times: Sequence[Array]) -> int:
+    """Return up to which sample all have the same times."""
+    count = min(map(len, times))
+    same = np.all([np.abs(time[:count] - times[0][:count]) < _SAME_TIME for time in times], axis=0)
+    different = np.flatnonzero(~same)
+    return int(different[0]) if len(different) else count
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class Refined:
+    """A run that is to be extrapolated.
+
+    Parameters
+    ----------
+    case : Case
+    run : Run
+    label : str
+    trajectory : Trace
+        Of the engine.
+    end : float
+        Until when the limit is needed [s].
+    difference : ndarray
+        Engine minus model, as far as they agree [alpha]: the whole that is to be explained.
+    """
+
+    case: Case
+    run: Run
+    label: str
+    trajectory: Trace
+    end: float
+    difference: NDArray[np.float64]
+
+    @property
+    def smooth(self) -> bool:
+        """Whether the error of the run is a power series in the step: from rest not in every engine."""
+        assert self.run.engine is not None  # only runs of engines are refined
+        return is_release(self.case) or engine_facts(self.run.engine).smooth_uplift
+
+    @property
+    def extrapolated(self) -> bool:
+        """Whether the run is itself what others tend to."""
+        return self.run.time_step == EXTRAPOLATED
+
+    def levels(self, asked: Sequence[int]) -> Sequence[int]:
+        """Return how often the step is to be halved: not at all, too, where no run was at the step itself."""
+        return (0, *asked) if self.extrapolated and 1 in asked else asked
+
+
+def limits(refined: Sequence[Refined], simulate: Simulate) -> Mapping[tuple[str, str], Limit]:
+    """Return the limit of each run, by names of case and run.
+
+    A run whose finer runs fail or crash has none.
+
+    Parameters
+    ----------
+    refined : sequence of Refined
+    simulate : callable
+        Runs jobs, and returns their results in the same order.
+    """
+    found: dict[tuple[str, str], list[Trace]] = {
+        (r.case.name, r.label): [] if r.extrapolated else [r.trajectory] for r in refined
+    }
+    waiting = list(refined)
+    levels: Sequence[int] = range(1, _ALWAYS + 1)
+    while waiting:
+        jobs = [[_job(each, level) for level in each.levels(levels)] for each in waiting]
+        results = iter(simulate([job for some in jobs for job in some]))
+        for each, some in zip(waiting, jobs, strict=True):
+            found[each.case.name, each.label] += [next(results) for _ in some]
+        next_level = levels[-1] + 1
+        if next_level > _AT_MOST:
+            break
+        levels = (next_level,)
+        waiting = [each for each in waiting if _is_uncertain(each, found[each.case.name, each.label])]
+    made = {(r.case.name, r.label): _limit(r, found[r.case.name, r.label]) for r in refined}
+    return {key: limit for key, limit in made.items() if limit is not None}
+
+
+def finer_case(refined: Refined) -> Case:
+    """Return the problem of the finer runs: as long as needed."""
+    case = refined.case
+    end = min(case.length, math.ceil(refined.end / SAMPLE_STEP - 1e-6) * SAMPLE_STEP)
+    return dataclasses.replace(case, duration=max(end, SAMPLE_STEP))
+
+
+def _job(refined: Refined, level: int) -> Job:
+    return Job(
+        case=finer_case(refined),
+        run=at_step(refined.run, refined.trajectory.time_step * 0.5**level),
+        label=f"{refined.label}, step/{2**level}",
+    )
+
+
+def _limit(refined: Refined, traces: Sequence[Trace]) -> Limit | None:
+    if any(trace.outcome == "failed" for trace in traces):
+        return None
+    # a run that uplifts by chance has no part in the limit
+    used = traces if refined.smooth else traces[1:]
+    count = common_count([trace.time for trace in used])
+    tilts = [trace.tilt[:count] for trace in used]
+    if count == 0 or not all(np.isfinite(tilt).all() for tilt in tilts):
+        return None
+    steps = [trace.time_step for trace in used]
+    return extrapolated(used[0].time[:count], tilts, steps, smooth=refined.smooth)
+
+
+def _is_uncertain(refined: Refined, traces: Sequence[Trace]) -> bool:
+    limit = _limit(refined, traces)
+    if limit is None or not refined.smooth:
+        return False
+    # the stretch that the budget covers, from the uplift on: before it there is nothing to err in
+    start = start_of(refined.trajectory)
+    covered = (limit.time >= start) & (limit.time <= start + COVERED * (refined.end - start))
+    error = rms(limit.error[covered]) / refined.case.cylinder.alpha
+    whole = rms(refined.difference[: math.ceil(COVERED * len(refined.difference))])
+    return whole > WORTH_EXPLAINING and error > _UNCERTAIN * whole
+
+
+def case_budgets(
+    cases: Sequence[Case],
+    runs: Mapping[str, Run],
+    reference: Run | None,
+    results: Mapping[Key, Trace],
+    simulate: Simulate,
+    *,
+    named: str = "",
+) -> dict[tuple[str, str, str], ErrorBudget]:
+    """Return the budget of each run and reference: by name of the case, label and label of the reference.
+
+    What crashed, failed or never moved has none.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+    runs : mapping
+        Run of each label.
+    reference : Run or None
+        What every run is compared with; None is what its support asks for.
+    results : mapping
+        Traces by name of the case and label.
+    simulate : callable
+        Runs jobs, and returns their results in the same order.
+    """
+    agreements: dict[tuple[str, str, str], Agreement] = {}
+    refined = []
+    for case in cases:
+        for label, run in runs.items():
+            trajectory = results[case.name, label]
+            if run.engine is None or trajectory.outcome == "failed":
+                continue
+            found = {
+                model: agreement
+                for model in references_of(case, run, label, reference, named=named)
+                if (agreement := _agreement(case, results[case.name, model], trajectory)) is not None
+            }
+            if not found:
+                continue
+            agreements |= {(case.name, label, model): agreement for model, agreement in found.items()}
+            model, agreement = max(found.items(), key=lambda item: item[1].end)
+            pair = make_pair(case.cylinder, results[case.name, model], trajectory, until=agreement.end)
+            refined.append(
+                Refined(
+                    case=case,
+                    run=run,
+                    label=label,
+                    trajectory=trajectory,
+                    end=agreement.end,
+                    difference=pair.tilt_difference[pair.time >= pair.start],
+                )
+            )
+    extrapolations = limits(refined, simulate) if refined else {}
+    by_name = {case.name: case for case in cases}
+    impacts = _impacts(cases, runs, results, simulate)
+
+    def own(name: str, label: str) -> Trace:
+        key = name, str(own_model(runs[label]))
+        return impacts.get(key, results[key])
+
+    return {
+        (name, label, model): error_budget(
+            by_name[name].cylinder,
+            results[name, label],
+            results[name, model],
+            own(name, label),
+            extrapolations[name, label],
+            agreement,
+        )
+        for (name, label, model), agreement in agreements.items()
+        if (name, label) in extrapolations
+    }
+
+
+def _impacts(
+    cases: Sequence[Case], runs: Mapping[str, Run], results: Mapping[Key, Trace], simulate: Simulate
+) -> dict[Key, Trace]:
+    """Return planar motion with impacts, for models that go through upright: by names of case and model.
+
+    Motion in one vertical plane passes upright itself, and there the base lands flat. The recess and
+    flat-ground models go on without loss, as the limit of a vanishing spin does. A rigid base takes the
+    angular momentum about its new edge (Housner), on any support, and so do the engines: the difference is
+    model form.
+    """
+    keys, jobs = [], []
+    for case in cases:
+        for model in dict.fromkeys(str(own_model(run)) for run in runs.values()):
+            response = results[case.name, model]
+            if not len(landings(response)):
+                continue
+            direction, motion, initial = response.uplift_direction, case.motion, case.initial
+            plane = dataclasses.replace(
+                case,
+                motion=None if motion is None else motion.rotated(-direction),
+                initial=None if initial is None else dataclasses.replace(initial, rolling_angle=0.0),
+            )
+            keys.append((case.name, model))
+            jobs.append(Job(case=plane, run=_IMPACT, label="planar with impact"))
+    return dict(zip(keys, simulate(jobs), strict=True)) if jobs else {}
+
+
+def _agreement(case: Case, response: Trace, trajectory: Trace) -> Agreement | None:
+    if response.outcome == "failed" or not math.isfinite(response.uplift_time):
+        return None
+    pair = make_pair(case.cylinder, response, trajectory, until=case.length)
+    agreement = agreement_time(pair, tolerance=tolerance_of(response, trajectory))
+    return agreement if agreement.length > 0.0 else None
+
+
+def findings(summary: pd.DataFrame) -> pd.DataFrame:
+    """Return the rows of a summary in which too much stays unexplained, the worst first.
+
+    Rows whose whole difference is below 1e-4 alpha, or is not split, are left out.
+
+    Parameters
+    ----------
+    summary : DataFrame
+        Of a comparison with budgets.
+
+    Returns
+    -------
+    DataFrame
+    """
+    rows = summary[(summary["whole_rms"] > WORTH_EXPLAINING) & (summary["unexplained_share"] > LARGEST_SHARE)]
+    return rows.sort_values("unexplained_share", ascending=False)

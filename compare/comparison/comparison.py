@@ -1,0 +1,295 @@
+"""Comparison: the results of runs beside reference models, or beside one another."""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+import pandas as pd
+
+from rockwobble.models import Case, Trace, plain_json
+from rockwobble.models.number_checks import require_one_of
+from rockwobble.models.traces.trace_file import case_from_plain, case_to_plain
+
+from ..external.verdict import lists_in_words, lists_of_file
+from ..metrics.order_statistics import stated
+from ..metrics.pair import start_of
+from ..metrics.turning import first_unresolved_pass
+from ..runs.execution import case_inputs
+from ..storage.fingerprint import fingerprint
+from ..storage.manifest import Number, made_now
+from ..storage.manifest import Results as Stored
+from ..storage.results import Results
+from .budget import ErrorBudget
+from .summary import agreement_matrix
+
+_FACTS = "comparison.json"
+_SEPARATOR = "\n"  # in no name of a case or a run: these are single lines
+Key = tuple[str, str]
+BudgetKey = tuple[str, str, str]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Comparison(Results, kind="comparison"):
+    """Runs compared with reference models, or with one another.
+
+    Attributes
+    ----------
+    tables : mapping of str to DataFrame
+        summary: a row for each run and reference, see `SUMMARY_COLUMNS`; what differs of an external
+        trajectory, and the likely mistakes in it, are tuples. samples of all `traces`, their passes,
+        excitation: the ground motions; budget: the samples of `budgets`, where there are any.
+    facts : mapping
+        inputs, versions, until, and of cases, traces and budgets what the tables do not hold.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> case = rw.Case(pier, initial=release, duration=4.0)
+    >>> comparison = rw.compare(case, runs=[rw.Run(None, "flat")], workers=1)
+    >>> comparison.summary[["run", "reference", "diverged"]].to_dict("records")[0]
+    {'run': 'flat-ground model', 'reference': 'recess model', 'diverged': False}
+    >>> sorted(comparison.traces)
+    [('free response', 'flat-ground model'), ('free response', 'recess model')]
+    """
+
+    @property
+    def summary(self) -> pd.DataFrame:
+        """The table of that name."""
+        return self.tables["summary"]
+
+    @property
+    def versions(self) -> Mapping[str, str]:
+        """Version of each package and engine that took part."""
+        return dict(self.facts["versions"])
+
+    @property
+    def until(self) -> float | None:
+        """End of the window of the RMS columns, in the time of the run [s]; None is the whole run."""
+        until: float | None = self.facts["until"]
+        return until
+
+    @cached_property
+    def cases(self) -> Mapping[str, Case]:
+        """Case of each name."""
+        excitation = dict(iter(self.tables["excitation"].groupby("case", sort=False)))
+        return {name: _case(given, excitation.get(name)) for name, given in self.facts["cases"].items()}
+
+    @cached_property
+    def traces(self) -> Mapping[Key, Trace]:
+        """Trace of each run and reference, such as ("El Centro 1940", "mujoco recess").
+
+        One whose process died has no samples.
+        """
+        samples = self.tables["traces"]
+        tables, none = dict(iter(samples.groupby(["case", "run"], sort=False))), samples.iloc[:0]
+        keys = {key: tuple(key.split(_SEPARATOR)) for key in self.facts["traces"]}
+        return {
+            (case, run): Trace.from_plain(
+                self.facts["traces"][key], tables.get((case, run), none), self.cases[case]
+            )
+            for key, (case, run) in keys.items()
+        }
+
+    @cached_property
+    def budgets(self) -> Mapping[BudgetKey, ErrorBudget]:
+        """Error budget for each (case, run, reference), where it was asked for."""
+        found = {}
+        for key, facts in self.facts["budgets"].items():
+            case, run, reference = key.split(_SEPARATOR)
+            samples = self.tables["budget"]
+            chosen = (samples["case"] == case) & (samples["run"] == run) & (samples["reference"] == reference)
+            columns = {name: column.to_numpy() for name, column in samples[chosen].items()}
+            start = start_of(self.traces[case, reference])
+            found[case, run, reference] = ErrorBudget(
+                **{name: columns[name] for name in ErrorBudget.__dataclass_fields__ if name in columns},
+                covered=facts["covered"],
+                steps=tuple(facts["steps"]),
+                order=facts["order"],
+                unresolved=first_unresolved_pass(self.traces[case, run], start=start),
+            )
+        return found
+
+    @cached_property
+    def matrix(self) -> pd.DataFrame:
+        """Differences of each motion from every other on its support, where two engines have run.
+
+        The columns are those of `MATRIX_COLUMNS`.
+        """
+        return agreement_matrix(self.cases, self.traces, until=self.until)
+
+    def of_case(self, name: str) -> View:
+        """Return the part on one case.
+
+        Raises
+        ------
+        ValueError
+            If there is no such case.
+        """
+        require_one_of("case", name, self.facts["cases"])
+
+        def kept(part: str) -> Mapping[str, Any]:
+            facts: Mapping[str, Any] = self.facts[part]
+            return {key: fact for key, fact in facts.items() if key.split(_SEPARATOR)[0] == name}
+
+        return View(
+            tables={
+                table: rows[rows["case"] == name].reset_index(drop=True)
+                for table, rows in self.tables.items()
+            },
+            facts={**self.facts, **{part: kept(part) for part in ("cases", "traces", "budgets")}},
+        )
+
+    def headline(self) -> Mapping[str, Number]:
+        """Return numbers of cases, rows and divergences, relative RMS and agreement time."""
+        rows = self.summary
+        relative, agreed = rows["tilt_rms_relative"], rows["agreement_time"]
+        numbers = {
+            "median of the relative RMS": stated(relative.median(), int(relative.notna().sum())),
+            "largest relative RMS": float(relative.max()),
+            "median agreement time [s]": stated(agreed.median(), len(agreed)),
+        }
+        return {
+            "cases": len(self.facts["cases"]),
+            "rows": len(rows),
+            "diverged": int(rows["diverged"].sum()),
+            "failed": int((rows["outcome"] == "failed").sum()),
+            **{name: float(value) if math.isfinite(value) else None for name, value in numbers.items()},
+        }
+
+    def made_by(self, command: str = "") -> Self:
+        """Return these results with their manifest, in which the facts of all runs have no part."""
+        made = made_now(
+            self.kind,
+            inputs=self.facts["inputs"],
+            command=command,
+            versions=self.versions,
+            headline=self.headline(),
+        )
+        return dataclasses.replace(self, manifest=made)
+
+    def sheets(self) -> Mapping[str, bytes]:
+        """Return the facts, and summary and matrix as CSV."""
+        files = {
+            "summary.csv": lists_in_words(self.summary).to_csv(index=False).encode(),
+            _FACTS: (plain_json.dumps(self.facts, indent=1) + "\n").encode(),
+        }
+        if len(self.matrix):
+            files["matrix.csv"] = self.matrix.to_csv(index=False).encode()
+        return files
+
+    @classmethod
+    def of_stored(cls, stored: Stored) -> Self:
+        """Return the results whose files are whole.
+
+        Raises
+        ------
+        ValueError
+            If they cannot be read.
+        """
+        try:
+            tables = stored.tables()
+            found = cls(
+                tables=tables | {"summary": lists_of_file(tables["summary"])},
+                facts={"inputs": stored.manifest.inputs} | plain_json.loads(stored.content(_FACTS)),
+                manifest=stored.manifest,
+            )
+            _ = found.budgets if found.facts["budgets"] else found.traces  # each is whole
+        except (ValueError, KeyError) as error:
+            why = str(error).partition("\n")[0]
+            raise ValueError(f"{stored.folder} holds a comparison that cannot be read: {why}") from None
+        return found
+
+    def _repr_html_(self) -> str:
+        names = ["case", "run", "reference", "outcome", "peak_tilt", "tilt_rms_relative", "agreement_time"]
+        return str(self.summary[[*names, "diverged", "diagnostics"]].to_html(index=False))
+
+
+class View(Comparison, kind="view"):
+    """The part of a comparison on one case, to be played."""
+
+
+def comparison_of(
+    summary: pd.DataFrame,
+    *,
+    cases: Mapping[str, Case],
+    traces: Mapping[Key, Trace],
+    versions: Mapping[str, str],
+    until: float | None = None,
+    budgets: Mapping[BudgetKey, ErrorBudget] | None = None,
+) -> Comparison:
+    """Return the comparison of these traces, with their summary.
+
+    Parameters
+    ----------
+    summary : DataFrame
+    cases, traces, budgets : mapping
+        As those of `Comparison`.
+    versions : mapping
+    until : float, optional
+    """
+    known = {key: trace for key, trace in traces.items() if len(trace.time)}  # the process of others died
+    tables = {
+        "summary": summary,
+        "traces": _stacked({key: trace.to_frame() for key, trace in known.items()}, "case", "run"),
+        "passes": _stacked({key: trace.passes for key, trace in known.items()}, "case", "run"),
+        "excitation": _excitation(cases),
+    }
+    if budgets:
+        parts = {key: budget.to_frame() for key, budget in budgets.items()}
+        tables["budget"] = _stacked(parts, "case", "run", "reference")
+    facts = {
+        "inputs": fingerprint([case_inputs(case) for case in cases.values()]),
+        "versions": dict(versions),
+        "until": until,
+        "cases": {name: case_to_plain(case) | {"motion": _header(case)} for name, case in cases.items()},
+        "traces": {_SEPARATOR.join(key): trace.to_plain() for key, trace in traces.items()},
+        "budgets": {
+            _SEPARATOR.join(key): {"covered": each.covered, "steps": each.steps, "order": each.order}
+            for key, each in (budgets or {}).items()
+        },
+    }
+    return Comparison(tables=tables, facts=plain_json.loads(plain_json.dumps(facts)))
+
+
+def _header(case: Case) -> Mapping[str, object] | None:
+    """A ground motion without its samples, which stand in a table."""
+    motion = case.motion
+    if motion is None:
+        return None
+    components = "xyz"[: motion.acceleration.shape[1]]
+    return {"name": motion.name, "time_step": motion.time_step, "components": components}
+
+
+def _case(given: Mapping[str, Any], excitation: pd.DataFrame | None) -> Case:
+    motion = given["motion"]
+    if motion is not None and excitation is not None:
+        samples = excitation[[f"acceleration_{axis}" for axis in motion["components"]]].to_numpy()
+        motion = {"acceleration": samples, "time_step": motion["time_step"], "name": motion["name"]}
+    return case_from_plain({**given, "motion": motion})
+
+
+def _excitation(cases: Mapping[str, Case]) -> pd.DataFrame:
+    tables = []
+    for name, case in cases.items():
+        if case.motion is not None:
+            a = case.motion.acceleration
+            columns = {"case": name, "time": np.arange(len(a)) * case.motion.time_step}
+            columns |= {f"acceleration_{axis}": a[:, i] for i, axis in enumerate("xyz"[: a.shape[1]])}
+            tables.append(pd.DataFrame(columns))
+    return pd.concat(tables, ignore_index=True) if tables else pd.DataFrame({"case": [], "time": []})
+
+
+def _stacked(tables: Mapping[Any, pd.DataFrame], *names: str) -> pd.DataFrame:
+    """One table below the other, each with its key in the first columns."""
+    if not tables:
+        return pd.DataFrame(columns=list(names))
+    found: pd.DataFrame = pd.concat(tables, names=list(names)).reset_index(list(names)).reset_index(drop=True)
+    return found
