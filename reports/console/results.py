@@ -9,13 +9,10 @@ from typing import TYPE_CHECKING
 from .terminal import user_input
 
 if TYPE_CHECKING:
-    import pandas as pd
     from rich.text import Text
 
-    from rockwobble.compare.storage.manifest import Manifest
     from rockwobble.compare.storage.results import Results
 
-    from ..pages.page import Page
 
 
 def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None:
@@ -33,24 +30,6 @@ def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None
     console = Console()
     console.print(*heading, highlight=False)
     console.print(table)
-
-
-def show_and_write(
-    out: Path,
-    page: Page,
-    manifest: Manifest,
-    tables: Mapping[str, pd.DataFrame],
-    files: Mapping[str, bytes] | None = None,
-) -> None:
-    """Write a page with its tables, other files of data and the manifest; then print it."""
-    from rockwobble.compare.storage.manifest import MANIFEST, write_results
-
-    pages = page.files()
-    with user_input():
-        write_results(out, manifest, tables, files=files, pages=pages)
-    page.show()
-    names = [MANIFEST, *(f"{name}.parquet" for name in tables), *(files or ()), *pages]
-    print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")
 
 
 def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
