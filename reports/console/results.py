@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from rockwobble.compare.storage.results import Results
 
 
-
 def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None:
     """Print a heading and facts by their names, as text, in which brackets are no markup."""
     from rich import box

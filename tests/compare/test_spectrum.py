@@ -18,7 +18,7 @@ from rockwobble.compare.studies.spectrum.maps import (
     tilt_maps,
 )
 from rockwobble.compare.studies.spectrum.tables import CELLS, check_cells, confirm_lowest
-from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
+from rockwobble.models import Case, Cylinder, GroundMotion, WobblingFrame, el_centro_1940
 
 WHOLE = el_centro_1940()
 # the seconds that hold its peak: a spectrum of the whole record takes six times as long and shows no more
@@ -123,6 +123,16 @@ def test_the_rolling_model_makes_another_spectrum(spectrum):
     )
     assert rolling.peak_tilt[SPATIAL][1, 1] == pytest.approx(single.peak_tilt, rel=SAME_RUN)
     assert rolling.peak_tilt[SPATIAL][1, 1] != spectrum.peak_tilt[SPATIAL][1, 1]
+
+
+def test_a_slab_is_carried_in_every_cell_and_when_it_is_run_again():
+    options = {"semidiagonals": [4.0], "intensities": [2.0, 4.0], "search_step": 2.0, "probes": 0}
+    maps = tilt_maps(0.1, EL_CENTRO, slab_mass_ratio=2.0, **options)
+    frame = WobblingFrame(Cylinder(semidiagonal=4.0, tan_alpha=0.1), slab_mass_ratio=2.0)
+    single = reduced.simulate(Case(frame, EL_CENTRO.scaled(maps.scales[0])), rtol=1e-8)
+    assert maps.peak_tilt[SPATIAL][0, 0] == pytest.approx(single.peak_tilt, rel=SAME_RUN)
+    checked = check_cells(maps)
+    assert checked["agrees"].all()
 
 
 @pytest.mark.parametrize(

@@ -23,8 +23,7 @@ from ...runs.choice import require_runnable
 from ...runs.execution import SAMPLE_STEP, Job, job_fingerprint, simulate_run
 from ...runs.progress import ProgressCallback, Stages
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Number
-from ...storage.manifest import Results as Stored
+from ...storage.manifest import Number, Stored
 from ...storage.results import Results
 from ..plans import AdvicePlan
 from ..spectrum.maps import SPATIAL, uplift_factor
