@@ -100,7 +100,7 @@ BAD = {
     ),
     "unknown engine": (
         ["--engine", "bullet"],
-        "engine must be one of mujoco, pybullet, dart, drake, exudyn, got 'bullet'",
+        "engine must be one of mujoco, pybullet, dart, drake, exudyn, rapier, got 'bullet'",
     ),
     "no uplift": (
         ["--engine", "exudyn", "--support", "flat"],
