@@ -60,6 +60,14 @@ TransverseInertia = Annotated[
     float | None, body("I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.")
 ]
 AxialInertia = Annotated[float | None, body("I2/m about the axis, in m2.")]
+SlabMassRatio = Annotated[
+    float | None,
+    body("Mass of a rigid slab over that of the cylinders that carry it. Default: a cylinder alone."),
+]
+Columns = Annotated[
+    int | None,
+    body("Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3."),
+]
 Record = Annotated[
     Path | None, _ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
 ]
