@@ -60,6 +60,14 @@ TransverseInertia = Annotated[
     float | None, body("I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.")
 ]
 AxialInertia = Annotated[float | None, body("I2/m about the axis, in m2.")]
+SlabMassRatio = Annotated[
+    float | None,
+    body("Mass of a rigid slab over that of the cylinders that carry it. Default: a cylinder alone."),
+]
+Columns = Annotated[
+    int | None,
+    body("Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3."),
+]
 Record = Annotated[
     Path | None, _ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
 ]
@@ -90,6 +98,12 @@ Friction = Annotated[
         "would not."
     ),
 ]
+RollingResistance = Annotated[
+    float,
+    _ground(
+        "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses nothing."
+    ),
+]
 ReleaseTilt = Annotated[
     float | None, _release("Release at this tilt, in deg; without a record the ground is then still.")
 ]
@@ -117,7 +131,7 @@ def _named(names: list[str] | None) -> list[str] | None:
     return _standing_alone(names)
 
 
-ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
+ENGINES = "mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, by engines that have them)"
 Engine = Annotated[str | None, method(f"{ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"
