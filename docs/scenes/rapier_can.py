@@ -14,7 +14,7 @@ I1, I2 = (3 * B**2 + 4 * H**2) / 12, B**2 / 2  # per unit mass
 
 
 def scene() -> tuple[rp.PhysicsWorld, rp.RigidBody]:
-    """Return the world and the can, upright, its mass centre at the origin: small numbers have small errors."""
+    """Return the world and the can, its mass centre at the origin: small numbers have small errors."""
     world = rp.PhysicsWorld(gravity=(0.0, 0.0, -9.81))
     how = world.integration_parameters
     how.dt = STEP
@@ -46,7 +46,10 @@ def release(can: rp.RigidBody) -> None:
     turning = SPIN * (np.array([0.0, 0.0, 1.0]) - axis)
     can.translation = tuple((centre - [0.0, 0.0, H]).tolist())
     can.rotation = rp.Rotation3(w=math.cos(TILT / 2), x=0.0, y=math.sin(TILT / 2), z=0.0)
-    can.linvel, can.angvel = tuple(np.cross(turning, centre - [B, 0.0, 0.0]).tolist()), tuple(turning.tolist())
+    can.linvel, can.angvel = (
+        tuple(np.cross(turning, centre - [B, 0.0, 0.0]).tolist()),
+        tuple(turning.tolist()),
+    )
 
 
 def next_largest_tilt(seconds: float = 2.0) -> tuple[float, float]:
