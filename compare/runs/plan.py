@@ -70,10 +70,12 @@ class Plan:
         kinds = get_type_hints(type(self))
         for name, stated in options_of(type(self)).items():
             kind, value = kinds[name], getattr(self, name)
-            words = [value] if isinstance(value, str) else value or ()
-            wrong = [word for word in words if word not in stated.choices] if stated.choices else []
-            if wrong:
-                raise ValueError(f"{name} must be one of {', '.join(stated.choices)}, got {quoted(wrong[0])}")
+            if stated.choices and value is not None:
+                words = [value] if isinstance(value, str) else value
+                wrong = [word for word in words if word not in stated.choices]
+                if wrong:
+                    allowed = ", ".join(stated.choices)
+                    raise ValueError(f"{name} must be one of {allowed}, got {quoted(wrong[0])}")
             if kind not in (int, float):
                 continue
             whole = kind is int

@@ -6,11 +6,13 @@ import json
 from pathlib import Path
 
 import pytest
+from typer.main import get_command
 
 from rockwobble.compare import with_settings
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.reports.cli.inputs.method_values import settings
-from rockwobble.reports.cli.main import main
+from rockwobble.reports.cli.inputs.problem import BODY
+from rockwobble.reports.cli.main import app, main
 
 RELEASE = ["--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "0.2"]
 
@@ -20,6 +22,11 @@ def call(*arguments: str) -> int:
         main(list(arguments))
     assert isinstance(ended.value.code, int)
     return ended.value.code
+
+
+@pytest.mark.parametrize("name", ["advise", "compare", "ensemble", "fragility", "simulate", "view"])
+def test_every_command_of_a_cylinder_states_it_in_the_same_way(name: str) -> None:
+    assert {option.name for option in get_command(app).commands[name].params} >= BODY  # type: ignore[attr-defined]
 
 
 def test_settings_are_whole_numbers_numbers_or_words() -> None:
