@@ -34,6 +34,8 @@ class EngineFacts(Brief):
     smooth_uplift : bool
         Whether the error of a run that uplifts is a power series in the step, so that finer steps tell its
         limit.
+    rounding : float
+        Relative rounding error of its arithmetic, 2^-53 in double and 2^-24 in single precision.
     carries_slab : bool
         Whether its scenes hold the slab of a frame: one column, under a slab that only translates.
     rolling_friction : bool
@@ -53,6 +55,7 @@ class EngineFacts(Brief):
     release_error: float = 2e-6
     uplift_error: float = 2.5e-5
     smooth_uplift: bool = False
+    rounding: float = 2.0**-53
     carries_slab: bool = False
     rolling_friction: bool = False
     contact_time: str = ""

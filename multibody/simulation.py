@@ -54,8 +54,9 @@ def simulate(
     case : Case
         Cylinder, ground motion, initial state, length, gravity, and the Coulomb coefficient of the pair
         cylinder and ground.
-    engine : {"mujoco", "pybullet", "dart", "drake", "exudyn"}
+    engine : {"mujoco", "pybullet", "dart", "drake", "exudyn", "rapier"}
         Or one that another package declares. Exudyn is an ideal rim: flat ground, from a release only.
+        Rapier computes in single precision.
     support : {"recess", "flat", "ring"}
         The ideal recess, which holds the twist at zero; flat ground; or a recess of inclined walls with
         clearance, which MuJoCo has.
@@ -72,8 +73,8 @@ def simulate(
     progress : callable, optional
         Called now and then with the fraction done.
     **settings
-        Of the engine: see `MujocoSettings`, `PybulletSettings`, `DartSettings`, `DrakeSettings` and
-        `ExudynSettings`; of a ring: see `RingSettings`.
+        Of the engine: see `MujocoSettings`, `PybulletSettings`, `DartSettings`, `DrakeSettings`,
+        `ExudynSettings` and `RapierSettings`; of a ring: see `RingSettings`.
 
     Returns
     -------
@@ -142,7 +143,9 @@ def _simulate(
     resolved = backend.settings(settings, scene)
     samples = _sample_times(case.length, require_positive("sample_step", sample_step, "s")) / scale.time
     release = InitialState(0.0) if case.initial is None else case.initial
-    recorder = Recorder(scene, samples, release.rolling_angle, release.tilt_rate == 0.0)
+    recorder = Recorder(
+        scene, samples, release.rolling_angle, release.tilt_rate == 0.0, backend.facts.rounding
+    )
     means = StepMeans(case.motion, scale, scene.time_step)
     try:
         recorder = run_steps(backend, scene, resolved, recorder, means, sample_step / scale.time, progress)

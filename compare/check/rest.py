@@ -80,7 +80,7 @@ def force_at_rest(subject: Subject, support: str) -> Iterator[Result]:
     ground = np.array([0.5, 0.2, -0.3 * GRAVITY])
     found = subject.simulate(Case(PIER, steady(ground, 0.4)), support, sample_step=0.1)
     off = found.contact_force[1:4] - (ground + np.array([0.0, 0.0, GRAVITY])) / GRAVITY
-    bound = subject.within(1.0, "Newton's law", "weights")
+    bound = subject.within(5.0, "Newton's law; means over 60 steps", "weights")
     yield at_most("contact force at rest", largest(off), bound, "contact force")
 
 

@@ -66,11 +66,25 @@ def drake() -> Result:
         return drake_can.next_largest_tilt()
 
 
+def rapier() -> Result:
+    """Contact of 30 Hz, four substeps, friction shared by the contacts, 1/60 s steps."""
+    import rapier3d
+    import rapier_can
+
+    def scene() -> tuple[rapier3d.PhysicsWorld, rapier3d.RigidBody]:
+        world = rapier3d.PhysicsWorld(gravity=(0.0, 0.0, -9.81))
+        return world, rapier_can.add(world)
+
+    with mock.patch.object(rapier_can, "scene", scene):
+        return rapier_can.next_largest_tilt()
+
+
 ENGINES: dict[str, Callable[[], Result]] = {
     "mujoco": mujoco,
     "pybullet": bullet,
     "dartpy": dart,
     "pydrake": drake,
+    "rapier3d": rapier,
 }
 
 if __name__ == "__main__":

@@ -31,11 +31,25 @@ def read_records(
     resample : bool, optional
         Take components of different time steps at one that divides all, as `read_record` does.
 
+    Returns
+    -------
+    list of GroundMotion
+
     Raises
     ------
     ValueError
         If there is no such table, a column is missing or unknown, or a record cannot be read: the row is
         named.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> _ = (folder / "east.csv").write_text("0.00, 0.0\\n0.01, 0.5\\n0.02, 0.0\\n")
+    >>> _ = (folder / "records.csv").write_text("x,y,name,units\\neast.csv,zero,pulse,m/s2\\n")
+    >>> [(motion.name, motion.peak) for motion in read_records(folder)]
+    [('pulse', 0.5)]
     """
     path = Path(folder)
     path = path / TABLE if path.is_dir() else path

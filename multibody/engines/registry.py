@@ -94,6 +94,7 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
             standard=False,
             libraries=_GRAPHICS,
         ),
+        "rapier": _Entry("rapier3d", ".rapier:RapierEngine", "pip install 'rapier3d>=0.36'", standard=False),
     }
 )
 

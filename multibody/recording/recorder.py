@@ -51,14 +51,25 @@ class Recorder:
         At the start of a release [rad].
     starts_at_turn : bool
         Whether the release is at rest in tilt.
+    rounding : float
+        Relative rounding error of the engine.
     """
 
-    def __init__(self, scene: Scene, samples: Array, rolling_angle: float, starts_at_turn: bool) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        samples: Array,
+        rolling_angle: float,
+        starts_at_turn: bool,
+        rounding: float = 2.0**-53,
+    ) -> None:
         body, start = scene.body, scene.start
         self._scene, self._samples = scene, samples
         self.asked = float(samples[-1])  # end of the run that was asked for, before it was extended [s]
         self.off_grid = False  # whether it is no sample of a run that is extended
-        self._watch = UpliftWatch(body, scene.gravity, scene.time_step) if start.standing else None
+        self._watch: UpliftWatch | None = None
+        if start.standing:
+            self._watch = UpliftWatch(body, scene.gravity, scene.time_step, rounding)
         self._start: Start | None = start
         self._last: Steps | None = None  # the pose whose next velocity is still to come
         self._count = 0  # poses analysed
@@ -87,7 +98,7 @@ class Recorder:
         self.grip_time = math.nan  # when more than friction held the rim, which only a joint does [s]
         self.pull_time = math.nan  # when the ground held the rim down, which only a joint does [s]
         # a standing cylinder leans by less, in no direction
-        sure = sure_tilt(body)
+        sure = sure_tilt(body, rounding)
         self.floor = sure if start.standing else min(sure, 0.5 * lean)
         self.rests = RestWatch(2.0 * self.floor)
         self._at_turn = not start.standing and starts_at_turn

@@ -19,6 +19,9 @@ from ..protocol import Steps
 Array = NDArray[np.float64]
 
 SURE_TILT = 5e-6  # of alpha; a standing cylinder leans by 1e-9 rad in MuJoCo, 1e-8 rad in Bullet
+# Rounding errors; at 0.98 of the load that uplifts it a standing cylinder leans by up to 120 of them in
+# Rapier, as single precision knows the height of its corners
+_SURE_ROUNDINGS = 150.0
 _MEMORY = 4000  # steps kept before that tilt: it takes a few hundred from the uplift
 # Eccentricities, over b, up to which the reaction may be expected to follow. Contact yields next to the rim,
 # and Bullet's four contacts share the load by turns there: the highest with a steady ratio counts.
@@ -31,9 +34,9 @@ _DEPARTURE = 0.015  # of b; a reaction that lags so far behind has left the exci
 _MINIMUM_LOAD = 0.1  # weights; a smaller reaction, in the step that loses contact, has no eccentricity
 
 
-def sure_tilt(body: Body) -> float:
-    """Return the tilt [rad] that is motion beyond doubt."""
-    return SURE_TILT * float(np.arctan(body.tan_alpha))
+def sure_tilt(body: Body, rounding: float) -> float:
+    """Return the tilt [rad] that is motion beyond doubt, at a relative rounding error."""
+    return max(SURE_TILT * float(np.arctan(body.tan_alpha)), _SURE_ROUNDINGS * rounding)
 
 
 def begun_at(direction: float, angle: Array, leans: NDArray[np.bool_]) -> Array:
@@ -46,9 +49,9 @@ def begun_at(direction: float, angle: Array, leans: NDArray[np.bool_]) -> Array:
 class UpliftWatch:
     """Follows a standing cylinder chunk by chunk until it uplifts."""
 
-    def __init__(self, body: Body, gravity: float, time_step: float) -> None:
+    def __init__(self, body: Body, gravity: float, time_step: float, rounding: float) -> None:
         self._body, self._gravity, self._step = body, gravity, time_step
-        self._sure = sure_tilt(body)
+        self._sure = sure_tilt(body, rounding)
         # time, eccentricity of the reaction, eccentricity of a reaction that follows the excitation at once
         self._history: Array = np.empty((0, 5))
 

@@ -17,7 +17,15 @@ TURN = 203.909800  # [deg] tests/reference/finite_release.csv: h/b = 2, rolling 
 TURN_ERROR = 0.01  # [deg]
 # energy that contact takes in a pass, at these steps
 TILT_ERROR = 1e-4
-ENGINES = {"mujoco_can": "mujoco", "bullet_can": "pybullet", "dart_can": "dart", "drake_can": "drake"}
+# in single precision a pose of 2 m is off by 2e-7 m, which contact takes for a gap
+SINGLE_TURN_ERROR, SINGLE_TILT_ERROR = 0.03, 1e-3
+ENGINES = {
+    "mujoco_can": "mujoco",
+    "bullet_can": "pybullet",
+    "dart_can": "dart",
+    "drake_can": "drake",
+    "rapier_can": "rapier",
+}
 
 
 @pytest.fixture
@@ -33,11 +41,12 @@ def scene(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Mo
 @pytest.mark.parametrize("scene", ENGINES, indirect=True)
 def test_the_can_turns_and_tilts_as_it_must(scene: ModuleType) -> None:
     turn, tilt = scene.next_largest_tilt()
-    assert abs(turn - TURN) < TURN_ERROR
-    assert abs(tilt - 1.0) < TILT_ERROR
+    single = scene.__name__ == "rapier_can"
+    assert abs(turn - TURN) < (SINGLE_TURN_ERROR if single else TURN_ERROR)
+    assert abs(tilt - 1.0) < (SINGLE_TILT_ERROR if single else TILT_ERROR)
 
 
-@pytest.mark.parametrize("scene", ["mujoco_can", "bullet_can"], indirect=True)
+@pytest.mark.parametrize("scene", ["mujoco_can", "bullet_can", "rapier_can"], indirect=True)
 def test_it_does_not_with_the_settings_that_the_engine_starts_from(scene: ModuleType) -> None:
     name = scene.__name__.removesuffix("_can")
     _, tilt = getattr(importlib.import_module("defaults"), name)()

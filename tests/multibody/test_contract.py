@@ -149,7 +149,10 @@ def test_import_loads_no_engine() -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"engine": "chrono"}, "engine must be one of mujoco, pybullet, dart, drake, exudyn, got 'chrono'"),
+        (
+            {"engine": "chrono"},
+            "engine must be one of mujoco, pybullet, dart, drake, exudyn, rapier, got 'chrono'",
+        ),
         ({"support": "glued"}, "support must be one of recess, flat, ring in mujoco, got 'glued'"),
         (
             {"time_step": 1e-2},

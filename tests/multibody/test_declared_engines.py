@@ -25,7 +25,7 @@ def install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Install:
 
 def test_an_engine_of_another_package_is_found_and_runs(install: Install) -> None:
     install(sound="external_engine:Sound")
-    assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn", "sound")
+    assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn", "rapier", "sound")
     assert multibody.available_engines()[-1] == "sound"
     release = InitialState(PIER.alpha / 2, rolling_rate=0.5)
     run = multibody.simulate(Case(PIER, initial=release, duration=0.5), engine="sound", support="flat")
@@ -39,7 +39,7 @@ def test_our_engines_are_declared_as_anybody_would_declare_them() -> None:
     assert (
         tuple(declared)
         == engine_names()[: len(declared)]
-        == ("mujoco", "pybullet", "dart", "drake", "exudyn")
+        == ("mujoco", "pybullet", "dart", "drake", "exudyn", "rapier")
     )
     assert {point.name: point.value for point in entry_points(group=GROUP)} == declared
     for name in available_engines():
@@ -81,5 +81,5 @@ def test_a_name_that_two_packages_claim_is_nobodys(install: Install) -> None:
 
 def test_our_names_are_taken(install: Install) -> None:
     install(mujoco="external_engine:fails")
-    assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn")
+    assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn", "rapier")
     assert type(find_engine("mujoco")).__module__ == "rockwobble.multibody.engines.mujoco"

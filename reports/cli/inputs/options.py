@@ -60,6 +60,14 @@ TransverseInertia = Annotated[
     float | None, body("I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.")
 ]
 AxialInertia = Annotated[float | None, body("I2/m about the axis, in m2.")]
+SlabMassRatio = Annotated[
+    float | None,
+    body("Mass of a rigid slab over that of the cylinders that carry it. Default: a cylinder alone."),
+]
+Columns = Annotated[
+    int | None,
+    body("Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3."),
+]
 Record = Annotated[
     Path | None, _ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
 ]
@@ -123,7 +131,7 @@ def _named(names: list[str] | None) -> list[str] | None:
     return _standing_alone(names)
 
 
-ENGINES = "mujoco, pybullet, dart, drake, exudyn or another that is installed"
+ENGINES = "mujoco, pybullet, dart, drake, exudyn, rapier or another that is installed"
 _SUPPORTS = "recess (ideal recess), flat (flat ground) or ring (walls, by engines that have them)"
 Engine = Annotated[str | None, method(f"{ENGINES}. Default: the reduced model.")]
 _DEFAULT = "Default: those that serve any case and are no extra"

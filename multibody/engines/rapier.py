@@ -1,0 +1,233 @@
+"""Rapier: substepped soft constraints, the family of game engines, in single precision.
+
+Velocities, forces and contact are Rapier's, in single precision; every step rounds them at 6e-8 of their
+size, and finer steps round more often: below 1e-4 s the error grows again. What it needs:
+
+* A pose in single precision is off by 5e-7 m at the reference size. Rapier takes that for a gap, through
+  which the rim falls at 5e-7 m a step, or for a depth, out of which it pushes a standing base until it
+  leans. So poses are summed up in double precision, from Rapier's velocities, and put back before each step
+  with the centre of the base over the origin: the distances of contact are then known to 1e-8 m. The body
+  is a disc, the lower part of the cylinder, on which the whole rolls until its side is on the ground.
+* The rim is kept at a depth of 1e-6 m, a tenth of what Rapier lets be: deeper than the curvature of its
+  path, which no velocity shows, lifts it in a step. The depth is taken off the poses.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from rockwobble.models.support import SUPPORTS
+
+from ..facts import EngineFacts
+from ..protocol import Array, Scene, SceneCounts, Settings, Stepper, Steps
+from ..scene.friction import body_friction
+from .declared import Declared, build, positive, whole
+
+_SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, it corrects the rest
+# [rad] lean from which the guide acts in full: its torque shakes a closed base, which friction holds as
+# well, and one that sets in at once gives a twist its energy
+_OPEN = 1e-2
+_FASTEST_RISE = 1e-3  # [m/s] of a base that has landed deeper: taken back at once, it would be thrown back
+_HALF_DISC = 0.125  # of b: a disc whose far edge is clear of the ground until the side is down
+_GUIDE = 0.05  # 2 h sqrt(stiffness of the guide); see `declared.GUIDE`: stiffer, it acts on a rounded twist
+_FACTS = EngineFacts(
+    title="Rapier (single precision)",
+    step_time=2e-5,
+    release_error=1e-5,
+    uplift_error=5e-5,
+    rounding=2.0**-24,
+)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RapierSettings:
+    """Settings of Rapier: soft contact of its substeps.
+
+    Attributes
+    ----------
+    guide_stiffness : float
+        As for MuJoCo [1/s^2].
+    contact_frequency : float
+        Natural frequency of contact [1/s]. Rapier's own, 30 1/s, lets a base lean by 4e-4 alpha under 0.9
+        of the load that uplifts it (tan alpha 0.1).
+    contact_damping_ratio : float
+        1 is critical, and lets a base under 0.98 of its uplift lean by twice as much as 10, Rapier's own.
+    depth : float
+        At which the rim is kept, at the reference size [m].
+    depth_gain : float
+        Share of a change of depth that one step takes back.
+    substeps, iterations : int
+        Of a step. A rim needs one of each, since what is left of an iteration starts the next step; with four
+        iterations the horizontal force on a standing base scatters by 1.7e-3 weights, with one by 3.1e-3.
+    """
+
+    guide_stiffness: float
+    contact_frequency: float
+    contact_damping_ratio: float = 10.0
+    depth: float = 1e-6
+    depth_gain: float = 0.3
+    substeps: int = 1
+    iterations: int = 4
+
+    @classmethod
+    def resolve(cls, given: Mapping[str, Any], time_step: float) -> RapierSettings:
+        """Return the settings for a time step [s], with those `given` in place of the defaults.
+
+        Raises
+        ------
+        ValueError
+            If a setting is unknown or out of range.
+        """
+        defaults = {"contact_frequency": 0.1 / time_step, "guide_stiffness": (_GUIDE / time_step) ** 2 / 4.0}
+        settings = build(cls, "rapier", given, defaults)
+        positive(settings, "guide_stiffness")
+        positive(settings, "contact_frequency")
+        positive(settings, "contact_damping_ratio")
+        positive(settings, "depth", most=1e-3)
+        positive(settings, "depth_gain", most=1.0)
+        whole(settings, "substeps")
+        whole(settings, "iterations")
+        return settings
+
+
+class RapierEngine(Declared):
+    """Rapier: rigid body, half space, Coulomb friction."""
+
+    package, settings_type, facts = "rapier3d", RapierSettings, _FACTS
+
+    @contextlib.contextmanager
+    def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:
+        """Open the scene at its start; Python frees it when nothing refers to it any more."""
+        yield _RapierStepper(scene, RapierSettings(**settings))
+
+
+class _RapierStepper:
+    def __init__(self, scene: Scene, settings: RapierSettings) -> None:
+        import rapier3d
+
+        self._rapier, self._scene, self._settings = rapier3d, scene, settings
+        stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
+        self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
+        self._world, self._cylinder = _build(rapier3d, scene, settings)
+        start = scene.start
+        position, velocity, spin = start.position.copy(), start.velocity, start.angular_velocity
+        position[2] -= settings.depth
+        self._put(position, start.quaternion, velocity, spin)
+        if not start.standing:
+            # leapfrog starts half a step back: a trial step shows the acceleration
+            after = np.array(self._loop([[0.0, 0.0, 0.0]])[0])
+            velocity, spin = 1.5 * velocity - 0.5 * after[7:10], 1.5 * spin - 0.5 * after[10:]
+            self._put(position, start.quaternion, velocity, spin)
+
+    @property
+    def hold_centre(self) -> float:
+        """Rapier steps as leapfrog does."""
+        return 0.0
+
+    def advance(self, acceleration: Array) -> Steps:
+        """Take one step for each row of `acceleration`."""
+        position, quaternion, velocity, spin = np.split(
+            np.array(self._loop(acceleration.tolist())), (3, 7, 10), axis=1
+        )
+        position[:, 2] += self._settings.depth
+        return Steps(position, quaternion, velocity, spin)
+
+    def warnings(self) -> str:
+        """Rapier does not warn; what it could not compute is not finite."""
+        return ""
+
+    def counts(self) -> SceneCounts:
+        """Return the counts of the last step: a normal and two directions of friction for each contact."""
+        pairs = self._world.narrow_phase.contact_pairs()
+        contacts = sum(len(manifold.points) for pair in pairs for manifold in pair.manifolds)
+        return SceneCounts(degrees_of_freedom=6, contacts=contacts, constraint_rows=3 * contacts)
+
+    def _loop(self, acceleration: list[list[float]]) -> list[list[float]]:
+        """Step; return position, quaternion, velocity and angular velocity after each step."""
+        # local names, because this is a loop over steps in Python
+        world, body, step, rotation = self._world, self._cylinder, self._world.step, self._rapier.Rotation3
+        shape, time_step, gravity = self._scene.body, self._scene.time_step, self._scene.gravity
+        b, h, excited = shape.base_radius, shape.mass_centre_height, bool(self._scene.components)
+        kept, gain, fastest = self._settings.depth, self._settings.depth_gain, _FASTEST_RISE * time_step
+        cosine, sine, root, stiffness = math.cos, math.sin, math.sqrt, -4.0 * self._stiffness
+        x, y, z, w, i, j, k = self._pose
+        rows: list[list[float]] = []
+        lean = 2.0 * root((i * i + j * j) * (w * w + k * k))
+        for ax, ay, az in acceleration:
+            if excited:
+                world.gravity = (-ax, -ay, -az - gravity)
+            if stiffness:
+                # along the vertical plus the axis, proportional to the twist
+                pair = stiffness * min(1.0, lean / _OPEN) * math.atan2(k, w)
+                body.add_torque(
+                    (pair * (i * k + w * j), pair * (j * k - w * i), pair * (1.0 - i * i - j * j))
+                )
+            step()
+            body.reset_torques()
+            linear, angular = body.linvel, body.angvel
+            vx, vy, vz, ox, oy, oz = linear.x, linear.y, linear.z, angular.x, angular.y, angular.z
+            speed = root(ox * ox + oy * oy + oz * oz)
+            half = 0.5 * time_step * speed
+            part, turn = sine(half) / speed if speed else 0.0, cosine(half)
+            p, q, r = part * ox, part * oy, part * oz
+            w, i, j, k = (
+                turn * w - p * i - q * j - r * k,
+                turn * i + p * w + q * k - r * j,
+                turn * j + q * w + r * i - p * k,
+                turn * k + r * w + p * j - q * i,
+            )
+            x, y, z = x + time_step * vx, y + time_step * vy, z + time_step * vz
+            axis_z, lean = 1.0 - 2.0 * (i * i + j * j), 2.0 * root((i * i + j * j) * (w * w + k * k))
+            base = z - h * axis_z
+            if b * lean > base:
+                rise = min(gain * (b * lean - base - kept), fastest)
+                z, base = z + rise, base + rise
+            body.translation, body.rotation = (0.0, 0.0, base), rotation(w=w, x=i, y=j, z=k)
+            rows.append([x, y, z, w, i, j, k, vx, vy, vz, ox, oy, oz])
+        size = root(w * w + i * i + j * j + k * k)
+        self._pose = x, y, z, w / size, i / size, j / size, k / size
+        return rows
+
+    def _put(self, position: Array, quaternion: Array, velocity: Array, spin: Array) -> None:
+        x, y, z = position.tolist()
+        w, i, j, k = quaternion.tolist()
+        self._pose = x, y, z, w, i, j, k
+        body, height = self._cylinder, self._scene.body.mass_centre_height
+        body.translation = (0.0, 0.0, z - height * (1.0 - 2.0 * (i * i + j * j)))
+        body.rotation = self._rapier.Rotation3(w=w, x=i, y=j, z=k)
+        body.linvel, body.angvel = tuple(velocity.tolist()), tuple(spin.tolist())
+
+
+def _build(rapier: Any, scene: Scene, settings: RapierSettings) -> tuple[Any, Any]:
+    """Make ground and cylinder, the centre of the base at the origin; return world and cylinder."""
+    world, body = rapier.PhysicsWorld(gravity=(0.0, 0.0, -scene.gravity)), scene.body
+    how = world.integration_parameters
+    how.dt, how.max_ccd_substeps = scene.time_step, 0
+    how.num_solver_iterations = settings.substeps  # which is what Rapier calls its substeps
+    how.num_internal_pgs_iterations = settings.iterations
+    how.normalized_allowed_linear_error = _SLOP * settings.depth
+    how.friction_model = rapier.FrictionModel.COULOMB
+    how.contact_clustering = how.contact_recycling = False
+    frequency = settings.contact_frequency * scene.unit_time
+    softness = rapier.SpringCoefficients(frequency, settings.contact_damping_ratio)
+    how.contact_softness = how.static_contact_softness = softness
+    friction = body_friction(scene.friction, "pair")
+    ground = world.rigid_bodies.insert(rapier.RigidBody.fixed().build())
+    plane = rapier.Collider.halfspace((0.0, 0.0, 1.0)).friction(friction)
+    world.colliders.insert_with_parent(plane.build(), ground, world.rigid_bodies)
+    inertia = body.transverse_inertia, body.transverse_inertia, body.axial_inertia
+    centre = (0.0, 0.0, body.mass_centre_height)
+    mass = rapier.MassProperties(local_com=centre, mass=1.0, principal_inertia=inertia)
+    cylinder = rapier.RigidBody.dynamic().can_sleep(False).gyroscopic_forces(True).allow_fast_rotation(True)
+    handle = world.rigid_bodies.insert(cylinder.additional_mass_properties(mass).build())
+    half = _HALF_DISC * body.base_radius
+    disc = rapier.Collider.cylinder(half, body.base_radius).density(0.0).friction(friction)
+    disc = disc.rotation((0.5 * math.pi, 0.0, 0.0)).translation((0.0, 0.0, half))
+    world.colliders.insert_with_parent(disc.build(), handle, world.rigid_bodies)
+    return world, world.rigid_bodies[handle]
