@@ -14,7 +14,7 @@ I1, I2 = (3 * B**2 + 4 * H**2) / 12, B**2 / 2  # per unit mass
 
 
 def scene() -> tuple[rp.PhysicsWorld, rp.RigidBody]:
-    """Return the world and the can, upright, its mass centre at the origin: small numbers have small errors."""
+    """Return the world and the can, its mass centre at the origin: small numbers have small errors."""
     world = rp.PhysicsWorld(gravity=(0.0, 0.0, -9.81))
     how = world.integration_parameters
     how.dt = STEP

@@ -32,7 +32,7 @@ from .declared import Declared, build, positive, whole
 _SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, it corrects the rest
 # [rad] lean from which the guide acts in full: its torque shakes a closed base, which friction holds as
 # well, and one that sets in at once gives a twist its energy
-_OPEN = 1e-2
+_OPEN = 2e-4
 _FASTEST_RISE = 1e-3  # [m/s] of a base that has landed deeper: taken back at once, it would be thrown back
 _HALF_DISC = 0.125  # of b: a disc whose far edge is clear of the ground until the side is down
 _GUIDE = 0.05  # 2 h sqrt(stiffness of the guide); see `declared.GUIDE`: stiffer, it acts on a rounded twist
@@ -48,6 +48,8 @@ _FACTS = EngineFacts(
 @dataclass(frozen=True, slots=True, kw_only=True)
 class RapierSettings:
     """Settings of Rapier: soft contact of its substeps.
+
+    A base that slides across the axes of its four contacts feels up to 12 % less friction than Coulomb's.
 
     Attributes
     ----------

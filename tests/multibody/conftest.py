@@ -184,7 +184,13 @@ def forced_response(
     return Solution(np.array(times), table[:, 0], table[:, 2], table[:, 4], uplift, direction)
 
 
-@pytest.fixture(params=[name for name in available_engines() if find_engine(name).uplifts])
+def _is_exact(name: str) -> bool:
+    """Whether an engine serves any case, in double precision; in single precision it has its own tests."""
+    engine = find_engine(name)
+    return engine.uplifts and engine.facts.rounding < 1e-12
+
+
+@pytest.fixture(params=filter(_is_exact, available_engines()))
 def engine(request: pytest.FixtureRequest) -> str:
     """Every engine that is installed here and serves any case."""
     return str(request.param)

@@ -154,7 +154,7 @@ def test_no_engine_and_no_trajectory_leave_nothing_to_compare(folder, capsys):
 def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
     no_engines()
     monkeypatch.setattr(page, "svg", lambda *_, **__: b"")  # tests of the page draw it
-    monkeypatch.setattr(Page, "html", lambda _: "")
+    monkeypatch.setattr(Page, "html", lambda _, **__: "")
     (folder / "results").mkdir()
     (folder / "results" / "mine.txt").write_text("mine")
     arguments = ["compare", "--engine", "mujoco", "--out", "results", "--duration", "10", "--scale", "1.5"]

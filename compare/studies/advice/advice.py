@@ -75,11 +75,11 @@ class Advice(Results, kind=KIND):
     trace, engine : DataFrame
         time [s], tilt [alpha] and, of the reduced model, friction_needed [-]; no row without an engine.
 
-    Its facts are the problem (case, cylinder, motion, release, length, gravity, friction: None unless it was
-    given), the support with its model and the other_model; the response of the model; trust, prediction and
-    verification as in `Trust`, `Prediction` and `Verification`; other_support and vertical, ratios of the
-    largest tilts there, and with the vertical component (`ratios_of`), None where there are none; what the
-    records are; perturbation and seed of the copies, and the hash of all inputs.
+    Its facts are the problem (case, cylinder, motion, release, length, gravity, rolling_resistance, friction:
+    None unless it was given), the support with its model and the other_model; the response of the model;
+    trust, prediction and verification as in `Trust`, `Prediction` and `Verification`; other_support and
+    vertical, ratios of the largest tilts there, and with the vertical component (`ratios_of`), None where
+    there are none; what the records are; perturbation and seed of the copies, and the hash of all inputs.
 
     Examples
     --------
@@ -381,6 +381,7 @@ def _problem(case: Case) -> dict[str, Any]:
         "release": dataclasses.asdict(case.initial) if case.is_release and case.initial else None,
         "length": case.length,
         "gravity": case.gravity,
+        "rolling_resistance": case.rolling_resistance,
     }
 
 
