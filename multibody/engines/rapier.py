@@ -121,6 +121,8 @@ class _RapierStepper:
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
         self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
         self._world, self._cylinder = _build(rapier3d, scene, settings)
+        # position [m] and quaternion, scalar first
+        self._pose: tuple[float, float, float, float, float, float, float]
         start = scene.start
         position, velocity, spin = start.position.copy(), start.velocity, start.angular_velocity
         position[2] -= settings.depth
