@@ -37,6 +37,10 @@ class Case:
         not.
     name : str, optional
         For tables, figures and file names. Default: that of the motion, or "free response".
+    rolling_resistance : float, optional
+        Length delta of the couple of at most delta times the normal force against the rolling of the rim
+        [m], below the base radius: the pressure of a contact stays within the base. 0 loses nothing; a frame,
+        which would roll with loss at both ends of its columns, has no other.
 
     Raises
     ------
@@ -59,6 +63,7 @@ class Case:
     gravity: float = 9.81
     friction: float = 1.0
     name: str = ""
+    rolling_resistance: float = 0.0
 
     def __post_init__(self) -> None:
         for name, kind in (("cylinder", Cylinder), ("motion", GroundMotion), ("initial", InitialState)):
@@ -69,6 +74,15 @@ class Case:
         object.__setattr__(self, "friction", require_finite("friction", self.friction, ""))
         if self.friction < 0.0:
             raise ValueError(f"friction must not be negative, got {self.friction!r}")
+        length = require_finite("rolling_resistance", self.rolling_resistance, "m")
+        object.__setattr__(self, "rolling_resistance", length)
+        if not 0.0 <= length < self.cylinder.base_radius:
+            raise ValueError(
+                f"rolling_resistance must be from 0 to below the base radius, "
+                f"{self.cylinder.base_radius:g} m, got {length!r} m"
+            )
+        if length and self.cylinder.slab_mass_ratio:
+            raise ValueError(f"rolling_resistance must be 0 for a frame, got {length!r} m")
         if not self.name:
             name = "free response" if self.motion is None else self.motion.name
             object.__setattr__(self, "name", name or "record")
@@ -87,7 +101,9 @@ class Case:
             facts += [f"peak {motion.peak:.4g} m/s^2"]
         facts += [f"tilt={self.initial.tilt:.4g}"] if self.initial else []
         facts += [f"{self.length:g} s", f"friction={self.friction:g}"]
-        return line("Case", facts + ([f"gravity={self.gravity:g}"] if self.gravity != 9.81 else []))
+        facts += [f"gravity={self.gravity:g}"] if self.gravity != 9.81 else []
+        length = self.rolling_resistance
+        return line("Case", facts + ([f"rolling_resistance={length:g} m"] if length else []))
 
     @property
     def length(self) -> float:

@@ -38,6 +38,8 @@ class EngineFacts(Brief):
         Relative rounding error of its arithmetic, 2^-53 in double and 2^-24 in single precision.
     carries_slab : bool
         Whether its scenes hold the slab of a frame: one column, under a slab that only translates.
+    rolling_friction : bool
+        Whether it has a couple against rolling, of at most a length times the normal force.
     contact_time : str
         Name of the setting that is the time in which contact removes a velocity [s]; empty without one.
     alternatives : mapping
@@ -55,6 +57,7 @@ class EngineFacts(Brief):
     smooth_uplift: bool = False
     rounding: float = 2.0**-53
     carries_slab: bool = False
+    rolling_friction: bool = False
     contact_time: str = ""
     alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)
     standing_alternatives: Mapping[str, Options] = field(default_factory=lambda: _NOTHING)

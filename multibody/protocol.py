@@ -69,6 +69,8 @@ class Scene:
         What holds the cylinder in its place.
     friction : float
         Coefficient of the pair cylinder and ground [-].
+    rolling_resistance : float
+        Length of the couple of the ground against rolling [m]; 0 for an engine without rolling friction.
     time_step : float
         h [s].
     gravity : float
@@ -87,6 +89,7 @@ class Scene:
     gravity: float
     components: str
     unit_time: float
+    rolling_resistance: float = 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)

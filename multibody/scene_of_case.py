@@ -29,6 +29,7 @@ def make_scene(case: Case, support: str, step: float, scale: Scale) -> Scene:
         gravity=REFERENCE_GRAVITY,
         components="" if motion is None else "xyz" if motion.has_vertical else "xy",
         unit_time=scale.time,
+        rolling_resistance=case.rolling_resistance / scale.length,
     )
 
 

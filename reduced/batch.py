@@ -36,6 +36,7 @@ def peak_tilts(
     rest_tilt: float = REST_TILT,
     gravity: float = 9.81,
     slab_mass_ratio: float = 0.0,
+    rolling_resistance: float = 0.0,
     workers: int | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> NDArray[np.float64]:
@@ -59,6 +60,8 @@ def peak_tilts(
         g [m/s^2].
     slab_mass_ratio : float, optional
         Mass of the slab over that of all columns [-]: the peaks of a `WobblingFrame`.
+    rolling_resistance : float, optional
+        As in `Case` [m]: the same length for every size; 0 for a frame.
     workers : int, optional
         Number of threads; default: that of the cores.
     progress : callable, optional
@@ -85,7 +88,12 @@ def peak_tilts(
     cylinders = (Cylinder(semidiagonal=float(size), tan_alpha=tan_alpha) for size in sizes)
     bodies = [
         make_problem(
-            Case(WobblingFrame(cylinder, slab_mass_ratio), motion, gravity=gravity),
+            Case(
+                WobblingFrame(cylinder, slab_mass_ratio),
+                motion,
+                gravity=gravity,
+                rolling_resistance=rolling_resistance,
+            ),
             support=support,
             plane=plane,
             restitution=restitution,
@@ -97,7 +105,7 @@ def peak_tilts(
     peaks = np.zeros((len(sizes), len(factors)))
     if peaks.size == 0:
         return peaks
-    make_ready("planar" if bodies[0].is_planar() else support)
+    make_ready(bodies[0].kernel)
 
     def run_cells(column: int, rows: slice) -> None:
         shaking = bodies[0].shaking(float(factors[column]))

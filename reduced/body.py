@@ -21,6 +21,7 @@ nu     -        w/(1 + gamma), force at the base for an acceleration of S over
                 that for the same acceleration of the ground
 g      m/s^2    gravity                                                         (17)
 p      1/s      sqrt(g R/A), frequency parameter; p2 is its square              (23)
+delta  m        length of rolling resistance; 0 in the paper
 ====== ======== =============================================================== ========
 """
 
@@ -51,10 +52,11 @@ class Body(NamedTuple):
     p: float
     mu: float
     nu: float
+    delta: float
 
 
-def body_of(cylinder: Cylinder, gravity: float) -> Body:
-    """Return the constants of `cylinder` under `gravity` [m/s^2]."""
+def body_of(cylinder: Cylinder, gravity: float, rolling_resistance: float = 0.0) -> Body:
+    """Return the constants of `cylinder` under `gravity` [m/s^2] with a length of rolling resistance [m]."""
     b, h = cylinder.base_radius, cylinder.mass_centre_height
     height = 2.0 * cylinder.half_height
     I1 = cylinder.transverse_inertia
@@ -88,6 +90,7 @@ def body_of(cylinder: Cylinder, gravity: float) -> Body:
         p=p2**0.5,
         mu=mu,
         nu=w / (1.0 + gamma),
+        delta=rolling_resistance,
     )
 
 

@@ -27,7 +27,7 @@ is a quotient.
 
 from __future__ import annotations
 
-from ._compile import jit
+from ._compile import inlined, jit
 from .body import Body
 from .trigonometry import sin_cos
 
@@ -62,6 +62,15 @@ def recess_rhs(
     body: Body, theta: float, omega: float, phi: float, L: float, ax: float, ay: float, az: float
 ) -> tuple[float, float, float, float]:
     """Return (theta', theta'', phi', L') of the paper's model: (18) and (19)."""
+    theta_acceleration, phi_rate, L_rate, _, _ = recess_motion(body, theta, phi, L, ax, ay, az)
+    return omega, theta_acceleration, phi_rate, L_rate
+
+
+@inlined
+def recess_motion(
+    body: Body, theta: float, phi: float, L: float, ax: float, ay: float, az: float
+) -> tuple[float, float, float, float, float]:
+    """Return theta'', phi', L' of the paper's model, and sine and cosine of theta."""
     s_half, c_half = sin_cos(0.5 * theta)
     s, v = 2.0 * s_half * c_half, 2.0 * s_half * s_half
     c = 1.0 - v
@@ -79,7 +88,7 @@ def recess_rhs(
     # the two constants wait for nothing, so they are ready when the rest is
     centrifugal = half_B_theta * (1.0 / body.A) * (phi_rate * phi_rate)
     theta_acceleration = centrifugal - (body.p2 / body.g) * (restoring + inertial)
-    return omega, theta_acceleration, phi_rate, -(body.h * s + body.b * v) * a_t
+    return theta_acceleration, phi_rate, -(body.h * s + body.b * v) * a_t, s, c
 
 
 @jit

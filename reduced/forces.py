@@ -26,6 +26,7 @@ from numpy.typing import NDArray
 from ._compile import jit, kernel
 from .body import Body
 from .equations import energy, flat_rhs
+from .rolling import couple_on, twist_share
 
 # columns of what `derived_quantities` returns
 ROLLING_RATE, ENERGY, FORCE_X, FORCE_Y, FORCE_Z, MOMENT = range(6)
@@ -49,6 +50,12 @@ def contact_force(
     rates = flat_rhs(body, theta, omega, phi, Lambda, 0.0, S, ax, ay, az)
     theta_acceleration, phi_rate, tau_rate, S_rate = rates[1], rates[2], rates[4], rates[5]
     s, c = sin(theta), cos(theta)
+    turning = 0.0
+    if body.delta > 0.0:
+        spin = tau_rate - phi_rate
+        tilting, turning = couple_on(body, theta, omega, phi, spin, theta_acceleration, (ax, ay, az))
+        theta_acceleration += tilting / body.A
+        S_rate += twist_share(body, s, c) * turning
     t = s / (1.0 + c)
     sec2 = 1.0 + t * t
     roll, reach = E + C * t, h + b * t
@@ -75,6 +82,8 @@ def contact_force(
     )
     up = D_2 * theta_acceleration - D_1 * omega * omega
     F_t = nu * across + a_t * (1.0 - nu * reach * reach / H)
+    if body.delta > 0.0:
+        F_t -= reach / H * turning
     return nu * outward + a_r, F_t, body.g + az + nu * up, kappa
 
 

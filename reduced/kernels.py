@@ -11,6 +11,7 @@ from ._compile import kernel
 from .body import Body, body_of
 from .integration.driver import make_driver
 from .integration.progress import spin_momentum
+from .integration.resisted import RESISTED_FLAT, RESISTED_PLANAR, RESISTED_RECESS, STEPPERS
 from .integration.result import IntegrationResult, Options
 from .integration.stepping import runge_kutta, taylor_series
 from .integration.systems import (
@@ -27,6 +28,9 @@ from .integration.tsit5 import State
 _driver_planar = make_driver(PLANAR, runge_kutta(PLANAR, planar_combine, planar_ratio))
 _driver_recess = make_driver(RECESS, taylor_series())
 _driver_flat = make_driver(FLAT, runge_kutta(FLAT, flat_combine, flat_ratio))
+_driver_resisted_planar = make_driver(RESISTED_PLANAR, STEPPERS["planar"])
+_driver_resisted_recess = make_driver(RESISTED_RECESS, STEPPERS["recess"])
+_driver_resisted_flat = make_driver(RESISTED_FLAT, STEPPERS["flat"])
 
 
 @kernel
@@ -72,13 +76,63 @@ def integrate_flat(
 
 
 @kernel
+def integrate_resisted_planar(
+    body: Body,
+    options: Options,
+    record: NDArray[np.float64],
+    time_step: float,
+    initial: State,
+    times: NDArray[np.float64],
+    later: NDArray[np.float64],
+) -> IntegrationResult:
+    """Solve the planar model with rolling resistance; see `driver.make_driver`."""
+    return _driver_resisted_planar(body, options, record, time_step, initial, times, later)
+
+
+@kernel
+def integrate_resisted_recess(
+    body: Body,
+    options: Options,
+    record: NDArray[np.float64],
+    time_step: float,
+    initial: State,
+    times: NDArray[np.float64],
+    later: NDArray[np.float64],
+) -> IntegrationResult:
+    """Solve the recess model with rolling resistance; see `driver.make_driver`."""
+    return _driver_resisted_recess(body, options, record, time_step, initial, times, later)
+
+
+@kernel
+def integrate_resisted_flat(
+    body: Body,
+    options: Options,
+    record: NDArray[np.float64],
+    time_step: float,
+    initial: State,
+    times: NDArray[np.float64],
+    later: NDArray[np.float64],
+) -> IntegrationResult:
+    """Solve the flat-ground model with rolling resistance; see `driver.make_driver`."""
+    return _driver_resisted_flat(body, options, record, time_step, initial, times, later)
+
+
+@kernel
 def momentum_of_release(body: Body, tilt: float, rolling_rate: float) -> float:
     """Return L = B phi' [m^2/s]; an entry point of its own, since to compile it takes longer than a run."""
     return spin_momentum(body, tilt, rolling_rate)
 
 
-INTEGRATORS = {"planar": integrate_planar, "recess": integrate_recess, "flat": integrate_flat}
-SIZES = {"planar": 3, "recess": 4, "flat": 8}  # variables of a state
+INTEGRATORS = {
+    "planar": integrate_planar,
+    "recess": integrate_recess,
+    "flat": integrate_flat,
+    "resisted planar": integrate_resisted_planar,
+    "resisted recess": integrate_resisted_recess,
+    "resisted flat": integrate_resisted_flat,
+}
+# variables of a state: with rolling resistance two more, energy lost and side (`integration.resisted`)
+SIZES = {"planar": 3, "recess": 4, "flat": 8, "resisted planar": 5, "resisted recess": 6, "resisted flat": 10}
 
 
 def load(model: str) -> None:
@@ -87,5 +141,5 @@ def load(model: str) -> None:
     options = Options(1e-6, 0.0, 1.0, 1.0, 1, False)
     start = (0.0,) * SIZES[model]
     INTEGRATORS[model](body, options, np.zeros((0, 3)), 1.0, start, np.zeros(1), np.zeros((0, 2)))
-    if model != "planar":
+    if not model.endswith("planar"):
         momentum_of_release(body, 0.1, 0.0)  # or the first release would be timed with its loading

@@ -20,6 +20,7 @@ from . import kernels
 from .body import Body, body_of, restitution_from_momentum
 from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .integration.result import IntegrationResult, Options
+from .rolling import impact_ratio
 
 SUPPORTS = ("recess", "flat")
 _OUT_OF_PLANE = 1e-9  # [rad] more than what rounding makes of an azimuth
@@ -79,6 +80,7 @@ class Problem:
     rest_tilt: float
     plane: float
     restitution: float
+    rolling_resistance: float
 
     def __reduce__(self) -> tuple[Any, ...]:
         # what is derived stays behind: compiled code that travels is compiled again where it arrives
@@ -87,7 +89,7 @@ class Problem:
     @cached_property
     def body(self) -> Body:
         """The constants of the equations."""
-        return body_of(self.cylinder, self.gravity)
+        return body_of(self.cylinder, self.gravity, self.rolling_resistance)
 
     def solve(
         self,
@@ -138,6 +140,12 @@ class Problem:
         return self._plane is not None
 
     @cached_property
+    def kernel(self) -> str:
+        """The name of the compiled model that solves it."""
+        model = "planar" if self.is_planar() else self.model
+        return f"resisted {model}" if self.rolling_resistance > 0.0 else model
+
+    @cached_property
     def _peak(self) -> float:
         return 0.0 if self.motion is None else float(np.abs(self.motion.acceleration).max())
 
@@ -146,11 +154,11 @@ class Problem:
         return 1.0 if self.motion is None else self.motion.time_step
 
     def _options(self, record_steps: bool) -> Options:
-        least_rest_tilt = _LEAST_WITH_LOSS if self.restitution < 1.0 else 0.0
-        rest_tilt = max(self.rest_tilt, least_rest_tilt)
-        return Options(
-            self.rtol, rest_tilt, self.restitution, self.duration, self._step_budget(), record_steps
-        )
+        restitution = self.restitution
+        if self.rolling_resistance > 0.0:
+            restitution = impact_ratio(self.body, restitution)
+        rest_tilt = max(self.rest_tilt, _LEAST_WITH_LOSS if restitution < 1.0 else 0.0)
+        return Options(self.rtol, rest_tilt, restitution, self.duration, self._step_budget(), record_steps)
 
     @cached_property
     def _set_up(self) -> SetUp:
@@ -158,18 +166,16 @@ class Problem:
 
         Rounding would otherwise choose on which side such motion passes upright.
         """
-        plane = self._plane
+        plane, integrate = self._plane, kernels.INTEGRATORS[self.kernel]
         if plane is not None:
-            start = self._start(kernels.SIZES["planar"], plane.azimuth)
-            return SetUp(kernels.integrate_planar, plane.record, start, plane.azimuth)
-        start = self._start(kernels.SIZES[self.model], 0.0)
-        return SetUp(kernels.INTEGRATORS[self.model], three_columns(self.motion), start, 0.0)
+            return SetUp(integrate, plane.record, self._start(plane.azimuth), plane.azimuth)
+        return SetUp(integrate, three_columns(self.motion), self._start(0.0), 0.0)
 
     @cached_property
     def _later(self) -> NDArray[np.float64]:
         """Largest |a| and least az from each sample on (m, 2) [m/s^2]; none where a fall may yet be held."""
         record = self._set_up.record
-        if len(self._set_up.start) == kernels.SIZES["flat"]:
+        if self.kernel.endswith("flat"):
             return np.empty((0, 2))
         strongest = np.maximum.accumulate(np.hypot(record[::-1, 0], record[::-1, 1]))[::-1]
         # the ground is still after the record, so az reaches 0
@@ -181,21 +187,21 @@ class Problem:
         times = self.duration * self.body.p
         return int(min(_BUDGET + _BUDGET_PER_SAMPLE * samples + _BUDGET_PER_TIME * times, 2**62))
 
-    def _start(self, size: int, azimuth: float) -> tuple[float, ...]:
+    def _start(self, azimuth: float) -> tuple[float, ...]:
         """State at time zero; psi' = -phi', so neither twist nor twist rate."""
-        initial, body = self.initial, self.body
+        initial, body, size = self.initial, self.body, kernels.SIZES[self.kernel]
         if initial is None or initial.tilt == 0.0:
             return (0.0,) * size
-        if size == kernels.SIZES["planar"]:
+        start = float(initial.tilt), float(initial.tilt_rate)
+        if self.is_planar():
             # the azimuth of the plane or its opposite
             angle = 0.0 if math.cos(initial.rolling_angle - azimuth) >= 0.0 else math.pi
-            return float(initial.tilt), float(initial.tilt_rate), angle
+            return (*start, angle, *(0.0,) * (size - 3))
         rate = float(initial.rolling_rate)
         if 0.0 < abs(rate) < _LEAST_SPIN * body.p:
             rate = math.copysign(_LEAST_SPIN * body.p, rate)
         L = float(kernels.momentum_of_release(body, float(initial.tilt), rate))
-        start = (float(initial.tilt), float(initial.tilt_rate), float(initial.rolling_angle), L)
-        return start + (0.0,) * (size - len(start))
+        return (*start, float(initial.rolling_angle), L, *(0.0,) * (size - 4))
 
     @cached_property
     def _plane(self) -> Plane | None:
@@ -263,6 +269,7 @@ def make_problem(
         rest_tilt=float(rest_tilt),
         plane=0.0 if plane is None else float(plane),
         restitution=factor,
+        rolling_resistance=case.rolling_resistance,
     )
 
 

@@ -85,7 +85,7 @@ def simulate(
         case, support=support, plane=plane, restitution=restitution, rtol=rtol, rest_tilt=rest_tilt
     )
     require_positive("sample_step", sample_step, "s")
-    make_ready("planar" if problem.is_planar() else problem.model)
+    make_ready(problem.kernel)
     times = sample_times(problem.duration, sample_step)
     started = time.perf_counter()
     result, azimuth = problem.solve(times)
@@ -146,7 +146,8 @@ def _trace(
         friction=case.friction,
         time=times,
         states=full,
-        roll_out=states[:, 6:8] if states.shape[1] == 8 else np.zeros((len(states), 2)),
+        roll_out=states[:, 6:8] if states.shape[1] >= 8 else np.zeros((len(states), 2)),
+        energy_lost=states[:, -2] if case.rolling_resistance else None,
         uplift_time=result.uplift_time,
         extrema=extrema,
         rest_intervals=result.rests,

@@ -14,7 +14,7 @@ from rockwobble.models import Assumptions
 from rockwobble.models.shown import Brief
 from rockwobble.models.traces.trace_source import friction_of
 
-from . import forces
+from . import forces, kernels
 from .assumptions import Demands, review
 from .columns import ground_at, in_plane
 from .integration.result import MAXIMUM, MINIMUM
@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     import pandas as pd
 
 Array = NDArray[np.float64]
+# variables of a state: those of them that stand in the six columns
+_WIDTHS = {size: min(kernels.SIZES[name.split()[-1]], 6) for name, size in kernels.SIZES.items()}
 
 
 @dataclass(frozen=True, eq=False, kw_only=True, repr=False)
@@ -41,6 +43,8 @@ class Solution(Brief):
         theta [rad], theta' [rad/s], phi [rad], L or Lambda [m^2/s], phi + psi [rad], S [m^2/s].
     roll_out : ndarray, shape (n, 2)
         Centre of the circle that the rim rolls on, relative to O [m].
+    energy_lost : ndarray, shape (n,), optional
+        By rolling resistance, impacts with it included, per unit mass [m^2/s^2]; None without it.
     uplift_time : float
         [s]
     extrema, rest_intervals : ndarray
@@ -52,6 +56,7 @@ class Solution(Brief):
     time: Array
     states: Array
     roll_out: Array
+    energy_lost: Array | None
     uplift_time: float
     extrema: Array
     rest_intervals: Array
@@ -64,7 +69,20 @@ class Solution(Brief):
             "energy": found[:, forces.ENERGY],
             "contact_force": found[:, forces.FORCE_X : forces.FORCE_Z + 1],
             "restraining_moment": found[:, forces.MOMENT],
+            "energy_lost": self._lost_at_impacts() if self.energy_lost is None else self.energy_lost,
         } | ({} if top is None else {"top_contact_force": top})
+
+    def _lost_at_impacts(self) -> Array:
+        """Return the energy that impacts took before each sample (n,), per unit mass [m^2/s^2]."""
+        problem = self.problem
+        landings = self.extrema[self.extrema[:, 1] == 0.0, 0]
+        if problem.restitution == 1.0 or not len(landings):
+            return np.zeros(len(self.time))
+        result, _ = problem.solve(landings)  # before they rebound
+        rate = result.samples[: result.reached, 1]
+        lost = 0.5 * problem.body.A * (1.0 - problem.restitution**2) * rate * rate
+        before = np.searchsorted(landings[: len(lost)], self.time)
+        return np.concatenate([[0.0], np.cumsum(lost)])[before]
 
     def contact_point(self, moving: NDArray[np.bool_]) -> Array:
         """Return the contact point (n, 2) relative to O [m]; NaN at rest."""
@@ -159,7 +177,7 @@ def six_columns(states: Array, azimuth: float) -> Array:
     Planar motion has neither spin nor twist, and only the flat-ground model has the latter.
     """
     full = np.zeros((len(states), 6))
-    width = min(states.shape[1], 6)
+    width = _WIDTHS[states.shape[1]]
     full[:, :width] = states[:, :width]
     full[:, 2] += azimuth
     return full

@@ -24,6 +24,11 @@ class Option:
         Range of a number, both ends included.
     above : float
         A number must be larger.
+    form : str
+        How a text is read that is neither a number nor a word: "numbers" (a list, or an even range),
+        "levels" (a list, or a range even in the logarithm) or "restitution".
+    flag : str
+        Name on the command line, where it is not that of the field.
     """
 
     help: str
@@ -31,6 +36,8 @@ class Option:
     least: float = -math.inf
     most: float = math.inf
     above: float = -math.inf
+    form: str = ""
+    flag: str = ""
 
     def allowed(self) -> str:
         """Return the range in words."""
@@ -40,9 +47,9 @@ class Option:
         return " and ".join(part for part in (low, high) if part) or "finite"
 
 
-def option(default: Any, text: str, *, group: str = "Method", **ranges: float) -> Any:
-    """Return the field of a plan that is an option; `text` is its help, `ranges` those of `Option`."""
-    return field(default=default, metadata={_KEY: Option(help=text, group=group, **ranges)})
+def option(default: Any, text: str, *, group: str = "Method", **more: Any) -> Any:
+    """Return the field of a plan that is an option; `text` is its help, `more` are attributes of `Option`."""
+    return field(default=default, metadata={_KEY: Option(help=text, group=group, **more)})
 
 
 class Plan:

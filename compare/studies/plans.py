@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..runs.plan import Plan, option
@@ -40,3 +41,75 @@ class AdvicePlan(Copies):
 
         Plan.__post_init__(self)
         support_named(self.support)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FragilityPlan(Plan):
+    """Fragility: intensities, limits, statistics, and what its methods have in common."""
+
+    measure: str = option(
+        "peak_acceleration",
+        "Intensity: peak_acceleration (over g tan alpha), peak_velocity (times p over g tan alpha), pga, "
+        "pgv, sa or sa_mean.",
+        group="Intensity",
+    )
+    levels: Sequence[float] | None = option(
+        None,
+        "Intensities to which every motion is scaled: a list 1.5,2,3 or FROM:TO:COUNT, evenly in the "
+        "logarithm. Default: 20, from a little above uplift to where most overturn.",
+        group="Intensity",
+        form="levels",
+    )
+    scales: Sequence[float] | None = option(
+        None,
+        "Factors on the motions as they are, in the place of levels: 1, or 0.5,1,2.",
+        group="Intensity",
+        form="numbers",
+        flag="--scale",
+    )
+    period: float = option(1.0, "Period of sa and sa_mean, in s.", group="Intensity", above=0.0)
+    limits: Sequence[str] | None = option(
+        None,
+        'Limit: uplift, "0.1 alpha", "0.25 alpha", "0.5 alpha", "1 alpha", overturned or contact_lost; may '
+        "be repeated. Default: all but the last, which takes the forces of every run.",
+        group="Statistics",
+        flag="--limit",
+    )
+    margin: float = option(
+        0.1, "Relative difference within which two medians are equivalent.", group="Statistics", above=0.0
+    )
+    resamples: int = option(
+        1000, "Number of bootstrap resamples of the motions, for intervals.", group="Statistics", least=2
+    )
+    seed: int = option(0, "Seed of resamples and synthetic motions.", group="Statistics", least=0)
+    restitution: float | str = option(
+        1.0,
+        "Ratio of tilt rates at an impact of the planar models: a number, or momentum for Housner's. "
+        "Default: 1, as in the models in three dimensions.",
+        form="restitution",
+    )
+    step_factor: float = option(
+        1.0,
+        "Factor on the default time step of engines: the share of many runs that overturn needs less than a "
+        "trace.",
+        above=0.0,
+    )
+    friction: float = option(1.0, "Coefficient of friction of cylinder and ground.", above=0.0)
+    gravity: float = option(9.81, "g, in m/s2.", above=0.0)
+
+    def __post_init__(self) -> None:
+        # with numpy, which help can do without
+        from rockwobble.models.number_checks import require_increasing
+
+        from .fragility.intensity import require_measure
+        from .fragility.samples import require_limits
+
+        Plan.__post_init__(self)
+        require_measure(self.measure)
+        if self.levels is not None and self.scales is not None:
+            raise ValueError("levels scale the motions, scales take them as they are: got both")
+        for name in ("levels", "scales"):
+            if getattr(self, name) is not None:
+                require_increasing(name, getattr(self, name))
+        if self.limits is not None:
+            require_limits(self.limits)

@@ -16,7 +16,7 @@ _COLUMNS, _NEEDED = ("name", "x", "y", "z", "units", "scale"), ("x", "y")
 def read_records(
     folder: str | Path, *, units: str | None = None, resample: bool = False
 ) -> list[GroundMotion]:
-    """Return the ground motions of a folder, as its records.csv lists them.
+    r"""Return the ground motions of a folder, as its records.csv lists them.
 
     A row for each motion, with the columns x and y, the files of the two horizontal components beside the
     table (PEER AT2, two-column text or CSV; "zero" is a component of zeros), and maybe z (vertical), name,
@@ -31,11 +31,25 @@ def read_records(
     resample : bool, optional
         Take components of different time steps at one that divides all, as `read_record` does.
 
+    Returns
+    -------
+    list of GroundMotion
+
     Raises
     ------
     ValueError
         If there is no such table, a column is missing or unknown, or a record cannot be read: the row is
         named.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from pathlib import Path
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> _ = (folder / "east.csv").write_text("0.00, 0.0\n0.01, 0.5\n0.02, 0.0\n")
+    >>> _ = (folder / "records.csv").write_text("x,y,name,units\neast.csv,zero,pulse,m/s2\n")
+    >>> [(motion.name, motion.peak) for motion in read_records(folder)]
+    [('pulse', 0.5)]
     """
     path = Path(folder)
     path = path / TABLE if path.is_dir() else path

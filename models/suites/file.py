@@ -47,7 +47,8 @@ bounds, of what tests ask of every run (see `Bounds`); each may be left out
     energy_loss; at least: agreement_time [s]
     reference = "recess" or "flat" (default "own": the model of the support)
 cases
-    name, duration [s] (default: that of the record), gravity [m/s^2] (9.81), friction (1)
+    name, duration [s] (default: that of the record), gravity [m/s^2] (9.81), friction (1),
+    rolling_resistance [m] (0)
 """
 
 from __future__ import annotations

@@ -156,6 +156,7 @@ class CaseTable(_Table):
     duration: Positives | None = None
     gravity: Positives | None = None
     friction: NotNegatives | None = None
+    rolling_resistance: NotNegatives | None = None
 
     @model_validator(mode="after")
     def _something_moves_for_some_time(self) -> CaseTable:

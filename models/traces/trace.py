@@ -66,6 +66,8 @@ class Trace(Shown):
     restraining_moment : ndarray, shape (n,)
         Kappa of the moment kappa (z_world + z_body) that the recess supplies, over the weight [m]; about the
         vertical, as about the axis, that is 1 + cos(tilt) times kappa.
+    energy_lost : ndarray, shape (n,)
+        Energy that rolling resistance and impacts took so far, per unit mass [m^2/s^2].
     energy_error : ndarray, shape (n,)
         Energy that neither the start nor the excitation supplied [m^2/s^2].
     slip, wall_contact, wall_impulse : ndarray, shape (n,)
@@ -156,6 +158,7 @@ class Trace(Shown):
     contact_force = Late(3)
     top_contact_force = Late(3)
     restraining_moment = Late(1)
+    energy_lost = Late(1)
     energy_error = Late(1)
     slip = Late(1)
     wall_contact = Late(1)

@@ -47,6 +47,7 @@ COLUMNS = {
     "friction_needed": ("", "horizontal over normal force; infinite where the normal force is not positive"),
     "restraining_moment": ("m", "of the recess: kappa in kappa (z_world + z_body), over the weight"),
     "energy": ("m2/s2", "relative to the ground, per unit mass, zero standing"),
+    "energy_lost": ("m2/s2", "energy that rolling resistance and impacts took so far, per unit mass"),
     "energy_error": ("m2/s2", "energy that neither the start nor the excitation supplied"),
     "slip": ("m", "distance slipped so far"),
     "wall_contact": ("s", "time at the walls of a ring so far"),
@@ -68,7 +69,7 @@ OF_FRAMES = VECTORS["top_contact_force"]  # columns that only the trace of a fra
 _FIELDS = ("time", "tilt", "tilt_rate", "rolling_angle", "twist", "contact_point", "centre_of_mass")
 _LATE = (
     *("rolling_rate", "energy", "contact_force", "top_contact_force", "restraining_moment"),
-    *("energy_error", "slip", "wall_contact", "wall_impulse"),
+    *("energy_lost", "energy_error", "slip", "wall_contact", "wall_impulse"),
 )
 NUMBERS = (
     *("version", "outcome", "rests", "peak_tilt", "uplift_time", "uplift_direction", "time_step"),
@@ -109,6 +110,7 @@ def restored(facts: Mapping[str, Any], samples: pd.DataFrame) -> dict[str, Any]:
         "extrema": np.array(facts["extrema"], dtype=float).reshape(-1, 4),
         "passes": pd.DataFrame(passes),
         "source": Known(
+            # a file of another version lacks what it did not know
             {name: array(name) for name in _LATE if set(VECTORS.get(name, (name,))) <= set(samples.columns)},
             None if held is None else Assumptions(**held | {"breaches": _diagnostics(held["breaches"])}),
         ),

@@ -134,8 +134,10 @@ def _set_contact(
     for pair in spec.pairs:
         friction = ground if ring is None or _bears(pair) else ring.ring_friction
         impedance = rim if _bears(pair) else settings.impedance
-        pair.friction = [friction, friction, 0.0, 0.0, 0.0]
-        pair.condim = 3
+        # the cone bounds the couple and the friction together, and what grips leaves less to the couple
+        rolling = scene.rolling_resistance if _bears(pair) else 0.0
+        pair.friction = [friction, friction, 0.0, rolling, rolling]
+        pair.condim = 6 if rolling else 3
         pair.solref = [settings.contact_time_constant / scene.unit_time, settings.contact_damping_ratio]
         pair.solimp = [impedance, impedance, 1e-3, 0.5, 2.0]
         # two negative numbers are a stiffness, which friction has none of, and a damping; the engine divides

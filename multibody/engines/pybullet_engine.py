@@ -41,6 +41,7 @@ _FACTS = EngineFacts(
     release_error=1.5e-5,
     uplift_error=5e-6,
     smooth_uplift=True,
+    rolling_friction=True,
 )
 
 

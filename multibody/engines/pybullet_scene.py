@@ -13,6 +13,7 @@ from ..scene.friction import body_friction
 from .settings.pybullet import PybulletSettings
 
 _POINT_SIZE = 1e-6  # of b
+_LEAST = 1e-12  # friction of a pair, for a quotient
 
 
 def make_ground(bullet: Any, client: int, scene: Scene, settings: PybulletSettings) -> int:
@@ -70,6 +71,8 @@ def make_cylinder(
         body,
         -1,
         lateralFriction=body_friction(scene.friction, "product"),
+        # the pair has that of each body times the friction of the other
+        rollingFriction=scene.rolling_resistance / body_friction(max(scene.friction, _LEAST), "product"),
         restitution=0.0,
         collisionMargin=settings.collision_margin,
         localInertiaDiagonal=[transverse, transverse, axial],

@@ -34,6 +34,8 @@ class EnergyWatch:
     balance : float
         Energy of the balance, where the start is beyond it, else 0 [m^2/s^2]. What falls from there may have
         less than none, and its errors are still held against that.
+    loses : bool
+        Whether rolling friction takes energy, so that only a gain is an error.
 
     Attributes
     ----------
@@ -41,8 +43,8 @@ class EnergyWatch:
         Energy so far, relative to the ground and zero standing [m^2/s^2].
     """
 
-    def __init__(self, time_step: float, least: float, balance: float = 0.0) -> None:
-        self._step, self._least = time_step, least
+    def __init__(self, time_step: float, least: float, balance: float = 0.0, *, loses: bool = False) -> None:
+        self._step, self._least, self._loses = time_step, least, loses
         self._work = 0.0
         self._start: float | None = None
         self._blocks: list[Array] = []  # time and largest error, with its sign, of each block
@@ -73,6 +75,8 @@ class EnergyWatch:
         """
         time, error = np.hstack([*self._blocks, np.empty((2, 0))])
         error = error[time <= until]
+        if self._loses:
+            error = np.maximum(error, 0.0)
         large = np.abs(error) > DRIFT * self.largest
         if self.largest < self._least or not large.any():
             return math.nan, 0.0, DRIFT

@@ -91,6 +91,7 @@ class Recorder:
             scene.time_step,
             _LEAST_ENERGY * balance if start.standing else 0.0,
             balance if lean > math.atan(body.tan_alpha) else 0.0,
+            loses=scene.rolling_resistance > 0.0,
         )
         self.looks = 0  # at the solver, and how often it had not converged
         self.unsolved = 0

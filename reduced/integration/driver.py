@@ -17,6 +17,7 @@ until it overturns. Of the maxima over still ground the first is the largest:
 
 from __future__ import annotations
 
+from math import inf
 from typing import cast
 
 import numpy as np
@@ -44,6 +45,7 @@ from .systems import System
 from .tsit5 import State
 
 _FIRST_STEP = 1e-3  # of 1/p, where a run begins in motion
+_STILL = (0.0, 0.0, 0.0)
 # a literal 0 has a type of its own, for which its users would be compiled too
 _FIRST_SAMPLE = cast("int", np.int64(0))
 # of 1/p; what leaves the balance, or unstable steady wobble, grows by exp(p t), and what comes to it slows
@@ -56,6 +58,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
     """Return the compiled time integration of one model by one method."""
     lifted, lift_in, at_beginning, at_rest, stood, moved = make_progress(system, stepper)
     workspace, derivative = stepper.workspace, system.derivative
+    resists, hold = system.resists, system.hold
 
     @once
     def integrate(
@@ -102,6 +105,8 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
             if now >= end:
                 if following or run.resting or has_turned(log, still_from(record, time_step)):
                     break
+                if resists and hold(body, run.y, _STILL, _STILL) == inf:
+                    break
                 end, following, mark = now + _LONGEST / body.p, True, mark_of(run.y, log)
                 index, jumps = len(record), True
             piece = piece_of_record(record, time_step, index, now, end)
@@ -135,7 +140,7 @@ def make_driver(system: System, stepper: Stepper) -> Driver:
                     log.steps.append((now, *run.y))
                 if run.resting:
                     log.rests.append((now, np.nan))
-                    run = at_rest(run)
+                    run = at_rest(body, run)
             index += 1
 
         y, status, followed = run.y, run.status, np.nan

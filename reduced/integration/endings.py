@@ -36,8 +36,9 @@ def surely_overturns(body: Body, theta: float, strongest: float, lightest: float
     """Return whether a tilt above alpha that does not decrease is bound to reach pi/2, without twist.
 
     `strongest` is the largest |a| and `lightest` the least g + az to come: beyond the equilibrium tilt
-    under these two, theta'' is positive and grows with theta. Spin only adds to it, (18); a twist rate,
-    which the flat-ground model has, may hold a cylinder up.
+    under these two and the couple of rolling resistance, theta'' is positive and grows with theta. Spin
+    only adds to it, (18); a twist rate, which the flat-ground model has, may hold a cylinder up.
     """
     beyond = theta - body.alpha
-    return lightest > 0.0 and lightest * sin(beyond) > strongest * cos(beyond)
+    held = body.delta * body.sin_alpha / body.b
+    return lightest > 0.0 and lightest * (sin(beyond) - held) > strongest * cos(beyond)

@@ -73,7 +73,7 @@ class Events(NamedTuple):
 def make_events(system: System, stepper: Stepper) -> Events:
     """Return the search for events in the steps that `stepper` takes."""
     _, restarted, advance, partial, acceleration = stepper
-    momenta = system.momenta
+    momenta, placed, resists = system.momenta, system.placed, system.resists
 
     @inlined
     def is_flat(y: State) -> bool:
@@ -200,6 +200,12 @@ def make_events(system: System, stepper: Stepper) -> Events:
                 k = restarted(body, y_new, ground(a, slope, at), work)
         flat = is_flat(y) and is_flat(y_new)
         turn = turn_in(body, work, path, y, h, y_new)
+        if resists and flat:  # the couple jumps where the tilt turns
+            if y[1] == 0.0 and y_new[1] * y[-1] < 0.0:
+                return Trial(REPEATED, h, _RETRY * h, count, y_new, k, path, NONE, flat)
+            if turn.kind != NO_TURN and turn.tilt > 0.0:
+                h, (y_new, _) = turn.at, partial(body, work, path, turn.at)
+                y_new = placed(body, y_new, turn.tilt, 0.0, y_new[2], 0.0)
         if turn.kind != NO_TURN and not flat and min(turn.tilt, y_new[0]) <= 0.0:
             return Trial(REPEATED, h, _RETRY * h, count, y_new, k, path, turn, flat)
         return Trial(TAKEN, h, h_next, count, y_new, k, path, turn, flat)

@@ -82,7 +82,7 @@ class Progress(NamedTuple):
     lifted: Callable[..., State]  # (body, time_step, piece, at, time, last)
     lift_in: Callable[..., Lift]  # (body, rtol, time_step, piece, elapsed, y)
     at_beginning: Callable[..., Stage]  # (run, jumps)
-    at_rest: Callable[..., Stage]  # (run)
+    at_rest: Callable[..., Stage]  # (body, run)
     stood: Callable[..., Stage]  # (body, time_step, piece, lift, wanted, run)
     moved: Callable[..., Step]  # (body, options, piece, later, index, following, work, wanted, run)
 
@@ -93,12 +93,14 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
     tried, ending_of = make_events(system, stepper)
     momenta = system.momenta
     placed: Callable[..., State] = system.placed
+    resists, hold, set_off, stopped = system.resists, system.hold, system.set_off, system.stopped
 
     @jit
     def lifted(body: Body, time_step: float, piece: Piece, at: float, time: float, last: State) -> State:
         """Return the state `time` after an uplift; `last` is the state in which it stood."""
         theta, omega, angle, rate = started(body, time_step, piece.a, piece.slope, at, time)
-        return placed(last, theta, omega, nearest_branch(angle, last[2]), spin_momentum(body, theta, rate))
+        angle = nearest_branch(angle, last[2])
+        return placed(body, last, theta, omega, angle, spin_momentum(body, theta, rate))
 
     @inlined
     def lift_in(body: Body, rtol: float, time_step: float, piece: Piece, elapsed: float, y: State) -> Lift:
@@ -115,10 +117,10 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         return Lift(False, at, length, lifted(body, time_step, piece, at, length, y))
 
     @inlined
-    def rebounded(y: State, restitution: float) -> State:
+    def rebounded(body: Body, y: State, restitution: float) -> State:
         """Return the state after the base met the ground in planar motion: contact changes sides."""
         opposite = y[2] + (-pi if y[2] > 0.0 else pi)
-        return placed(y, 0.0, restitution * abs(y[1]), opposite, 0.0)
+        return placed(body, y, 0.0, restitution * abs(y[1]), opposite, 0.0)
 
     sample_rest, sample_uplift, sample_step = make_sampling(lifted, partial)
 
@@ -135,10 +137,10 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         return outward and surely_overturns(body, y[0], later[index, 0], body.g + later[index, 1])
 
     @inlined
-    def at_rest(run: Stage) -> Stage:
+    def at_rest(body: Body, run: Stage) -> Stage:
         """Return a run that stands from here on."""
         elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
-        y = placed(y, 0.0, 0.0, y[2], 0.0)
+        y = placed(body, y, 0.0, 0.0, y[2], 0.0)
         return Stage(elapsed, y, k, h_next, restart, True, peak, sample, step_count, status)
 
     @inlined
@@ -154,6 +156,22 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         sample = sample_uplift(wanted, sample, until, body, time_step, piece, lift.at, begin, y)
         peak, h_next = max(peak, lift.y[0]), 0.1 * lift.length
         return Stage(elapsed, lift.y, k, h_next, True, False, peak, sample, step_count, status)
+
+    @inlined
+    def is_still(y: State) -> bool:
+        """Return whether a body stands still, tilted."""
+        L, S = momenta(y)
+        return bool(y[1] == 0.0 and L == 0.0 and S == 0.0)
+
+    @inlined
+    def held(piece: Piece, wait: float, wanted: Wanted, run: Stage) -> Stage:
+        """Carry a body that rolling resistance holds to the end of that time, or of the piece."""
+        elapsed, y, k, h_next, _, resting, peak, sample, step_count, status = run
+        elapsed = min(elapsed + wait, piece.length)
+        later = sample_rest(wanted, sample, time_in(piece, elapsed), y)
+        for i in range(sample, later):
+            wanted[2][i] = True
+        return Stage(elapsed, y, k, h_next, True, resting, peak, later, step_count, status)
 
     @inlined
     def moved(
@@ -173,6 +191,12 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         """
         elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
         a = ground(piece.a, piece.slope, elapsed)
+        if resists and is_still(y):
+            wait = hold(body, y, a, piece.slope)
+            if wait > 0.0:
+                return Step(held(piece, wait, wanted, run), NONE, NONE)
+            y, longest = set_off(body, y, a, piece.slope)
+            h_next, restart = min(h_next, longest), True
         if restart:
             k = restarted(body, y, a, work)
         trial = tried(body, options.rtol, y, k, work, h_next, piece.length - elapsed, a, piece.slope)
@@ -200,12 +224,16 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
                 status = OVERTURNED
             elif ending.lands:
                 landing = Turn(MINIMUM, ending.h, 0.0, y[2])
-                y, restart = rebounded(y, options.restitution), True
+                y, restart = rebounded(body, y, options.restitution), True
                 resting = y[1] == 0.0  # no speed is left: it stands, or lifts off again by (25) and (26)
             if options.rest_tilt > 0.0 and not ending.overturns:
                 a = ground(piece.a, piece.slope, elapsed)
                 L, S = momenta(y)
                 resting = resting or may_sit_down(body, options.rest_tilt, y[0], y[1], L, S, a)
+            if resists and not (resting or ending.overturns):
+                a = ground(piece.a, piece.slope, elapsed)
+                y = stopped(body, options.rtol, y, a, piece.slope)
+                restart = restart or is_still(y)
         after = Stage(elapsed, y, k, h_next, restart, resting, peak, sample, step_count, status)
         return Step(after, turn, landing)
 

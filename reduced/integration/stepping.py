@@ -64,7 +64,7 @@ def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callab
     """Return the steps of `tsit5` for one system.
 
     ``combine(y, h, weights, slopes)`` returns y + h sum(weights slopes), and
-    ``error_ratio(body, rtol, y, error, flat)`` the error over what is allowed.
+    ``error_ratio(body, rtol, h, y, y_new, error, flat)`` the error over what is allowed.
     """
     step = make_step(system.derivative, combine)
     momenta, derivative = system.momenta, system.derivative
@@ -104,7 +104,7 @@ def runge_kutta(system: System, combine: Callable[..., Any], error_ratio: Callab
                 h = 0.5 * length  # two even steps instead of a long and a short one
             y_new, k_new, error, lowest = step(body, y, k, h, a, slope)
             flat = is_flat(y) and is_flat(y_new)
-            ratio = error_ratio(body, rtol, y, error, flat)
+            ratio = error_ratio(body, rtol, h, y, y_new, error, flat)
             if ratio <= 1.0 and (lowest > 0.0 or flat):
                 longer = h * (_GROWTH if ratio < _SMALL else _SAFETY * ratio**-0.2)
                 # a step cut short by the length says nothing against the longer one proposed

@@ -14,7 +14,7 @@ flat     theta, theta', phi, Lambda, tau, S, X, Y; the rim rolls on the circle a
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import sqrt
+from math import inf, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -30,12 +30,31 @@ _ROUNDING = float(np.finfo(np.float64).eps)
 Weights = tuple[float, ...]
 
 
+@jit
+def _never(body: Body, y: State, a: Vector, slope: Vector) -> float:
+    return 0.0
+
+
+@jit
+def _as_it_is(body: Body, y: State, a: Vector, slope: Vector) -> tuple[State, float]:
+    return y, inf
+
+
+@jit
+def _as_it_was(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
+    return y
+
+
 class System(NamedTuple):
     """The compiled functions of one model."""
 
     derivative: Callable[..., Any]  # (body, y, a) -> y'
     momenta: Callable[..., Any]  # y -> (L or Lambda, S)
-    placed: Callable[..., Any]  # (y, theta, omega, phi, L) -> y with these, and without twist rate
+    placed: Callable[..., Any]  # (body, y, theta, omega, phi, L) -> y with these, and without twist rate
+    resists: bool = False  # against rolling; then the last three are asked (`resisted`)
+    hold: Callable[..., float] = _never  # (body, y, a, slope) -> for how long it stands still, tilted [s]
+    set_off: Callable[..., Any] = _as_it_is  # (body, y, a, slope) -> y that begins to move, its first step
+    stopped: Callable[..., Any] = _as_it_was  # (body, rtol, y, a, slope) -> y, still where it is held
 
 
 @inlined
@@ -83,12 +102,14 @@ def _planar_momenta(y: State) -> tuple[float, float]:
 
 
 @jit
-def _planar_placed(y: State, theta: float, omega: float, phi: float, L: float) -> State:
+def _planar_placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
     return theta, omega, phi
 
 
 @jit
-def planar_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
+def planar_ratio(
+    body: Body, rtol: float, h: float, y: State, y_new: State, error: State, flat: bool
+) -> float:
     """Return the largest error over what is allowed."""
     per_tilt, per_rate = scales(body, rtol, y[0], y[1], 0.0, True)
     return max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
@@ -105,7 +126,7 @@ def _recess_momenta(y: State) -> tuple[float, float]:
 
 
 @jit
-def _recess_placed(y: State, theta: float, omega: float, phi: float, L: float) -> State:
+def _recess_placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
     return theta, omega, phi, L
 
 
@@ -149,12 +170,12 @@ def _flat_momenta(y: State) -> tuple[float, float]:
 
 
 @jit
-def _flat_placed(y: State, theta: float, omega: float, phi: float, L: float) -> State:
+def _flat_placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
     return theta, omega, phi, L, y[4], 0.0, y[6], y[7]
 
 
 @jit
-def flat_ratio(body: Body, rtol: float, y: State, error: State, flat: bool) -> float:
+def flat_ratio(body: Body, rtol: float, h: float, y: State, y_new: State, error: State, flat: bool) -> float:
     """Return the largest error over what is allowed."""
     per_lever = 0.0 if flat else 1.0 / (body.J * y[0])
     per_tilt, per_rate = scales(body, rtol, y[0], y[1], abs(y[3]) * per_lever, flat)

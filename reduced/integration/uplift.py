@@ -1,10 +1,11 @@
 """Uplift: the time at which the cylinder leaves the ground, and the first motion after it.
 
 The cylinder stands until f = |a| - (g + az) tan(alpha) reaches zero (25), and lifts off towards the
-inertia force (26). There theta = 0 is a singular point of the polar coordinates with a regular
-solution: a power series in the time since uplift gives the state a little later, from where the
-equations are integrated. Within one sample |a| is convex and az linear, so f is convex: a single
-sign change tells all.
+inertia force (26). Rolling resistance holds it longer: a couple of at most delta N, N = g + az, acts
+against the moment about the rim, so tan(alpha) becomes (b + delta)/h. There theta = 0 is a singular point
+of the polar coordinates with a regular solution: a power series in the time since uplift gives the state
+a little later, from where the equations are integrated. Within one sample |a| is convex and az linear, so
+f is convex: a single sign change tells all.
 """
 
 from __future__ import annotations
@@ -32,8 +33,14 @@ WEAK = 1e-12
 
 @jit
 def excess(body: Body, a: Vector) -> float:
-    """Return f = |a| - (g + az) tan(alpha) [m/s^2]; the cylinder cannot stand where it is positive."""
-    return sqrt(a[0] * a[0] + a[1] * a[1]) - (body.g + a[2]) * (body.sin_alpha / body.cos_alpha)
+    """Return f = |a| - (g + az)(b + delta)/h [m/s^2]; the cylinder cannot stand where it is positive."""
+    return sqrt(a[0] * a[0] + a[1] * a[1]) - (body.g + a[2]) * uplift_slope(body)
+
+
+@jit
+def uplift_slope(body: Body) -> float:
+    """Return the horizontal acceleration that uplifts over the vertical one, (b + delta)/h [-]."""
+    return body.sin_alpha / body.cos_alpha * (1.0 + body.delta / body.b)
 
 
 @jit
@@ -110,6 +117,10 @@ def started(
     (J theta^2 phi')' = -h theta |a| sin(lag), (19) near upright: two rounds of its expansion. Where
     f starts above zero the lag is linear in time from the start and the balance is exact:
     phi' = W/(1 + 2 J F0/(h |a|)).
+
+    Rolling resistance adds delta b theta'' to the inertia of the tilt, N being g + az + b theta'' there,
+    and the couple -delta N theta^2 phi'/theta' across, which holds the contact back behind the force: by
+    kappa W t with kappa/(1 - kappa) = delta N/(3 h |a|), or where f starts above zero by its term in phi'.
     """
     ax, ay, az = ground(a, slope, at)
     size = max(hypot(ax, ay), WEAK * body.g)
@@ -118,13 +129,20 @@ def started(
     if abs(cross) * time_step <= in_plane_below(body, ax, ay) * size:
         cross = 0.0
     turning = cross / (size * size)
-    factor = body.p2 * body.cos_alpha / body.g
-    tan_alpha = body.sin_alpha / body.cos_alpha
+    heavier = 1.0 + body.delta * body.b / body.A
+    factor = body.p2 * body.cos_alpha / body.g / heavier
+    tan_alpha = uplift_slope(body)
+    held = body.delta * (body.g + az) / (body.h * size)
+    behind = held / (3.0 + held)  # kappa
     F0 = factor * max(excess(body, (ax, ay, az)), 0.0)
     F1 = factor * (along - slope[2] * tan_alpha)
-    F2 = factor * size * turning * turning
+    rolling = turning * (1.0 - behind)
+    held_less = body.delta * (body.g + az) * rolling * rolling / (9.0 * body.A * heavier)
+    F2 = factor * size * turning * turning * (1.0 - behind * behind) + held_less
     F3 = -3.0 * F2 * along / size
-    Q = body.p2 * (1.0 + az / body.g) / body.cos_alpha + body.J / body.A * turning * turning
+    widened = (1.0 + body.delta * body.b / (body.b * body.b + body.h * body.h)) / heavier
+    Q = body.p2 * (1.0 + az / body.g) / body.cos_alpha * widened
+    Q += body.J / body.A / heavier * rolling * rolling
     t = time
     theta = t * t * (F0 / 2 + t * (F1 / 6 + t * ((F2 + Q * F0) / 24 + t * (F3 + Q * F1) / 120)))
     theta_1 = t * (F0 + t * (F1 / 2 + t * ((F2 + Q * F0) / 6 + t * (F3 + Q * F1) / 24)))
@@ -135,8 +153,11 @@ def started(
     now = max(hypot(bx, by), WEAK * body.g)
     W = cross / (now * now)
     if starts_as_step(F0, F1, shortest_time(body, a, slope, at)):
-        rate = W / (1.0 + 2.0 * body.J * F0 / (body.h * size))
+        pressed = body.delta * (body.g + az + body.b * F0) / (2.0 * body.h * size)
+        rate = W / (1.0 + 2.0 * body.J * F0 / (body.h * size) + pressed)
         return theta, theta_1, direction - (W - rate) * t, rate
+    direction -= behind * W * t
+    W *= 1.0 - behind
     W_1 = -2.0 * W * (bx * slope[0] + by * slope[1]) / (now * now)
     lag = body.J / (body.h * now)
     lag_1 = -lag * (2.0 * theta_2 * W + 3.0 * theta_1 * W_1)
@@ -166,7 +187,7 @@ def start_length(body: Body, rtol: float, a: Vector, slope: Vector, at: float) -
     # both over p^2 cos(alpha)/g
     F0 = max(excess(body, (ax, ay, az)), 0.0)
     along = (ax * slope[0] + ay * slope[1]) / max(hypot(ax, ay), WEAK * body.g)
-    F1 = along - slope[2] * (body.sin_alpha / body.cos_alpha)
+    F1 = along - slope[2] * uplift_slope(body)
     unit = shortest_time(body, a, slope, at)
     if not starts_as_step(F0, F1, unit):
         return unit * min(float(rtol ** (1.0 / 3.0)), _LATEST_START)

@@ -50,7 +50,7 @@ def show_and_write(
         write_results(out, manifest, tables, files=files, pages=pages)
     page.show()
     names = [MANIFEST, *(f"{name}.parquet" for name in tables), *(files or ()), *pages]
-    print(f"\nWritten to {out}: {', '.join(names)}")
+    print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")
 
 
 def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
@@ -65,4 +65,4 @@ def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
         found.save(out, pages=pages)
     page.show(details=details)
     names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
-    print(f"\nWritten to {out}: {', '.join(names)}")
+    print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")

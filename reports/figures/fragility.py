@@ -24,7 +24,7 @@ _SUPPORTS: Mapping[str, str] = {
     "planar": "Planar analysis",
     "recess": "Recess",
     "flat": "Flat ground",
-    "ring": "Ring of walls",
+    "ring": "Recess with clearance",
 }
 _COLOURS = (DARK, *ORDER)
 _TICKS = (0.1, 0.2, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 12.0, 20.0, 50.0)
@@ -39,7 +39,7 @@ def pictures(found: Fragility) -> list[Picture]:
     ratios = _ratios(found)
     curves = [
         _curves(found, str(name), place)
-        for place, name in enumerate(found.about["cylinders"], start=1)
+        for place, name in enumerate(found.facts["cylinders"], start=1)
         if ((found.counts["cylinder"] == name) & (found.counts["limit"] == OVERTURNED)).any()
     ]
     return ([ratios] if ratios else []) + curves
@@ -47,12 +47,12 @@ def pictures(found: Fragility) -> list[Picture]:
 
 def _ratios(found: Fragility) -> Picture | None:
     answers = main_contrasts(found)
-    cylinders = [*found.about["cylinders"], ALL] if len(found.about["cylinders"]) > 1 else [None]
+    cylinders = [*found.facts["cylinders"], ALL] if len(found.facts["cylinders"]) > 1 else [None]
     rows = [row for part in answers.values() for row in part if math.isfinite(row["ratio"])]
     if not rows:
         return None
     pairs = list(dict.fromkeys((row["method"], row["against"]) for row in rows))
-    margin = float(found.about["margin"])
+    margin = float(found.facts["margin"])
     ends = [row[f"ratio_{end}"] for row in rows for end in ("low", "high")]
     known = [abs(math.log(end)) for end in ends if 0.0 < end < math.inf]
     reach = min(1.15 * max([*known, 2.0 * math.log1p(margin)]), math.log(4.0))
@@ -86,8 +86,8 @@ def _ratios(found: Fragility) -> Picture | None:
     return Picture(
         name="fragility-ratios",
         title="Median overturning intensity of each method over that of another",
-        caption="Above 1 the first method takes more shaking to overturn half of the motions: it is the less "
-        "safe one to rely on. Bars: 95 % intervals by resampling the motions, the same for both methods. "
+        caption="Above 1 the median overturning intensity of the first method is higher: it is "
+        "unconservative. Bars: 95 % intervals by resampling the motions, the same for both methods. "
         f"Shaded: the margin of {100.0 * margin:g} %.",
         panels=panels,
         columns=2,
@@ -95,7 +95,7 @@ def _ratios(found: Fragility) -> Picture | None:
 
 
 def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
-    methods: Mapping[str, Mapping[str, Any]] = found.about["methods"]
+    methods: Mapping[str, Mapping[str, Any]] = found.facts["methods"]
     recess = [name for name, own in methods.items() if own["support"] == "recess" and not own["engine"]]
     panels = []
     for support, title in _SUPPORTS.items():
@@ -103,7 +103,7 @@ def _curves(found: Fragility, cylinder: str, place: int) -> Picture:
         if labels:
             shown = labels if support == "recess" else [*recess, *labels]
             panels.append(_panel(found, cylinder, shown, title))
-    measure = MEASURES[str(found.about["measure"])]
+    measure = MEASURES[str(found.facts["measure"])]
     return Picture(
         name=f"fragility-{place}",
         title=f"Fragility of {cylinder}: share of the motions that overturn it",
@@ -120,7 +120,7 @@ def _panel(found: Fragility, cylinder: str, labels: Sequence[str], title: str) -
         table[(table["cylinder"] == cylinder) & (table["limit"] == OVERTURNED)]
         for table in (found.counts, found.curves)
     )
-    measure = MEASURES[str(found.about["measure"])]
+    measure = MEASURES[str(found.facts["measure"])]
     backs: list[Band | Line] = []
     fronts: list[Band | Line] = []
     for index, (label, style) in enumerate(mark_styles(labels).items()):

@@ -10,7 +10,7 @@ from .heat import Heat
 from .interactive_heat import add_heat, small
 from .palette import DARK
 from .picture import MOST_ENTRIES, Axis, Band, Bars, Line, Panel, Picture, Rule, Text
-from .thinning import kept_points
+from .thinning import POINTS, kept_points
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -68,7 +68,7 @@ def _figure(panel: Panel, picture: Picture) -> go.Figure:
     shown: set[str] = set()  # names in the legend
     for layer in panel.layers:
         if isinstance(layer, Line):
-            _line(drawn, layer, panel, shown)
+            _line(drawn, layer, panel, shown, picture.points)
         elif isinstance(layer, Band):
             _band(drawn, layer, shown)
         elif isinstance(layer, Bars):
@@ -128,9 +128,9 @@ def _entry(name: str, shown: set[str]) -> dict[str, Any]:
     return {"name": name, "legendgroup": name, "showlegend": first}
 
 
-def _line(drawn: go.Figure, line: Line, panel: Panel, shown: set[str]) -> None:
-    keep = kept_points(line.x, line.y)
+def _line(drawn: go.Figure, line: Line, panel: Panel, shown: set[str], points: int) -> None:
     style = line.style
+    keep = kept_points(line.x, line.y, points=POINTS if style.dash == "none" else points)
     symbol: str | list[str] = style.symbol or "circle"
     if style.symbol and line.filled is not True:
         filled = np.broadcast_to(line.filled, line.x.shape)[keep]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from .heat import Heat, Shades
 from .palette import DARK, Style
+from .thinning import POINTS
 
 Array = NDArray[np.float64]
 
@@ -206,6 +207,8 @@ class Picture:
         One for all panels, or one in each.
     link_x : bool
         Whether the panels share their x axis: over time, say, where a page enlarges them together.
+    points : int
+        Most points of a curve on a page.
     """
 
     name: str
@@ -216,6 +219,7 @@ class Picture:
     shades: Shades | None = None
     legend: Literal["below", "panels"] = "below"
     link_x: bool = False
+    points: int = POINTS
     rows: Sequence[Sequence[Panel]] = field(init=False)
 
     def __post_init__(self) -> None:

@@ -10,13 +10,14 @@ from rockwobble.compare.comparison.prediction import BEATEN
 from rockwobble.compare.metrics.order_statistics import FEWEST
 from rockwobble.compare.studies.advice.advice import Advice
 from rockwobble.compare.studies.advice.grades import BROKEN, GRADES, NEAR, SENSITIVE, UNSAFE, Grade
-from rockwobble.compare.studies.advice.members import SPIKES
+from rockwobble.compare.studies.advice.members import COPIES, SPIKES
 from rockwobble.compare.studies.advice.scales import planar_shares
 from rockwobble.compare.studies.spectrum.spectrum import PLANAR_X, PLANAR_Y, SPATIAL
 from rockwobble.compare.studies.spectrum.tables import CHECK_RTOL, NUDGE
 from rockwobble.models import AGREEMENT
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.models.support import support_named
+from rockwobble.multibody import DEFAULT_ENGINE
 from rockwobble.reduced.body import restitution_from_momentum
 
 from ..figures.advice import pictures
@@ -92,7 +93,6 @@ _DEMANDS = {
     "moment": "moment about the vertical",
     "wall_force": "its force on a wall",
 }
-_UNITS = {"-": "", "weights": " weights", "weights × b": " weights × b"}
 _ENDS = {
     "methods": "reduced model and engine diverge",
     "data": "copies are spread over half of the peak tilt",
@@ -123,6 +123,7 @@ def page_of(found: Advice) -> Page:
         "found": found,
         "about": found.manifest,
         "drawn": bool(drawn),
+        "engine": DEFAULT_ENGINE,
         "verdict": _verdict(found),
         "meanings": [CODES[code][1] for code in found.response["diagnostics"]],
         "criteria": [
@@ -132,7 +133,7 @@ def page_of(found: Advice) -> Page:
         "grades": grades,
         "runs": list(_runs(found)),
         "demanded": list(_demanded(found)),
-        "groups": [{**row, "name": _GROUPS[row["group"]].format(_off(found))} for row in _groups(found)],
+        "groups": _groups(found),
         "checks": list(_checks(found)),
         "shares": planar_shares(found.planar) if len(found.planar) else [],
         "loss": 1.0 - restitution_from_momentum(found.cylinder),
@@ -153,15 +154,9 @@ def _verdict(found: Advice) -> str:
 
 
 def _groups(found: Advice) -> list[dict[str, Any]]:
-    return [{str(name): value for name, value in row.items()} for row in found.groups.to_dict("records")]
-
-
-def _off(found: Advice) -> str:
-    return number(found.facts["perturbation"], "percent")
-
-
-def _demands(found: Advice) -> dict[str, float]:
-    return dict(zip(found.demands["demand"], found.demands["value"], strict=True))
+    off = number(found.facts["perturbation"], "percent")
+    named = found.groups.assign(name=[_GROUPS[group].format(off) for group in found.groups.get("group", [])])
+    return [{str(key): value for key, value in row.items()} for row in named.to_dict("records")]
 
 
 def _runs(found: Advice) -> Iterator[Row]:
@@ -178,7 +173,7 @@ def _runs(found: Advice) -> Iterator[Row]:
         low, high = (number(100.0 * row[f"chance_{end}"], ".2g") for end in ("low", "high"))
         chance = f"{number(row['chance'], 'percent')} ({low} to {high} %)"
         yield {
-            "name": _GROUPS[row["group"]].format(_off(found)),
+            "name": row["name"],
             **{f"tilt_{share}": alpha * row[f"peak_tilt_{share}"] for share in ("50", "95")},
             **{f"top_{share}": found.top(row[f"peak_tilt_{share}"]) for share in ("50", "95")},
             "overturned": f"{row['overturned']} of {row['runs'] - row['failed']}",
@@ -188,123 +183,106 @@ def _runs(found: Advice) -> Iterator[Row]:
 
 def _demanded(found: Advice) -> Iterator[Row]:
     """Rows of the design demands, as a designer enters them."""
-    values = _demands(found)
+    values = dict(zip(found.demands["demand"], found.demands["value"], strict=True))
     for row in found.demands.to_dict("records"):
-        if row["demand"] not in _DEMANDS:
-            continue
-        kilo = " kNm" if row["unit"].endswith("b") else " kN"
-        yield {
-            "name": _DEMANDS[row["demand"]],
-            "value": number(row["value"]) + _UNITS[row["unit"]],
-            "per_tonne": number(row["per_tonne"]) + kilo if row["per_tonne"] == row["per_tonne"] else "",
-        }
+        name, unit, tonne = row["demand"], row["unit"], row["per_tonne"]
+        if name in _DEMANDS:
+            kilo = "" if math.isnan(tonne) else f"{number(tonne)} {'kNm' if name == 'moment' else 'kN'}"
+            value = number(row["value"]) + ("" if unit == "-" else f" {unit}")
+            yield {"name": _DEMANDS[name], "value": value, "per_tonne": kilo}
     if "clearance" in values:
         tilt = number(math.degrees(values["tilt"] * found.cylinder.alpha))
-        yield {
-            "name": f"wall height, tilt {tilt}°",
-            "value": _millimetres(values["wall_height"]),
-            "per_tonne": "",
-        }
-        yield {"name": "wall clearance", "value": _millimetres(values["clearance"]), "per_tonne": ""}
-
-
-def _millimetres(length: float) -> str:
-    return f"{number(1e3 * length)} mm"
+        for name, part in ((f"wall height, tilt {tilt}°", "wall_height"), ("wall clearance", "clearance")):
+            yield {"name": name, "value": f"{number(1e3 * values[part])} mm", "per_tonne": ""}
 
 
 def _checks(found: Advice) -> Iterator[Row]:
-    """Rows of what the grades rest on: name, value and reason."""
-    facts, response, trust, engine = found.facts, found.response, found.trust, found.verification
+    """Rows of what the grades rest on."""
     if not found.moves:
         return
-
-    def row(name: str, value: object, reason: str = "", form: str = ".4g", unit: str = "") -> Row:
-        return {"name": name, "value": number(value, form) + unit, "reason": reason}
-
-    end = "fall" if found.overturned else "largest tilt"
-    copies = found.members[(found.members["group"] == "copies") & (found.members["outcome"] != "failed")]
+    response, groups, copies = found.response, found.groups, found.members
+    copies = copies[(copies["group"] == COPIES) & (copies["outcome"] != "failed")]
     if response["uplift_time"] > 0.0:
-        yield row("uplift", response["uplift_time"], unit=" s")
+        yield _check("uplift", f"{number(response['uplift_time'], '.4g')} s")
     below = f"{number((copies['peak_tilt'] < found.peak).mean(), 'percent')} of the copies tilt less"
-    yield row(end, response["peak_time"], below if found.copies_differ else "", unit=" s")
-    if trust.kind == "trace":
-        yield row("the trace can be trusted until", "its end")
-    else:
-        yield row("the trace can be trusted until", trust.until, f"then {_ENDS[trust.because]}", unit=" s")
-    reason = facts["prediction"]["reason"]
-    tight = number(AGREEMENT) if response["tolerance"] >= AGREEMENT else number(response["tolerance"])
-    until = response["uplift_time"] + facts["prediction"]["length"] if reason else "the end"
-    name = f"model and engine agree within {tight} α, predicted, until"
-    yield row(name, until, _PREDICTED[reason], unit=" s" if reason else "")
-    if engine is not None:
-        method = f"{engine.label} {engine.version}, step {number(engine.time_step)} s, agrees until"
-        if engine.outcome == "failed":
-            yield row(method, "failed", "; ".join(CODES[code][1] for code in parted(engine.diagnostics)))
-        else:
-            reached = f"{number(engine.agreed_until, '.4g')} s" if engine.diverged else "the end"
-            tilt = f"largest tilt {number(engine.peak_tilt)} α" if engine.moves else "it stays at rest"
-            tilt = "it overturns" if engine.outcome == "overturned" else tilt
-            yield row(method, reached, f"{_DIVERGENCE.get(engine.divergence, engine.divergence)}; {tilt}")
-    yield from _scaled(found, row)
-    other = "flat" if support_named(facts["support"]).compared_with[-1] == "recess" else "recess"
-    for name, ratios in ((support_named(other).words, facts["other_support"]), ("", facts["vertical"])):
-        if ratios is not None:
-            of = f"of {ratios['count']} copies {ratios['higher']} tilt more, {ratios['lower']} less"
-            if ratios["overturned"] or ratios["against_overturned"]:
-                of += f"; {ratios['overturned']} of {ratios['members']} overturn, "
-                of += (
-                    f"{ratios['against_overturned']} without"
-                    if not name
-                    else f"{ratios['against_overturned']} here"
-                )
-            if ratios["ratio"] == ratios["ratio"]:
-                of = f"{number(ratios['low'])} to {number(ratios['high'])} (95 %); {of}"
-            under = "" if name or ratios["given"] else f" ({ratios['record']} as strong)"
-            label = (
-                f"tilt in {name} over that here"
-                if name == "ideal recess"
-                else f"tilt on {name} over that here"
-            )
-            yield row(
-                label if name else f"tilt with vertical shaking over that without{under}",
-                ratios["ratio"],
-                of,
-                ".3g",
-            )
-    spiked = response["largest_normal_force"]
-    if len(found.groups) and spiked > found.groups["force_95"].max():
-        yield row("largest normal force as given", spiked, _spike(), ".3g", " weights")
+    name = "fall" if found.overturned else "largest tilt"
+    yield _check(name, f"{number(response['peak_time'], '.4g')} s", below if found.copies_differ else "")
+    yield from _agreement(found)
+    yield from _scales(found)
+    yield from _ratios(found)
+    spike = response["largest_normal_force"]
+    if len(groups) and spike > groups["force_95"].max():
+        briefly = f"for less than {number(SPIKES, 'percent')} of its time: rigid contact, no design load"
+        yield _check("largest normal force as given", f"{number(spike)} weights", briefly)
 
 
-def _spike() -> str:
-    return (
-        f"for less than {number(SPIKES, 'percent')} of its time: rigid contact near upright, no design load"
-    )
+def _check(name: str, value: str, note: str = "") -> Row:
+    return {"name": name, "value": value, "note": note}
 
 
-def _scaled(found: Advice, row: Any) -> Iterator[Row]:
-    """Rows of other scales of the ground motion."""
+def _agreement(found: Advice) -> Iterator[Row]:
+    trust, prediction, engine = found.trust, found.facts["prediction"], found.verification
+    until, note = "its end", ""
+    if trust.kind != "trace":
+        until, note = f"{number(trust.until, '.4g')} s", f"then {_ENDS[trust.because]}"
+    yield _check("the trace can be trusted until", until, note)
+    reason, tolerance = prediction["reason"], min(AGREEMENT, found.response["tolerance"])
+    end = found.response["uplift_time"] + prediction["length"]
+    until = f"{number(end, '.4g')} s" if reason else "the end"
+    name = f"model and engine agree within {number(tolerance)} α, predicted, until"
+    yield _check(name, until, _PREDICTED[reason])
+    if engine is None:
+        return
+    method = f"{engine.label} {engine.version}, step {number(engine.time_step)} s, agrees until"
+    if engine.outcome == "failed":
+        failure = "; ".join(CODES[code][1] for code in parted(engine.diagnostics))
+        yield _check(method, "failed", failure)
+        return
+    until = f"{number(engine.agreed_until, '.4g')} s" if engine.diverged else "the end"
+    tilt = f"largest tilt {number(engine.peak_tilt)} α" if engine.moves else "it stays at rest"
+    tilt = "it overturns" if engine.outcome == "overturned" else tilt
+    yield _check(method, until, f"{_DIVERGENCE[engine.divergence]}; {tilt}")
+
+
+def _scales(found: Advice) -> Iterator[Row]:
     low, high = found.beside
-    if low == low and not found.overturned:
-        reason = "∞: it overturns" if math.isinf(high) else ""
-        yield row("largest tilt for 12 % more or less shaking", f"{number(low)} to {number(high)} α", reason)
-    for each in found.lowest.to_dict("records"):
-        if each["series"] != SPATIAL:
-            continue
-        tested = f"up to {number(found.scales['factor'].max())} times; gaps may lie between the scales run"
-        if each["factor"] != each["factor"]:
-            yield row("lowest scale found to overturn", "none", tested)
-            continue
-        reasons = (
-            ["below 1: as given it stands in a gap"] if each["factor"] < 1.0 and not found.overturned else []
+    if not math.isnan(low) and not found.overturned:
+        span = f"{number(low)} to {number(high)} α"
+        yield _check(
+            "largest tilt for 12 % more or less shaking", span, "∞: overturns" if math.isinf(high) else ""
         )
-        if not each["confirmed"]:
-            reasons += [
-                f"by chance: it stands at a tolerance of {number(CHECK_RTOL)} or nudged by {number(NUDGE)}"
-            ]
-        yield row("lowest scale found to overturn", each["factor"], "; ".join(reasons), ".3g")
-    planes = (
-        found.lowest[found.lowest["series"].isin([PLANAR_X, PLANAR_Y])] if len(found.lowest) else found.lowest
-    )
-    if len(planes) and planes["factor"].notna().any():
-        yield row("the same by planar analysis of each component", planes["factor"].min(), form=".3g")
+    lowest = found.lowest.set_index("series")
+    if not len(lowest):
+        return
+    name, factor, notes = "lowest scale found to overturn", found.lowest_factor, []
+    if math.isnan(factor):
+        notes = [f"up to {number(found.scales['factor'].max())} times; gaps may lie between the scales run"]
+    elif not lowest["confirmed"][SPATIAL]:
+        notes = [
+            f"by chance: it stands at a tolerance of {number(CHECK_RTOL)} or perturbed by {number(NUDGE)}"
+        ]
+    if factor < 1.0 and not found.overturned:
+        notes = ["as given it stands in a gap", *notes]
+    yield _check(name, "none" if math.isnan(factor) else number(factor), "; ".join(notes))
+    planar = float(lowest["factor"].reindex([PLANAR_X, PLANAR_Y]).min())
+    if not math.isnan(planar):
+        yield _check("the same by planar analysis of each component", number(planar))
+
+
+def _ratios(found: Advice) -> Iterator[Row]:
+    """Rows of the largest tilts of copies by one of two ways over those by the other."""
+    facts, vertical = found.facts, found.facts["vertical"]
+    flat = "recess" in support_named(facts["support"]).compared_with[-1:]
+    other = "tilt on flat ground over that here" if flat else "tilt in an ideal recess over that here"
+    shaken = "tilt with vertical shaking over that without"
+    if vertical and not vertical["given"]:
+        shaken += f" ({vertical['record']} as strong)"
+    for name, ratios in ((other, facts["other_support"]), (shaken, vertical)):
+        if ratios is None:
+            continue
+        note = f"of {ratios['count']} copies {ratios['higher']} tilt more, {ratios['lower']} less"
+        if not math.isnan(ratios["ratio"]):
+            note = f"{number(ratios['low'])} to {number(ratios['high'])} (95 %); {note}"
+        fell = ratios["overturned"], ratios["against_overturned"]
+        note += f"; {fell[0]} of {ratios['members']} overturn, {fell[1]} otherwise" if any(fell) else ""
+        yield _check(name, number(ratios["ratio"]), note)

@@ -2,21 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import math
 from typing import Any
 
 from rockwobble.compare import Fragility
 from rockwobble.compare.metrics.order_statistics import FEWEST
-from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.fragility.fit import ALWAYS, FITTED, NEVER, TOO_FEW
 from rockwobble.compare.studies.fragility.intensity import MEASURES
 from rockwobble.compare.studies.fragility.samples import OVERTURNED
-from rockwobble.compare.studies.fragility.study import (
-    FEWEST_LEVELS,
-    main_contrasts,
-    stored_fragility,
-)
+from rockwobble.compare.studies.fragility.study import FEWEST_LEVELS, main_contrasts
 from rockwobble.compare.studies.fragility.tables import ALL
 
 from ..figures.fragility import pictures
@@ -26,32 +20,18 @@ from .page import Page
 _POOR = 0.05
 
 
-def fragility_page(found: Fragility, manifest: Manifest) -> Page:
+def page_of(found: Fragility) -> Page:
     """Return the page of a fragility."""
     drawn = pictures(found)
     names = [picture.name for picture in drawn]
-    values = {**fragility_values(found), "about": manifest, "pictures": names}
+    values = {**fragility_values(found), "about": found.manifest, "pictures": names}
     return Page(name="fragility", template="fragility", values=values, pictures=drawn)
-
-
-def stored_page(results: Results) -> Page:
-    """Return the page of the fragility that is stored."""
-    return fragility_page(stored_fragility(results), results.manifest)
-
-
-def count_files(found: Fragility) -> dict[str, bytes]:
-    """Return the counts as CSV and as JSON, for tools that fit curves of their own."""
-    rows = found.counts.to_dict("records")
-    return {
-        "counts.csv": found.counts.to_csv(index=False).encode(),
-        "counts.json": (json.dumps(rows, indent=0, ensure_ascii=False) + "\n").encode(),
-    }
 
 
 def fragility_values(found: Fragility) -> dict[str, object]:
     """Return the values of the template of a fragility."""
-    measure = MEASURES[str(found.about["measure"])]
-    cylinders = found.about["cylinders"]
+    measure = MEASURES[str(found.facts["measure"])]
+    cylinders = found.facts["cylinders"]
     whole = ALL if len(cylinders) > 1 else next(iter(cylinders))
     answers = main_contrasts(found)
     fits = found.fits.to_dict("records")
@@ -60,16 +40,15 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         {**row, "title": MEASURES[str(row["measure"])].title} for row in found.efficiency.to_dict("records")
     ]
     return {
-        "facts": found.about,
+        "facts": found.facts,
         "measure": measure,
-        "measures": MEASURES,
-        "cylinders": [{"name": name, **body} for name, body in cylinders.items()],
+        "cylinders": [{"name": name, "slab_mass_ratio": 0.0, **body} for name, body in cylinders.items()],
         "answers": {
             question: [row for row in rows if row["cylinder"] == whole] for question, rows in answers.items()
         },
         "contrasts": _by_cylinder([row for rows in answers.values() for row in rows], [*cylinders, ALL]),
         "several": len(cylinders) > 1,
-        "methods": found.runs["method"].nunique(),
+        "scaling": _scaling(found, measure.title),
         "fallen": fallen,
         "overturns": any(row["exceeded"] for row in fallen),
         "curved": [row for row in fallen if row["kind"] == FITTED],
@@ -82,18 +61,24 @@ def fragility_values(found: Fragility) -> dict[str, object]:
         "poor_below": _POOR,
         "states": _states(found),
         "state_columns": [["method", "method", "words"]]
-        + [[limit, limit.replace("_", " "), ".3g"] for limit in found.about["limits"]],
-        "ring": any(each["support"] == "ring" for each in found.about["methods"].values()),
+        + [[limit, limit.replace("_", " "), ".3g"] for limit in found.facts["limits"]],
+        "ring": any(each["support"] == "ring" for each in found.facts["methods"].values()),
         "failed": [row for row in fallen if row["failed"]],
         "efficiency": efficiency,
-        "best": [row for row in efficiency if row["best"]],
         "islands": found.islands.to_dict("records"),
     }
 
 
+def _scaling(found: Fragility, measure: str) -> str:
+    levels, scales = found.facts["levels"], found.facts["scales"]
+    if levels:
+        return f"each at {len(levels)} levels of {measure} from {levels[0]:.4g} to {levels[-1]:.4g}"
+    return "as they are" + ("" if scales == [1.0] else f", times {', '.join(f'{s:.4g}' for s in scales)}")
+
+
 def _counts(found: Fragility) -> dict[str, object]:
     """One row for each cylinder, method and limit: motions that exceed it, by level where there are some."""
-    levels: list[float] = [*found.counts["intensity"].unique()] if found.about["levels"] else []
+    levels: list[float] = [*found.counts["intensity"].unique()] if found.facts["levels"] else []
     rows = [
         {
             "cylinder": cylinder,

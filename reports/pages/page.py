@@ -31,6 +31,7 @@ from .table import Row, Table, columns_of, number
 from .words.sentences import environment
 
 Output = Literal["terminal", "markdown", "html"]
+SCRIPT = "plotly.min.js"
 _PLACE = re.compile(r"\n?@@(\d+)@@\n?")
 # what Markdown would take for markup in a name; an underscore only where a word begins or ends
 _MARKUP = re.compile(r"([\\`*<])|(?<!\w)_|_(?!\w)")
@@ -83,12 +84,20 @@ class Page:
     blocks: Mapping[str, str] = field(default_factory=dict)
     outputs: Sequence[Output] = ("markdown", "html")
 
-    def files(self) -> dict[str, bytes]:
-        """Return the files by name: NAME.md with its pictures as SVG beside it, and NAME.html."""
-        texts = {"markdown": ("md", self.markdown), "html": ("html", self.html)}
-        titled = self.alone is not None
+    def files(self, *, shared_script: bool = False) -> dict[str, bytes]:
+        """Return the files by name: NAME.md with its pictures as SVG beside it, and NAME.html.
+
+        With `shared_script`, what draws in a browser is a file of its own, which the pages of a folder share.
+        """
+        titled, texts = self.alone is not None, {}
+        if "markdown" in self.outputs:
+            texts[f"{self.name}.md"] = self.markdown()
+        if "html" in self.outputs:
+            texts[f"{self.name}.html"] = self.html(shared_script=shared_script)
+            if shared_script:
+                texts[SCRIPT] = _script()
         return {
-            **{f"{self.name}.{texts[output][0]}": texts[output][1]().encode() for output in self.outputs},
+            **{name: text.encode() for name, text in texts.items()},
             **{
                 f"{picture.name}.svg": svg(picture, titled=titled)
                 for picture in self.pictures
@@ -110,10 +119,8 @@ class Page:
         parts = (part if isinstance(part, str) else shown(part) for part in self._parts("markdown"))
         return "\n\n".join(filter(None, parts)) + "\n"
 
-    def html(self) -> str:
-        """Return the page, which needs nothing else."""
-        from plotly.offline import get_plotlyjs
-
+    def html(self, *, shared_script: bool = False) -> str:
+        """Return the page, which needs nothing else, or nothing but the `shared_script` beside it."""
         parts = self._parts("html")
         body = "\n".join(_html(part) for part in parts)
         title = re.search(r"<h1.*?>(.*?)</h1>", body)
@@ -124,7 +131,9 @@ class Page:
             .render(
                 title=re.sub("<.*?>", "", title[1]) if title else self.name,
                 body=body,
-                plotly_js=get_plotlyjs() if drawn else "",
+                drawn=drawn,
+                script="" if shared_script or not drawn else _script(),
+                script_file=SCRIPT,
             )
         )
 
@@ -189,6 +198,12 @@ class Page:
             for index, part in enumerate(cut)
             if index % 2 or part.strip()
         ]
+
+
+def _script() -> str:
+    from plotly.offline import get_plotlyjs
+
+    return str(get_plotlyjs())
 
 
 def _html(part: Part) -> str:

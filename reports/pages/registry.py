@@ -52,5 +52,6 @@ def stored_page(kind: str, folder: Path) -> Page:
 
 def page_of(found: Results) -> Page:
     """Return the page of results, not drawn yet."""
-    page: Page = importlib.import_module(f"rockwobble.reports.{KINDS[found.kind]}").page_of(found)
+    whole = found if found.manifest else found.made_by()
+    page: Page = importlib.import_module(f"rockwobble.reports.{KINDS[found.kind]}").page_of(whole)
     return page

@@ -52,8 +52,7 @@ def _percent(share: float) -> str:
 
 def _short(text: str) -> str:
     """Return 1e-7 for 1e-07 and 0.00 for -0.00, which is how a computer writes them."""
-    if not float(text):
-        text = text.removeprefix("-")
+    text = re.sub(r"^-(?=0[0.]*(e|$))", "", text)
     return re.sub(r"e([+-])0*(\d)", lambda m: f"e{m[1].replace('+', '')}{m[2]}", text)
 
 

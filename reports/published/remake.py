@@ -2,9 +2,11 @@
 
     python reports/published/remake.py               # all of it, some three hours on two cores
     python reports/published/remake.py tradeoff paper
+    python reports/published/remake.py --trim        # leave out what is not kept, without any run
+    python reports/published/remake.py --age         # what has changed since in the code that they rest on
 
-A study goes on where it was stopped. What a study says is judged by its tables alone, so
-`rockwobble report reports/published/NAME` draws its pages again without any run.
+An interrupted study resumes. Kept are pages, figures, headline numbers and tables of up to 300 kB; while all
+tables of a study are, `rockwobble report reports/published/NAME` draws its pages again without any run.
 """
 
 from __future__ import annotations
@@ -15,6 +17,8 @@ import subprocess
 import sys
 import time
 from pathlib import Path
+
+from rockwobble.compare.storage.manifest import MANIFEST, read_manifests
 
 HERE = Path(__file__).parent
 
@@ -64,12 +68,61 @@ STUDIES = {
 }
 # what the code did that made them: a test fails once it does something else
 CERTIFICATES = {"reduced": "certify", "mujoco": "certify --engine mujoco"}
-# large, and no statement rests on them
-NOT_KEPT = ("*.html", "finished", "compare/traces.parquet", "compare/excitation.parquet")
+NOT_KEPT = ("*.html", "finished")
+# a table beyond this is made again by the command that the page names [bytes]
+LARGEST = 300_000
+# of a study that lacks one, and is drawn no more: what claims of other pages rest on
+STILL_KEPT = ("contrasts.parquet",)
+# of the control no page is shown
+CONTROLS = {"fragility/half-step": (*STILL_KEPT, MANIFEST)}
+
+
+def trim(folder: Path, *, only: tuple[str, ...] | None = None) -> None:
+    """Remove from the results in `folder` what is not kept; of a control all but `only`."""
+    for pattern in NOT_KEPT:
+        for path in folder.glob(pattern):
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+    tables = list(folder.glob("*.parquet"))
+    named = [folder / name for made in read_manifests(folder) for name in made.files]
+    if (
+        only is None
+        and not any(path.stat().st_size > LARGEST for path in tables)
+        and all(map(Path.exists, named))
+    ):
+        return
+    for path in folder.iterdir():
+        table = path.suffix in (".parquet", ".json") and path.name not in (*STILL_KEPT, MANIFEST)
+        if path.is_file() and (table if only is None else path.name not in only):
+            path.unlink()
+
+
+def changes_since() -> dict[str, dict[str, int]]:
+    """Return for each folder of results how many commits have changed each package since it was made."""
+    found = {}
+    for folder in STUDIES:
+        for made in read_manifests(HERE / folder):
+            changed = {name: _commits_since(made.commit, name) for name in made.code}
+            found[folder] = {name: count for name, count in changed.items() if count}
+    return found
+
+
+def _commits_since(commit: str, folder: str) -> int:
+    words = ["git", "rev-list", "--count", f"{commit}..HEAD", "--", folder]
+    done = subprocess.run(words, cwd=HERE.parents[1], capture_output=True, text=True, check=True)
+    return int(done.stdout)
 
 
 def main() -> int:
     """Run the commands of the studies that are named, or of all."""
+    if "--trim" in sys.argv:
+        for folder in STUDIES:
+            trim(HERE / folder, only=CONTROLS.get(folder))
+        return 0
+    if "--age" in sys.argv:
+        for folder, changes in changes_since().items():
+            said = ", ".join(f"{count} commits in {name}" for name, count in changes.items())
+            print(f"{folder}: {said or 'up to date'}")
+        return 0
     chosen = sys.argv[1:] or list(STUDIES)
     unknown = [name for name in chosen if not any(name in (each, each.split("/")[0]) for each in STUDIES)]
     if unknown:
@@ -89,9 +142,7 @@ def main() -> int:
         print(f"=== {folder}: rockwobble {command}", flush=True)
         words = [*shlex.split(command), "--out", folder]
         subprocess.run([sys.executable, "-m", "rockwobble", *words], cwd=HERE, check=True)
-        for pattern in NOT_KEPT:
-            for path in [*(HERE / folder).glob(pattern), *HERE.glob(pattern)]:
-                shutil.rmtree(path) if path.is_dir() else path.unlink()
+        trim(HERE / folder, only=CONTROLS.get(folder))
         print(f"=== {folder}: {time.monotonic() - begin:.0f} s", flush=True)
     (HERE / "certificates").mkdir(exist_ok=True)
     for name, command in CERTIFICATES.items():

@@ -131,8 +131,8 @@ def test_stopping_early_makes_the_median_smaller(found):
 def test_a_curve_that_all_or_none_exceed_ends_with_the_levels(found):
     calm = found.runs.assign(peak_tilt=0.3, outcome="stands")
     limits = ["0.1 alpha", "1 alpha"]
-    about = {**found.about, "limits": limits, "resamples": 2}
-    curves = fragility_of(calm, found.points, about).curves
+    facts = {**found.facts, "limits": limits, "resamples": 2}
+    curves = fragility_of(calm, found.points, facts).curves
     curves = curves[curves["method"] == "recess model"].set_index("limit")["intensity"]
     # all exceed the first limit, none the second; elsewhere a curve goes to half or twice the levels
     assert (curves["0.1 alpha"].min(), curves["0.1 alpha"].max()) == pytest.approx((LEVELS[0], 16.0))
@@ -149,7 +149,7 @@ def test_contrasts_are_ratios_of_the_fits_and_alike_methods_are_equal(found):
         assert row["ratio_low"] <= row["ratio"] <= row["ratio_high"]
     twice = found.runs[found.runs["method"] == "recess model"]
     both = pd.concat([twice, twice.assign(method="the same")])
-    same = fragility_of(both, found.points, found.about).contrasts.set_index("limit")
+    same = fragility_of(both, found.points, found.facts).contrasts.set_index("limit")
     for limit in ("0.5 alpha", "1 alpha"):
         row = same.loc[limit]
         assert (row["ratio"], row["ratio_low"], row["ratio_high"], row["verdict"]) == (
@@ -164,18 +164,18 @@ def test_contrasts_are_ratios_of_the_fits_and_alike_methods_are_equal(found):
 def test_a_first_method_that_always_fails_leaves_the_others(found: Fragility) -> None:
     runs = found.runs[found.runs["method"].isin(["recess model", "planar x"])].copy()
     runs.loc[runs["method"] == "recess model", ["outcome", "peak_tilt"]] = ["failed", NAN]
-    assert set(fragility_of(runs, found.points, found.about).fits["method"]) == {"planar x"}
+    assert set(fragility_of(runs, found.points, found.facts).fits["method"]) == {"planar x"}
     with pytest.raises(ValueError, match=rf"got {12 * COUNT} runs that all failed"):
-        fragility_of(runs[runs["outcome"] == "failed"], found.points, found.about)
+        fragility_of(runs[runs["outcome"] == "failed"], found.points, found.facts)
 
 
 def test_pairs_leave_out_what_failed_by_either(found):
     runs = found.runs[found.runs["method"].isin(["recess model", "planar x"])].copy()
     lost = (runs["method"] == "planar x") & (runs["motion"] == MOTIONS[0].name)
     runs.loc[lost, ["peak_tilt", "outcome"]] = [NAN, "failed"]
-    whole = fragility_of(runs, found.points, found.about)
+    whole = fragility_of(runs, found.points, found.facts)
     gone = runs["motion"] != MOTIONS[0].name
-    fits = fragility_of(runs[gone], found.points[found.points["motion"] != MOTIONS[0].name], found.about).fits
+    fits = fragility_of(runs[gone], found.points[found.points["motion"] != MOTIONS[0].name], found.facts).fits
     medians = fits[fits["limit"] == "0.5 alpha"].set_index("method")["median"]
     row = whole.contrasts[whole.contrasts["limit"] == "0.5 alpha"].iloc[0]
     assert row["ratio"] == pytest.approx(medians["planar x"] / medians["recess model"], rel=1e-9)
@@ -251,7 +251,7 @@ def test_a_second_call_runs_nothing_again(tmp_path, monkeypatch):
 
     monkeypatch.setattr(running, "run_task", refuse)
     pd.testing.assert_frame_equal(once().runs, first.runs)
-    assert once().about["inputs"] == first.about["inputs"]
+    assert once().facts["inputs"] == first.facts["inputs"]
 
 
 def test_a_dask_worker_with_another_version_of_an_engine_is_refused(monkeypatch):
@@ -293,5 +293,5 @@ def test_engines_run_beside_their_model_and_a_ring_holds_what_has_overturned():
     ring = strong[strong["method"] == "mujoco ring"]
     assert (ring["peak_tilt"] > 1.0).all()
     assert (ring["peak_tilt"] < 0.5 * math.pi / COLUMN.alpha).all()
-    assert found.about["methods"]["mujoco ring"]["own_model"] == ""
-    assert found.about["methods"]["mujoco recess"]["own_model"] == "recess model"
+    assert found.facts["methods"]["mujoco ring"]["own_model"] == ""
+    assert found.facts["methods"]["mujoco recess"]["own_model"] == "recess model"

@@ -9,7 +9,6 @@ import pytest
 
 from rockwobble.compare import fragility
 from rockwobble.compare.studies.fragility.methods import methods_of, own_model
-from rockwobble.compare.studies.fragility.plan import Plan
 from rockwobble.models import Cylinder, Run, el_centro_1940, read_records, synthetic_motions
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
@@ -42,10 +41,11 @@ def test_methods_by_name():
         ({"levels": [2.0, 1.0]}, "levels must be positive, finite and increasing"),
         ({"levels": [1.0], "scales": [1.0]}, "got both"),
         ({"limits": ["2 alpha"]}, "a limit must be one of uplift"),
-        ({"margin": 0.0}, "margin must be positive"),
-        ({"resamples": 1}, "resamples must be at least 2"),
+        ({"margin": 0.0}, "margin must be above 0, got 0.0"),
+        ({"resamples": 1}, "resamples must be a whole number, at least 2, got 1"),
+        ({"restitution": 0.9, "methods": ["recess"]}, "restitution is of planar models, got 0.9"),
         ({"measure": "pgd"}, "an intensity must be one of"),
-        ({"step_factor": -1.0}, "step_factor must be positive"),
+        ({"step_factor": -1.0}, "step_factor must be above 0, got -1.0"),
         ({"step_factor": 2.0, "methods": ["recess"]}, "step_factor is for engines at their default"),
         (
             {"step_factor": 2.0, "methods": [Run("mujoco", "recess", 1e-4)]},
@@ -63,7 +63,7 @@ def test_bad_input(options, words):
 
 def test_motions_need_names_and_cylinders_too():
     with pytest.raises(ValueError, match="at least two ground motions with different names, got 2 with 1"):
-        Plan(cylinders={"a": COLUMN}, motions=[el_centro_1940()] * 2, methods=methods_of(["recess"]))
+        fragility(COLUMN, [el_centro_1940()] * 2, levels=[1.0])
     with pytest.raises(ValueError, match="need names"):
         fragility([COLUMN, COLUMN], MOTIONS)
 

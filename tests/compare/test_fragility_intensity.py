@@ -11,7 +11,8 @@ from scipy.integrate import solve_ivp
 from rockwobble import reduced
 from rockwobble.compare.studies.fragility.intensity import MEASURES, Array, intensity, measures_of, velocity
 from rockwobble.compare.studies.fragility.methods import methods_of
-from rockwobble.compare.studies.fragility.plan import Plan, default_levels
+from rockwobble.compare.studies.fragility.plan import RunPlan, default_levels
+from rockwobble.compare.studies.plans import FragilityPlan
 from rockwobble.models import Cylinder, GroundMotion, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
@@ -112,14 +113,8 @@ def test_bad_input_and_what_has_no_measure():
 @pytest.mark.parametrize("measure", MEASURES)
 def test_a_motion_scaled_to_a_level_has_that_intensity_at_any_period(measure: str, period: float) -> None:
     motions = [el_centro_1940(), sine(3.0, 1.0)]
-    plan = Plan(
-        cylinders={"pier": PIER},
-        motions=motions,
-        methods=methods_of(["recess"]),
-        measure=measure,
-        levels=[0.7, 1.9],
-        period=period,
-    )
+    asked = FragilityPlan(measure=measure, levels=[0.7, 1.9], period=period)
+    plan = RunPlan(cylinders={"pier": PIER}, motions=motions, methods=methods_of(["recess"]), options=asked)
     for motion in motions:
         for level, factor in zip((0.7, 1.9), plan.factors(PIER, motion), strict=True):
             own = intensity(measure, motion.scaled(factor), PIER, period=period)
@@ -127,7 +122,7 @@ def test_a_motion_scaled_to_a_level_has_that_intensity_at_any_period(measure: st
     for name, over in measures_of(motions, PIER, period=period).items():
         scaled = plan.points["scale"].to_numpy() * np.repeat(over, 2)
         assert plan.points[name].to_numpy() == pytest.approx(scaled, rel=1e-12)
-    alone = default_levels({"pier": PIER}, motions[:1], measure, period=period)
+    alone = default_levels({"pier": PIER}, motions[:1], asked)
     first = intensity(measure, motions[0], PIER, period=period) / intensity(
         "peak_acceleration", motions[0], PIER
     )
@@ -137,8 +132,8 @@ def test_a_motion_scaled_to_a_level_has_that_intensity_at_any_period(measure: st
 def test_default_levels_are_the_same_shaking_in_every_measure():
     motions = [sine(3.0, 4.0), sine(3.0, 1.0)]
     bodies = {"pier": PIER}
-    own = default_levels(bodies, motions, "peak_acceleration")
+    own = default_levels(bodies, motions, FragilityPlan())
     assert (own[0], own[-1], len(own)) == (1.25, 12.0, 20)
     over = [intensity("pgv", m, PIER) / intensity("peak_acceleration", m, PIER) for m in motions]
-    other = default_levels(bodies, motions, "pgv")
+    other = default_levels(bodies, motions, FragilityPlan(measure="pgv"))
     assert other[0] == pytest.approx(1.25 * sum(over) / 2.0, rel=5e-3)  # of three digits

@@ -17,6 +17,7 @@ from rockwobble.models import Case, Cylinder, InitialState, WobblingFrame
 from rockwobble.reduced.body import Body, body_of
 from rockwobble.reduced.equations import energy, flat_rhs, planar_rhs, recess_rhs
 from rockwobble.reduced.forces import contact_force, derived_quantities, top_force
+from rockwobble.reduced.integration.resisted import RESISTED_FLAT, RESISTED_PLANAR, RESISTED_RECESS
 
 AGREEMENT = 1e-12  # relative to the terms of each sum; measured 4e-14, and 4e-16 without twist
 DIGITS = 40
@@ -61,7 +62,7 @@ class Sample(NamedTuple):
     ground: tuple[float, float, float]
 
 
-def sample(seed: int, *, twisting: bool) -> Sample:
+def sample(seed: int, *, twisting: bool, framed: bool = True) -> Sample:
     random = np.random.default_rng(seed)
     size, gravity = 10.0 ** random.uniform(-2.0, 2.0), random.uniform(1.0, 30.0)
     inertias = {}
@@ -79,7 +80,7 @@ def sample(seed: int, *, twisting: bool) -> Sample:
     phi_rate = random.uniform(-2.0, 2.0) * rate * min(1.0, 0.1 / theta) / min(1.0, 10.0 * theta)
     tau_rate = random.uniform(-1.0, 1.0) * rate if twisting else 0.0
     with mp.workdps(DIGITS):
-        share = 10.0 ** random.uniform(-2.0, 2.0) if seed % 2 else 0.0
+        share = 10.0 ** random.uniform(-2.0, 2.0) if framed and seed % 2 else 0.0
         Lambda, S = momenta(column, share, mp.mpf(theta), mp.mpf(phi_rate), mp.mpf(tau_rate))
     ax, ay, az = random.uniform(-1.0, 1.0, 3) * gravity
     return Sample(
@@ -212,6 +213,57 @@ def test_rolling(seed: int) -> None:
             (*(part / carried(given) for part in polar(motion.force, given.phi)), mp.mpf(0)),
             (scale.force, scale.force, scale.force, scale.moment),
         )
+
+
+@pytest.mark.parametrize("recess", [True, False])
+@pytest.mark.parametrize("seed", range(140, 156))
+def test_rolling_resistance(seed: int, recess: bool) -> None:
+    free = sample(seed, twisting=not recess, framed=False)
+    # a length that matters, and contact in most of the samples
+    given = free._replace(body=free.body._replace(delta=(0.01 + 0.5 * (seed % 2)) * free.body.b))
+    body, ground, started = given.body, given.ground, (given.theta, given.omega, given.phi, given.Lambda)
+    with mp.workdps(DIGITS):
+        state = state_of(given)
+        motion = newton_euler(body, state, vector(*ground), recess=recess)
+        if motion.force[2] <= 0:  # without contact there is no couple
+            motion = newton_euler(free.body, state, vector(*ground), recess=recess)
+            assert motion.force[2] <= 0
+        Lambda_rate, S_rate = momenta_rates(given, state, motion)
+        scale = scales_of(given, state)
+        rolling = mp.sqrt(state.theta_rate**2 + (mp.sin(state.theta) * state.psi_rate) ** 2)
+        power = body.delta * max(motion.force[2], 0) * rolling
+        per_power = body.delta * scale.force * rolling
+        if recess:
+            found = RESISTED_RECESS.derivative(body, (*started, 0.0, 0.0), ground)
+            expected = (motion.theta, Lambda_rate, power)
+            assert_close((found[1], found[3], found[4]), expected, (scale.theta, scale.Lambda, per_power))
+        else:
+            found = RESISTED_FLAT.derivative(body, (*started, 0.3, given.S, 0.0, 0.0, 0.0, 0.0), ground)
+            expected = (motion.theta, Lambda_rate, S_rate, power)
+            assert_close(
+                (found[1], found[3], found[5], found[8]),
+                expected,
+                (scale.theta, scale.Lambda, scale.moment, per_power),
+            )
+        found = contact_force(body, *started, given.S, *ground, not recess)
+        expected = (*polar(motion.force, given.phi), motion.moment)
+        assert_close(found, expected, (scale.force, scale.force, scale.force, scale.moment))
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0])
+@pytest.mark.parametrize("seed", range(210, 215))
+def test_rolling_resistance_in_a_plane(seed: int, side: float) -> None:
+    given = sample(seed, twisting=False, framed=False)._replace(Lambda=0.0)
+    body = given.body._replace(delta=0.2 * given.body.b)
+    omega, ground = 0.5 * side * abs(given.omega), (0.3 * given.ground[0], 0.0, 0.3 * given.ground[2])
+    with mp.workdps(DIGITS):
+        state = State(mp.mpf(given.theta), mp.mpf(omega), mp.mpf(0), mp.mpf(0), mp.mpf(0))
+        motion = newton_euler(body, state, vector(*ground), recess=True)
+        assert motion.force[2] > 0
+        found = RESISTED_PLANAR.derivative(body, (given.theta, omega, 0.0, 0.0, side), ground)
+        power = body.delta * motion.force[2] * abs(state.theta_rate)
+        scale = scales_of(given, state)
+        assert_close((found[1], found[3]), (motion.theta, power), (scale.theta, power))
 
 
 @pytest.mark.parametrize("seed", range(200, 210))

@@ -115,7 +115,9 @@ def on_symbols(function: Any) -> Callable[..., Any]:
     """Return a function of the code that runs on symbols."""
     original = getattr(function, "py_func", function)
     names = {**original.__globals__, "sin_cos": sin_cos, "math": types.SimpleNamespace(atan=sp.atan)}
-    run = types.FunctionType(original.__code__, names)
+    if "recess_motion" in original.__code__.co_names:
+        names["recess_motion"] = on_symbols(equations.recess_motion)
+    run = types.FunctionType(original.__code__, names, argdefs=original.__defaults__)
 
     def exactly(*arguments: Any) -> Any:
         found = run(*arguments)

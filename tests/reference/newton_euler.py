@@ -68,6 +68,7 @@ def newton_euler(body: Body, state: State, ground: Vector, recess: bool, slab: S
     arm_rate = np.cross(frame_rate, arm)
     inertia = inertia_of(body, axis)
     units = list(np.array([[mp.mpf(j == k) for j in range(3)] for k in range(3)], dtype=object))
+    rolling = spin - (spin @ e_z) * e_z
 
     # angular acceleration: what the rates give, and one column for theta'', phi'' and psi'' each
     spin_rate = np.cross(frame_rate, state.theta_rate * e_tilt + state.psi_rate * axis)
@@ -108,6 +109,9 @@ def newton_euler(body: Body, state: State, ground: Vector, recess: bool, slab: S
             add(last, at + 6 + k, -unit)
             add(last + 3, at + 6 + k, -np.cross(top, unit) if slab.places else 0 * unit)
         add(at + 3, at + 9, e_z + axis)
+        # rolling resistance: delta times the upward force, against the horizontal part of the spin
+        if body.delta:
+            add(at + 3, at + 5, -body.delta * rolling / mp.sqrt(rolling @ rolling))
         for i in range(3):
             right[at + i] = (ground + body.g * e_z + known_acceleration)[i]
             right[at + 3 + i] = known_moment[i]

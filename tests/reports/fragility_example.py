@@ -46,7 +46,7 @@ def made_up(cylinders: tuple[str, ...] = ("pier", "tower")) -> Fragility:
                     runs.append(
                         {**place, "method": method, "peak_tilt": 8.0 if fell else 0.5, "outcome": outcome}
                     )
-    about = {
+    facts = {
         "cylinders": {name: {"semidiagonal": 6.0, "tan_alpha": 0.2} for name in cylinders},
         "motions": MOTIONS,
         "methods": {name: own for name, (_, own) in METHODS.items()},
@@ -62,4 +62,4 @@ def made_up(cylinders: tuple[str, ...] = ("pier", "tower")) -> Fragility:
         "source": "made up",
         "inputs": "",
     }
-    return fragility_of(pd.DataFrame(runs).assign(contact_lost=np.nan), pd.DataFrame(points), about)
+    return fragility_of(pd.DataFrame(runs).assign(contact_lost=np.nan), pd.DataFrame(points), facts)

@@ -55,7 +55,7 @@ def test_pages_of_a_comparison_are_drawn(comparison: Comparison, tmp_path: Path,
     # drawn without a graphics card, a player takes its time: the page above had it at both widths
     assert complaints(played.html(), tmp_path, figures=0, further=PLAYER, widths=["phone"]) == []
     monkeypatch.setattr(report, "SINGLY", 0)
-    assert complaints(page_of(comparison.made_by()).html(), tmp_path, figures=7, further=CHOOSER) == []
+    assert complaints(page_of(comparison.made_by()).html(), tmp_path, figures=6, further=CHOOSER) == []
 
 
 @needs_chromium

@@ -154,7 +154,7 @@ def test_no_engine_and_no_trajectory_leave_nothing_to_compare(folder, capsys):
 def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
     no_engines()
     monkeypatch.setattr(page, "svg", lambda *_, **__: b"")  # tests of the page draw it
-    monkeypatch.setattr(Page, "html", lambda _: "")
+    monkeypatch.setattr(Page, "html", lambda _, **__: "")
     (folder / "results").mkdir()
     (folder / "results" / "mine.txt").write_text("mine")
     arguments = ["compare", "--engine", "mujoco", "--out", "results", "--duration", "10", "--scale", "1.5"]
@@ -163,7 +163,7 @@ def test_compare_prints_and_writes(folder, no_engines, monkeypatch, capsys):
     assert "Cylinder: b = 1.177 m, 2h = 11.77 m, alpha = 11.31 deg" in out
     assert "Ground: El Centro 1940, 5346 samples of 0.01 s, 2 components, peak 0.430 g" in out
     assert "mujoco recess" in out
-    assert "agrees" in out
+    assert "agreement" in out
     names = {path.name for path in (folder / "results").iterdir()}
     assert names == {
         "mine.txt",
@@ -230,7 +230,7 @@ def test_ctrl_c_is_one_line_and_nothing_written(folder, monkeypatch, capsys):
 def test_simulate_a_reduced_model(folder, in_this_process, capsys):
     assert call("simulate", "--release-tilt-deg", "5", "--rolling-rate", "0.5", "--duration", "2") == 0
     captured = capsys.readouterr()
-    assert "peak tilt" in captured.out
+    assert "Peak tilt" in captured.out
     assert "running free response, recess model" in captured.err
     samples = pd.read_csv("rockwobble-simulate/run.csv")
     assert len(samples) == 201
@@ -406,7 +406,7 @@ def test_a_run_that_takes_its_process_with_it_is_one_line_and_exit_code_1(folder
     def died(jobs: list[Job], **_: Any) -> list[Trace]:
         return [lost_trace(job.case, job.run, "status -11") for job in jobs]
 
-    monkeypatch.setattr("rockwobble.compare.simulate_all", died)
+    monkeypatch.setattr("rockwobble.compare.studies.single_run.simulate_all", died)
     assert call("simulate", "--engine", "mujoco") == 1
     assert (
         capsys.readouterr().err
@@ -423,7 +423,7 @@ def test_results_are_whole_where_the_output_cannot_be_printed(tmp_path):
     codes = json.loads((tmp_path / "codes.json").read_text())
     assert codes == dict.fromkeys(("shut", "poor", "full", "closed"), 0)
     said = {name: (tmp_path / f"{name}.err").read_bytes() for name in ("poor", "full", "closed")}
-    assert b"peak tilt" in (tmp_path / "poor.out").read_bytes()
+    assert b"Peak tilt" in (tmp_path / "poor.out").read_bytes()
     assert b"standard output cannot be written: No space left on device" in said["full"]
     for name, errors in said.items():
         assert b"Traceback" not in errors, name

@@ -6,10 +6,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import pytest
-
-from rockwobble.compare.storage.manifest import read_results
-from rockwobble.compare.studies.fragility.study import KIND
 
 CHECKOUT = Path(__file__).parents[2]
 PUBLISHED = CHECKOUT / "reports" / "published" / "fragility"
@@ -40,7 +38,7 @@ def numbers_said() -> list[tuple[str, str, str]]:
 
 def contrasts(study: str) -> dict[Any, dict[Any, Any]]:
     """The row of each pair of methods, of all cylinders, for overturning."""
-    table = read_results(PUBLISHED / study, KIND).table("contrasts")
+    table = pd.read_parquet(PUBLISHED / study / "contrasts.parquet")
     rows = table[(table["cylinder"] == "all") & (table["limit"] == "overturned")]
     return rows.set_index(["method", "against"]).to_dict("index")
 

@@ -65,18 +65,17 @@ def test_validity() -> None:
         wide = peaks(point, "motion", "peak")
         for method in ("recess", "ring", "flat", "perturbed copy"):
             own = ratios(wide, method, "recess model")
-            found.setdefault(method, []).append([quantile(own, share) for share in (0.5, 0.05, 0.95)])
+            found.setdefault(method, []).append([quantile(own, share) for share in (0.5, 0.95)])
     said = numbers(headline("validity/validity.md"))
     medians = np.array(found["recess"])[:, 0]
     assert said[0] == runs["motion"].nunique()
     assert said[1:3] == [round(medians.min(), 3), round(medians.max(), 3)]
-    tenths = []
-    for method in ("ring", "recess", "flat", "perturbed copy"):
-        for column, middle in ((1, "lower"), (2, "higher")):  # of an even number of points the outer one
-            value = float(np.quantile(np.sort(np.array(found[method])[:, column]), 0.5, method=middle))
-            tenths.append(round(value, 2))
+    # by point, what one record in twenty exceeds: the least and the largest of each method
+    upper = [np.array(points)[:, 1] for points in found.values()]
     spans = re.findall(r"(\d\.\d\d|∞) to (\d\.\d\d|∞)", headline("validity/validity.md"))
-    assert [math.inf if each == "∞" else float(each) for span in spans for each in span] == tenths
+    assert [math.inf if each == "∞" else float(each) for span in spans for each in span] == [
+        round(float(end), 2) for each in upper for end in (each.min(), each.max())
+    ]
 
 
 def test_comparison() -> None:
@@ -94,18 +93,6 @@ def test_extremes() -> None:
     assert counts.get("silent", 0) == 0
     order = ["fine", "flagged", "refused", "caught", "no reference"]
     assert numbers(headline("extremes/extremes.md")) == [counts[order].sum(), *counts[order]]
-
-
-@pytest.mark.parametrize("page", ["spectrum/spectrum", "paper/paper"])
-def test_spectrum(page: str) -> None:
-    cells = table(f"{page.split('/')[0]}/spectrum").pivot_table(
-        index=["semidiagonal", "intensity"], columns="series", values="overturned", aggfunc="first"
-    )
-    falls, planes = cells["3d"], cells["planar_x"] | cells["planar_y"]
-    shares = [falls.mean(), planes.mean(), (falls & ~planes).mean(), (planes & ~falls).mean()]
-    said = re.findall(r"([\d.]+) %", headline(f"{page}.md"))
-    assert said == [f"{100 * share:.2g}" for share in shares]
-    assert f"of {len(cells)} cells" in headline(f"{page}.md")
 
 
 @pytest.mark.parametrize("folder", ENSEMBLES, ids=lambda folder: folder.name)
@@ -134,8 +121,8 @@ def test_ensemble(folder: Path) -> None:
 @pytest.mark.parametrize("folder", ADVICE, ids=lambda folder: folder.name)
 def test_advice(folder: Path) -> None:
     members = pd.read_parquet(folder / "members.parquet")
-    said = headline(str(folder.relative_to(PUBLISHED) / "advice.md"))
-    shares = re.findall(r"([\d.]+) % \(([\d.]+) % to ([\d.]+) %\)", said)
+    text = (folder / "advice.md").read_text(encoding="utf-8")
+    shares = re.findall(r"([\d.]+) % \(([\d.]+)(?: %)? to ([\d.]+) %\)", text)[:3]
     for group, row in zip(("copies", "acceleration", "velocity"), shares, strict=True):
         fell = (members[members["group"] == group]["outcome"] == "overturned").to_numpy()
         test = binomtest(int(fell.sum()), len(fell)).proportion_ci(0.95)

@@ -126,6 +126,9 @@ def test_folded_groups_open_one_by_one():
         (1.5e-10, ".1e", "1.5e-10"),
         (3e5, ".1e", "3.0e5"),
         (12.0, "d", "12"),
+        (-0.001, ".2f", "0.00"),
+        (-0.01, ".2f", "-0.01"),
+        (-1021.0, ",.0f", "-1,021"),
         (-math.inf, ".3g", "-∞"),
         (None, ".3g", "–"),
         (np.bool_(False), ".3g", "no"),
@@ -151,3 +154,10 @@ def test_a_legend_explains_the_columns_that_are_shown(page):
         assert "note: by hand." in text
     assert "peak: the largest." in printed(60)
     assert "note: by hand." not in printed(60)
+
+
+def test_pages_of_a_folder_share_one_script(page):
+    files = page.files(shared_script=True)
+    assert b'<script src="plotly.min.js"></script>' in files["report.html"]
+    assert files["plotly.min.js"] not in files["report.html"]
+    assert files["plotly.min.js"] in page.files()["report.html"]

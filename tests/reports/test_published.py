@@ -10,6 +10,7 @@ import pytest
 
 from rockwobble.compare.certificate.verdict import CHANGED
 from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests, read_results
+from rockwobble.compare.storage.provenance import code_digests
 from rockwobble.compare.studies.validity.limits import needs
 from rockwobble.compare.studies.validity.study import stored_validity
 from rockwobble.models.diagnostic import CODES, parted
@@ -17,6 +18,7 @@ from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.registry import KINDS, stored_page
 
 PUBLISHED = Path(__file__).parents[2] / "reports" / "published"
+LARGEST = 300_000  # [bytes] of a table, as in remake.py
 FOLDERS = sorted(path.parent for path in PUBLISHED.rglob(MANIFEST))
 WHOLE = [
     (folder, each.kind)
@@ -34,7 +36,8 @@ def test_every_study_is_published_and_most_of_them_whole() -> None:
     kinds = {each.kind for folder in FOLDERS for each in read_manifests(folder)}
     studies = set(KINDS) - {"run", "sweep", "view"}
     assert kinds == studies
-    assert {kind for _, kind in WHOLE} == studies - {"comparison"}  # without its samples, which are large
+    # these lack their samples or cells, which are large
+    assert {kind for _, kind in WHOLE} == studies - {"comparison", "overturning spectrum", "paper"}
 
 
 @pytest.mark.parametrize("folder", FOLDERS, ids=name_of)
@@ -43,6 +46,31 @@ def test_it_was_made_by_committed_code_and_nothing_is_damaged(folder: Path) -> N
         assert len(each.commit) == 40  # and no "+": the code was as committed
         assert [name for name in each.files if file_state(folder, each, name) == "damaged"] == []
         assert each.headline
+
+
+def test_what_is_not_kept_is_made_by_the_command_of_its_page() -> None:
+    silent = []
+    for folder in FOLDERS:
+        for each in read_manifests(folder):
+            lacking = [name for name in each.files if file_state(folder, each, name) == "missing"]
+            pages = [path for name in each.pages if (path := folder / name).suffix == ".md" and path.exists()]
+            if lacking:
+                silent += [
+                    path for path in pages if f"`{each.command}`" not in path.read_text(encoding="utf-8")
+                ]
+    assert silent == []
+    large = [path for path in PUBLISHED.rglob("*.parquet") if path.stat().st_size > LARGEST]
+    assert large == []
+
+
+@pytest.mark.parametrize("folder", FOLDERS, ids=name_of)
+def test_it_is_not_older_than_the_code_that_it_rests_on(folder: Path) -> None:
+    current = code_digests()
+    older = {
+        name for each in read_manifests(folder) for name in each.code if each.code[name] != current[name]
+    }
+    if older:  # no error: the certificates below say whether results move
+        pytest.xfail(f"{name_of(folder)} is older than {', '.join(sorted(older))}; remake.py makes it again")
 
 
 @pytest.mark.parametrize(("folder", "kind"), WHOLE, ids=name_of)

@@ -68,7 +68,7 @@ def test_values_are_a_line(comparison):
         Bounds(),
         Bounds(tilt_rms=1e-3, agreement_time=3.0),
         rw.reduced.free_response(PIER, RELEASE.initial),
-        comparison.manifest("rockwobble compare " + 20 * "--record-x EW.AT2 "),
+        comparison.made_by("rockwobble compare " + 20 * "--record-x EW.AT2 ").manifest,
         rc.Progress(label="x" * 200, state="started", done=0, total=1),
         *(engine_facts(name) for name in engine_names()),
     ]

@@ -75,11 +75,11 @@ class Advice(Results, kind=KIND):
     trace, engine : DataFrame
         time [s], tilt [alpha] and, of the reduced model, friction_needed [-]; no row without an engine.
 
-    Its facts are the problem (case, cylinder, motion, release, length, gravity, friction: None unless it was
-    given), the support with its model and the other_model; the response of the model; trust, prediction and
-    verification as in `Trust`, `Prediction` and `Verification`; other_support and vertical, ratios of the
-    largest tilts there, and with the vertical component (`ratios_of`), None where there are none; what the
-    records are; perturbation and seed of the copies, and the hash of all inputs.
+    Its facts are the problem (case, cylinder, motion, release, length, gravity, rolling_resistance, friction:
+    None unless it was given), the support with its model and the other_model; the response of the model;
+    trust, prediction and verification as in `Trust`, `Prediction` and `Verification`; other_support and
+    vertical, ratios of the largest tilts there, and with the vertical component (`ratios_of`), None where
+    there are none; what the records are; perturbation and seed of the copies, and the hash of all inputs.
 
     Examples
     --------
@@ -166,8 +166,8 @@ class Advice(Results, kind=KIND):
     @property
     def lowest_factor(self) -> float:
         """Lowest scale of the ground motion found to overturn; NaN where none is."""
-        found = self.lowest.loc[self.lowest["series"] == SPATIAL, "factor"] if len(self.lowest) else []
-        return float(found.iloc[0]) if len(found) else math.nan
+        factors = self.lowest["factor"].to_numpy(float)[self.lowest["series"] == SPATIAL]
+        return float(factors[0]) if len(factors) else math.nan
 
     @property
     def beside(self) -> tuple[float, float]:
@@ -255,6 +255,15 @@ def advise(
     ------
     ValueError
         If the engine cannot run the case, or an option is out of range.
+
+    Examples
+    --------
+    >>> import rockwobble as rw
+    >>> pier = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    >>> release = rw.InitialState(0.5 * pier.alpha, rolling_rate=0.5)
+    >>> found = rw.advise(rw.Case(pier, initial=release, duration=4.0), copies=20)
+    >>> found.trust.kind, found.grades["engine"]
+    ('trace', 'not tested')
     """
     plan = AdvicePlan(**({} if run is None else {"support": run.support}) | options)
     if run is not None:
@@ -277,7 +286,7 @@ def advise(
     moves = math.isfinite(trace.uplift_time) and not failed
     copies: list[Trace] = []
     others: list[Trace] = []
-    drawn = {"perturbation": plan.perturbation, "seed": plan.seed}
+    drawn: dict[str, Any] = {"perturbation": plan.perturbation, "seed": plan.seed}
     with stage(f"{plan.copies} perturbed copies"):
         if moves:  # in this process: other ones take longer to begin than hundreds of reduced runs
             cases = perturbed_copies(case, plan.copies, **drawn)
@@ -372,13 +381,14 @@ def _problem(case: Case) -> dict[str, Any]:
         "release": dataclasses.asdict(case.initial) if case.is_release and case.initial else None,
         "length": case.length,
         "gravity": case.gravity,
+        "rolling_resistance": case.rolling_resistance,
     }
 
 
 def _response(trace: Trace) -> dict[str, Any]:
     """Facts of the run as given; tilts in alpha."""
     moves = math.isfinite(trace.uplift_time) and trace.outcome != "failed"
-    held = trace.assumptions_until(fall_of(trace)) if moves else None
+    assumed = trace.assumptions_until(fall_of(trace)) if moves else None
     own = demands_of(trace)
     return {
         "outcome": trace.outcome,
@@ -388,7 +398,7 @@ def _response(trace: Trace) -> dict[str, Any]:
         "peak_time": trace.peak_time,
         "end": float(trace.time[-1]),
         "in_one_plane": moves and not np.any(trace.rolling_rate),
-        "largest_normal_force": held.largest_normal_force if held else math.nan,
+        "largest_normal_force": assumed.largest_normal_force if assumed else math.nan,
         "slip": own["slip"],
         "lost": own["lost"],
         "tolerance": tolerance_of(trace),

@@ -6,6 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -56,8 +57,7 @@ def scan_scales(case: Case, support: str = "recess") -> tuple[pd.DataFrame, pd.D
         def at(_: list[int], factor: float, run: Callable[[float], float] = run) -> Array:
             return np.array([run(factor)])
 
-        run(FACTORS[0])  # compiles, where that is due, once and not in each thread
-        peaks = np.array(list(in_threads(run, FACTORS)))
+        peaks = _in_threads(run, FACTORS)
         start = 0.0
         if not case.is_release:
             start = uplift_of_series(name, motion, tan_alpha, gravity, until=case.length)
@@ -76,12 +76,11 @@ def planar_runs(cases: Sequence[Case], support: str = "recess") -> pd.DataFrame:
     Columns: member, scale, and the peak tilts 3d, planar_x, planar_y [rad].
     """
     rows = [(case, scale) for case in cases for scale in PLANAR_SCALES]
+    members, scales = zip(*rows, strict=True)
     peaks = {
-        name: list(in_threads(partial(_peak, series=name, support=support), *zip(*rows, strict=True)))
-        for name in SERIES
+        name: _in_threads(partial(_peak, series=name, support=support), members, scales) for name in SERIES
     }
-    members, scales = [case.name for case, _ in rows], [scale for _, scale in rows]
-    return pd.DataFrame({"member": members, "scale": scales, **peaks})
+    return pd.DataFrame({"member": [case.name for case in members], "scale": scales, **peaks})
 
 
 def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
@@ -106,6 +105,11 @@ def planar_shares(runs: pd.DataFrame) -> list[dict[str, float]]:
             row |= {name: int(which.sum()), **{f"{name}_{end}": value for end, value in ends.items()}}
         rows.append(row)
     return rows
+
+
+def _in_threads(run: Callable[..., float], *arguments: Sequence[Any] | Array) -> Array:
+    run(*(each[0] for each in arguments))  # compiles, where that is due, once and not in each thread
+    return np.array(list(in_threads(run, *arguments)))
 
 
 def _peak(case: Case, factor: float, *, series: str, support: str, rtol: float = RTOL) -> float:

@@ -68,7 +68,7 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
     Raises
     ------
     ValueError
-        If a name is unknown, two methods are alike, or there is none.
+        If a name is unknown, two methods are alike, there is none, or no planar one for a restitution.
     """
     chosen: list[str | Run] = []
     for method in given:
@@ -81,6 +81,8 @@ def methods_of(given: Iterable[str | Run], *, restitution: float | str = 1.0) ->
         raise ValueError("a fragility needs at least one method, got none")
     labels = iter(run_labels([method for method in chosen if isinstance(method, Run)]))
     found = [_method(method, restitution, labels) for method in chosen]
+    if restitution != 1.0 and not any(method in _PLANES for method in chosen):
+        raise ValueError(f"restitution is of planar models, got {restitution!r} without one")
     names = [method.label for method in found]
     for name in names:
         if names.count(name) > 1:
@@ -194,7 +196,7 @@ class Task:
 
     @property
     def _of_peaks(self) -> bool:
-        """Whether the batch kernel does, which knows homogeneous cylinders and peaks alone."""
+        """Whether the batch kernel does, which knows homogeneous cylinders, a slab, and peaks alone."""
         own = self.cylinder
         homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
         return self.run.engine is None and homogeneous and not self.contact
@@ -215,6 +217,7 @@ class Task:
             shaking.scales,
             workers=1,  # the processes share the cores already
             gravity=self.gravity,
+            slab_mass_ratio=self.cylinder.slab_mass_ratio,
             support=self.run.support,
             **{"rtol": _RTOL, **self.run.settings},
         )[0]

@@ -11,15 +11,16 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
-from rockwobble.models.number_checks import require_increasing, require_positive
 from rockwobble.multibody.scene.froude import default_step
 
 from ...runs.choice import require_runnable
 from ...runs.execution import all_makers
 from ...runs.progress import ProgressCallback
 from ...runs.tables import run_tables
-from .intensity import intensity, measures_of, require_measure
+from ..plans import FragilityPlan
+from .intensity import intensity, measures_of
 from .methods import Method, Shaking, Task, run_task
+from .samples import CONTACT_LOST
 
 # The reduced runs of a task take about a second together: little is lost with it.
 _CHUNK_TIME = 1.0
@@ -29,7 +30,7 @@ _LOWEST, _HIGHEST, LEVELS = 1.25, 12.0, 20
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Plan:
+class RunPlan:
     """Every cylinder under every motion at every level by every method.
 
     Parameters
@@ -38,20 +39,9 @@ class Plan:
     motions : sequence of GroundMotion
         At least two, with different names: they are what is resampled.
     methods : sequence of Method
-    measure : str
-        Intensity of the levels, one of `MEASURES`.
-    levels : sequence of float or None
-        Stripes: every motion is scaled to each of these intensities. None: a cloud.
-    scales : sequence of float
-        Of a cloud: factors on the motions as they are.
-    period : float
-        Of "sa" and "sa_mean" [s].
-    gravity, friction : float
-    contact : bool
-        Whether it is asked where reduced models lose contact.
-    step_factor : float
-        On the default time step of engines: a share of runs needs less than a trace. Runs that state a step
-        keep it.
+    options : FragilityPlan
+        With levels (stripes: every motion is scaled to each of these intensities), or with scales or neither
+        (a cloud: factors on the motions as they are). A step factor is of runs that state no step.
 
     Raises
     ------
@@ -62,17 +52,10 @@ class Plan:
     cylinders: Mapping[str, Cylinder]
     motions: Sequence[GroundMotion]
     methods: Sequence[Method]
-    measure: str = "peak_acceleration"
-    levels: Sequence[float] | None = None
-    scales: Sequence[float] = (1.0,)
-    period: float = 1.0
-    gravity: float = 9.81
-    friction: float = 1.0
-    contact: bool = False
-    step_factor: float = 1.0
+    options: FragilityPlan
 
     def __post_init__(self) -> None:
-        require_measure(self.measure)
+        asked = self.options
         if not self.cylinders:
             raise ValueError("a fragility needs at least one cylinder, got none")
         names = [motion.name for motion in self.motions]
@@ -81,40 +64,45 @@ class Plan:
                 f"a fragility needs at least two ground motions with different names, got {len(names)} "
                 f"with {len(set(names))} names"
             )
-        for label, values in (("levels", self.levels), ("scales", self.scales)):
-            if values is not None:
-                require_increasing(label, values)
-        require_positive("step_factor", self.step_factor)
-        if self.step_factor != 1.0 and not any(map(_has_default_step, self.methods)):
+        if asked.step_factor != 1.0 and not any(map(_has_default_step, self.methods)):
             raise ValueError(
-                f"step_factor is for engines at their default time step, got {self.step_factor!r}"
+                f"step_factor is for engines at their default time step, got {asked.step_factor!r}"
             )
         for cylinder in self.cylinders.values():
             for motion in self.motions:
-                intensity(self.measure, motion, cylinder, gravity=self.gravity, period=self.period)
-            case = Case(cylinder, self.motions[0], gravity=self.gravity, friction=self.friction)
+                self._intensity(motion, cylinder)
+            case = Case(cylinder, self.motions[0], gravity=asked.gravity, friction=asked.friction)
             for method in self.methods:
                 if method.run is not None:
                     require_runnable(case, self._stepped(method.run, cylinder))
 
     def factors(self, cylinder: Cylinder, motion: GroundMotion) -> tuple[float, ...]:
         """Return the factors on a motion, one for each level or those of the cloud."""
-        if self.levels is None:
-            return tuple(map(float, self.scales))
-        own = intensity(self.measure, motion, cylinder, gravity=self.gravity, period=self.period)
-        return tuple(float(level) / own for level in self.levels)
+        if self.options.levels is None:
+            return self.scales
+        own = self._intensity(motion, cylinder)
+        return tuple(float(level) / own for level in self.options.levels)
+
+    @property
+    def scales(self) -> tuple[float, ...]:
+        """Factors on the motions of a cloud."""
+        return (1.0,) if self.options.scales is None else tuple(map(float, self.options.scales))
+
+    def _intensity(self, motion: GroundMotion, cylinder: Cylinder) -> float:
+        asked = self.options
+        return intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
 
     @cached_property
     def points(self) -> pd.DataFrame:
         """One row for each cylinder, motion and level: its place, the factor, and all intensities."""
-        rows = []
+        rows, asked = [], self.options
         for name, cylinder in self.cylinders.items():
-            own = measures_of(self.motions, cylinder, gravity=self.gravity, period=self.period)
+            own = measures_of(self.motions, cylinder, gravity=asked.gravity, period=asked.period)
             for index, motion in enumerate(self.motions):
                 for step, scale in enumerate(self.factors(cylinder, motion)):
                     found = {measure: scale * values[index] for measure, values in own.items()}
-                    if self.levels is not None:  # to the last bit one level for all
-                        found[self.measure] = float(self.levels[step])
+                    if asked.levels is not None:  # to the last bit one level for all
+                        found[asked.measure] = float(asked.levels[step])
                     rows.append(
                         {"cylinder": name, "motion": motion.name, "step": step, "scale": scale, **found}
                     )
@@ -136,37 +124,31 @@ class Plan:
                         label=method.label,
                         run=run,
                         shakings=(shaking,),
-                        gravity=self.gravity,
-                        friction=self.friction,
-                        contact=self.contact,
+                        gravity=self.options.gravity,
+                        friction=self.options.friction,
+                        contact=CONTACT_LOST in (self.options.limits or ()),
                     )
                     for shaking in (shakings if run.engine is None else single)
                 ]
                 yield from singles if run.engine else _together(singles)
 
     def _stepped(self, run: Run, cylinder: Cylinder) -> Run:
-        if run.engine is None or run.time_step is not None or self.step_factor == 1.0:
+        if run.engine is None or run.time_step is not None or self.options.step_factor == 1.0:
             return run
-        step = self.step_factor * default_step(cylinder.semidiagonal, self.gravity)
+        step = self.options.step_factor * default_step(cylinder.semidiagonal, self.options.gravity)
         return Run(run.engine, run.support, step, **run.settings)
 
 
 def default_levels(
-    cylinders: Mapping[str, Cylinder],
-    motions: Sequence[GroundMotion],
-    measure: str,
-    *,
-    gravity: float = 9.81,
-    period: float = 1.0,
+    cylinders: Mapping[str, Cylinder], motions: Sequence[GroundMotion], asked: FragilityPlan
 ) -> tuple[float, ...]:
     """Return levels from a little above uplift to where most overturn, each the same factor above the last.
 
     In another measure than the peak acceleration: what the median motion has at these levels.
     """
-    require_measure(measure)
     over = [
-        intensity(measure, motion, cylinder, gravity=gravity, period=period)
-        / intensity("peak_acceleration", motion, cylinder, gravity=gravity)
+        intensity(asked.measure, motion, cylinder, gravity=asked.gravity, period=asked.period)
+        / intensity("peak_acceleration", motion, cylinder, gravity=asked.gravity)
         for cylinder in cylinders.values()
         for motion in motions
     ]
@@ -192,7 +174,7 @@ KEYS = ["cylinder", "motion", "step"]
 
 
 def run_plan(
-    plan: Plan,
+    plan: RunPlan,
     kind: str,
     *,
     folder: str | Path | None = None,
@@ -204,7 +186,7 @@ def run_plan(
 
     Parameters
     ----------
-    plan : Plan
+    plan : RunPlan
     kind : str
         Of the results, for the folder of finished tasks.
     folder : str or Path, optional
@@ -258,7 +240,7 @@ def worse(runs: pd.DataFrame, method: Method) -> pd.DataFrame:
     return made
 
 
-def _labelled(task: Task, table: pd.DataFrame, plan: Plan) -> pd.DataFrame:
+def _labelled(task: Task, table: pd.DataFrame, plan: RunPlan) -> pd.DataFrame:
     steps = {shaking.motion.name: plan.factors(task.cylinder, shaking.motion) for shaking in task.shakings}
     places = [(s.motion.name, steps[s.motion.name].index(scale)) for s in task.shakings for scale in s.scales]
     return table.assign(

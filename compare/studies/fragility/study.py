@@ -2,29 +2,29 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, Run
-from rockwobble.models.number_checks import require_increasing, require_positive
 from rockwobble.models.records.plausibility import doubts_of
-from rockwobble.models.shown import Shown
 from rockwobble.models.traces.trace_file import run_to_plain
 
 from ...metrics.order_statistics import FEWEST
 from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Manifest, Results, made_now
+from ...storage.manifest import Number
+from ...storage.results import Results
+from ..plans import FragilityPlan
 from .fit import TOO_FEW, resamples
-from .intensity import require_measure
 from .methods import MODELS, Method, methods_of, own_model
-from .plan import Plan, default_levels, run_plan
-from .samples import CONTACT_LOST, DEFAULT_LIMITS, OVERTURNED, blocks_of, require_limits
+from .plan import RunPlan, default_levels, run_plan
+from .samples import DEFAULT_LIMITS, OVERTURNED, blocks_of, require_limits
 from .tables import (
     contrast_table,
     count_table,
@@ -40,14 +40,14 @@ FEWEST_LEVELS = 2  # of one level a curve has no slope
 _COUNTED = ("cylinder", "method", "limit", "runs", "exceeded", "failed")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Fragility(Shown):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Fragility(Results, kind=KIND):
     """Probabilities of exceeding limits by several methods, under the same motions.
 
     Intervals are of 95 %, by resampling the motions; their ends are in columns NAME_low and NAME_high.
 
-    Parameters
-    ----------
+    Tables
+    ------
     runs : DataFrame
         One row for each cylinder, motion, step (place of the level) and method: peak_tilt [alpha], outcome,
         contact_lost (1, 0, NaN where nobody asked).
@@ -65,15 +65,14 @@ class Fragility(Shown):
         The curves point by point: intensity, probability, low, high.
     contrasts : DataFrame
         One row for each two methods: ratio of the medians, dispersion_difference, within (least margin that
-        holds the interval of the ratio), verdict for the margin that was stated.
+        holds the interval of the ratio), verdict for the margin of the facts.
     efficiency : DataFrame
         Dispersion of the first method by each measure, and over that of the best.
     islands : DataFrame
-        Motions that overturn a cylinder which stands under the same motion made stronger, and bias of the
-        median of an analysis that stops at the first overturning.
-    about : mapping
-        What the tables do not hold: cylinders, methods, measure, levels, margin, seed, and the hash of all
-        inputs.
+        Gaps in the overturning region: motions that overturn a cylinder which stands under the same motion
+        made stronger, and bias of the median of an analysis that stops at the first overturning.
+
+    Its facts are cylinders, methods, measure, levels, margin, seed, and the hash of all inputs.
 
     Examples
     --------
@@ -86,15 +85,26 @@ class Fragility(Shown):
     [{'method': 'recess model', 'runs': 18, 'exceeded': 10}]
     """
 
-    runs: pd.DataFrame
-    points: pd.DataFrame
-    counts: pd.DataFrame
-    fits: pd.DataFrame
-    curves: pd.DataFrame
-    contrasts: pd.DataFrame
-    efficiency: pd.DataFrame
-    islands: pd.DataFrame
-    about: Mapping[str, Any]
+    def headline(self) -> dict[str, Number]:
+        """Return the medians of overturning, of too few motions its counts, and the ratios of the medians."""
+        fits, contrasts = (
+            [row for row in table.to_dict("records") if row["limit"] == OVERTURNED]
+            for table in (self.fits, self.contrasts)
+        )
+        return {
+            f"{row['cylinder']}, {row['method']}, overturned of {row['runs']}": row["exceeded"]
+            if row["kind"] == TOO_FEW
+            else row["median"]
+            for row in fits
+        } | {f"{row['cylinder']}, {row['method']} / {row['against']}": row["ratio"] for row in contrasts}
+
+    def sheets(self) -> dict[str, bytes]:
+        """Return the counts as CSV and as JSON, for tools that fit curves of their own."""
+        rows = self.counts.to_dict("records")
+        return {
+            "counts.csv": self.counts.to_csv(index=False).encode(),
+            "counts.json": (json.dumps(rows, indent=0, ensure_ascii=False) + "\n").encode(),
+        }
 
     def _said(self) -> dict[str, str]:
         runs = self.runs
@@ -106,71 +116,38 @@ class Fragility(Shown):
             "methods": ", ".join(dict.fromkeys(runs["method"])),
         }
 
-    @property
-    def tables(self) -> dict[str, pd.DataFrame]:
-        """The tables by name."""
-        return {field.name: getattr(self, field.name) for field in fields(self) if field.name != "about"}
 
-
-def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, about: Mapping[str, Any]) -> Fragility:
-    """Return the fragility by the runs of the plan that `about` states."""
+def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, Any]) -> Fragility:
+    """Return the fragility by the runs of the plan that `facts` state."""
     if (runs["outcome"] == "failed").all():
         raise ValueError(f"a fragility needs runs that do not fail, got {len(runs)} runs that all failed")
-    blocks = blocks_of(runs, points, about["limits"], str(about["measure"]))
-    weights = resamples(len(blocks.motions), int(about["resamples"]), int(about["seed"]))
+    blocks = blocks_of(runs, points, facts["limits"], str(facts["measure"]))
+    weights = resamples(len(blocks.motions), int(facts["resamples"]), int(facts["seed"]))
     fitted, drawn = curves_of(blocks), curves_of(blocks, weights)
-    found = Fragility(
-        runs=runs,
-        points=points,
-        counts=count_table(blocks),
-        fits=fit_table(blocks, fitted, drawn),
-        curves=curve_table(blocks, fitted, drawn),
-        contrasts=contrast_table(blocks, fitted, drawn, weights, float(about["margin"])),
-        efficiency=efficiency_table(blocks, blocks.methods[0], weights),
-        islands=island_table(blocks, weights),
-        about=about,
-    )
+    tables = {
+        "runs": runs,
+        "points": points,
+        "counts": count_table(blocks),
+        "fits": fit_table(blocks, fitted, drawn),
+        "curves": curve_table(blocks, fitted, drawn),
+        "contrasts": contrast_table(blocks, fitted, drawn, weights, float(facts["margin"])),
+        "efficiency": efficiency_table(blocks, blocks.methods[0], weights),
+        "islands": island_table(blocks, weights),
+    }
     levels = points.groupby("cylinder")[blocks.measure].nunique()
-    enough = len(blocks.motions) >= FEWEST and levels.min() >= FEWEST_LEVELS
-    return found if enough else _counts_alone(found)
+    if len(blocks.motions) < FEWEST or levels.min() < FEWEST_LEVELS:
+        tables |= _counts_alone(tables)
+    return Fragility(tables=tables, facts=facts)
 
 
-def _counts_alone(found: Fragility) -> Fragility:
-    """Return a fragility of too few motions or levels: what was counted, and nothing fitted."""
-    fits = found.fits.assign(kind=TOO_FEW, extrapolated=False)
+def _counts_alone(tables: Mapping[str, pd.DataFrame]) -> dict[str, pd.DataFrame]:
+    """Return the tables of too few motions or levels that differ: counts, and nothing fitted."""
+    fits = tables["fits"].assign(kind=TOO_FEW, extrapolated=False)
     fitted = fits.columns.difference([*_COUNTED, "kind", "extrapolated"])
     fits[fitted] = float("nan")
-    tables = ("curves", "contrasts", "efficiency", "islands")
-    return replace(found, fits=fits, **{name: getattr(found, name).iloc[:0] for name in tables})
-
-
-def stored_fragility(results: Results) -> Fragility:
-    """Return the fragility that is stored in a folder."""
-    names = [field.name for field in fields(Fragility) if field.name != "about"]
-    return Fragility(**{name: results.table(name) for name in names}, about=results.manifest.about)
-
-
-def manifest_of(found: Fragility, command: str = "") -> Manifest:
-    """Return the manifest of a fragility, with its medians and the contrasts of overturning as headline."""
-    fits = found.fits[found.fits["limit"] == OVERTURNED]
-    headline = {
-        f"{row['cylinder']}, {row['method']}, overturned of {row['runs']}": row["exceeded"]
-        if row["kind"] == TOO_FEW
-        else row["median"]
-        for row in fits.to_dict("records")
-    } | {
-        f"{row['cylinder']}, {row['method']} / {row['against']}": row["ratio"]
-        for row in found.contrasts.to_dict("records")
-        if row["limit"] == OVERTURNED
+    return {"fits": fits} | {
+        name: tables[name].iloc[:0] for name in ("curves", "contrasts", "efficiency", "islands")
     }
-    return made_now(
-        KIND,
-        inputs=str(found.about["inputs"]),
-        command=command,
-        seeds={"resamples": int(found.about["seed"])},
-        headline=headline,
-        about=found.about,
-    )
 
 
 Row = dict[str, Any]
@@ -182,7 +159,7 @@ def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
     "planar": each planar method against the recess model; "support": the same method on another support
     against the recess; "engine": an engine against the model of its support, and another engine on it.
     """
-    methods: Mapping[str, Mapping[str, Any]] = found.about["methods"]
+    methods: Mapping[str, Mapping[str, Any]] = found.facts["methods"]
     answers: dict[str, list[Row]] = {"planar": [], "support": [], "engine": []}
     rows = found.contrasts.to_dict("records") if len(found.contrasts) else []
     for row in rows:
@@ -230,34 +207,17 @@ def _inverted(row: Row) -> Row:
     }
 
 
-# two methods are the same for an engineer whose medians differ by less: the motions of one site differ by
-# several times as much
-MARGIN = 0.1
-RESAMPLES = 1000
-
-
 def fragility(
     cylinders: Cylinder | Mapping[str, Cylinder] | Sequence[Cylinder],
     motions: Sequence[GroundMotion],
     *,
     methods: Iterable[str | Run] = tuple(MODELS),
-    measure: str = "peak_acceleration",
-    levels: Sequence[float] | None = None,
-    scales: Sequence[float] | None = None,
-    limits: Iterable[str] = DEFAULT_LIMITS,
-    margin: float = MARGIN,
-    period: float = 1.0,
-    restitution: float | str = 1.0,
-    gravity: float = 9.81,
-    friction: float = 1.0,
-    step_factor: float = 1.0,
-    resamples: int = RESAMPLES,
-    seed: int = 0,
     workers: int | None = None,
     scheduler: str | None = None,
     progress: ProgressCallback | None = None,
     resume: str | Path | None = None,
     source: str = "ground motions",
+    **options: Any,
 ) -> Fragility:
     """Fit the probability of exceeding limits by several methods under the same motions.
 
@@ -271,35 +231,15 @@ def fragility(
         by motion), and runs of engines with any support. Default: all five models. The first is the one
         whose efficient measure is sought. In a ring, whose walls have no top, a cylinder that leans on a
         wall beyond its balance at the end has overturned.
-    measure : str, optional
-        Intensity of the levels and of the curves, one of `MEASURES`.
-    levels : sequence of float, optional
-        Intensities to each of which every motion is scaled (stripes). Default: 20, from a little above
-        uplift to where most motions overturn.
-    scales : sequence of float, optional
-        Factors on the motions as they are, in the place of levels (a cloud).
-    limits : iterable of str, optional
-        Of `LIMITS`; "contact_lost" takes the forces of every run of a reduced model. Default: all others.
-    margin : float, optional
-        Within which two medians count as equivalent.
-    period : float, optional
-        Of the spectral accelerations [s].
-    restitution : float or "momentum", optional
-        Of the planar models.
-    gravity, friction : float, optional
-        g [m/s^2], coefficient of cylinder and ground.
-    step_factor : float, optional
-        On the default time step of engines: shares of many runs need less than a trace.
-    resamples : int, optional
-        Of the motions, for the intervals.
-    seed : int, optional
-        Of the resamples.
     workers, scheduler, progress : optional
         As in `run_tasks`.
     resume : str or Path, optional
         Folder that keeps each finished run: a second call, after whatever ended the first, repeats none.
     source : str, optional
-        What the motions are, for people.
+        Name of the set of motions.
+    **options
+        Of `FragilityPlan`: measure, one of `MEASURES`; levels (stripes) or scales (a cloud); limits, of
+        `LIMITS`; period [s], margin, resamples, seed, restitution, step_factor, friction, gravity [m/s^2].
 
     Returns
     -------
@@ -323,96 +263,31 @@ def fragility(
     >>> list(zip(overturned["intensity"], overturned["k"], overturned["n"]))
     [(1.5, 0, 8), (3.0, 6, 8), (6.0, 8, 8)]
     """
-    bodies = _named(cylinders)
-    chosen, states = require_asked(
-        methods=methods,
-        measure=measure,
-        levels=levels,
-        scales=scales,
-        limits=limits,
-        margin=margin,
-        restitution=restitution,
-        resamples=resamples,
-    )
-    if levels is None and scales is None:
-        levels = default_levels(bodies, motions, measure, gravity=gravity, period=period)
-    plan = Plan(
-        cylinders=bodies,
-        motions=motions,
-        methods=chosen,
-        measure=measure,
-        levels=levels,
-        scales=(1.0,) if scales is None else scales,
-        period=period,
-        gravity=gravity,
-        friction=friction,
-        contact=CONTACT_LOST in states,
-        step_factor=step_factor,
-    )
-    about = _about(plan) | {
-        "source": source,
-        "limits": list(states),
-        "margin": margin,
-        "resamples": resamples,
-        "seed": seed,
-        "doubts": doubts_of(motions),
-    }
+    bodies, asked = _named(cylinders), FragilityPlan(**options)
+    chosen = methods_of(methods, restitution=asked.restitution)
+    if asked.levels is None and asked.scales is None:
+        asked = replace(asked, levels=default_levels(bodies, motions, asked))
+    plan = RunPlan(cylinders=bodies, motions=motions, methods=chosen, options=asked)
+    facts = _facts(plan) | {"source": source, "doubts": doubts_of(motions)}
     runs = run_plan(plan, KIND, folder=resume, workers=workers, scheduler=scheduler, progress=progress)
-    return fragility_of(runs, plan.points, about)
+    return fragility_of(runs, plan.points, facts)
 
 
-def require_asked(
-    *,
-    methods: Iterable[str | Run],
-    measure: str,
-    levels: Sequence[float] | None,
-    scales: Sequence[float] | None,
-    limits: Iterable[str],
-    margin: float,
-    restitution: float | str,
-    resamples: int,
-) -> tuple[tuple[Method, ...], tuple[str, ...]]:
-    """Return the methods and limit states of what is asked; no ground motion is needed for that.
-
-    Parameters
-    ----------
-    methods, measure, levels, scales, limits, margin, restitution, resamples
-        As in `fragility`.
-
-    Raises
-    ------
-    ValueError
-        If one is out of range or unknown, or two do not go together.
-    """
-    require_measure(measure)
-    if levels is not None and scales is not None:
-        raise ValueError(
-            "levels are of motions that are scaled to them, scales of motions as they are: got both"
-        )
-    for label, values in (("levels", levels), ("scales", scales)):
-        if values is not None:
-            require_increasing(label, values)
-    require_positive("margin", margin)
-    if resamples < 2:
-        raise ValueError(f"resamples must be at least 2, got {resamples!r}")
-    return methods_of(methods, restitution=restitution), require_limits(limits)
-
-
-def _about(plan: Plan) -> dict[str, Any]:
+def _facts(plan: RunPlan) -> dict[str, Any]:
+    asked = plan.options
+    named = ("measure", "period", "margin", "resamples", "seed", "gravity", "friction", "step_factor")
     return {
         "cylinders": {
             name: {"semidiagonal": body.semidiagonal, "tan_alpha": body.tan_alpha}
+            | ({"slab_mass_ratio": body.slab_mass_ratio} if body.slab_mass_ratio else {})
             for name, body in plan.cylinders.items()
         },
         "motions": len(plan.motions),
         "methods": {method.label: _described(method, plan.methods) for method in plan.methods},
-        "measure": plan.measure,
-        "levels": None if plan.levels is None else list(map(float, plan.levels)),
-        "scales": list(map(float, plan.scales)) if plan.levels is None else None,
-        "period": plan.period,
-        "gravity": plan.gravity,
-        "friction": plan.friction,
-        "step_factor": plan.step_factor,
+        "levels": None if asked.levels is None else list(map(float, asked.levels)),
+        "scales": list(plan.scales) if asked.levels is None else None,
+        "limits": list(DEFAULT_LIMITS if asked.limits is None else require_limits(asked.limits)),
+        **{name: getattr(asked, name) for name in named},
         "inputs": fingerprint([(task.name, task.label, task.key()) for task in plan.tasks()]),
     }
 

@@ -104,6 +104,7 @@ def _described(case: Case) -> dict[str, object]:
         "duration": case.length,
         "gravity": case.gravity,
         "friction": case.friction,
+        "rolling_resistance": case.rolling_resistance,
         "motion": None
         if motion is None
         else {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -9,6 +10,8 @@ import typer
 
 if TYPE_CHECKING:
     from rockwobble.models.case import TimeStep
+
+_MOST_VALUES = 100_000
 
 
 def time_step(text: str) -> TimeStep:
@@ -36,6 +39,38 @@ def restitution(text: str) -> float | Literal["momentum"]:
         If the text is neither.
     """
     return "momentum" if text == "momentum" else _number(text, 'a number or "momentum"')
+
+
+def numbers(text: str) -> list[float]:
+    """Return the numbers of "6", "1,2,6" or "0.5:30:100", a range with both ends.
+
+    Raises
+    ------
+    BadParameter
+        If the text is none of these.
+    """
+    try:
+        if ":" not in text:
+            return [float(part) for part in text.split(",")]
+        first, last, count = text.split(":")
+        low, high, number = float(first), float(last), int(count)
+    except ValueError:
+        low = high = number = 0
+    if not (2 <= number <= _MOST_VALUES and math.isfinite(low - high)):
+        allowed = "a number, a list such as 1,2,6 or a range FROM:TO:COUNT"
+        raise typer.BadParameter(f"must be {allowed}, got {text!r}")
+    import numpy as np
+
+    return [float(value) for value in np.linspace(low, high, number)]
+
+
+def levels(text: str) -> list[float]:
+    """Return the numbers of a list, or of a range, which is even in the logarithm."""
+    found = numbers(text)
+    if ":" not in text or not 0.0 < found[0] < found[-1]:
+        return found
+    ratio, last = math.log(found[-1] / found[0]), len(found) - 1
+    return [found[0] * math.exp(ratio * place / last) for place in range(len(found))]
 
 
 def _number(text: str, allowed: str) -> float:

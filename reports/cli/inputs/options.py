@@ -60,6 +60,14 @@ TransverseInertia = Annotated[
     float | None, body("I1/m about the mass centre, in m2. Default: of a homogeneous solid cylinder.")
 ]
 AxialInertia = Annotated[float | None, body("I2/m about the axis, in m2.")]
+SlabMassRatio = Annotated[
+    float | None,
+    body("Mass of a rigid slab over that of the cylinders that carry it. Default: a cylinder alone."),
+]
+Columns = Annotated[
+    int | None,
+    body("Number of the cylinders under the slab: 3 or more, or 1 for a slab that cannot turn. Default: 3."),
+]
 Record = Annotated[
     Path | None, _ground("Text or CSV of time, x, y and perhaps z, in place of the files below.")
 ]
@@ -88,6 +96,12 @@ Friction = Annotated[
     _ground(
         "Coefficient of cylinder and ground. The reduced models assume that it suffices and say where it "
         "would not."
+    ),
+]
+RollingResistance = Annotated[
+    float,
+    _ground(
+        "Length of the couple against the rolling of the rim, in m, below the base radius; 0 loses nothing."
     ),
 ]
 ReleaseTilt = Annotated[

@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from functools import wraps
 from typing import Annotated, Any, get_type_hints
 
 import typer
 
-from rockwobble.compare.runs.plan import options_of
+from rockwobble.compare.runs.plan import Option, options_of
 
 from ...console.terminal import user_input
+from .method_values import levels, numbers, restitution
+
+# form of the text of an option: what reads it, and what help calls it
+_FORMS: Mapping[str, tuple[Callable[[str], object], str]] = {
+    "numbers": (numbers, "LIST|FROM:TO:COUNT"),
+    "levels": (levels, "LIST|FROM:TO:COUNT"),
+    "restitution": (restitution, "FLOAT|momentum"),
+}
 
 
 def takes_options(command: Callable[..., None]) -> Callable[..., None]:
@@ -50,8 +58,19 @@ def _parameters(kind: type) -> Iterator[inspect.Parameter]:
     for each in fields(kind):
         annotation = types[each.name]
         if each.name in options:
-            stated = options[each.name]
-            annotation = Annotated[annotation, typer.Option(help=stated.help, rich_help_panel=stated.group)]
+            annotation = _annotation(annotation, options[each.name])
         yield inspect.Parameter(
             each.name, inspect.Parameter.KEYWORD_ONLY, default=each.default, annotation=annotation
         )
+
+
+def _annotation(kind: Any, stated: Option) -> Any:
+    """Return the type of an option of a plan with what typer is to know of it."""
+    names = (stated.flag,) if stated.flag else ()
+    more: dict[str, Any] = {"help": stated.help, "rich_help_panel": stated.group}
+    if stated.form:  # typer knows no type for that
+        read, metavar = _FORMS[stated.form]
+        return Annotated[Any, typer.Option(*names, parser=read, metavar=metavar, **more)]
+    if kind == Sequence[str] | None:
+        kind = list[str] | None
+    return Annotated[kind, typer.Option(*names, **more)]

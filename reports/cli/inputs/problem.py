@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import inspect
 import math
 import shlex
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 from dataclasses import dataclass, fields
-from functools import wraps
-from typing import Annotated, Any, get_type_hints
+from typing import Annotated
 
 import typer
 
@@ -22,8 +20,8 @@ SEMIDIAGONAL, TAN_ALPHA = 6.0, 0.2  # [m], [-]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Problem:
-    """The options that state a problem."""
+class Body:
+    """The options that state a cylinder, or a slab on cylinders."""
 
     semidiagonal: options.Semidiagonal = None
     tan_alpha: Annotated[float | None, options.TAN_ALPHA] = None
@@ -32,55 +30,17 @@ class Problem:
     mass_centre_height: options.MassCentreHeight = None
     transverse_inertia: options.TransverseInertia = None
     axial_inertia: options.AxialInertia = None
-    record: options.Record = None
-    record_x: options.RecordX = None
-    record_y: options.RecordY = None
-    record_z: options.RecordZ = None
-    units: options.Units = None
-    resample: options.Resample = False
-    scale: options.Scale = 1.0
-    gravity: options.Gravity = 9.81
-    friction: options.Friction = 1.0
-    release_tilt_deg: options.ReleaseTilt = None
-    rolling_rate: options.RollingRate = 0.0
-    duration: options.Duration = None
+    slab_mass_ratio: options.SlabMassRatio = None
+    columns: options.Columns = None
 
-    def case(self) -> rw.Case:
-        """Return the case that they state.
+    def cylinder(self) -> rw.Cylinder:
+        """Return the cylinder, by semidiagonal and slenderness or by diameter and height, or the frame.
 
         Raises
         ------
         ValueError
             If an option is out of range, or two do not go together.
         """
-        released = self.release_tilt_deg is not None
-        if self.rolling_rate and not released:
-            raise ValueError("--rolling-rate needs a release, give --release-tilt-deg [deg] as well")
-        cylinder, motion = self.cylinder(), self._motion(still=released)
-        initial = None
-        if self.release_tilt_deg is not None:
-            if not 0.0 <= self.release_tilt_deg < 90.0:
-                raise ValueError(
-                    f"--release-tilt-deg must be at least 0 and below 90 [deg], got {self.release_tilt_deg:g}"
-                )
-            initial = rw.InitialState(
-                tilt=math.radians(self.release_tilt_deg), rolling_rate=self.rolling_rate
-            )
-        duration = FREE_DURATION if motion is None and self.duration is None else self.duration
-        scaled = f" × {self.scale:g}" if self.scale != 1.0 else ""
-        name = "free response" if motion is None else motion.name + scaled
-        return rw.Case(
-            cylinder,
-            motion,
-            initial=initial,
-            duration=duration,
-            gravity=self.gravity,
-            friction=self.friction,
-            name=name,
-        )
-
-    def cylinder(self) -> rw.Cylinder:
-        """Return the cylinder, by semidiagonal and slenderness or by diameter and height."""
         inertias = {
             "transverse_inertia": self.transverse_inertia,
             "axial_inertia": self.axial_inertia,
@@ -90,23 +50,60 @@ class Problem:
                 raise ValueError("--diameter and --height stand in place of --semidiagonal and --tan-alpha")
             if not self.diameter > 0.0:
                 raise ValueError(f"--diameter must be positive [m], got {self.diameter:g}")
-            return rw.Cylinder.from_dimensions(
+            cylinder = rw.Cylinder.from_dimensions(
                 base_radius=0.5 * self.diameter,
                 height=self.height,
                 mass_centre_height=self.mass_centre_height,
                 **inertias,
             )
-        if self.diameter is not None or self.height is not None:
+        elif self.diameter is not None or self.height is not None:
             raise ValueError("--diameter and --height go together, got one without the other")
-        if self.mass_centre_height is not None:
+        elif self.mass_centre_height is not None:
             raise ValueError("--mass-centre-height goes with --diameter and --height")
-        return rw.Cylinder(
-            semidiagonal=SEMIDIAGONAL if self.semidiagonal is None else self.semidiagonal,
-            tan_alpha=TAN_ALPHA if self.tan_alpha is None else self.tan_alpha,
-            **inertias,
-        )
+        else:
+            cylinder = rw.Cylinder(
+                semidiagonal=SEMIDIAGONAL if self.semidiagonal is None else self.semidiagonal,
+                tan_alpha=TAN_ALPHA if self.tan_alpha is None else self.tan_alpha,
+                **inertias,
+            )
+        return under_slab(cylinder, self.slab_mass_ratio, self.columns)
 
-    def _motion(self, *, still: bool) -> rw.GroundMotion | None:
+
+def under_slab(cylinder: rw.Cylinder, slab_mass_ratio: float | None, columns: int | None) -> rw.Cylinder:
+    """Return a cylinder, or the frame of a slab on such cylinders where a slab is given.
+
+    Raises
+    ------
+    ValueError
+        If there are columns without a slab, or the frame is none.
+    """
+    if slab_mass_ratio is None:
+        if columns is not None:
+            raise ValueError("--columns carry a slab, give --slab-mass-ratio as well")
+        return cylinder
+    return rw.WobblingFrame(cylinder, slab_mass_ratio, 3 if columns is None else columns)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Record:
+    """The options that state a ground motion."""
+
+    record: options.Record = None
+    record_x: options.RecordX = None
+    record_y: options.RecordY = None
+    record_z: options.RecordZ = None
+    units: options.Units = None
+    resample: options.Resample = False
+    scale: options.Scale = 1.0
+
+    def motion(self, *, still: bool = False) -> rw.GroundMotion | None:
+        """Return the ground motion; without a record El Centro, or None where the ground is then `still`.
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range, two do not go together, or the record cannot be read.
+        """
         x, y, z, scale = self.record_x, self.record_y, self.record_z, self.scale
         whole = self.record
         if not (math.isfinite(scale) and scale > 0.0):
@@ -137,29 +134,62 @@ class Problem:
         return "--units" if self.units is not None else "--resample" if self.resample else ""
 
 
-def states_problem(command: Callable[..., None]) -> Callable[..., None]:
-    """Give a command the options of a problem in the place of its parameter `problem`."""
-    types, own = get_type_hints(Problem, include_extras=True), get_type_hints(command, include_extras=True)
-    names = [field.name for field in fields(Problem)]
-    parameters = []
-    for name, parameter in inspect.signature(command).parameters.items():
-        if name == "problem":
-            parameters += [
-                inspect.Parameter(
-                    field.name, parameter.KEYWORD_ONLY, default=field.default, annotation=types[field.name]
-                )
-                for field in fields(Problem)
-            ]
-        else:
-            parameters.append(parameter.replace(kind=parameter.KEYWORD_ONLY, annotation=own[name]))
+@dataclass(frozen=True, kw_only=True)
+class Release:
+    """The options that state a release."""
 
-    @wraps(command)
-    def with_options(**given: Any) -> None:
-        command(problem=Problem(**{name: given.pop(name) for name in names}), **given)
+    release_tilt_deg: options.ReleaseTilt = None
+    rolling_rate: options.RollingRate = 0.0
+    duration: options.Duration = None
 
-    with_options.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]  # typer reads it
-    with_options.__annotations__ = {each.name: each.annotation for each in parameters}
-    return with_options
+    def initial(self) -> rw.InitialState | None:
+        """Return the state at release; None from rest.
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range, or two do not go together.
+        """
+        if self.release_tilt_deg is None:
+            if self.rolling_rate:
+                raise ValueError("--rolling-rate needs a release, give --release-tilt-deg [deg] as well")
+            return None
+        if not 0.0 <= self.release_tilt_deg < 90.0:
+            raise ValueError(
+                f"--release-tilt-deg must be at least 0 and below 90 [deg], got {self.release_tilt_deg:g}"
+            )
+        return rw.InitialState(tilt=math.radians(self.release_tilt_deg), rolling_rate=self.rolling_rate)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Problem(Release, Record, Body):
+    """The options that state a problem."""
+
+    gravity: options.Gravity = 9.81
+    friction: options.Friction = 1.0
+    rolling_resistance: options.RollingResistance = 0.0
+
+    def case(self) -> rw.Case:
+        """Return the case that they state.
+
+        Raises
+        ------
+        ValueError
+            If an option is out of range, or two do not go together.
+        """
+        initial, cylinder = self.initial(), self.cylinder()
+        motion = self.motion(still=initial is not None)
+        scaled = f" × {self.scale:g}" if self.scale != 1.0 else ""
+        return rw.Case(
+            cylinder,
+            motion,
+            initial=initial,
+            duration=FREE_DURATION if motion is None and self.duration is None else self.duration,
+            gravity=self.gravity,
+            friction=self.friction,
+            rolling_resistance=self.rolling_resistance,
+            name="free response" if motion is None else motion.name + scaled,
+        )
 
 
 def given_options(context: typer.Context) -> list[str]:
@@ -177,7 +207,7 @@ def restated(context: typer.Context, command: str, *, also: Collection[str] = ()
     return shlex.join(parts)
 
 
-def refuse(context: typer.Context, names: set[str], why: str) -> None:
+def refuse(context: typer.Context, names: Collection[str], why: str) -> None:
     """Refuse options that the user gave and that would be ignored.
 
     Raises
@@ -196,4 +226,4 @@ def refuse_options_of_engines(context: typer.Context, engines: list[str] | None)
         refuse(context, {"support", "time_step"}, "belongs to engines, got it with --engine none")
 
 
-PROBLEM = frozenset(field.name for field in fields(Problem))
+BODY, PROBLEM = (frozenset(field.name for field in fields(each)) for each in (Body, Problem))

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated
 
 import rockwobble as rw
 import rockwobble.compare as rc
 
 from . import options
+from .method_values import settings
+from .problem import Body, under_slab
 
 DEFAULT_COUNT = 100  # of synthetic motions, where the user does not say
 _motions = options.panel("Ground motions")
@@ -64,10 +66,8 @@ class ManyMotions:
         return rw.synthetic_motions(count, peak=1.0, seed=seed), f"synthetic ground motions, seed {seed}"
 
 
-def cylinders_of(
-    given: Sequence[str] | None, semidiagonal: float, tan_alpha: float
-) -> dict[str, rw.Cylinder]:
-    """Return the cylinders of texts NAME=R,TAN_ALPHA; without any the one of the two numbers.
+def cylinders_of(given: Sequence[str] | None, body: Body) -> dict[str, rw.Cylinder]:
+    """Return the cylinders of texts NAME=R,TAN_ALPHA; without any the one of the options.
 
     Raises
     ------
@@ -75,8 +75,8 @@ def cylinders_of(
         If a text has another form, or a name comes twice.
     """
     if not given:
-        body = rw.Cylinder(semidiagonal=semidiagonal, tan_alpha=tan_alpha)
-        return {f"R = {semidiagonal:g} m, tan α = {tan_alpha:g}": body}
+        one = body.cylinder()
+        return {f"R = {one.semidiagonal:g} m, tan α = {one.tan_alpha:g}": one}
     found: dict[str, rw.Cylinder] = {}
     for text in given:
         name, sign, numbers = (part.strip() for part in text.partition("="))
@@ -89,55 +89,62 @@ def cylinders_of(
             raise ValueError(f"--cylinder must be NAME=R,TAN_ALPHA such as pier=6,0.2, got {text!r}")
         if name in found:
             raise ValueError(f"--cylinder {name} is given twice")
-        found[name] = rw.Cylinder(semidiagonal=size, tan_alpha=slenderness)
+        cylinder = rw.Cylinder(semidiagonal=size, tan_alpha=slenderness)
+        found[name] = under_slab(cylinder, body.slab_mass_ratio, body.columns)
     return found
 
 
-def methods_of(
-    body: rw.Cylinder,
-    models: Sequence[str] | None,
-    engines: Sequence[str] | None,
-    supports: Sequence[str] | None,
-    given: Mapping[str, Any],
-    time_step: float | Literal["auto"] | None,
-) -> list[str | rw.Run]:
-    """Return reduced models by name, and each engine with those of the supports that it has.
+@dataclass(frozen=True, kw_only=True)
+class ManyMethods:
+    """The options that name many methods."""
 
-    Parameters
-    ----------
-    body : Cylinder
-        On which the settings are tried.
-    models, engines, supports : sequence of str, optional
-        Models: all without any, none for "none". Engines: none without any.
-    given : mapping
-        Settings, each of every run that has one of that name.
-    time_step : float or "auto", optional
-        [s]
+    model: Annotated[
+        list[str] | None,
+        options.method(
+            "Reduced model: recess, flat, planar-x, planar-y, worse-plane (of the two), or none; may be "
+            "repeated. Default: all."
+        ),
+    ] = None
+    engine: Annotated[
+        list[str] | None, options.method(f"{options.ENGINES}; may be repeated. Default: none.")
+    ] = None
+    support: options.Supports = None
+    setting: options.Settings = None
+    time_step: options.TimeStep = None
 
-    Raises
-    ------
-    ValueError
-        If an engine has none of the supports, or nothing has a setting.
-    """
-    from rockwobble.compare.studies.fragility.methods import MODELS
-    from rockwobble.multibody.engines.registry import find_engine
+    def methods(self, body: rw.Cylinder) -> list[str | rw.Run]:
+        """Return reduced models by name, and each engine with those of the supports that it has.
 
-    chosen: list[str | rw.Run] = [] if models == ["none"] else list(models or MODELS)
-    if not engines:
-        if supports or given or time_step is not None:
-            raise ValueError("--support, --set and --time-step are for engines, give --engine as well")
-        return chosen
-    runs: list[rw.Run] = []
-    for name in engines:
-        able = [each for each in supports or () if each in find_engine(name).supports]
-        if supports and len(able) < len(supports):
-            lacks = [each for each in supports if each not in able]
-            if not able:
-                raise ValueError(f"{name} has no support {', '.join(lacks)}")
-            print(f"{name} has no support {', '.join(lacks)} and is left out there")
-        runs += rc.default_runs([name], able or None)
-    if time_step is not None:
-        runs = [rw.Run(run.engine, run.support, time_step) for run in runs]
-    if given:
-        runs = list(rc.with_settings(rw.Case(body, rw.el_centro_1940()), runs, given))
-    return [*chosen, *runs]
+        Parameters
+        ----------
+        body : Cylinder
+            On which the settings are tried.
+
+        Raises
+        ------
+        ValueError
+            If an engine has none of the supports, or nothing has a setting.
+        """
+        from rockwobble.compare.studies.fragility.methods import MODELS
+        from rockwobble.multibody.engines.registry import find_engine
+
+        given, supports = settings(self.setting), self.support
+        chosen: list[str | rw.Run] = [] if self.model == ["none"] else list(self.model or MODELS)
+        if not self.engine:
+            if supports or given or self.time_step is not None:
+                raise ValueError("--support, --set and --time-step are for engines, give --engine as well")
+            return chosen
+        runs: list[rw.Run] = []
+        for name in self.engine:
+            able = [each for each in supports or () if each in find_engine(name).supports]
+            if supports and len(able) < len(supports):
+                lacks = [each for each in supports if each not in able]
+                if not able:
+                    raise ValueError(f"{name} has no support {', '.join(lacks)}")
+                print(f"{name} has no support {', '.join(lacks)} and is left out there")
+            runs += rc.default_runs([name], able or None)
+        if self.time_step is not None:
+            runs = [rw.Run(run.engine, run.support, self.time_step) for run in runs]
+        if given:
+            runs = list(rc.with_settings(rw.Case(body, rw.el_centro_1940()), runs, given))
+        return [*chosen, *runs]

@@ -14,8 +14,7 @@ from ...figures.comparison.place import orbit_picture, residual_picture
 from ...figures.comparison.playback import playback
 from ...figures.comparison.tilt import tilt_picture
 from ...figures.comparison.view import CaseView, case_views, own_rows
-from ...figures.picture import Layer, Line, Picture
-from ...figures.thinning import kept_points
+from ...figures.picture import Line, Picture
 from ..page import Page
 from ..words.cases import describe, group_of
 from ..words.sentences import fragment
@@ -115,36 +114,11 @@ def _pictures(view: CaseView, place: int, many: bool) -> Iterator[Picture]:
 
 
 def _thinned(pictures: Sequence[Picture]) -> list[Picture]:
-    """Return the pictures with as many points as the page can hold, the same for every line."""
-    curves = [
-        layer
-        for picture in pictures
-        for panel in picture.panels
-        for layer in panel.layers
-        if _is_curve(layer)
-    ]
-    points = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // max(1, len(curves))))
-
-    def fewer(layer: Layer) -> Layer:
-        if not (isinstance(layer, Line) and _is_curve(layer)):
-            return layer
-        keep = kept_points(layer.x, layer.y, points=points)
-        return dataclasses.replace(layer, x=layer.x[keep], y=layer.y[keep])
-
-    return [
-        dataclasses.replace(
-            picture,
-            panels=[
-                dataclasses.replace(panel, layers=[fewer(layer) for layer in panel.layers])
-                for panel in picture.panels
-            ],
-        )
-        for picture in pictures
-    ]
-
-
-def _is_curve(layer: Layer) -> bool:
-    return isinstance(layer, Line) and layer.style.dash != "none"
+    """Return the pictures with as many points as the page can hold, the same for every curve."""
+    layers = [layer for picture in pictures for panel in picture.panels for layer in panel.layers]
+    curves = sum(isinstance(layer, Line) and layer.style.dash != "none" for layer in layers)
+    points = min(_MOST_POINTS, max(_FEWEST_POINTS, _ALL_POINTS // max(1, curves)))
+    return [dataclasses.replace(picture, points=points) for picture in pictures]
 
 
 def _blocks(views: Sequence[CaseView], *, many: bool) -> dict[str, str]:

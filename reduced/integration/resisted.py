@@ -1,0 +1,231 @@
+"""The three models with rolling resistance as systems of first order.
+
+Behind the variables of each model (`systems`) stand two more: the energy lost so far, per unit mass, and the
+side, the sign of the tilt rate in planar motion, which stays what it was over a step. The couple jumps where
+such motion turns, so a step ends there and the next one begins with the other side, or none: the body stands
+still on its rim while the couple holds it. With spin the couple turns instead of jumping, within a time that
+may be short: a step is asked to follow that turn, or to be so short that it does not matter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from math import inf, sqrt
+from typing import Any
+
+from .._compile import inlined, jit
+from ..body import Body
+from ..equations import flat_rhs, planar_rhs, recess_motion
+from ..rolling import couple, couple_on, hold_time, push, twist_share
+from ..trigonometry import sin_cos
+from .stepping import runge_kutta
+from .systems import (
+    FLAT,
+    PLANAR,
+    RECESS,
+    System,
+    Weights,
+    flat_combine,
+    flat_ratio,
+    planar_combine,
+    planar_ratio,
+    scales,
+)
+from .tsit5 import State, Vector
+
+# squared cosine of the turn of the couple in a step up to which the step follows it
+_FOLLOWED = 0.64
+# times the tolerance on rates: so slow a body whose couple would hold it is still
+_STILL = 10.0
+# of 1/p: time after which a body is let go where the couple ceases to hold it while the push turns. Before,
+# the speed grows with the square of the time, and the couple turns with it the faster the smaller it is
+_BEFORE_SERIES = 1e-4
+# of 1/p: first step from a standstill, whose direction across the lean is not known before
+_FIRST_STEP = 1e-6
+
+
+@jit
+def _planar_derivative(body: Body, y: State, a: Vector) -> State:
+    free = planar_rhs(body, y[0], sin_cos(y[2])[1], a[0], a[2])
+    s, c = sin_cos(y[0])
+    tilting, _, power = couple(body, s, c, y[1], 0.0, free, a[2], y[4])
+    return y[1], free + tilting / body.A, 0.0, power, 0.0
+
+
+@jit
+def _recess_derivative(body: Body, y: State, a: Vector) -> State:
+    free, phi_rate, torque, s, c = recess_motion(body, y[0], y[2], y[3], a[0], a[1], a[2])
+    if y[1] == 0.0 and phi_rate == 0.0:
+        tilting, turning = couple_on(body, y[0], 0.0, y[2], 0.0, free, a)
+        power = 0.0
+    else:
+        tilting, turning, power = couple(body, s, c, y[1], -phi_rate, free, a[2], y[5])
+    return y[1], free + tilting / body.A, phi_rate, torque - s * turning, power, 0.0
+
+
+@jit
+def _flat_derivative(body: Body, y: State, a: Vector) -> State:
+    omega, free, phi_rate, Lambda_rate, tau_rate, S_rate = flat_rhs(
+        body, y[0], y[1], y[2], y[3], y[4], y[5], a[0], a[1], a[2]
+    )
+    s, c = sin_cos(y[0])
+    if omega == 0.0 and phi_rate == 0.0 and tau_rate == 0.0:
+        tilting, turning = couple_on(body, y[0], 0.0, y[2], 0.0, free, a)
+        power = 0.0
+    else:
+        tilting, turning, power = couple(body, s, c, omega, tau_rate - phi_rate, free, a[2], y[9])
+    sin_phi, cos_phi = sin_cos(y[2])
+    drift = body.b * tau_rate
+    return (
+        omega,
+        free + tilting / body.A,
+        phi_rate,
+        Lambda_rate - s * turning,
+        tau_rate,
+        S_rate + twist_share(body, s, c) * turning,
+        drift * sin_phi,
+        -drift * cos_phi,
+        power,
+        0.0,
+    )
+
+
+@inlined
+def _across_rate(body: Body, theta: float, Lambda: float, S: float) -> float:
+    """Return s psi' near upright [rad/s]; further from it the order of its size is enough."""
+    return -(Lambda / theta + S * body.E * body.J / (body.J * body.C - body.E * body.E)) / body.J
+
+
+def _make_ratio(momenta: Callable[..., Any], error_ratio: Callable[..., float]) -> Callable[..., float]:
+    """Return the error over what is allowed, of a model with spin, corners of the couple included."""
+
+    @jit
+    def ratio(body: Body, rtol: float, h: float, y: State, y_new: State, error: State, flat: bool) -> float:
+        found = error_ratio(body, rtol, h, y, y_new, error, flat)
+        if flat or not found <= 1.0 or y_new[0] <= 0.0:
+            return found
+        across, across_new = (
+            _across_rate(body, y[0], *momenta(y)),
+            _across_rate(body, y_new[0], *momenta(y_new)),
+        )
+        # a step much longer than the turn sees a jump, of which its error may miss all but a hundredth
+        speeds = (y[1] * y[1] + across * across) * (y_new[1] * y_new[1] + across_new * across_new)
+        along = y[1] * y_new[1] + across * across_new
+        if along > 0.0 and along * along > _FOLLOWED * speeds:
+            return found
+        unit = abs(y[1]) + abs(across) + body.p * sqrt(body.sin_alpha * y[0])
+        return max(found, 2.0 * body.delta * body.g / body.A * h / (rtol * unit))
+
+    return ratio
+
+
+@jit
+def _recess_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+    a = b = c = d = 0.0
+    for j in range(len(weights)):
+        w, k = weights[j], slopes[j]
+        a += w * k[0]
+        b += w * k[1]
+        c += w * k[2]
+        d += w * k[3]
+    return y[0] + h * a, y[1] + h * b, y[2] + h * c, y[3] + h * d
+
+
+@jit
+def _recess_ratio(
+    body: Body, rtol: float, h: float, y: State, y_new: State, error: State, flat: bool
+) -> float:
+    per_lever = 0.0 if flat else 1.0 / (body.J * y[0])
+    per_tilt, per_rate = scales(body, rtol, y[0], y[1], abs(y[3]) * per_lever, flat)
+    ratio = max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
+    return max(ratio, abs(error[2]) * (1.0 / rtol), abs(error[3]) * per_lever * per_rate)
+
+
+def _make_combine(combine: Callable[..., Any]) -> Callable[..., State]:
+    """Return y + h sum(weights slopes), with the energy lost, and with the side as it is."""
+
+    @jit
+    def combined(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
+        lost = 0.0
+        for j in range(len(weights)):
+            lost += weights[j] * slopes[j][-2]
+        return (*combine(y, h, weights, slopes), y[-2] + h * lost, y[-1])
+
+    return combined
+
+
+@jit
+def with_side(y: State, side: float) -> State:
+    """Return a state whose tilt rate has a sign."""
+    return (*y[:-1], side)
+
+
+def _make_system(model: System, derivative: Callable[..., State], *, spins: bool, pivots: bool) -> System:
+    """Return a model with the equations `derivative`; `pivots` as for `hold_time`."""
+    momenta, placed_before = model.momenta, model.placed
+
+    @jit
+    def placed(body: Body, y: State, theta: float, omega: float, phi: float, L: float) -> State:
+        # at an impact the tilt rate falls; an uplift begins with the work of the couple on its first tilt
+        lost = body.delta * body.g * (theta - y[0])
+        if theta == 0.0:
+            lost = 0.5 * body.A * (y[1] * y[1] - omega * omega)
+        side = 1.0 if omega > 0.0 else -1.0 if omega < 0.0 else 0.0
+        return (*placed_before(body, y, theta, omega, phi, L), y[-2] + lost, side)
+
+    @jit
+    def hold(body: Body, y: State, a: Vector, slope: Vector) -> float:
+        L, S = momenta(y)
+        if y[1] != 0.0 or L != 0.0 or S != 0.0:
+            return 0.0
+        time = hold_time(body, y[0], y[2], a, slope, pivots)
+        if spins and not pivots and time < inf:
+            excess, growth, _, turning = push(body, y[0], y[2], a, slope)
+            if turning != 0.0 and growth > 0.0:
+                longer = time - excess / growth if time == 0.0 else time
+                longer += _BEFORE_SERIES / body.p
+                return longer if longer > _FIRST_STEP / body.p else 0.0
+        return time
+
+    @jit
+    def set_off(body: Body, y: State, a: Vector, slope: Vector) -> tuple[State, float]:
+        excess, growth, tilting, turning = push(body, y[0], y[2], a, slope)
+        longest = _FIRST_STEP / body.p if spins else inf
+        if spins and not pivots and turning != 0.0 and 0.0 < excess < 10.0 * _BEFORE_SERIES / body.p * growth:
+            # the couple lets go: as long as it balances most of the push the body moves along that
+            s, c = sin_cos(y[0])
+            t = s / (1.0 + c)
+            H = body.J + (2.0 * body.E + body.C * t) * t
+            since = excess / growth
+            speed = 0.5 * growth * since * since / (body.A * tilting * tilting + H * turning * turning)
+            return placed(body, y, y[0], speed * tilting, y[2], -s * H * speed * turning), longest
+        return with_side(y, 1.0 if tilting > 0.0 else -1.0), longest
+
+    @jit
+    def stopped(body: Body, rtol: float, y: State, a: Vector, slope: Vector) -> State:
+        if spins:
+            L, S = momenta(y)
+            slow = _STILL * rtol * body.p
+            limit = body.A * slow * slow * body.sin_alpha * y[0]
+            # the second of these costs something, and few states pass the first; energies near upright
+            if body.A * y[1] * y[1] < limit and (
+                L * L / (body.J * y[0] * y[0]) + S * S * body.J / (body.J * body.C - body.E * body.E) < limit
+                and hold_time(body, y[0], y[2], a, slope, pivots) > _FIRST_STEP / body.p
+            ):
+                return placed(body, y, y[0], 0.0, y[2], 0.0)
+        return y
+
+    return System(derivative, momenta, placed, True, hold, set_off, stopped)
+
+
+RESISTED_PLANAR = _make_system(PLANAR, _planar_derivative, spins=False, pivots=False)
+RESISTED_RECESS = _make_system(RECESS, _recess_derivative, spins=True, pivots=False)
+RESISTED_FLAT = _make_system(FLAT, _flat_derivative, spins=True, pivots=True)
+
+STEPPERS = {
+    "planar": runge_kutta(RESISTED_PLANAR, _make_combine(planar_combine), planar_ratio),
+    "recess": runge_kutta(
+        RESISTED_RECESS, _make_combine(_recess_combine), _make_ratio(RECESS.momenta, _recess_ratio)
+    ),
+    "flat": runge_kutta(RESISTED_FLAT, _make_combine(flat_combine), _make_ratio(FLAT.momenta, flat_ratio)),
+}

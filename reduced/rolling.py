@@ -1,0 +1,200 @@
+"""Rolling resistance: a couple of at most delta N against the rolling of the rim.
+
+The couple M on the body is horizontal and acts against the horizontal part of its angular velocity, which
+is theta' across the lean and s psi' along it (the axis leans by theta, and phi' is vertical):
+
+    M = -delta N (theta', s psi')/w,   w = sqrt(theta'^2 + s^2 psi'^2),
+
+so its power is -delta N w. By the velocities that no slip leaves free, theta', phi' and tau' = phi' + psi',
+it is the generalised force
+
+    Q_theta = -delta N theta'/w,   Q_tau = -delta N s^2 psi'/w = -Q_phi.
+
+In the recess tau' = 0 and psi' = -phi'. On flat ground Lambda' has Q_phi and S' has Q_tau + (G/B) Q_phi.
+The normal force is that of the same motion, N = load + lift theta'', and theta'' has Q_theta/A: both follow
+from one linear equation. Where w = 0 the couple is what holds the body, if delta N suffices: standing still
+N = g + az, theta'' = 0 and L' = 0 need
+
+    M_theta = (g + az) D'' + D' a_r,   M_psi = -(D/s) a_t,   |M| <= delta (g + az).
+
+========= ======== ============================================================
+symbol    unit     meaning
+========= ======== ============================================================
+delta     m        length of rolling resistance
+N         m/s^2    normal force on the base, over m
+load      m/s^2    its part without theta'', g + az - D' theta'^2
+lift      m        z'' of the mass centre for each theta'', D'' = b c - h s
+w         rad/s    horizontal part of the angular velocity
+side      -        sign of the tilt rate, of motion in one plane
+========= ======== ============================================================
+"""
+
+from __future__ import annotations
+
+from math import copysign, cos, inf, sin, sqrt
+
+from ._compile import inlined, jit
+from .body import Body
+from .equations import in_plane_below
+
+Vector = tuple[float, float, float]
+
+# of 1/p: a hold that ends so soon is over. By rounding the end of one would be followed by another
+_HAIR = 1e-9
+
+
+@inlined
+def normal_force(body: Body, s: float, c: float, omega: float, az: float) -> tuple[float, float]:
+    """Return load [m/s^2] and lift [m] of the normal force N = load + lift theta''."""
+    return body.g + az - (body.b * s + body.h * c) * omega * omega, body.b * c - body.h * s
+
+
+@inlined
+def couple(
+    body: Body, s: float, c: float, omega: float, spin: float, free: float, az: float, side: float
+) -> tuple[float, float, float]:
+    """Return the couple of a motion and the power that it takes, per unit mass.
+
+    Parameters
+    ----------
+    body : Body
+    s, c : float
+        Sine and cosine of the tilt.
+    omega, spin : float
+        theta' and psi' [rad/s].
+    free : float
+        theta'' without the couple [rad/s^2].
+    az : float
+        [m/s^2]
+    side : float
+        Takes the place of theta'/w where psi' is 0, unless it is 0: in one plane the couple jumps where the
+        tilt turns, and a step goes on smoothly beyond it to find where that is.
+
+    Returns
+    -------
+    tuple of float
+        Components on theta and along the lean (on psi it is s times that) [m^2/s^2], power [m^2/s^3].
+    """
+    across = s * spin
+    load, lift = normal_force(body, s, c, omega, az)
+    # delta N/w of theta'' = free - delta N theta'/(A w), by one division; none where contact is lost
+    pressed = body.delta * body.A * max(0.0, load + lift * free)
+    if across != 0.0:
+        speed = sqrt(omega * omega + across * across)
+        per_speed = pressed / (body.A * speed + body.delta * lift * omega)
+        return -per_speed * omega, -per_speed * across, per_speed * speed * speed
+    tilting = side if side != 0.0 or omega == 0.0 else copysign(1.0, omega)
+    largest = pressed / (body.A + body.delta * lift * tilting)
+    return -largest * tilting, 0.0, largest * tilting * omega
+
+
+@inlined
+def twist_share(body: Body, s: float, c: float) -> float:
+    """Return s (1 - G/B), the part that a couple along the lean has in S'."""
+    t = s / (1.0 + c)
+    return s - (body.E + body.C * t) / (body.J + (2.0 * body.E + body.C * t) * t)
+
+
+@jit
+def needed_to_stand(body: Body, theta: float, phi: float, vertical: float, a: Vector) -> tuple[float, float]:
+    """Return the couple that holds a tilted body, on theta and along the lean, over m [m^2/s^2].
+
+    Linear in `vertical`, g + az or its rate, and `a`, the ground acceleration or its rate.
+    """
+    s, c = sin(theta), cos(theta)
+    b, h = body.b, body.h
+    a_r = a[0] * cos(phi) + a[1] * sin(phi)
+    a_t = a[1] * cos(phi) - a[0] * sin(phi)
+    return vertical * (b * c - h * s) + (b * s + h * c) * a_r, -(h + b * s / (1.0 + c)) * a_t
+
+
+@jit
+def push(body: Body, theta: float, phi: float, a: Vector, slope: Vector) -> tuple[float, float, float, float]:
+    """Return what moves a tilted body that stands still.
+
+    Returns
+    -------
+    tuple of float
+        Excess of the push over the couple [m^2/s^2], its rate [m^2/s^3], and the direction of the push on
+        theta and along the lean; the last is exactly 0 in one plane.
+    """
+    tilting, turning = needed_to_stand(body, theta, phi, body.g + a[2], a)
+    tilting_1, turning_1 = needed_to_stand(body, theta, phi, slope[2], slope)
+    if abs(turning) <= (body.h + body.b) * in_plane_below(body, a[0], a[1]):
+        turning = 0.0
+    size = sqrt(tilting * tilting + turning * turning)
+    if size == 0.0:
+        return -body.delta * (body.g + a[2]), 0.0, 0.0, 0.0
+    tilting, turning = -tilting / size, -turning / size
+    growth = -tilting_1 * tilting - turning_1 * turning - body.delta * slope[2]
+    return size - body.delta * (body.g + a[2]), growth, tilting, turning
+
+
+@jit
+def hold_time(body: Body, theta: float, phi: float, a: Vector, slope: Vector, pivots: bool) -> float:
+    """Return for how long the couple holds a tilted body that stands still [s]; 0 if it does not.
+
+    The ground acceleration is a + slope t, so |M|^2 - (delta N)^2 is a parabola in t. `pivots` says that
+    the body may turn about the vertical through its contact, which no couple of rolling resists.
+    """
+    allowed, allowed_1 = body.delta * (body.g + a[2]), body.delta * slope[2]
+    tilting, turning = needed_to_stand(body, theta, phi, body.g + a[2], a)
+    tilting_1, turning_1 = needed_to_stand(body, theta, phi, slope[2], slope)
+    below = (body.h + body.b) * in_plane_below(body, a[0], a[1])
+    if pivots and (abs(turning) > below or abs(turning_1) > below):
+        return 0.0
+    excess = tilting * tilting + turning * turning - allowed * allowed
+    if allowed <= 0.0 or excess > 0.0:
+        return 0.0
+    half = tilting * tilting_1 + turning * turning_1 - allowed * allowed_1
+    bend = tilting_1 * tilting_1 + turning_1 * turning_1 - allowed_1 * allowed_1
+    under_root = half * half - bend * excess
+    if under_root < 0.0 or (bend <= 0.0 and half <= 0.0):
+        return inf
+    root = sqrt(under_root)
+    time = -excess / (half + root) if half > 0.0 else (root - half) / bend
+    return time if time > _HAIR / body.p else 0.0
+
+
+@jit
+def couple_on(
+    body: Body, theta: float, omega: float, phi: float, spin: float, free: float, a: Vector
+) -> tuple[float, float]:
+    """Return the couple on a body in motion, or on one that stands still, on theta and along the lean.
+
+    Per unit mass [m^2/s^2]; arguments as for `couple`, with the ground acceleration `a`.
+    """
+    if omega == 0.0 and spin == 0.0 and theta > 0.0:
+        tilting, turning = needed_to_stand(body, theta, phi, body.g + a[2], a)
+        allowed, needed = body.delta * (body.g + a[2]), sqrt(tilting * tilting + turning * turning)
+        if needed <= allowed:
+            return tilting, turning
+        if abs(turning) > (body.h + body.b) * in_plane_below(body, a[0], a[1]):
+            # about to move the way that it is pushed, as far as both inertias are alike: for a first moment
+            share = max(0.0, allowed) / needed
+            return share * tilting, share * turning
+    side = copysign(1.0, free) if omega == 0.0 else 0.0
+    tilting, turning, _ = couple(body, sin(theta), cos(theta), omega, spin, free, a[2], side)
+    return tilting, turning
+
+
+def impact_ratio(body: Body, restitution: float) -> float:
+    """Return the ratio of tilt rates at an impact of planar motion with rolling resistance.
+
+    The vertical impulse on the base is n = m b (omega + omega'), and the couple takes delta n of the moment
+    of momentum: A omega' = r A omega - delta b (omega + omega'), r being the ratio without it. To first
+    order r of Housner is the ratio of delta = b without impact.
+
+    Parameters
+    ----------
+    body : Body
+    restitution : float
+        r [-].
+
+    Returns
+    -------
+    float
+        omega'/omega [-], not negative.
+    """
+    taken = body.delta * body.b
+    return max(0.0, (body.A * restitution - taken) / (body.A + taken))

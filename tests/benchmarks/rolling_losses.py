@@ -1,0 +1,138 @@
+"""Rolling resistance: error over tolerance, computing time, and the engines beside the models.
+
+`python tests/benchmarks rolling_losses` prints three tables: error of the models over the tolerance in free
+response, their computing time over that of the models without it (runs in turns, medians of ratios), and the
+rolling friction of engines against the models over step and coefficient of friction.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import time
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rockwobble import multibody, reduced
+from rockwobble.models import Case, Cylinder, InitialState, el_centro_1940
+from rockwobble.reduced.problem import make_problem
+from rockwobble.reduced.simulation import make_ready
+
+from .console import options_of, show
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SHARE = 0.01  # delta over b
+TOLERANCES = (1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
+ENGINES = {"mujoco": ((1.0, 20.0), (4e-4, 2e-4, 1e-4)), "pybullet": ((1.0, 4.0), (4e-4, 2e-4))}
+_ROUNDS = 100  # of timed runs
+_PIER = Cylinder(semidiagonal=6.0, tan_alpha=1.0 / 3.0)
+
+
+def _released(share: float, *, spin: float, friction: float = 1.0, duration: float = 4.0) -> Case:
+    release = InitialState(0.5 * _PIER.alpha, rolling_rate=spin)
+    length = share * _PIER.base_radius
+    return Case(_PIER, initial=release, duration=duration, friction=friction, rolling_resistance=length)
+
+
+def errors() -> pd.DataFrame:
+    """Return the largest error of tilt [alpha] and energy account (relative) over the tolerance."""
+    import pandas as pd
+
+    rows = []
+    for model, options in reduced.MODELS.items():
+        case = _released(SHARE, spin=0.0 if model == "planar" else 0.3, duration=12.0)
+        exact = reduced.simulate(case, rtol=1e-13, **options).tilt
+        for rtol in TOLERANCES:
+            trace = reduced.simulate(case, rtol=rtol, **options)
+            account = (trace.energy + trace.energy_lost) / trace.energy[0] - 1.0
+            error = float(np.abs(trace.tilt - exact).max()) / _PIER.alpha
+            rows.append((model, rtol, error, float(np.abs(account).max()), trace.step_count))
+    return pd.DataFrame(rows, columns=["model", "rtol", "tilt_error", "energy_error", "steps"])
+
+
+def times(rounds: int = _ROUNDS) -> pd.DataFrame:
+    """Return computing time with rolling resistance over that without, 20 s of El Centro times 2."""
+    import pandas as pd
+
+    rows = []
+    cylinder, motion = Cylinder(semidiagonal=6.0, tan_alpha=0.2), el_centro_1940().scaled(2.0)
+    for model, options in reduced.MODELS.items():
+        problems = []
+        for share in (0.0, SHARE):
+            length = share * cylinder.base_radius
+            case = Case(cylinder, motion, duration=20.0, rolling_resistance=length)
+            given = {"support": "recess", "plane": None, "restitution": 1.0, "rest_tilt": 1e-8} | dict(
+                options
+            )
+            problems.append(make_problem(case, rtol=1e-8, **given))
+            make_ready(problems[-1].kernel)
+        ratios = []
+        for _ in range(rounds):
+            marks = [time.perf_counter()]
+            for problem in problems:
+                problem.solve(np.empty(0))
+                marks.append(time.perf_counter())
+            ratios.append((marks[2] - marks[1]) / (marks[1] - marks[0]))
+        counts = [problem.solve(np.empty(0))[0].step_count for problem in problems]
+        rows.append((model, *counts, *np.percentile(ratios, [50, 25, 75])))
+    return pd.DataFrame(rows, columns=["model", "steps_without", "steps_with", "ratio", "low", "high"])
+
+
+def engines() -> pd.DataFrame:
+    """Return the largest error of the tilt [alpha] and the share of the energy lost, engine and model."""
+    import pandas as pd
+
+    rows = []
+    for support in ("recess", "flat"):
+        for share in (0.004, 0.02):
+            for engine, (frictions, steps) in ENGINES.items():
+                for friction in frictions:
+                    case = _released(share, spin=0.5, friction=friction)
+                    model = reduced.simulate(case, support=support, rtol=1e-10)
+                    free = reduced.simulate(
+                        dataclasses.replace(case, rolling_resistance=0.0), support=support
+                    )
+                    effect = float(np.abs(free.tilt - model.tilt).max()) / _PIER.alpha
+                    lost = model.energy_lost[-1] / model.energy[0]
+                    for step in steps:
+                        trace = multibody.simulate(case, engine=engine, support=support, time_step=step)
+                        error = float(np.abs(trace.tilt - model.tilt).max()) / _PIER.alpha
+                        taken = 1.0 - trace.energy[-1] / trace.energy[0]
+                        rows.append((support, share, engine, friction, step, error, effect, lost, taken))
+    names = [
+        "support",
+        "delta_b",
+        "engine",
+        "friction",
+        "step",
+        "tilt_error",
+        "effect",
+        "lost",
+        "engine_lost",
+    ]
+    return pd.DataFrame(rows, columns=names)
+
+
+def main(arguments: Sequence[str]) -> int:
+    """Print the tables."""
+    options_of("rolling_losses", "Error, computing time and engines with rolling resistance.").parse_args(
+        arguments
+    )
+    forms = {"model": "", "rtol": ".0e", "tilt_error": ".1e", "energy_error": ".1e", "steps": "d"}
+    show(errors(), "Free response, errors of tilt (in alpha) and of the energy account", forms)
+    forms = {
+        "model": "",
+        "steps_without": "d",
+        "steps_with": "d",
+        "ratio": ".2f",
+        "low": ".2f",
+        "high": ".2f",
+    }
+    show(times(), "Computing time with over without, with quartiles", forms)
+    forms = {"support": "", "delta_b": ".3f", "engine": "", "friction": ".0f", "step": ".0e"}
+    forms |= {"tilt_error": ".1e", "effect": ".1e", "lost": ".4f", "engine_lost": ".4f"}
+    show(engines(), "Rolling friction of engines against the models, tilt in alpha", forms)
+    return 0
