@@ -49,9 +49,10 @@ if TYPE_CHECKING:  # under its own name again: that is how a type checker knows 
     from .studies.fragility.samples import LIMITS as LIMITS
     from .studies.fragility.study import Fragility as Fragility
     from .studies.fragility.study import fragility as fragility
+    from .studies.spectrum.study import OverturningSpectrum as OverturningSpectrum
+    from .studies.spectrum.study import spectrum as spectrum
     from .studies.sweep.grid import Grid as Grid
     from .studies.sweep.result import Sweep as Sweep
-    from .studies.sweep.study import read_sweep as read_sweep
     from .studies.sweep.study import sweep as sweep
 
 _MODULES = {
@@ -80,9 +81,10 @@ _MODULES = {
     "studies.fragility.intensity": ("MEASURES",),
     "studies.fragility.samples": ("LIMITS",),
     "studies.fragility.study": ("Fragility", "fragility"),
+    "studies.spectrum.study": ("OverturningSpectrum", "spectrum"),
     "studies.sweep.grid": ("Grid",),
     "studies.sweep.result": ("Sweep",),
-    "studies.sweep.study": ("read_sweep", "sweep"),
+    "studies.sweep.study": ("sweep",),
     "metrics.pair": ("Pair", "make_pair"),
     "external.trajectory": ("External", "read_trajectory"),
 }

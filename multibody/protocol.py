@@ -136,6 +136,24 @@ class Steps:
     unsolved: bool = False
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SceneCounts:
+    """Sizes of the problem that the last step solved.
+
+    Attributes
+    ----------
+    degrees_of_freedom : int
+    contacts : int
+        Points.
+    constraint_rows : int
+        Scalar constraints, normal and of friction.
+    """
+
+    degrees_of_freedom: int
+    contacts: int
+    constraint_rows: int
+
+
 class Stepper(Protocol):
     """An open scene."""
 

@@ -9,8 +9,7 @@ from typing import Any
 from rockwobble.models import Case
 
 from .body import scaled_body
-from .engines.ability import require_able
-from .engines.registry import find_engine
+from .engines.registry import find_engine, require_able
 from .protocol import Engine, Scene
 from .scene.froude import REFERENCE_GRAVITY, Scale, default_step, froude_scale
 from .start import starting_state

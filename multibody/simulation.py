@@ -15,8 +15,7 @@ from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive
 from rockwobble.models.traces.trace_source import Known
 
-from .engines.ability import require_able
-from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, find_engine
+from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, find_engine, require_able
 from .protocol import Scene
 from .recording.diagnostics import diagnostics
 from .recording.passes import passes_between, true_swings

@@ -17,11 +17,13 @@ if TYPE_CHECKING:
     from rockwobble.compare import (
         Comparison,
         External,
+        Grid,
         advise,
         compare,
         ensemble,
         fragility,
         simulate,
+        spectrum,
         sweep,
     )
     from rockwobble.compare.check import check
@@ -56,6 +58,7 @@ __all__ = [
     "Cylinder",
     "Diagnostic",
     "External",
+    "Grid",
     "GroundMotion",
     "InitialState",
     "Run",
@@ -81,12 +84,15 @@ __all__ = [
     "reports",
     "shipped_suites",
     "simulate",
+    "spectrum",
     "sweep",
     "synthetic_motions",
     "with_motions",
 ]
 _PARTS = ("compare", "models", "multibody", "reduced", "reports")
-_OF_COMPARE = ("Comparison", "External", "advise", "ensemble", "fragility", "simulate", "sweep")
+_OF_COMPARE = (
+    *("Comparison", "External", "Grid", "advise", "ensemble", "fragility", "simulate", "spectrum", "sweep"),
+)
 
 
 def __getattr__(name: str) -> object:

@@ -22,8 +22,7 @@ from ..metrics.pair import start_of
 from ..metrics.turning import first_unresolved_pass
 from ..runs.execution import case_inputs
 from ..storage.fingerprint import fingerprint
-from ..storage.manifest import Number, made_now
-from ..storage.manifest import Results as Stored
+from ..storage.manifest import Number, Stored, made_now
 from ..storage.results import Results
 from .budget import ErrorBudget
 from .summary import agreement_matrix

@@ -24,6 +24,8 @@ class Option:
         Range of a number, both ends included.
     above : float
         A number must be larger.
+    choices : tuple of str
+        Words, one of which a word is; where there are several words, each of them.
     form : str
         How a text is read that is neither a number nor a word: "numbers" (a list, or an even range),
         "levels" (a list, or a range even in the logarithm) or "restitution".
@@ -36,6 +38,7 @@ class Option:
     least: float = -math.inf
     most: float = math.inf
     above: float = -math.inf
+    choices: tuple[str, ...] = ()
     form: str = ""
     flag: str = ""
 
@@ -58,7 +61,7 @@ class Plan:
     Raises
     ------
     ValueError
-        If a number is none, or out of its range.
+        If a number is none or out of its range, or a word is none of the choices.
     """
 
     def __post_init__(self) -> None:
@@ -67,6 +70,10 @@ class Plan:
         kinds = get_type_hints(type(self))
         for name, stated in options_of(type(self)).items():
             kind, value = kinds[name], getattr(self, name)
+            words = [value] if isinstance(value, str) else value or ()
+            wrong = [word for word in words if word not in stated.choices] if stated.choices else []
+            if wrong:
+                raise ValueError(f"{name} must be one of {', '.join(stated.choices)}, got {quoted(wrong[0])}")
             if kind not in (int, float):
                 continue
             whole = kind is int

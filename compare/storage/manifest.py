@@ -190,7 +190,7 @@ def write_pages(folder: str | Path, kind: str, pages: Mapping[str, bytes]) -> No
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Results:
+class Stored:
     """The results of one kind in a folder, none of its files damaged."""
 
     folder: Path
@@ -226,7 +226,7 @@ class Results:
         return (self.folder / name).read_bytes()
 
 
-def read_results(folder: str | Path, kind: str) -> Results:
+def read_results(folder: str | Path, kind: str) -> Stored:
     """Return the results of one kind in `folder`; what is installed here has no part in them.
 
     Raises
@@ -241,7 +241,7 @@ def read_results(folder: str | Path, kind: str) -> Results:
     for name in found[kind].files:
         if (state := file_state(place, found[kind], name)) != "whole":
             raise ValueError(f"{place / name} is {state}: it is not what was written there")
-    return Results(folder=place, manifest=found[kind])
+    return Stored(folder=place, manifest=found[kind])
 
 
 def file_state(folder: Path, manifest: Manifest, name: str) -> str:

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self, cast
 
 from rockwobble.models.shown import Shown, brief
 
-from .manifest import Manifest, Number, made_now, read_results, write_results
-from .manifest import Results as Stored
+from .manifest import Manifest, Number, Stored, made_now, read_results, write_results
 
 if TYPE_CHECKING:
     import pandas as pd

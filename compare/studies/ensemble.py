@@ -27,8 +27,7 @@ from ..runs.execution import Job, job_fingerprint, open_trace_cache, simulate_al
 from ..runs.labels import run_labels
 from ..runs.progress import ProgressCallback
 from ..storage.fingerprint import fingerprint
-from ..storage.manifest import Number
-from ..storage.manifest import Results as Stored
+from ..storage.manifest import Number, Stored
 from ..storage.results import Results
 from .plans import Copies
 

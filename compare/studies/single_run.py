@@ -14,8 +14,7 @@ from ..comparison.prediction import nudged, reproducible_until
 from ..runs.choice import own_model
 from ..runs.execution import Job, job_fingerprint, simulate_all
 from ..runs.progress import ProgressCallback
-from ..storage.manifest import Number
-from ..storage.manifest import Results as Stored
+from ..storage.manifest import Number, Stored
 from ..storage.results import Results
 
 if TYPE_CHECKING:

@@ -44,12 +44,10 @@ def release(can: rp.RigidBody) -> None:
     axis = np.array([math.sin(TILT), 0.0, math.cos(TILT)])
     centre = np.array([B * (1 - axis[2]), 0.0, B * axis[0]]) + H * axis
     turning = SPIN * (np.array([0.0, 0.0, 1.0]) - axis)
-    can.translation = tuple((centre - [0.0, 0.0, H]).tolist())
+    can.translation = rp.Vec3(*(centre - [0.0, 0.0, H]).tolist())
     can.rotation = rp.Rotation3(w=math.cos(TILT / 2), x=0.0, y=math.sin(TILT / 2), z=0.0)
-    can.linvel, can.angvel = (
-        tuple(np.cross(turning, centre - [B, 0.0, 0.0]).tolist()),
-        tuple(turning.tolist()),
-    )
+    can.linvel = rp.Vec3(*np.cross(turning, centre - [B, 0.0, 0.0]).tolist())
+    can.angvel = rp.Vec3(*turning.tolist())
 
 
 def next_largest_tilt(seconds: float = 2.0) -> tuple[float, float]:

@@ -1,14 +1,22 @@
-"""Members of the protocol that the engines of this package state in the same way."""
+"""What the engines of this package state alike: members of the protocol, defaults and bounds of settings."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from dataclasses import fields
 from functools import cache
 from importlib.metadata import version
-from typing import Any, ClassVar, Protocol
+from typing import Any, ClassVar, Protocol, TypeVar
+
+from rockwobble.models.number_checks import quoted
 
 from ..facts import EngineFacts
 from ..protocol import Scene, Settings
+
+S = TypeVar("S")
+
+GUIDE = 0.2  # 2 h sqrt(stiffness of the guide): see `MujocoSettings.guide_stiffness`
 
 
 class _SettingsType(Protocol):
@@ -57,3 +65,35 @@ class Declared:
 @cache  # to read it takes as long as a hundred steps
 def _version(package: str) -> str:
     return version(package)
+
+
+def build(kind: type[S], engine: str, given: Mapping[str, Any], defaults: Mapping[str, Any]) -> S:
+    """Return the settings of an engine: those given in place of the defaults."""
+    names = [field.name for field in fields(kind)]  # type: ignore[arg-type]
+    for name in given:
+        if name not in names:
+            raise ValueError(f"{name!r} is not a setting of {engine}; allowed are {', '.join(names)}")
+    return kind(**{**defaults, **given})
+
+
+def positive(settings: object, name: str, *, most: float = math.inf, or_zero: bool = False) -> None:
+    """Refuse a setting that is no positive number of at most `most`; `or_zero` allows 0, too."""
+    value = getattr(settings, name)
+    number = isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if not (number and value <= most and (value > 0.0 or (or_zero and value == 0.0))):
+        limit = "" if most == math.inf else f" and at most {most:g}"
+        raise ValueError(f"{name} must be {'at least' if or_zero else 'above'} 0{limit}, got {quoted(value)}")
+
+
+def whole(settings: object, name: str) -> None:
+    """Refuse a setting that is no positive whole number."""
+    value = getattr(settings, name)
+    if type(value) is not int or value < 1:
+        raise ValueError(f"{name} must be a positive whole number, got {quoted(value)}")
+
+
+def one_of(settings: object, name: str, allowed: tuple[Any, ...]) -> None:
+    """Refuse a setting that is none of the values allowed."""
+    value = getattr(settings, name)
+    if value not in allowed:
+        raise ValueError(f"{name} must be one of {', '.join(map(str, allowed))}, got {quoted(value)}")

@@ -25,11 +25,9 @@ import numpy as np
 from rockwobble.models.support import SUPPORTS
 
 from ..facts import EngineFacts
-from ..protocol import Array, Scene, Settings, Stepper, Steps
+from ..protocol import Array, Scene, SceneCounts, Settings, Stepper, Steps
 from ..scene.friction import body_friction
-from .declared import Declared
-from .scene_counts import SceneCounts
-from .settings.values import build, positive, whole
+from .declared import Declared, build, positive, whole
 
 _SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, it corrects the rest
 # [rad] lean from which the guide acts in full: its torque shakes a closed base, which friction holds as
@@ -37,14 +35,12 @@ _SLOP = 10.0  # depths of the rim that Rapier does not correct: of what lands, i
 _OPEN = 2e-4
 _FASTEST_RISE = 1e-3  # [m/s] of a base that has landed deeper: taken back at once, it would be thrown back
 _HALF_DISC = 0.125  # of b: a disc whose far edge is clear of the ground until the side is down
-_GUIDE = (
-    0.05  # 2 h sqrt(stiffness of the guide); see `settings.values.GUIDE`: stiffer, it acts on a rounded twist
-)
+_GUIDE = 0.05  # 2 h sqrt(stiffness of the guide); see `declared.GUIDE`: stiffer, it acts on a rounded twist
 _FACTS = EngineFacts(
     title="Rapier (single precision)",
     step_time=2e-5,
-    release_error=1e-5,
-    uplift_error=5e-5,
+    release_error=5e-5,
+    uplift_error=7e-4,
     rounding=2.0**-24,
 )
 
@@ -121,6 +117,8 @@ class _RapierStepper:
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
         self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
         self._world, self._cylinder = _build(rapier3d, scene, settings)
+        # position [m] and quaternion, scalar first
+        self._pose: tuple[float, float, float, float, float, float, float]
         start = scene.start
         position, velocity, spin = start.position.copy(), start.velocity, start.angular_velocity
         position[2] -= settings.depth

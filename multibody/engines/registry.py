@@ -18,6 +18,8 @@ from functools import cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple, cast
 
+from rockwobble.models import Case, WobblingFrame
+
 from ..facts import EngineFacts
 from ..protocol import MEMBERS, Engine
 
@@ -63,23 +65,23 @@ _GRAPHICS = _Libraries(("libGL.so.1", "libX11.so.6"), "apt install libgl1 libx11
 _WHEEL = sys.version_info < (3, 12) and sys.platform == "linux" and platform.machine() == "x86_64"
 _ENGINES: Mapping[str, _Entry] = MappingProxyType(
     {
-        "mujoco": _Entry("mujoco", ".mujoco_engine:MujocoEngine", "pip install 'mujoco>=4.0,<5'"),
+        "mujoco": _Entry("mujoco", ".mujoco:MujocoEngine", "pip install 'mujoco>=4.0,<5'"),
         "pybullet": _Entry(
             "pybullet",
-            ".pybullet_engine:PybulletEngine",
+            ".pybullet:PybulletEngine",
             "pip install pybullet, which has wheels for Python 3.11 and older on Linux x86-64 only",
             standard=_WHEEL,
         ),
         "dart": _Entry(
             "dartpy",
-            ".dart_engine:DartEngine",
+            ".dart:DartEngine",
             "pip install 'dartpy>=6.20,<7'",
             standard=not _WHEEL,
             libraries=_GRAPHICS,
         ),
         "drake": _Entry(
             "drake",
-            ".drake_engine:DrakeEngine",
+            ".drake:DrakeEngine",
             "pip install 'drake>=1.51'",
             module="pydrake",
             standard=False,
@@ -87,7 +89,7 @@ _ENGINES: Mapping[str, _Entry] = MappingProxyType(
         ),
         "exudyn": _Entry(
             "exudyn",
-            ".exudyn_engine:ExudynEngine",
+            ".exudyn:ExudynEngine",
             "pip install 'exudyn>=1.13.6,<2'",
             standard=False,
             libraries=_GRAPHICS,
@@ -168,6 +170,37 @@ def find_engine(name: str) -> Engine:
     if not _is_here(entry):
         raise EngineNotInstalledError(f"engine {name!r} {_lack(entry)}")
     return _made(entry)
+
+
+def require_able(engine: Engine, name: str, case: Case, support: str) -> None:
+    """Check that the engine called `name` has the support and can start the case.
+
+    Raises
+    ------
+    ValueError
+        Saying what is allowed.
+    """
+    supports = engine.supports
+    if support not in supports:
+        allowed = f"one of {', '.join(supports)}" if len(supports) > 1 else supports[0]
+        raise ValueError(f"support must be {allowed} in {name}, got {support!r}")
+    if isinstance(case.cylinder, WobblingFrame) and case.cylinder.slab_mass_ratio > 0.0:
+        if not engine.facts.carries_slab:
+            raise ValueError(f"{name} has no scene of a frame, got {case.cylinder!r}")
+        if case.cylinder.columns != 1:
+            raise ValueError(
+                f"columns must be 1 in {name}, a slab that only translates, got {case.cylinder.columns}"
+            )
+        if support == "ring":
+            raise ValueError("support must be recess or flat under a slab, which has no walls, got 'ring'")
+    if not engine.uplifts and (case.initial is None or case.initial.tilt == 0.0):
+        raise ValueError(
+            f"{name} cannot uplift a cylinder that stands: give a release with a tilt, got a start at rest"
+        )
+    if case.rolling_resistance and not engine.facts.rolling_friction:
+        raise ValueError(
+            f"{name} has no rolling friction: rolling_resistance must be 0, got {case.rolling_resistance!r} m"
+        )
 
 
 def engine_facts(name: str) -> EngineFacts:

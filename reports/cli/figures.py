@@ -10,8 +10,8 @@ import typer
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.results import show_and_write
-from ..console.terminal import command_line, interruptible, user_input
+from ..console.results import show_and_save
+from ..console.terminal import interruptible, user_input
 from .inputs import options
 
 Grid = Annotated[
@@ -24,7 +24,7 @@ Grid = Annotated[
 
 
 def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-figures")) -> None:
-    """Compute figures 3 to 6 of the paper again, and hold its statements against the numbers.
+    """Compute figures 3 to 6 of the paper again, and compare its statements with the numbers.
 
     Writes paper.md and paper.html with a verdict on each statement, the figures as SVG, and the data of each
     and the numbers of the statements as Parquet.
@@ -34,8 +34,8 @@ def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-figures")) -> 
     with interruptible():
         with user_input():
             rc.require_writable(out)
-        from ..paper.page import compute, paper_page
+        from ..paper.page import compute
 
-        with shown_progress("figures") as tell:
-            manifest, tables, spectrum = compute(grid, command_line(), tell)
-        show_and_write(out, paper_page(tables, manifest, spectrum), manifest, tables)
+        with shown_progress("figures") as progress:
+            found = compute(grid, progress)
+        show_and_save(found, out)

@@ -40,7 +40,7 @@ for _command, _example in (
     (compare, "rockwobble compare --semidiagonal 10 --tan-alpha 0.1 --engine mujoco"),
     (advise, "rockwobble advise --record-x EW.AT2 --record-y NS.AT2 --friction 0.5"),
     (simulate, "rockwobble simulate --release-tilt-deg 5 --rolling-rate 0.5 --duration 8"),
-    (spectrum, "rockwobble spectrum --tan-alpha 0.2 --sizes 50 --intensities 50"),
+    (spectrum, "rockwobble spectrum --tan-alpha 0.2 --semidiagonal 1:20:50 --intensity 1:9:50"),
     (sweep, "rockwobble sweep --semidiagonal 0.5:30:100 --scale 1,2,4 --out grid"),
     (show, "rockwobble show rockwobble-sweep"),
     (report, "rockwobble report rockwobble-compare"),

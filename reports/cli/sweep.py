@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from dataclasses import fields
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -13,33 +14,13 @@ import rockwobble as rw
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.terminal import command_line, interruptible, user_input
+from ..console.results import save_with_page
+from ..console.terminal import interruptible, user_input
 from .inputs import options
 from .inputs.estimate import require_sweep
-from .inputs.grid import grid_of
+from .inputs.grid import GridOptions
+from .inputs.plan_options import takes_options
 from .inputs.problem import refuse
-
-if TYPE_CHECKING:
-    from rockwobble.compare.storage.manifest import Manifest
-
-    from ..pages.page import Page
-
-_grid = options.panel("Grid: each a number, a list 1,2,6 or a range FROM:TO:COUNT")
-# what states a grid: the file of a suite states its own
-_STATED = {
-    *(
-        "semidiagonal",
-        "tan_alpha",
-        "scale",
-        "record_x",
-        "record_y",
-        "record_z",
-        "units",
-        "resample",
-        "gravity",
-    ),
-    *("plane", "restitution"),
-}
 
 SuiteFile = Annotated[
     str | None,
@@ -49,19 +30,12 @@ SuiteFile = Annotated[
         show_default=False,
     ),
 ]
-Sizes = Annotated[str, _grid("R, in m.")]
-Slendernesses = Annotated[str, _grid("Slenderness b/h.")]
-Scales = Annotated[str, _grid("Factors on the records.")]
 Models = Annotated[
     list[str] | None,
-    _grid("recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs."),
+    options.method(
+        "recess, flat or planar; may be repeated. Default: recess; with a suite, none but its runs."
+    ),
 ]
-RecordsX = Annotated[
-    list[Path] | None,
-    _grid("East-west component, or zero; may be repeated for several records. Default: El Centro 1940."),
-]
-RecordsY = Annotated[list[Path] | None, _grid("North-south component of each, or zero.")]
-RecordsZ = Annotated[list[Path] | None, _grid("Vertical component of each, or of none.")]
 Scheduler = Annotated[
     str | None,
     options.work(
@@ -75,21 +49,12 @@ ChunkSize = Annotated[
 ]
 
 
+@takes_options
 def sweep(
     context: typer.Context,
+    grid: GridOptions,
     suite: SuiteFile = None,
-    semidiagonal: Sizes = "0.5:30:100",
-    tan_alpha: Slendernesses = "0.2",
-    scale: Scales = "0.5:6:100",
-    record_x: RecordsX = None,
-    record_y: RecordsY = None,
-    record_z: RecordsZ = None,
-    units: options.Units = None,
-    resample: options.Resample = False,
-    gravity: options.Gravity = 9.81,
     model: Models = None,
-    plane: options.Plane = None,
-    restitution: options.Restitution = None,
     workers: options.Workers = None,
     scheduler: Scheduler = None,
     chunk: ChunkSize = None,
@@ -100,51 +65,35 @@ def sweep(
     A grid takes every size with every slenderness, scale, record and model, from rest, for its
     peak tilt; friction is assumed to suffice. A suite takes every case with every run.
 
-    Whatever ends the sweep, the same command goes on where it stopped.
+    Whatever ends the sweep, the same command resumes.
 
     Writes sweep.parquet, one row for each run, sweep.html (open it in a browser), sweep.md and sweep.svg.
     """
     with user_input():
         plan: rc.Grid | rw.Suite
         if suite is None:
-            plan = grid_of(
-                semidiagonal,
-                tan_alpha,
-                scale,
-                (record_x, record_y, record_z, units, resample),
-                model,
-                gravity=gravity,
-                plane=plane,
-                restitution=restitution,
-            )
+            plan = grid.grid(model)
         else:
-            refuse(context, _STATED, f"does not go with a suite, got {suite}: the file states the problems")
+            stated = {each.name for each in fields(GridOptions)}
+            refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
         how_long = require_sweep(plan)
         rc.require_writable(out)
     for line in (*_echo(plan), how_long):
         print(line)
-    from ..pages.runs.sweep import sweep_page
-
-    drawn: list[Page] = []
-
-    def pages(found: rc.Sweep, made: Manifest) -> dict[str, bytes]:
-        drawn.append(sweep_page(found, made))
-        return drawn[0].files()
-
-    with interruptible(out), user_input(), shown_progress("chunks") as tell:
+    shows: list[Callable[[], None]] = []
+    with interruptible(out), user_input(), shown_progress("chunks") as progress:
         rw.sweep(
             plan,
             out=out,
             scheduler=scheduler,
             workers=workers,
             chunk_size=chunk,
-            progress=tell,
-            command=command_line(),
-            pages=pages,
+            progress=progress,
+            save=lambda found: shows.append(save_with_page(found, out)),
         )
-    drawn[0].show()
-    print(f"\nWritten to {out}: the tables, their manifest and the pages")
+    for show in shows:
+        show()
 
 
 def _suite(name: str, models: list[str] | None) -> rw.Suite:

@@ -10,8 +10,8 @@ import typer
 import rockwobble.compare as rc
 
 from ..console.progress import shown_progress
-from ..console.results import show_and_write
-from ..console.terminal import command_line, interruptible, user_input
+from ..console.results import show_and_save
+from ..console.terminal import interruptible, user_input
 from .inputs import options
 
 Quick = Annotated[
@@ -26,28 +26,21 @@ def validity(
 ) -> None:
     """Report the limits of the reduced model: what must hold, what error to expect, where it matters.
 
-    Peaks over records by the reduced models, and by MuJoCo in an ideal
-    recess, in a ring of walls and on flat ground, beside a perturbed copy of
-    the model; what friction, contact and moment a recess needs; rings, softer
-    contact and less friction. Takes about 40 minutes on two idle cores. What
-    is measured is kept in the folder: a second run repeats nothing.
+    Peaks over records by the reduced models, and by MuJoCo in an ideal recess, in a recess with clearance
+    and on flat ground, beside a perturbed copy of the model; what friction, contact and moment a recess
+    needs; clearances, softer contact and less friction. Takes about 40 minutes on two idle cores. What is
+    measured is kept in the folder: a second run repeats nothing.
 
-    Writes validity.html, validity.md with its pictures as SVG, as Parquet the
-    tables of all parts and every number of the report (limits). `rockwobble
-    report` draws the pages again.
+    Writes validity.html, validity.md with its pictures as SVG, as Parquet the tables of all parts and every
+    number of the report (limits). `rockwobble report` draws the pages again.
     """
     with interruptible(out):
         with user_input():
             rc.require_writable(out)
         from rockwobble.compare.studies.validity.plan import FULL, QUICK
-        from rockwobble.compare.studies.validity.study import manifest_of, measure_all, validity_of
-
-        from ..pages.validity import limits_table, validity_page
+        from rockwobble.compare.studies.validity.study import measure_all, validity_of
 
         extent = QUICK if quick else FULL
-        with user_input(), shown_progress("tasks") as tell:
-            tables = measure_all(extent, out, workers=workers, progress=tell)
-        found = validity_of(tables, extent)
-        manifest = manifest_of(found, extent, command_line())
-        tables = {**tables, "limits": limits_table(found)}
-        show_and_write(out, validity_page(found, manifest), manifest, tables)
+        with user_input(), shown_progress("tasks") as progress:
+            tables = measure_all(extent, out, workers=workers, progress=progress)
+        show_and_save(validity_of(tables, extent), out)

@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from .terminal import user_input
 
 if TYPE_CHECKING:
-    import pandas as pd
     from rich.text import Text
 
-    from rockwobble.compare.storage.manifest import Manifest
     from rockwobble.compare.storage.results import Results
-
-    from ..pages.page import Page
 
 
 def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None:
@@ -35,26 +31,13 @@ def print_facts(heading: Sequence[str | Text], facts: Mapping[str, str]) -> None
     console.print(table)
 
 
-def show_and_write(
-    out: Path,
-    page: Page,
-    manifest: Manifest,
-    tables: Mapping[str, pd.DataFrame],
-    files: Mapping[str, bytes] | None = None,
-) -> None:
-    """Write a page with its tables, other files of data and the manifest; then print it."""
-    from rockwobble.compare.storage.manifest import MANIFEST, write_results
-
-    pages = page.files()
-    with user_input():
-        write_results(out, manifest, tables, files=files, pages=pages)
-    page.show()
-    names = [MANIFEST, *(f"{name}.parquet" for name in tables), *(files or ()), *pages]
-    print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")
-
-
 def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
     """Write results with their page; then print the page, with what is folded where `details` are wanted."""
+    save_with_page(found, out, details=details)()
+
+
+def save_with_page(found: Results, out: Path, *, details: bool = False) -> Callable[[], None]:
+    """Write results with their page, and return what prints the page."""
     from ..pages.registry import page_of
     from .terminal import command_line
 
@@ -63,6 +46,10 @@ def show_and_save(found: Results, out: Path, *, details: bool = False) -> None:
     pages = page.files()
     with user_input():
         found.save(out, pages=pages)
-    page.show(details=details)
-    names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
-    print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")
+
+    def show() -> None:
+        page.show(details=details)
+        names = ["manifest.json", *(f"{name}.parquet" for name in found.tables), *found.sheets(), *pages]
+        print(f"\nWritten to {out}: {', '.join(dict.fromkeys(names))}")
+
+    return show

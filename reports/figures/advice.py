@@ -10,7 +10,7 @@ import pandas as pd
 
 from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.studies.advice.advice import Advice
-from rockwobble.compare.studies.spectrum.spectrum import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
+from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SERIES, SPATIAL
 
 from .ensemble import peak_shares
 from .palette import GREY, Style, model_style, run_styles

@@ -4,28 +4,34 @@ from __future__ import annotations
 
 import numpy as np
 
-from rockwobble.compare.studies.spectrum.spectrum import (
+from rockwobble.compare.studies.spectrum.maps import (
     PLANAR_X,
     PLANAR_Y,
     SERIES,
     SPATIAL,
     TITLES,
-    OverturningSpectrum,
+    TiltMaps,
     safe_islands,
 )
+from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.models import Run
 
 from .heat import PEAKS, Heat, peak_map
 from .palette import Style, model_style, run_styles
 from .picture import Axis, Line, Panel, Picture, separated
 
-NAMES = {SPATIAL: "3D", PLANAR_X: "planar east-west", PLANAR_Y: "planar north-south"}
+NAMES = {SPATIAL: "3D", PLANAR_X: "planar x (east-west)", PLANAR_Y: "planar y (north-south)"}
 _HEIGHT = 3.4
 _ASIDE = {SPATIAL: 0.0, PLANAR_X: -0.3, PLANAR_Y: 0.3}  # of the spacing of sizes: islands side by side
 
 
-def pictures(spectrum: OverturningSpectrum) -> list[Picture]:
-    """Return a map of each series, and the lowest intensities with the safe islands above them."""
+def pictures(found: OverturningSpectrum) -> list[Picture]:
+    """Return a map of each series, and the lowest intensities with the safe gaps above them."""
+    return [picture_of(found.maps)]
+
+
+def picture_of(spectrum: TiltMaps) -> Picture:
+    """Return the picture of tilt maps."""
     size = Axis(label="R", unit="m")
     low, high = (float(spectrum.intensities[end]) for end in (0, -1))
     intensity = Axis(label="peak resultant / (g tan α)", unit="-", low=low, high=high)
@@ -41,7 +47,7 @@ def pictures(spectrum: OverturningSpectrum) -> list[Picture]:
                 Line(
                     x=spectrum.semidiagonals,
                     y=spectrum.lowest[series],
-                    name="lowest found to overturn",
+                    name="overturning boundary",
                     width=1.1,
                 ),
             ],
@@ -53,30 +59,29 @@ def pictures(spectrum: OverturningSpectrum) -> list[Picture]:
     curves = Panel(
         x=size,
         y=intensity,
-        title="lowest found to overturn, safe islands (thin)",
+        title="overturning boundary, safe gaps (thin)",
         layers=_curves(spectrum),
         height=_HEIGHT,
     )
-    picture = Picture(
+    return Picture(
         name="spectrum",
         title=f"Peak tilt of sizes under intensities, {spectrum.motion.name or 'record'}, "
         f"tan α = {spectrum.tan_alpha:g}",
         caption="Each cell is a run. What overturns has a colour of its own, what does not uplift none. "
-        f"The lowest intensity is the lowest found, in steps down to {spectrum.search_step:g}"
+        f"The overturning boundary is as found by the search, in steps down to {spectrum.search_step:g}"
         + (f" and of {spectrum.probes} random intensities below." if spectrum.probes else "."),
         panels=[*maps, curves],
         columns=2,
         shades=PEAKS,
     )
-    return [picture]
 
 
-def _map(spectrum: OverturningSpectrum, series: str) -> Heat:
+def _map(spectrum: TiltMaps, series: str) -> Heat:
     tilt, fell = spectrum.peak_tilt[series].T / spectrum.alpha, spectrum.overturned(series).T
     return peak_map(spectrum.semidiagonals, spectrum.intensities, tilt, fell)
 
 
-def _curves(spectrum: OverturningSpectrum) -> list[Line]:
+def _curves(spectrum: TiltMaps) -> list[Line]:
     planes = run_styles([PLANAR_X, PLANAR_Y])
     styles = {SPATIAL: model_style(str(Run(None, spectrum.support))), **planes}
     islands = safe_islands(spectrum)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
     from .page import Page
 
-# kind: the module whose `stored_page` draws it; by name, because a command that shows one of them must not
+# kind: the module whose `page_of` draws it; by name, because a command that shows one of them must not
 # wait for the imports of all
 KINDS: Mapping[str, str] = {
     "comparison": "pages.comparison.report",
@@ -39,15 +39,10 @@ def stored_page(kind: str, folder: Path) -> Page:
     ValueError
         If they cannot be read.
     """
-    from rockwobble.compare.storage.manifest import read_results  # it loads numpy, which no help needs
+    importlib.import_module(f"rockwobble.reports.{KINDS[kind]}")  # which registers the kind
+    from rockwobble.compare.storage.results import Results
 
-    drawer = importlib.import_module(f"rockwobble.reports.{KINDS[kind]}")
-    if hasattr(drawer, "page_of"):
-        from rockwobble.compare.storage.results import Results
-
-        return page_of(Results.kinds[kind].load(folder))  # its page has imported it
-    page: Page = drawer.stored_page(read_results(folder, kind))
-    return page
+    return page_of(Results.kinds[kind].load(folder))
 
 
 def page_of(found: Results) -> Page:

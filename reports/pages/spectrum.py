@@ -8,30 +8,22 @@ from collections.abc import Mapping
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.storage.manifest import Manifest, Results
+from rockwobble.compare.studies.spectrum.maps import SPATIAL, TiltMaps
 from rockwobble.compare.studies.spectrum.search import gap_bound
-from rockwobble.compare.studies.spectrum.spectrum import SPATIAL, OverturningSpectrum, stored_spectrum
+from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.compare.studies.spectrum.tables import AGREEMENT, CHECK_RTOL, NUDGE, unconservative_from
 
 from ..figures.spectrum import pictures
 from .page import Page
 
 
-def spectrum_page(
-    spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame], manifest: Manifest
-) -> Page:
-    """Return the page of a spectrum and its tables, of `tables_of`."""
-    values = {**spectrum_values(spectrum, tables), "about": manifest}
-    return Page(name="spectrum", template="spectrum", values=values, pictures=pictures(spectrum))
+def page_of(found: OverturningSpectrum) -> Page:
+    """Return the page of a spectrum."""
+    values = {**spectrum_values(found.maps, found.tables), "about": found.manifest}
+    return Page(name="spectrum", template="spectrum", values=values, pictures=pictures(found))
 
 
-def stored_page(results: Results) -> Page:
-    """Return the page of the spectrum that is stored."""
-    tables = {name: results.table(name) for name in ("lowest", "islands", "contrast", "checked")}
-    return spectrum_page(stored_spectrum(results), tables, results.manifest)
-
-
-def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame]) -> dict[str, object]:
+def spectrum_values(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> dict[str, object]:
     """Return the values of the templates of a spectrum, for its own page and for that of the paper."""
     contrast, checked = tables["contrast"], tables["checked"]
     bands, every = contrast.iloc[:-1], contrast.iloc[-1]
@@ -43,7 +35,6 @@ def spectrum_values(spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataF
         .replace(math.inf, math.nan)
         .to_dict("records"),
         "every": every,
-        "worst": bands.iloc[int(bands["missed"].fillna(0.0).argmax())],
         "wrong": bands[bands["missed"] > bands["overcalled"]].to_dict("records"),
         "overturns": any(np.isfinite(lowest).any() for lowest in spectrum.lowest.values()),
         "unconservative_from": unconservative_from(spectrum),
@@ -69,7 +60,7 @@ def _islands(islands: pd.DataFrame) -> dict[str, object] | None:
     return {"count": len(closed), "sizes": closed["semidiagonal"].nunique(), "widest": widest}
 
 
-def _search(spectrum: OverturningSpectrum, lowest: pd.DataFrame) -> dict[str, object]:
+def _search(spectrum: TiltMaps, lowest: pd.DataFrame) -> dict[str, object]:
     space = lowest[lowest["series"] == SPATIAL]
     found = space[np.isfinite(space["intensity"])]
     spacing = float(np.diff(spectrum.intensities).max(initial=0.0))

@@ -8,12 +8,11 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.compare.metrics.distributions import MARGIN
-from rockwobble.compare.storage.manifest import Manifest, Results
 from rockwobble.compare.studies.validity.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.el_centro import FREE
 from rockwobble.compare.studies.validity.limits import damping, limits_of, needs
 from rockwobble.compare.studies.validity.plan import LARGEST_PEAK
-from rockwobble.compare.studies.validity.study import Validity, stored_validity
+from rockwobble.compare.studies.validity.study import Validity
 
 from ..figures.validity.pictures import METHODS, pictures
 from .page import Page
@@ -25,7 +24,7 @@ _NEEDS = {
 }
 
 
-def validity_page(found: Validity, manifest: Manifest) -> Page:
+def page_of(found: Validity) -> Page:
     """Return the report."""
     tables = found.tables
     values: dict[str, object] = {
@@ -47,25 +46,10 @@ def validity_page(found: Validity, manifest: Manifest) -> Page:
             )
         },
         "largest_peak": LARGEST_PEAK,
-        "records": found.records,
-        "about": manifest,
+        "records": found.facts["records"],
+        "about": found.manifest,
     }
     return Page(name="validity", template="validity", values=values, pictures=pictures(found))
-
-
-def stored_page(results: Results) -> Page:
-    """Return the report on what is stored."""
-    return validity_page(stored_validity(results), results.manifest)
-
-
-def limits_table(found: Validity) -> pd.DataFrame:
-    """Return every number of every limit: limit, number, value."""
-    rows = [
-        {"limit": limit, "number": number, "value": value}
-        for limit, numbers in limits_of(found.tables).items()
-        for number, value in numbers.items()
-    ]
-    return pd.DataFrame(rows)
 
 
 def _contrasts(table: pd.DataFrame) -> list[dict[str, object]]:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from rockwobble.compare.storage.manifest import Manifest, Results
+from rockwobble.compare.storage.manifest import Number
+from rockwobble.compare.storage.results import Results
 from rockwobble.multibody.engines.registry import engine_facts
 
 from .page import Page
@@ -16,19 +18,28 @@ if TYPE_CHECKING:
 KIND = "engine versions"
 
 
-def versions_page(table: pd.DataFrame, made: Manifest) -> Page:
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class EngineVersions(Results, kind=KIND):
+    """Rolling contact in the releases of engines: the table `versions`, a row for each release."""
+
+    def headline(self) -> dict[str, Number]:
+        """Return the number of releases of each engine."""
+        counts = self.versions["engine"].value_counts()
+        return {f"releases of {name}": int(count) for name, count in counts.items()}
+
+    def sheets(self) -> dict[str, bytes]:
+        """Return the table as CSV."""
+        return {"versions.csv": self.versions.to_csv(index=False).encode()}
+
+
+def page_of(found: EngineVersions) -> Page:
     """Return the page of a table that `tests/benchmarks/engine_versions.py` has measured."""
     rows: list[Row] = [
         {**{str(name): value for name, value in row.items()}, "title": engine_facts(str(row["engine"])).title}
-        for row in table.to_dict("records")
+        for row in found.versions.to_dict("records")
     ]
-    values = {"rows": rows, "about": made, "moved": _moved(table)}
+    values = {"rows": rows, "about": found.manifest, "moved": _moved(found.versions)}
     return Page(name="versions", template="versions", values=values)
-
-
-def stored_page(results: Results) -> Page:
-    """Return the page of what is stored."""
-    return versions_page(results.table("versions"), results.manifest)
 
 
 def _moved(table: pd.DataFrame) -> list[Row]:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rockwobble.compare.studies.spectrum.spectrum import PLANAR_X, PLANAR_Y, SPATIAL, OverturningSpectrum
+from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL, TiltMaps
 from rockwobble.compare.studies.spectrum.tables import planar_contrast, unconservative_from
 from rockwobble.models import el_centro_1940
 
@@ -32,7 +32,7 @@ _EVERY = 0.95  # share of the sizes that may pass for all of them: single ones a
 
 
 def problem(grid: int = GRID) -> dict[str, Any]:
-    """Return the arguments of `overturning_spectrum`: `grid` sizes and as many intensities."""
+    """Return the arguments of `tilt_maps`: `grid` sizes and as many intensities."""
     return {
         "tan_alpha": TAN_ALPHA,
         "motion": el_centro_1940(),
@@ -42,7 +42,7 @@ def problem(grid: int = GRID) -> dict[str, Any]:
     }
 
 
-def lowest_on_axes(spectrum: OverturningSpectrum, *, own: bool) -> Mapping[str, Array]:
+def lowest_on_axes(spectrum: TiltMaps, *, own: bool) -> Mapping[str, Array]:
     """Return the lowest overturning intensities (n_R,) of each series, over its own peak or that of all."""
     return {
         name: lowest * (spectrum.component_share(name) if own else 1.0)
@@ -50,7 +50,7 @@ def lowest_on_axes(spectrum: OverturningSpectrum, *, own: bool) -> Mapping[str, 
     }
 
 
-def statements(spectrum: OverturningSpectrum) -> list[Statement]:
+def statements(spectrum: TiltMaps) -> list[Statement]:
     """Hold what the paper says of the figure against the spectrum, on both pairs of axes."""
     large = spectrum.semidiagonals >= LARGE
     contrast = planar_contrast(spectrum)

@@ -3,18 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-
-import pandas as pd
+from dataclasses import dataclass
 
 from rockwobble.compare.runs.progress import ProgressCallback, Stages
 from rockwobble.compare.storage.fingerprint import fingerprint
-from rockwobble.compare.storage.manifest import Manifest, Results, made_now
+from rockwobble.compare.storage.manifest import Number
 from rockwobble.compare.storage.provenance import code_digests, package_versions
-from rockwobble.compare.studies.spectrum.spectrum import (
-    OverturningSpectrum,
-    overturning_spectrum,
-    stored_spectrum,
-)
+from rockwobble.compare.storage.results import Results
+from rockwobble.compare.studies.spectrum.maps import maps_of, tilt_maps
 from rockwobble.compare.studies.spectrum.tables import tables_of
 
 from ..pages.page import Page
@@ -26,10 +22,27 @@ KIND = "paper"
 _SAMPLES = 12_000  # of figure 5 that are kept
 
 
-def compute(
-    grid: int, command: str = "", progress: ProgressCallback | None = None
-) -> tuple[Manifest, dict[str, pd.DataFrame], OverturningSpectrum]:
-    """Run figures 3 to 6, the last on `grid` sizes and as many intensities, and keep them as tables."""
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Paper(Results, kind=KIND):
+    """The figures of the paper, computed again, and verdicts on what it says of them.
+
+    Tables
+    ------
+    figure-3, figure-4, figure-5 : DataFrame
+        What the figures show.
+    statements : DataFrame
+        Numbers of each statement and its verdict, see `to_frame`.
+    spectrum, record, lowest, islands, contrast, checked : DataFrame
+        Figure 6, see `OverturningSpectrum`.
+    """
+
+    def headline(self) -> dict[str, Number]:
+        """Return the number of statements with each verdict."""
+        return {**Counter(each.verdict for each in from_frame(self.statements))}
+
+
+def compute(grid: int, progress: ProgressCallback | None = None) -> Paper:
+    """Run figures 3 to 6, the last on `grid` sizes and as many intensities."""
     stage = Stages(progress, [1.0, 20.0, 40.0, 0.005 * grid * grid]).stage
     with stage("figure 3"):
         curves = period.periods()
@@ -38,7 +51,7 @@ def compute(
     with stage("figure 5"):
         shaken = earthquake.shaken()
     with stage("figure 6"):
-        spectrum = overturning_spectrum(**overturning.problem(grid))
+        spectrum = tilt_maps(**overturning.problem(grid))
     found = [
         *period.statements(curves),
         *free.statements(modes),
@@ -53,14 +66,13 @@ def compute(
         **tables_of(spectrum),
     }
     inputs = fingerprint([grid, code_digests(), package_versions()])
-    headline = dict(Counter(each.verdict for each in found))
-    made = made_now(KIND, inputs=inputs, command=command, headline=headline, about=spectrum.facts())
-    return made, tables, spectrum
+    return Paper(tables=tables, facts=spectrum.facts() | {"inputs": inputs})
 
 
-def paper_page(tables: dict[str, pd.DataFrame], manifest: Manifest, spectrum: OverturningSpectrum) -> Page:
-    """Return the page of computed or stored tables."""
-    found = {each.name: each for each in from_frame(tables["statements"])}
+def page_of(paper: Paper) -> Page:
+    """Return the page of the figures."""
+    tables, spectrum = paper.tables, maps_of(paper.tables, paper.facts)
+    found = {each.name: each for each in from_frame(paper.statements)}
     shaken = {**found["abrupt"].numbers, "time_step": spectrum.motion.time_step}
     return Page(
         name="paper",
@@ -70,7 +82,7 @@ def paper_page(tables: dict[str, pd.DataFrame], manifest: Manifest, spectrum: Ov
             "statements": found,
             "cylinder": free.CYLINDER,
             "release": free.RELEASE,
-            "about": manifest,
+            "about": paper.manifest,
         },
         pictures=[
             pictures.period_picture(tables["figure-3"]),
@@ -79,10 +91,3 @@ def paper_page(tables: dict[str, pd.DataFrame], manifest: Manifest, spectrum: Ov
             pictures.overturning_picture(spectrum),
         ],
     )
-
-
-def stored_page(results: Results) -> Page:
-    """Return the page of what is stored."""
-    names = [name.removesuffix(".parquet") for name in results.manifest.files]
-    tables = {name: results.table(name) for name in names}
-    return paper_page(tables, results.manifest, stored_spectrum(results))

@@ -10,19 +10,18 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from rockwobble.compare.studies.spectrum.spectrum import (
+from rockwobble.compare.studies.spectrum.maps import (
     PLANAR_X,
     PLANAR_Y,
     SERIES,
     SPATIAL,
-    OverturningSpectrum,
+    TiltMaps,
 )
 from rockwobble.models import Run
 
 from ..figures.palette import DARK, ORDER, SHADED, Style, model_style, run_styles
 from ..figures.picture import TIME, Axis, Layer, Line, Panel, Picture, Rule
-from ..figures.spectrum import NAMES
-from ..figures.spectrum import pictures as spectrum_pictures
+from ..figures.spectrum import NAMES, picture_of
 from . import earthquake, free, period
 from .overturning import lowest_on_axes
 
@@ -159,9 +158,9 @@ def _signed_log(values: Array) -> Array:
     return np.asarray(np.sign(values) * np.where(size < 1.0, size, 1.0 + np.log10(np.maximum(size, 1.0))))
 
 
-def overturning_picture(spectrum: OverturningSpectrum) -> Picture:
+def overturning_picture(spectrum: TiltMaps) -> Picture:
     """Return figure 6: the maps, and the lowest intensities on the axes of the paper and on equal shaking."""
-    (whole,) = spectrum_pictures(spectrum)
+    whole = picture_of(spectrum)
     styles = {SPATIAL: model_style(str(Run(None, spectrum.support))), **run_styles([PLANAR_X, PLANAR_Y])}
     curves = []
     for own, label in ((True, "own peak / (g tan α)"), (False, "peak resultant / (g tan α)")):

@@ -19,15 +19,14 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.compare.metrics.tilt import overturned
 from rockwobble.compare.runs.progress import Stages
+from rockwobble.compare.studies.plans import PROBES, STEP
+from rockwobble.compare.studies.spectrum.maps import RTOL, intensity_unit, uplift_factor
 from rockwobble.compare.studies.spectrum.search import (
-    PROBES,
-    STEP,
     gap_bound,
     probe_below,
     run_searches,
     search_lowest,
 )
-from rockwobble.compare.studies.spectrum.spectrum import RTOL, SUPPORTS, intensity_unit, uplift_factor
 from rockwobble.models import GroundMotion, el_centro_1940
 
 from .console import options_of, show, tell
@@ -110,7 +109,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             math.exp(random.uniform(math.log(ends[0]), math.log(ends[1]))) for ends in (SIZES, SLENDERNESS)
         )
         with stages.stage(f"R = {size:.3g} m, tan alpha = {tan_alpha:.3g}"):
-            support = SUPPORTS[place % len(SUPPORTS)]
+            support = ("recess", "flat")[place % 2]
             rows.append(scan(size, tan_alpha, support, given.probes, given.seed + place))
     table = pd.DataFrame(rows)
     formats = {str(name): "" if name == "support" else ".4g" for name in table}

@@ -17,9 +17,8 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
-from rockwobble.compare.storage.manifest import made_now, write_results
 from rockwobble.multibody.engines.registry import engine_packages
-from rockwobble.reports.pages.versions import KIND, versions_page
+from rockwobble.reports.pages.versions import EngineVersions, page_of
 
 from .console import options_of, show
 
@@ -144,14 +143,7 @@ def made_table(rows: Sequence[Mapping[str, Any]]) -> pd.DataFrame:
 
 def _write(table: pd.DataFrame, out: Path) -> None:
     command = "python tests/benchmarks engine_versions --out " + str(out)
-    made = made_now(
-        KIND,
-        command=command,
-        headline={
-            f"releases of {name}": int(count) for name, count in table["engine"].value_counts().items()
-        },
-    )
-    files = {"versions.csv": table.to_csv(index=False).encode()}
-    pages = versions_page(table, made).files()
-    write_results(out, made, {"versions": table}, files=files, pages=pages)
+    found = EngineVersions(tables={"versions": table}, facts={}).made_by(command)
+    pages = page_of(found).files()
+    found.save(out, pages=pages)
     print(f"Written to {out}: manifest.json, versions.csv, versions.parquet, {', '.join(pages)}")

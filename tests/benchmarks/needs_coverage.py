@@ -17,10 +17,9 @@ import numpy as np
 
 from rockwobble import reduced
 from rockwobble.compare.runs.progress import Stages
-from rockwobble.compare.storage.manifest import read_results
 from rockwobble.compare.studies.validity.limits import needs
 from rockwobble.compare.studies.validity.plan import AMPLE, GRAVITY, motion_named, record_names
-from rockwobble.compare.studies.validity.study import KIND, stored_validity
+from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models import Case, Cylinder, GroundMotion, synthetic_motions
 
 from .console import options_of, tell
@@ -74,7 +73,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--synthetic", action="store_true", help="motions of the seed in place of records")
     parser.add_argument("--limits", type=Path, default=PUBLISHED, help="folder of the validity study")
     given = parser.parse_args(arguments)
-    tables = stored_validity(read_results(given.limits, KIND)).tables
+    tables = Validity.load(given.limits).tables
     mapped = tables["peaks"]["semidiagonal"]
     motions = (
         synthetic_motions(RECORDS, peak=1.0, seed=given.seed)

@@ -6,9 +6,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from rockwobble.compare.storage.manifest import made_now, read_results, write_results
-from rockwobble.reports.pages.registry import stored_page
-from rockwobble.reports.pages.versions import KIND, versions_page
+from rockwobble.reports.pages.registry import page_of, stored_page
+from rockwobble.reports.pages.versions import KIND, EngineVersions
 
 from .engine_versions import COLUMNS, made_table, minor_releases
 
@@ -30,7 +29,7 @@ def table() -> pd.DataFrame:
 
 
 def test_the_page_names_the_release_that_moved_a_figure(table: pd.DataFrame) -> None:
-    text = versions_page(table, made_now(KIND)).markdown()
+    text = page_of(EngineVersions(tables={"versions": table}, facts={})).markdown()
     assert (
         "**1 release has moved the error under El Centro by more than a tenth: MuJoCo 4.0.0 (4 times).**"
         in text
@@ -39,8 +38,8 @@ def test_the_page_names_the_release_that_moved_a_figure(table: pd.DataFrame) -> 
 
 
 def test_the_page_is_drawn_again_from_its_files(table: pd.DataFrame, tmp_path: Path) -> None:
-    made = made_now(KIND)
-    pages = versions_page(table, made).files()
-    write_results(tmp_path, made, {"versions": table}, pages=pages)
-    assert read_results(tmp_path, KIND).table("versions").equals(table)
+    found = EngineVersions(tables={"versions": table}, facts={}).made_by()
+    pages = page_of(found).files()
+    found.save(tmp_path, pages=pages)
+    assert EngineVersions.load(tmp_path).versions.equals(table)
     assert set(stored_page(KIND, tmp_path).files()) == set(pages) == {"versions.md", "versions.html"}

@@ -112,7 +112,7 @@ def test_scenes_of_an_engine_are_code(tmp_path: Path) -> None:
 
 
 SOURCE = """
-from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
+from rockwobble.multibody.engines.mujoco import MujocoEngine
 
 class Own(MujocoEngine):
     def version(self):

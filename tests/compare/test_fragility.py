@@ -17,7 +17,7 @@ from rockwobble.compare.studies.fragility import plan as running
 from rockwobble.compare.studies.fragility.samples import exceeded, require_limits
 from rockwobble.compare.studies.fragility.study import fragility_of
 from rockwobble.compare.studies.fragility.tables import incremental, islands
-from rockwobble.models import Case, Cylinder, Run, synthetic_motions
+from rockwobble.models import Case, Cylinder, Run, WobblingFrame, synthetic_motions
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
 LEVELS = (1.25, 1.6, 2.0, 2.5, 3.2, 4.0, 5.5, 8.0)
@@ -69,6 +69,15 @@ def test_contact_is_asked_of_whole_solutions_which_have_the_peaks_of_the_kernel(
     ]
     own = whole.set_index("motion")["contact_lost"]
     assert [bool(own[motion.name]) for motion in MOTIONS[:4]] == lost
+
+
+def test_a_slab_is_carried_by_the_kernel_of_peaks() -> None:
+    frame = WobblingFrame(COLUMN, slab_mass_ratio=4.0)
+    options = {"methods": ["recess"], "levels": [2.0], "resamples": 2, "workers": 1}
+    runs = fragility(frame, MOTIONS[:2], **options)
+    scale = runs.points["scale"].iloc[0]
+    alone = reduced.simulate(Case(frame, MOTIONS[0].scaled(scale)), rtol=1e-7)
+    assert runs.runs["peak_tilt"].iloc[0] == pytest.approx(alone.peak_tilt / COLUMN.alpha, abs=1e-12)
 
 
 def test_the_worse_plane_is_the_larger_of_both(found):

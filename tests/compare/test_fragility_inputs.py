@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from rockwobble.compare import fragility
+from rockwobble.compare import LIMITS, MEASURES, fragility
+from rockwobble.compare.runs.plan import options_of
 from rockwobble.compare.studies.fragility.methods import methods_of, own_model
+from rockwobble.compare.studies.plans import FragilityPlan
 from rockwobble.models import Cylinder, Run, el_centro_1940, read_records, synthetic_motions
 
 COLUMN = Cylinder(semidiagonal=3.0, tan_alpha=0.15)
@@ -40,11 +42,11 @@ def test_methods_by_name():
         ({"methods": [Run("mujoco", "recess"), Run("mujoco", "recess")]}, "must differ"),
         ({"levels": [2.0, 1.0]}, "levels must be positive, finite and increasing"),
         ({"levels": [1.0], "scales": [1.0]}, "got both"),
-        ({"limits": ["2 alpha"]}, "a limit must be one of uplift"),
+        ({"limits": ["2 alpha"]}, "limits must be one of uplift"),
         ({"margin": 0.0}, "margin must be above 0, got 0.0"),
         ({"resamples": 1}, "resamples must be a whole number, at least 2, got 1"),
         ({"restitution": 0.9, "methods": ["recess"]}, "restitution is of planar models, got 0.9"),
-        ({"measure": "pgd"}, "an intensity must be one of"),
+        ({"measure": "pgd"}, "measure must be one of"),
         ({"step_factor": -1.0}, "step_factor must be above 0, got -1.0"),
         ({"step_factor": 2.0, "methods": ["recess"]}, "step_factor is for engines at their default"),
         (
@@ -59,6 +61,11 @@ def test_bad_input(options, words):
         return
     with pytest.raises(ValueError, match=words):
         fragility(COLUMN, MOTIONS, **{"workers": 1, "levels": None, **options})
+
+
+def test_a_plan_allows_every_measure_and_limit_that_there_is() -> None:
+    stated = options_of(FragilityPlan)
+    assert (stated["measure"].choices, stated["limits"].choices) == (tuple(MEASURES), tuple(LIMITS))
 
 
 def test_motions_need_names_and_cylinders_too():

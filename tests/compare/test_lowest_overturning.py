@@ -11,15 +11,15 @@ import pytest
 
 from rockwobble import reduced
 from rockwobble.compare.metrics.tilt import overturned
+from rockwobble.compare.studies.plans import STEP
+from rockwobble.compare.studies.spectrum.maps import uplift_factor
 from rockwobble.compare.studies.spectrum.search import (
-    STEP,
     gap_bound,
     lowest_on_grid,
     probe_below,
     run_searches,
     search_lowest,
 )
-from rockwobble.compare.studies.spectrum.spectrum import uplift_factor
 from rockwobble.models import Case, Cylinder, GroundMotion, el_centro_1940
 from rockwobble.models.cpus import in_threads
 

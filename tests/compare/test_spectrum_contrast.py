@@ -8,14 +8,15 @@ import pytest
 from showing import shows_itself
 
 from rockwobble.compare.studies.spectrum import tables as bands
-from rockwobble.compare.studies.spectrum.search import lowest_on_grid
-from rockwobble.compare.studies.spectrum.spectrum import (
+from rockwobble.compare.studies.spectrum.maps import (
     PLANAR_X,
     PLANAR_Y,
     SPATIAL,
-    OverturningSpectrum,
+    TiltMaps,
     safe_islands,
 )
+from rockwobble.compare.studies.spectrum.search import lowest_on_grid
+from rockwobble.compare.studies.spectrum.study import spectrum_of
 from rockwobble.compare.studies.spectrum.tables import (
     edge_difference,
     planar_contrast,
@@ -28,7 +29,7 @@ FALL = 0.5 * math.pi
 LEVELS = np.array([1.0, 2.0, 3.0, 4.0, 5.0, 6.0])
 
 
-def made_up(space: list[str], x: list[str], y: list[str]) -> OverturningSpectrum:
+def made_up(space: list[str], x: list[str], y: list[str]) -> TiltMaps:
     """Make a spectrum of rows of letters, a row for each size: X overturned, o tilts, O more, ? failed."""
     tilts = {"X": FALL, "o": 0.01, "O": 0.02, ".": 0.0, "?": math.nan}
     peaks = {
@@ -36,7 +37,7 @@ def made_up(space: list[str], x: list[str], y: list[str]) -> OverturningSpectrum
         for name, rows in ((SPATIAL, space), (PLANAR_X, x), (PLANAR_Y, y))
     }
     levels = LEVELS[: len(space[0])]
-    return OverturningSpectrum(
+    return TiltMaps(
         tan_alpha=0.1,
         motion=GroundMotion([[0.0, 0.0], [3.0, 4.0], [0.0, 0.0]], 0.1),
         gravity=9.81,
@@ -146,4 +147,5 @@ def test_a_single_size_has_a_band():
 
 
 def test_a_spectrum_shows_itself():
-    shows_itself(made_up(["ooXoOX"] * 3, ["......"] * 3, ["......"] * 3), "3 from 1 to 3 m", "6 of 18 cells")
+    maps = made_up(["ooXoOX"] * 3, ["......"] * 3, ["......"] * 3)
+    shows_itself(spectrum_of(maps), "6", "18")

@@ -53,6 +53,26 @@ def test_it_does_not_with_the_settings_that_the_engine_starts_from(scene: Module
     assert tilt < 0.8
 
 
+def test_the_can_as_data_is_the_can_of_the_scene(monkeypatch: pytest.MonkeyPatch) -> None:
+    import mujoco  # type: ignore[import-untyped]
+
+    monkeypatch.syspath_prepend(str(SCENES))
+    scene = importlib.import_module("mujoco_can")
+    for name in ("can.xml", "can.urdf"):
+        model = mujoco.MjModel.from_xml_path(str(SCENES / name))
+        body, geom = model.body(model.nbody - 1), model.geom(model.ngeom - 1)
+        if name == "can.xml":  # a single link of URDF is joined to the world, and its inertia is the world's
+            assert body.inertia == pytest.approx([scene.I1, scene.I1, scene.I2])
+            assert body.mass == 1.0
+        assert geom.size[:2] == pytest.approx([scene.B, scene.H])
+    start = scene.released(mujoco.MjModel.from_xml_path(str(SCENES / "can.xml")))
+    # digits of the table in docs/guide/engines.md
+    assert start.qpos == pytest.approx(
+        [0.4862568516, 0, 2.1762508995, 0.9932897335, 0, 0.1156525195, 0], abs=1e-9
+    )
+    assert start.qvel[:3] == pytest.approx([0.0, 0.0486256857, 0.0], abs=1e-9)
+
+
 def test_drawings_are_those_that_their_scripts_make(monkeypatch: pytest.MonkeyPatch) -> None:
     figures = SCENES.parent / "figures"
     monkeypatch.syspath_prepend(str(figures))

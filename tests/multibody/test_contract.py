@@ -15,7 +15,7 @@ import pytest
 
 from rockwobble import multibody
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, el_centro_1940
-from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
+from rockwobble.multibody.engines.mujoco import MujocoEngine
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = InitialState(PIER.alpha / 2, rolling_rate=0.5)

@@ -82,4 +82,4 @@ def test_a_name_that_two_packages_claim_is_nobodys(install: Install) -> None:
 def test_our_names_are_taken(install: Install) -> None:
     install(mujoco="external_engine:fails")
     assert multibody.engine_names() == ("mujoco", "pybullet", "dart", "drake", "exudyn", "rapier")
-    assert type(find_engine("mujoco")).__module__ == "rockwobble.multibody.engines.mujoco_engine"
+    assert type(find_engine("mujoco")).__module__ == "rockwobble.multibody.engines.mujoco"

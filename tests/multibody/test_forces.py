@@ -8,9 +8,8 @@ import pytest
 
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.multibody.body import scaled_body
-from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
-from rockwobble.multibody.engines.mujoco_scene import compile_scene
-from rockwobble.multibody.engines.settings.mujoco import MujocoSettings
+from rockwobble.multibody.engines.mujoco import MujocoEngine
+from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, compile_scene
 from rockwobble.multibody.protocol import Scene
 from rockwobble.multibody.recording.forces import HALF_WINDOW, ForceSamples, force_of_steps
 from rockwobble.multibody.recording.recorder import Recorder

@@ -68,7 +68,7 @@ def test_too_little_friction_in_a_release_is_said(engine: str, time_step: float 
 def test_a_base_that_slides_in_dart_goes_as_far_by_the_solver_that_is_fast(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    dart = pytest.importorskip("rockwobble.multibody.engines.dart_engine")
+    dart = pytest.importorskip("rockwobble.multibody.engines.dart")
     pytest.importorskip("dartpy", reason="DART has no wheel for this Python")
     solvers: list[bool] = []
     use = dart._DartStepper._use_for

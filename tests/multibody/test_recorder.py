@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.body import scaled_body
-from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
+from rockwobble.multibody.engines.mujoco import MujocoEngine
 from rockwobble.multibody.kinematics import axis_of, unwrap_twist
 from rockwobble.multibody.protocol import Scene, Steps
 from rockwobble.multibody.recording.passes import TurningPoint

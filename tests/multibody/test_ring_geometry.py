@@ -10,8 +10,7 @@ import pytest
 
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.multibody.body import scaled_body
-from rockwobble.multibody.engines.mujoco_scene import compile_scene
-from rockwobble.multibody.engines.settings.mujoco import MujocoSettings
+from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, compile_scene
 from rockwobble.multibody.kinematics import axis_of
 from rockwobble.multibody.protocol import Array, Scene
 from rockwobble.multibody.scene.ring_geometry import (

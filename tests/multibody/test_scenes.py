@@ -11,9 +11,8 @@ import pytest
 import rockwobble.models
 from rockwobble.models import Cylinder, InitialState
 from rockwobble.multibody.body import scaled_body
-from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
-from rockwobble.multibody.engines.mujoco_scene import compile_scene
-from rockwobble.multibody.engines.settings.mujoco import MujocoSettings
+from rockwobble.multibody.engines.mujoco import MujocoEngine
+from rockwobble.multibody.engines.mujoco_scene import MujocoSettings, compile_scene
 from rockwobble.multibody.protocol import Scene
 from rockwobble.multibody.scene.ring_geometry import wall_feet, wall_orientations
 from rockwobble.multibody.scene.ring_settings import RingSettings, take_ring

@@ -11,7 +11,7 @@ import pytest
 SOURCE = """
 import contextlib, dataclasses, random
 import numpy as np
-from rockwobble.multibody.engines.mujoco_engine import MujocoEngine
+from rockwobble.multibody.engines.mujoco import MujocoEngine
 
 class Wrapped:
     def __init__(self, stepper, change):

@@ -213,7 +213,7 @@ def test_bad_input_gets_one_clear_line(tmp_path: Path, capsys, arguments, words)
 @pytest.mark.parametrize(
     ("arguments", "words"),
     [
-        (["--measure", "foo"], "an intensity must be one of peak_acceleration"),
+        (["--measure", "foo"], "measure must be one of peak_acceleration"),
         (["--model", "foo"], "a reduced model must be one of recess"),
         (["--model", "recess", "--restitution", "0.9"], "restitution is of planar models"),
         (["--levels", "1,2", "--scale", "1"], "got both"),

@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare.studies.spectrum.spectrum import PLANAR_X, PLANAR_Y, SPATIAL, OverturningSpectrum
+from rockwobble.compare.studies.spectrum.maps import PLANAR_X, PLANAR_Y, SPATIAL, TiltMaps
 from rockwobble.models import Case, Cylinder, InitialState, Trace, el_centro_1940
 from rockwobble.reports.paper import earthquake, free, overturning, period
 from rockwobble.reports.paper.statement import (
@@ -179,7 +179,7 @@ def test_a_run_that_twists_has_a_residual():
 # figure 6
 
 
-def spectrum(space: list[float], x: list[float]) -> OverturningSpectrum:
+def spectrum(space: list[float], x: list[float]) -> TiltMaps:
     """Make a spectrum of lowest overturning intensities, above which everything overturns."""
     intensities = np.linspace(1.0, 12.0, 111)
     lowest = {
@@ -191,7 +191,7 @@ def spectrum(space: list[float], x: list[float]) -> OverturningSpectrum:
         name: np.where(intensities[None, :] >= np.nan_to_num(edge, nan=99.0)[:, None], FALL, 0.01)
         for name, edge in lowest.items()
     }
-    return OverturningSpectrum(
+    return TiltMaps(
         tan_alpha=0.1,
         motion=el_centro_1940(),
         gravity=9.81,

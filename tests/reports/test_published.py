@@ -9,10 +9,10 @@ import pandas as pd
 import pytest
 
 from rockwobble.compare.certificate.verdict import CHANGED
-from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests, read_results
+from rockwobble.compare.storage.manifest import MANIFEST, file_state, read_manifests
 from rockwobble.compare.storage.provenance import code_digests
 from rockwobble.compare.studies.validity.limits import needs
-from rockwobble.compare.studies.validity.study import stored_validity
+from rockwobble.compare.studies.validity.study import Validity
 from rockwobble.models.diagnostic import CODES, parted
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.registry import KINDS, stored_page
@@ -89,7 +89,7 @@ def test_its_diagnostics_are_codes(path: Path) -> None:
 
 
 def test_the_guide_states_the_needs_of_the_published_limits() -> None:
-    found = needs(stored_validity(read_results(PUBLISHED / "validity", "validity")).tables)
+    found = needs(Validity.load(PUBLISHED / "validity").tables)
     guide = (PUBLISHED.parents[1] / "docs" / "guide" / "limits.md").read_text(encoding="utf-8")
     for name in ("friction", "moment"):
         heads = [f"{each:g}" for each in sorted(found["intensity"].unique())]

@@ -13,15 +13,14 @@ from browser import complaints_of_all, needs_chromium
 import rockwobble as rw
 import rockwobble.compare as rc
 from rockwobble.compare.runs import execution
-from rockwobble.compare.storage.manifest import made_now
 from rockwobble.compare.studies.single_run import single_run_of
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat
 from rockwobble.reports.figures.runs import sweep as figure
 from rockwobble.reports.figures.runs import trace as trace_figure
+from rockwobble.reports.pages import registry
 from rockwobble.reports.pages.page import Page
 from rockwobble.reports.pages.runs.run import page_of
-from rockwobble.reports.pages.runs.sweep import sweep_page
 
 PIER = rw.Cylinder(semidiagonal=6.0, tan_alpha=0.2)
 RELEASE = rw.Case(PIER, initial=rw.InitialState(tilt=0.5 * PIER.alpha, rolling_rate=0.5), duration=1.0)
@@ -48,7 +47,7 @@ def facts(page: Page) -> dict[str, str]:
 def swept() -> dict[str, Page]:
     cases = [rw.Case(PIER, initial=RELEASE.initial, duration=0.5 * n, name=f"{n}") for n in (1, 2)]
     plans = {"grid": GRID, "cases": rw.Suite(cases, [rw.Run(None, "recess"), rw.Run(None, "flat")])}
-    return {name: sweep_page(rw.sweep(plan, workers=1), made_now("sweep")) for name, plan in plans.items()}
+    return {name: registry.page_of(rw.sweep(plan, workers=1)) for name, plan in plans.items()}
 
 
 def test_a_run_says_what_its_method_gives_and_no_more():

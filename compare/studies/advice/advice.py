@@ -23,11 +23,10 @@ from ...runs.choice import require_runnable
 from ...runs.execution import SAMPLE_STEP, Job, job_fingerprint, simulate_run
 from ...runs.progress import ProgressCallback, Stages
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Number
-from ...storage.manifest import Results as Stored
+from ...storage.manifest import Number, Stored
 from ...storage.results import Results
 from ..plans import AdvicePlan
-from ..spectrum.spectrum import SPATIAL, uplift_factor
+from ..spectrum.maps import SPATIAL, uplift_factor
 from .grades import (
     Grade,
     grade_engine,

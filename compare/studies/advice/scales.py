@@ -17,8 +17,9 @@ from rockwobble.models.cpus import in_threads
 
 from ...metrics.order_statistics import share_interval
 from ...metrics.tilt import overturned
-from ..spectrum.search import STEP, Array, lowest_on_grid, run_searches, search_lowest
-from ..spectrum.spectrum import RTOL, SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
+from ..plans import STEP
+from ..spectrum.maps import RTOL, SERIES, SPATIAL, intensity_unit, series_options, uplift_of_series
+from ..spectrum.search import Array, lowest_on_grid, run_searches, search_lowest
 from ..spectrum.tables import CHECK_RTOL, NUDGE
 
 # twelve scales for each factor of two, from a quarter to sixteen times the record as it is given

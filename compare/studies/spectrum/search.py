@@ -29,16 +29,10 @@ T = TypeVar("T")
 # Many searches go on side by side; those that want the same intensity share the preparation of its motion.
 Search = Generator[Array, Array, T]
 
-# Finest step, over the intensity at which the peak of the horizontal resultant is g tan(alpha): no peak
-# acceleration is known to such a step.
-STEP = 0.015
 _COARSEST = 8.0  # of these, where nothing asks for a finer one
 # A step is halved where a tilt that goes on as fast as there, or in one of the two steps beside it on either
 # side, reaches alpha within so many times its length: next to a window the tilt changes fast.
 _REACH, _BESIDE = 6.0, 2
-# Intensities drawn below each lowest. Where 0.6 % of all overturn, none of so many does once in twenty times;
-# with them a spectrum takes some five times as many runs as without.
-PROBES = 500
 _SPARE = 10  # as a tenth more are drawn, one that overturns near the lowest asks for no others
 _CLOSE = 1e-6  # relative: so near to uplift there is nothing to draw between
 

@@ -3,27 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
 from rockwobble import reduced
-from rockwobble.models import Case, Cylinder
-from rockwobble.models.records.plausibility import doubts_of
+from rockwobble.models import Case, Cylinder, WobblingFrame
 
 from ...metrics.tilt import overturned
-from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Manifest, made_now
-from ...storage.provenance import reduced_makers
-from .spectrum import (
-    KIND,
+from .maps import (
     PLANAR_X,
     PLANAR_Y,
     SERIES,
     SPATIAL,
-    OverturningSpectrum,
+    TiltMaps,
     record_frame,
     safe_islands,
     series_options,
@@ -52,12 +46,12 @@ CONTRAST_COLUMNS: dict[str, str] = {
 }
 
 
-def planar_contrast(spectrum: OverturningSpectrum) -> pd.DataFrame:
+def planar_contrast(spectrum: TiltMaps) -> pd.DataFrame:
     """Return the differences of 3D and planar runs, one row for each band of sizes and a last one for all.
 
     Parameters
     ----------
-    spectrum : OverturningSpectrum
+    spectrum : TiltMaps
 
     Returns
     -------
@@ -74,7 +68,7 @@ def planar_contrast(spectrum: OverturningSpectrum) -> pd.DataFrame:
     return pd.DataFrame([*rows, _row(spectrum, np.arange(len(sizes)))], columns=list(CONTRAST_COLUMNS))
 
 
-def edge_difference(spectrum: OverturningSpectrum) -> Array:
+def edge_difference(spectrum: TiltMaps) -> Array:
     """Return the lowest overturning intensity in 3D less that in the worse plane, (n_R,) [-].
 
     Negative where the planar analysis is unconservative; infinite where only one of them was found to
@@ -87,7 +81,7 @@ def edge_difference(spectrum: OverturningSpectrum) -> Array:
     return np.where(np.abs(difference) > spectrum.search_step, difference, 0.0)
 
 
-def unconservative_from(spectrum: OverturningSpectrum) -> float:
+def unconservative_from(spectrum: TiltMaps) -> float:
     """Return the size [m] from which on 3D has the lower overturning intensity at every size; NaN if none."""
     lower = edge_difference(spectrum) < 0.0
     if not lower[-1]:
@@ -107,7 +101,7 @@ def size_bands(semidiagonals: Array) -> Array:
     return np.arange(first, max(last, first + 1) + 1, dtype=np.float64) * width
 
 
-def _row(spectrum: OverturningSpectrum, group: NDArray[np.intp]) -> dict[str, object]:
+def _row(spectrum: TiltMaps, group: NDArray[np.intp]) -> dict[str, object]:
     known = ~spectrum.failed()[group]
     space, x, y = (spectrum.overturned(name)[group][known] for name in (SPATIAL, PLANAR_X, PLANAR_Y))
     tilt, tilt_x, tilt_y = (spectrum.peak_tilt[name][group][known] for name in (SPATIAL, PLANAR_X, PLANAR_Y))
@@ -152,12 +146,12 @@ AGREEMENT = 0.02  # of the peak tilt
 CELLS = 60  # enough to find one wrong cell in twenty almost surely, in half a second
 
 
-def check_cells(spectrum: OverturningSpectrum) -> pd.DataFrame:
+def check_cells(spectrum: TiltMaps) -> pd.DataFrame:
     """Run randomly chosen cells again as single runs, each beside a copy with a record stronger by a hair.
 
     Parameters
     ----------
-    spectrum : OverturningSpectrum
+    spectrum : TiltMaps
         `CELLS` cells are drawn from all its series without repetition, or every one where there are fewer.
 
     Returns
@@ -192,7 +186,7 @@ def check_cells(spectrum: OverturningSpectrum) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-def confirm_lowest(spectrum: OverturningSpectrum) -> pd.DataFrame:
+def confirm_lowest(spectrum: TiltMaps) -> pd.DataFrame:
     """Run each lowest intensity again, to a tighter tolerance and under a record that differs by a hair.
 
     Returns
@@ -212,17 +206,20 @@ def confirm_lowest(spectrum: OverturningSpectrum) -> pd.DataFrame:
     return table
 
 
-def _overturns_again(spectrum: OverturningSpectrum, series: str, i: int, scale: float) -> bool:
+def _overturns_again(spectrum: TiltMaps, series: str, i: int, scale: float) -> bool:
     if math.isnan(scale):
         return False
     factors = (1.0, 1.0 - NUDGE, 1.0 + NUDGE)
     return all(overturned(_single(spectrum, series, i, scale * factor)) for factor in factors)
 
 
-def _single(spectrum: OverturningSpectrum, series: str, i: int, scale: float) -> float:
+def _single(spectrum: TiltMaps, series: str, i: int, scale: float) -> float:
     run = reduced.simulate(
         Case(
-            Cylinder(semidiagonal=float(spectrum.semidiagonals[i]), tan_alpha=spectrum.tan_alpha),
+            WobblingFrame(
+                Cylinder(semidiagonal=float(spectrum.semidiagonals[i]), tan_alpha=spectrum.tan_alpha),
+                spectrum.slab_mass_ratio,
+            ),
             spectrum.motion.scaled(scale),
             gravity=spectrum.gravity,
         ),
@@ -238,8 +235,8 @@ def _agree(peak: float, other: float) -> bool:
     return math.isnan(peak) == math.isnan(other) and not abs(peak - other) > AGREEMENT * other
 
 
-def tables_of(spectrum: OverturningSpectrum) -> dict[str, pd.DataFrame]:
-    """Return the tables of a spectrum by name; cells and lowest intensities are verified for them."""
+def tables_of(spectrum: TiltMaps) -> dict[str, pd.DataFrame]:
+    """Return the tables of `OverturningSpectrum`; cells and lowest intensities are verified for them."""
     return {
         "spectrum": spectrum.to_frame(),
         "record": record_frame(spectrum.motion),
@@ -248,23 +245,3 @@ def tables_of(spectrum: OverturningSpectrum) -> dict[str, pd.DataFrame]:
         "contrast": planar_contrast(spectrum),
         "checked": check_cells(spectrum),
     }
-
-
-def manifest_of(
-    spectrum: OverturningSpectrum, tables: Mapping[str, pd.DataFrame], command: str = ""
-) -> Manifest:
-    """Return the manifest of a spectrum, with what planar analysis misses as headline."""
-    grid = spectrum.semidiagonals, spectrum.intensities
-    every = tables["contrast"].iloc[-1]
-    return made_now(
-        KIND,
-        inputs=fingerprint([spectrum.facts(), *grid, spectrum.motion.acceleration, reduced_makers()]),
-        command=command,
-        headline={
-            "cells": int(every["cells"]),
-            "share that overturns in 3D": float(every["overturned"]),
-            "share that overturns in 3D and in neither plane": float(every["missed"]),
-            "share that overturns in a plane and not in 3D": float(every["overcalled"]),
-        },
-        about=spectrum.facts() | {"doubts": doubts_of([spectrum.motion])},
-    )

@@ -44,7 +44,7 @@ class GridChunk:
 
     @property
     def name(self) -> str:
-        """Description of the chunk, for whoever waits."""
+        """Description of the chunk."""
         where = f"tan alpha {self.tan_alpha:g}, R from {self.semidiagonals[0]:g} m, scale from"
         return f"{self.label}, {self.model}, {where} {self.scales[0]:g}"
 
@@ -101,13 +101,13 @@ class Grid(Brief):
         With different names.
     models : sequence of {"recess", "flat", "planar"}, optional
     **options
-        rtol, rest_tilt, gravity, and for a grid of planar runs alone plane and restitution: as in
-        `reduced.peak_tilts`.
+        rtol, rest_tilt, gravity, slab_mass_ratio, and for a grid of planar runs alone plane and restitution:
+        as in `reduced.peak_tilts`.
 
     Raises
     ------
     ValueError
-        If an axis is empty, repeats a value or holds one that is out of range.
+        If an axis is empty, repeats a value or holds one that is out of range, or an option is unusable.
 
     Examples
     --------
@@ -141,6 +141,9 @@ class Grid(Brief):
         for model in models:
             if model not in MODELS:
                 raise ValueError(f"models must be of {', '.join(MODELS)}, got {model!r}")
+        planar = [name for name in ("plane", "restitution") if name in options]
+        if planar and tuple(models) != ("planar",):
+            raise ValueError(f"{planar[0]} is of planar motion, got models {', '.join(models)}")
         object.__setattr__(self, "semidiagonals", _axis("semidiagonals", semidiagonals, above_zero=True))
         object.__setattr__(self, "tan_alphas", _axis("tan_alphas", tan_alphas, above_zero=True))
         object.__setattr__(self, "scales", _axis("scales", scales, above_zero=False))
@@ -215,7 +218,7 @@ class Grid(Brief):
                     [1.0], 0.2, self.motions[0], [], **{**reduced.MODELS[model], **self.options}
                 )
             except TypeError:
-                allowed = "rtol, rest_tilt, gravity, plane and restitution"
+                allowed = "rtol, rest_tilt, gravity, slab_mass_ratio, plane and restitution"
                 raise ValueError(
                     f"the options of a grid are {allowed}, got {', '.join(self.options)}"
                 ) from None

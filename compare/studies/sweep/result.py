@@ -3,34 +3,41 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import pandas as pd
 
-from rockwobble.models.shown import Shown
-
 from ...metrics.order_statistics import stated
-from ...storage.manifest import Results
+from ...storage.manifest import Number
+from ...storage.results import Results
 
 KIND = "sweep"
 _OUTCOMES = ("stands", "overturned", "failed")
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Sweep(Shown):
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Sweep(Results, kind=KIND):
     """What became of each run.
 
-    Attributes
-    ----------
-    table : DataFrame
-        One row for each run, in the order of the plan.
-    about : mapping
-        The plan: its kind, the number of runs, and the axes of a grid or its cases and methods.
+    Tables
+    ------
+    sweep : DataFrame
+        One row for each run, in the order of the plan; `table`, too.
+    motions : DataFrame
+        Of a grid the samples of its ground motions.
+
+    Its facts are the plan: its kind, the number of runs, and the axes of a grid or its cases and methods.
     """
 
-    table: pd.DataFrame
-    about: Mapping[str, object]
+    @property
+    def table(self) -> pd.DataFrame:
+        """One row for each run, in the order of the plan."""
+        return self.tables[KIND]
+
+    def headline(self) -> dict[str, Number]:
+        """Return the number of runs, and of those that ended in each way."""
+        outcome = self.table["outcome"]
+        return {"runs": len(outcome), **{name: int((outcome == name).sum()) for name in self.outcomes}}
 
     @property
     def keys(self) -> list[str]:
@@ -64,13 +71,3 @@ class Sweep(Shown):
                 }
             )
         return pd.DataFrame(rows)
-
-    def _said(self) -> dict[str, str]:
-        outcome = self.table["outcome"]
-        counts = {name: str((outcome == name).sum()) for name in self.outcomes}
-        return {"runs": str(len(self.table)), **counts}
-
-
-def stored_sweep(results: Results) -> Sweep:
-    """Return the sweep that is stored."""
-    return Sweep(table=results.table(KIND), about=results.manifest.about)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from functools import partial
 from pathlib import Path
 
@@ -16,10 +16,9 @@ from ...runs.execution import all_makers
 from ...runs.progress import ProgressCallback
 from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Manifest, made_now, read_results, write_results
 from .cases import CaseChunk, chunks_of, describe_suite, runnable_suite
 from .grid import Grid, GridChunk
-from .result import KIND, Sweep, stored_sweep
+from .result import KIND, Sweep
 
 # a chunk whose process died is tried this often: the process may have been ended from outside
 _TRIES = 3
@@ -33,10 +32,8 @@ def sweep(
     scheduler: str | None = None,
     workers: int | None = None,
     chunk_size: int | None = None,
-    seeds: Mapping[str, int] | None = None,
     progress: ProgressCallback | None = None,
-    command: str = "",
-    pages: Callable[[Sweep, Manifest], Mapping[str, bytes]] | None = None,
+    save: Callable[[Sweep], object] | None = None,
 ) -> Sweep:
     """Run every combination, and return the tidy table of what became of each.
 
@@ -60,14 +57,11 @@ def sweep(
         Number of those processes; 1 runs everything in this one. Default: one for each processor.
     chunk_size : int, optional
         Runs in a chunk. Default: about a second of computing. The hash of a chunk depends on it.
-    seeds : mapping, optional
-        Seeds of whatever random numbers the cases were drawn with, to be kept with the results.
     progress : callable, optional
-        Told of the start and the end of each chunk.
-    command : str, optional
-        That asks for it, to be kept with the results.
-    pages : callable, optional
-        Returns the files, by name, that are drawn of the sweep: they are written with it or not at all.
+        Called with a `Progress` at the start and the end of each chunk.
+    save : callable, optional
+        Writes the sweep into `out`, perhaps with pages; the chunks there are kept until it has. Default:
+        `Sweep.save`.
 
     Returns
     -------
@@ -123,52 +117,15 @@ def sweep(
         by_place = dict(zip(order, found, strict=True))
         table: pd.DataFrame = pd.concat([by_place[place] for place in range(len(chunks))], ignore_index=True)
         motions = whole.motions if isinstance(whole, Grid) else [case.motion for case in whole.cases]
-        about = whole.describe() if isinstance(whole, Grid) else describe_suite(whole)
-        about = {**about, "doubts": doubts_of(motions)}
-        result = Sweep(table=table, about=about)
+        plain = whole.describe() if isinstance(whole, Grid) else describe_suite(whole)
+        inputs = fingerprint([chunk.key() for chunk in chunks])
+        result = Sweep(
+            tables={KIND: table, **_motions(whole)},
+            facts={**plain, "doubts": doubts_of(motions), "inputs": inputs},
+        )
         if out is not None:
-            made = made_now(
-                KIND,
-                inputs=fingerprint([chunk.key() for chunk in chunks]),
-                command=command,
-                seeds=seeds,
-                headline={"runs": len(table)}
-                | {str(k): int(n) for k, n in table["outcome"].value_counts().items()},
-                about=about,
-            )
-            drawn = {} if pages is None else pages(result, made)
-            write_results(out, made, {KIND: table, **_motions(whole)}, pages=drawn)
+            result.save(out) if save is None else save(result)
     return result
-
-
-def read_sweep(folder: str | Path) -> Sweep:
-    """Return the sweep in a folder.
-
-    Parameters
-    ----------
-    folder : str or Path
-
-    Returns
-    -------
-    Sweep
-
-    Raises
-    ------
-    ValueError
-        If there is none, or a file is damaged.
-
-    Examples
-    --------
-    >>> import rockwobble as rw
-    >>> from tempfile import mkdtemp
-    >>> from rockwobble.compare import Grid
-    >>> folder = mkdtemp()
-    >>> grid = Grid(semidiagonals=[6], tan_alphas=[0.2], scales=[1, 2], motions=[rw.el_centro_1940()])
-    >>> _ = rw.sweep(grid, out=folder, workers=1)
-    >>> read_sweep(folder)
-    Sweep(runs 2, stands 1, overturned 1)
-    """
-    return stored_sweep(read_results(folder, KIND))
 
 
 def run_chunk(chunk: Chunk) -> pd.DataFrame:

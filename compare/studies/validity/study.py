@@ -10,13 +10,12 @@ from pathlib import Path
 
 import pandas as pd
 
-from rockwobble.models.shown import Shown
-
 from ...runs.progress import ProgressCallback
 from ...runs.tables import run_tables
 from ...storage.fingerprint import fingerprint
-from ...storage.manifest import Manifest, Results, made_now
+from ...storage.manifest import Number
 from ...storage.provenance import engine_makers, reduced_makers
+from ...storage.results import Results
 from .el_centro import CONTACT, FOLLOWING, RINGS
 from .free_response import FREE_RESPONSE, SLIP, VERIFICATION
 from .limits import limits_of
@@ -42,7 +41,7 @@ def part_named(name: str) -> Part:
 
 KIND = "validity"
 Task = tuple[str, Inputs]  # name of a part, and what is measured
-_PLACES = {"recess": "in an ideal recess", "ring": "in a ring", "flat": "on flat ground"}
+_PLACES = {"recess": "in an ideal recess", "ring": "in a recess with clearance", "flat": "on flat ground"}
 _ENDS = {
     "least": "least median",
     "largest": "largest median",
@@ -51,23 +50,33 @@ _ENDS = {
 }
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class Validity(Shown):
-    """Measurements of the limits.
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class Validity(Results, kind=KIND):
+    """Measurements of the limits of the reduced model.
 
-    Attributes
-    ----------
-    tables : mapping
-        Of all parts, by name.
-    records : str
-        What the motions of the ensemble are.
+    Tables
+    ------
+    free_response, verification, ... : DataFrame
+        What each of `PARTS` measured.
+    limits : DataFrame
+        Every number of every limit, see `limits_of`: limit, number, value.
+
+    Its facts are the extent and what the ground motions are.
     """
 
-    tables: Mapping[str, pd.DataFrame]
-    records: str
+    def headline(self) -> dict[str, Number]:
+        """Return the ratios of the peaks of the engine to those of the model, over the records."""
+        numbers = limits_of(self.tables)["records"]
+        return {
+            f"peak {where} over that of the model, {what}": numbers[f"{name}_{end}"]
+            for name, where in _PLACES.items()
+            for end, what in _ENDS.items()
+        }
 
     def _said(self) -> dict[str, str]:
-        return {"motions": self.records} | {name: f"{len(table)} rows" for name, table in self.tables.items()}
+        return {"motions": self.facts["records"]} | {
+            name: f"{len(table)} rows" for name, table in self.tables.items()
+        }
 
 
 def measure_all(
@@ -125,26 +134,16 @@ def measure_task(task: Task) -> pd.DataFrame:
 
 
 def validity_of(tables: Mapping[str, pd.DataFrame], extent: Extent) -> Validity:
-    """Return the result of what was measured here."""
-    return Validity(tables=tables, records=source_of(record_names(extent.members)))
-
-
-def manifest_of(found: Validity, extent: Extent, command: str = "") -> Manifest:
-    """Return what made a measurement of an extent, with how far peaks are off as headline."""
-    numbers = limits_of(found.tables)["records"]
-    headline = {
-        f"peak {where} over that of the model, {what}": numbers[f"{name}_{end}"]
-        for name, where in _PLACES.items()
-        for end, what in _ENDS.items()
-    }
-    about = {"extent": extent.name, "records": found.records}
-    return made_now(KIND, command=command, headline=headline, about=about)
-
-
-def stored_validity(results: Results) -> Validity:
-    """Return a measurement that was stored; what is installed here has no part in it."""
-    tables = {part.name: results.table(part.name) for part in PARTS}
-    return Validity(tables=tables, records=results.manifest.about["records"])
+    """Return the results of what was measured here."""
+    limits = pd.DataFrame(
+        [
+            {"limit": limit, "number": number, "value": value}
+            for limit, numbers in limits_of(tables).items()
+            for number, value in numbers.items()
+        ]
+    )
+    facts = {"extent": extent.name, "records": source_of(record_names(extent.members))}
+    return Validity(tables={**tables, "limits": limits}, facts=facts)
 
 
 def task_name(task: Task) -> str:

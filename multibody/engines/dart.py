@@ -25,7 +25,9 @@ from __future__ import annotations
 
 import contextlib
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -33,11 +35,151 @@ from rockwobble.models.support import SUPPORTS
 
 from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
-from ..protocol import Array, Scene, Settings, Stepper, Steps
-from .dart_scene import DartScene, build, quaternions, rotation_vector
-from .declared import Declared
-from .scene_counts import SceneCounts
-from .settings.dart import DartSettings
+from ..protocol import Array, Scene, SceneCounts, Settings, Stepper, Steps
+from ..scene.friction import body_friction
+from .declared import GUIDE, Declared, build, positive, whole
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DartSettings:
+    """Settings of DART: hard contact has neither stiffness nor damping.
+
+    Attributes
+    ----------
+    guide_stiffness : float
+        As for MuJoCo [1/s^2].
+    depth : float
+        At which the rim is kept, at the reference size [m]: so much that where the detector finds the rim
+        instead of corners, from a lean of depth/b on, its radius is off by 1e-4 b only. It is taken off the
+        poses.
+    depth_gain : float
+        Share of a change of depth that one step takes back. At 0.3 what two steps extrapolate to is 4e-9,
+        1e-8 and 2e-7 alpha off after a release at tan alpha 0.35, 1 and 3; at 0.05 it is 7e-8, 5e-7 and 3e-6.
+        1 would make landing elastic.
+    friction_damping : float
+        As for MuJoCo: share of the slip velocity that one step removes. DART knows no other than 1, which is
+        made up for by a velocity of the ground. At 1.8 the error of a free response is a fifth to a tenth of
+        that at 1, and under twice El Centro on flat ground (R = 6 m, tan alpha 0.2, to 22 s) it is 7e-3 alpha
+        and not 7e-2, for a fifth more time a step.
+    tolerance, iterations : float, int
+        Of the Gauss-Seidel method; one contact takes a single sweep, the four of a base that is about to open
+        some hundreds, and fewer leave it a velocity.
+    """
+
+    guide_stiffness: float
+    depth: float = 1e-6
+    depth_gain: float = 0.3
+    friction_damping: float = 1.8
+    tolerance: float = 1e-12
+    iterations: int = 1000
+
+    @classmethod
+    def resolve(cls, given: Mapping[str, Any], time_step: float) -> DartSettings:
+        """Return the settings for a time step [s], with those `given` in place of the defaults.
+
+        Raises
+        ------
+        ValueError
+            If a setting is unknown or out of range.
+        """
+        settings = build(cls, "dart", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
+        positive(settings, "guide_stiffness")
+        positive(settings, "depth", most=1e-3)
+        positive(settings, "depth_gain", most=1.0)
+        positive(settings, "friction_damping", most=2.0)
+        positive(settings, "tolerance", most=1e-3)
+        whole(settings, "iterations")
+        return settings
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class DartScene:
+    """A ground that may have a velocity, though it does not move, and a cylinder on it.
+
+    Attributes
+    ----------
+    world : dartpy.simulation.World
+    ground : dartpy.dynamics.TranslationalJoint
+    cylinder : dartpy.dynamics.BodyNode
+    joint : dartpy.dynamics.FreeJoint
+        Its positions are a rotation vector and the position of the mass centre [m].
+    use : callable
+        Takes the solver of contact.
+    flat_solver, rim_solver : dartpy.constraint.BoxedLcpSolver
+    """
+
+    world: Any
+    ground: Any
+    cylinder: Any
+    joint: Any
+    use: Callable[[Any], None]
+    flat_solver: Any
+    rim_solver: Any
+
+
+def make_scene(scene: Scene, settings: DartSettings) -> DartScene:
+    """Make ground and cylinder, the mass centre at the origin."""
+    import dartpy
+
+    shape, dynamics = scene.body, dartpy.dynamics
+    world = dartpy.simulation.World()
+    world.setTimeStep(scene.time_step)
+    world.setGravity([0.0, 0.0, -scene.gravity])
+    solver = world.getConstraintSolver()
+    # its own detector and FCL's find one contact under a flat base, and Bullet's rounds the rim
+    solver.setCollisionDetector(dartpy.collision.OdeCollisionDetector())
+    friction = body_friction(scene.friction, "pair")
+
+    def collide(node: Any, outline: Any) -> Any:
+        placed = node.createShapeNode(outline)
+        placed.createCollisionAspect()
+        placed.createDynamicsAspect().setFrictionCoeff(friction)
+        return placed
+
+    ground = dynamics.Skeleton("ground")
+    slide, plane = ground.createTranslationalJointAndBodyNodePair()
+    collide(plane, dynamics.PlaneShape([0.0, 0.0, 1.0], 0.0))
+    ground.setMobile(False)
+    cylinder = dynamics.Skeleton("cylinder")
+    joint, body = cylinder.createFreeJointAndBodyNodePair()
+    outline = collide(body, dynamics.CylinderShape(shape.base_radius, shape.height))
+    place = dartpy.math.Isometry3()
+    place.set_translation([0.0, 0.0, 0.5 * shape.height - shape.mass_centre_height])
+    outline.setRelativeTransform(place)
+    inertia = np.diag([shape.transverse_inertia, shape.transverse_inertia, shape.axial_inertia])
+    body.setInertia(dynamics.Inertia(1.0, np.zeros(3), inertia))
+    world.addSkeleton(ground)
+    world.addSkeleton(cylinder)
+    options = dartpy.constraint.NsgsFrictionSolver.Options()
+    options.tolerance, options.maxSweeps = settings.tolerance, settings.iterations
+    return DartScene(
+        world=world,
+        ground=slide,
+        cylinder=body,
+        joint=joint,
+        use=solver.setBoxedLcpSolver,
+        flat_solver=solver.getBoxedLcpSolver(),
+        rim_solver=dartpy.constraint.NsgsFrictionSolver(options),
+    )
+
+
+def rotation_vector(quaternion: Array, spin: float) -> Array:
+    """Return the rotation vector (3,) of a quaternion (4,), scalar first, and a turn about the axis."""
+    w, x, y, z = quaternion
+    c, s = math.cos(0.5 * spin), math.sin(0.5 * spin)
+    imaginary = np.array([x * c + y * s, y * c - x * s, z * c + w * s])
+    size = float(np.linalg.norm(imaginary))
+    return np.asarray(imaginary * (2.0 * math.atan2(size, w * c - z * s) / size))
+
+
+def quaternions(vectors: Array, spin: float) -> Array:
+    """Return the quaternions (n, 4), scalar first, of rotation vectors (n, 3) less a turn about the axis."""
+    angle = np.linalg.norm(vectors, axis=1)
+    x, y, z = 0.5 * np.sinc(0.5 * angle / np.pi) * vectors.T
+    w = np.cos(0.5 * angle)
+    c, s = math.cos(0.5 * spin), math.sin(0.5 * spin)
+    return np.column_stack([w * c + z * s, x * c - y * s, y * c + x * s, z * c - w * s])
+
 
 _LEANS = 1e-8  # [rad] from which a lean has a direction that is not of what stood
 _OPEN = 5e-8  # [rad] lean at which the base is open; standing it stays below 5e-9, landed below 3e-8
@@ -76,7 +218,7 @@ class _DartStepper:
         # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
         self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
-        self._dart: DartScene = build(scene, settings)
+        self._dart: DartScene = make_scene(scene, settings)
         self._heading = 0.0  # azimuth of the x axis of the scene in the world [rad]
         self._kept = settings.depth  # depth at which the rim is kept just now [m]
         self._open = False

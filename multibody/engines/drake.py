@@ -21,9 +21,11 @@ What it needs:
 from __future__ import annotations
 
 import contextlib
+import logging
 import math
-from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -32,11 +34,185 @@ from rockwobble.models.support import SUPPORTS
 from ..body import Body
 from ..facts import EngineFacts
 from ..kinematics import about_vertical, turning
-from ..protocol import Array, Scene, Settings, Stepper, Steps
-from .declared import Declared
-from .drake_scene import POINTS, build
-from .scene_counts import SceneCounts
-from .settings.drake import DrakeSettings
+from ..protocol import Array, Scene, SceneCounts, Settings, Stepper, Steps
+from ..scene.friction import body_friction
+from .declared import GUIDE, Declared, build, one_of, positive
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrakeSettings:
+    """Settings of Drake: contact in discrete time.
+
+    Attributes
+    ----------
+    guide_stiffness : float
+        As for MuJoCo [1/s^2].
+    approximation : {"lagged", "similar", "tamsi", "sap"}
+        Of contact. "lagged" is Drake's default and convex; SAP loses a hundred times more energy.
+    contact_stiffness : float
+        For each unit of mass, at the reference size [1/s^2]; the weight sinks in by 1e-9 m. It is solved
+        for implicitly, so the step does not limit it.
+    dissipation : float
+        Of Hunt and Crossley, at the reference size [s/m]. Contact pushes apart by 1/dissipation at most
+        [m/s]: without it a base that lands, by then as deep as it fell in a step, is thrown back by all of
+        that. At 1000 it holds a rim that a near pass moves up.
+    stiction_tolerance : float
+        Speed at which what sticks creeps at the limit of friction, at the reference size [m/s]. At Drake's
+        1e-4 a base under 0.8 of that creeps by 1.5e-4 m in a second. SAP's own limit, a thousandth of what a
+        free body would gain in a step, is about as small.
+    friction_damping : float
+        As for MuJoCo: share of the slip velocity that one step removes. Drake knows no other than 1, which is
+        made up for by a velocity of the frame. At 1.8 the error under twice El Centro on flat ground
+        (6 m, 0.2) is 8.0e-5 alpha after 4 s of motion, at 1 it is 6.7e-4.
+    """
+
+    guide_stiffness: float
+    approximation: str = "lagged"
+    contact_stiffness: float = 1e10
+    dissipation: float = 100.0
+    stiction_tolerance: float = 1e-6
+    friction_damping: float = 1.8
+
+    @classmethod
+    def resolve(cls, given: Mapping[str, Any], time_step: float) -> DrakeSettings:
+        """Return the settings for a time step [s], with those `given` in place of the defaults.
+
+        Raises
+        ------
+        ValueError
+            If a setting is unknown or out of range.
+        """
+        settings = build(cls, "drake", given, {"guide_stiffness": (GUIDE / time_step) ** 2 / 4.0})
+        positive(settings, "guide_stiffness")
+        one_of(settings, "approximation", ("lagged", "similar", "tamsi", "sap"))
+        positive(settings, "contact_stiffness")
+        positive(settings, "dissipation", or_zero=True)
+        positive(settings, "stiction_tolerance")
+        positive(settings, "friction_damping", most=2.0)
+        return settings
+
+
+POINTS = 4  # of the rim, which carry a flat base
+_POINT_SIZE = 1e-9  # of b: a sphere this small reaches out of the rim by 1e-9 theta^2/2
+
+
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
+class DrakeScene:
+    """Ground and cylinder, and what a step of them is solved by.
+
+    Attributes
+    ----------
+    plant : pydrake.multibody.plant.MultibodyPlant
+    diagram, root, context : pydrake.systems.framework.Diagram, Context, Context
+        The diagram that holds the plant, its context, and that of the plant.
+    applied : pydrake.systems.framework.FixedInputPortValue
+        Torque and force on the cylinder.
+    acceleration, contact : pydrake.systems.framework.OutputPort
+    no_forces : pydrake.multibody.tree.MultibodyForces
+    gravity : ndarray, shape (6,)
+        Torque and force.
+    """
+
+    plant: Any
+    diagram: Any
+    root: Any
+    context: Any
+    applied: Any
+    acceleration: Any
+    contact: Any
+    no_forces: Any
+    gravity: Array
+
+    def solve(self, state: Array, applied: Array) -> tuple[Array, Array]:
+        """Solve the step from a state: quaternion, position, angular velocity and velocity (13,).
+
+        Returns
+        -------
+        acceleration : ndarray, shape (6,)
+            Change of both velocities over the step.
+        left : ndarray, shape (6,)
+            Torque and force that the solver left unbalanced.
+        """
+        self.applied.GetMutableData().get_mutable_value().SetFromVector(applied)
+        self.plant.SetPositionsAndVelocities(self.context, state)
+        acceleration = self.acceleration.Eval(self.context)
+        balanced = self.plant.CalcInverseDynamics(self.context, acceleration, self.no_forces)
+        left = applied + self.gravity + self.contact.Eval(self.context) - balanced
+        return acceleration, left
+
+    def count_contacts(self) -> int:
+        """Return how many the last step solved."""
+        results = self.plant.get_contact_results_output_port().Eval(self.context)
+        return int(results.num_point_pair_contacts())
+
+
+def make_scene(scene: Scene, settings: DrakeSettings, points: int) -> DrakeScene:
+    """Make ground and cylinder, with points on its rim."""
+    from pydrake.geometry import AddContactMaterial, Cylinder, HalfSpace, ProximityProperties, Sphere
+    from pydrake.math import RigidTransform
+    from pydrake.multibody import plant as plants
+    from pydrake.multibody.tree import MultibodyForces, RotationalInertia, SpatialInertia
+    from pydrake.systems.framework import DiagramBuilder
+
+    shape = scene.body
+    builder = DiagramBuilder()
+    plant, _ = plants.AddMultibodyPlantSceneGraph(builder, scene.time_step)
+    kinds = plants.DiscreteContactApproximation
+    names = {"lagged": kinds.kLagged, "similar": kinds.kSimilar, "tamsi": kinds.kTamsi, "sap": kinds.kSap}
+    plant.set_discrete_contact_approximation(names[settings.approximation])
+    plant.set_stiction_tolerance(settings.stiction_tolerance)
+    plant.SetUseSampledOutputPorts(False)  # an output then solves the step that is ahead
+    transverse, axial = shape.transverse_inertia, shape.axial_inertia
+    inertia = RotationalInertia(transverse, transverse, axial)
+    origin: Any = np.zeros(3)
+    body = plant.AddRigidBody("cylinder", SpatialInertia.MakeFromCentralInertia(1.0, origin, inertia))
+    friction = body_friction(scene.friction, "pair")
+    contact = ProximityProperties()
+    # two bodies in series are half as stiff as each
+    cone = plants.CoulombFriction(friction, friction)
+    AddContactMaterial(settings.dissipation, 2.0 * settings.contact_stiffness, cone, contact)
+    middle: Any = np.array([0.0, 0.0, 0.5 * shape.height - shape.mass_centre_height])
+    size = _POINT_SIZE * shape.base_radius
+    with _quiet():
+        plant.RegisterCollisionGeometry(plant.world_body(), RigidTransform(), HalfSpace(), "ground", contact)
+        outline = Cylinder(shape.base_radius, shape.height)
+        plant.RegisterCollisionGeometry(body, RigidTransform(middle), outline, "outline", contact)
+        for index in range(points):
+            azimuth = 2.0 * math.pi * index / points
+            x, y = shape.base_radius * math.cos(azimuth), shape.base_radius * math.sin(azimuth)
+            place: Any = np.array([x, y, size - shape.mass_centre_height])
+            name = f"point {index}"
+            plant.RegisterCollisionGeometry(body, RigidTransform(place), Sphere(size), name, contact)
+        plant.mutable_gravity_field().set_gravity_vector([0.0, 0.0, -scene.gravity])
+        plant.Finalize()
+        diagram = builder.Build()
+        root = diagram.CreateDefaultContext()
+    context = plant.GetMyMutableContextFromRoot(root)
+    model = plant.GetModelInstanceByName("DefaultModelInstance")
+    return DrakeScene(
+        plant=plant,
+        diagram=diagram,
+        root=root,
+        context=context,
+        applied=plant.get_applied_generalized_force_input_port().FixValue(context, np.zeros(6)),
+        acceleration=plant.get_generalized_acceleration_output_port(),
+        contact=plant.get_generalized_contact_forces_output_port(model),
+        no_forces=MultibodyForces(plant),
+        gravity=np.array([0.0, 0.0, 0.0, 0.0, 0.0, -scene.gravity]),
+    )
+
+
+@contextlib.contextmanager
+def _quiet() -> Iterator[None]:
+    """Keep a warning that no half space touches a deformable body off the standard error."""
+    logger = logging.getLogger("drake")
+    level = logger.level
+    logger.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        logger.setLevel(level)
+
 
 _FLAT = 2e-3  # [rad] lean up to which a point carries the rim: the cylinder itself is not found below 1e-3
 _LEANS = 1e-8  # [rad] from which a lean has a direction; what stands leans by 1e-9
@@ -64,7 +240,7 @@ class _DrakeStepper:
         # guide_stiffness is in the time of the user; of both halves of the guide, torque for each twist
         stiffness = settings.guide_stiffness * scene.unit_time**2 * scene.body.axial_inertia
         self._stiffness = stiffness if SUPPORTS[scene.support].guided else 0.0
-        self._standing, self._rolling = build(scene, settings, POINTS), build(scene, settings, 0)
+        self._standing, self._rolling = make_scene(scene, settings, POINTS), make_scene(scene, settings, 0)
         self._last = self._standing  # what took the last step
         self._overshoot = settings.friction_damping - 1.0
         self._left = np.zeros(6)  # what the solver left of the last step, torque and force

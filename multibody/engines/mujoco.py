@@ -10,14 +10,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..facts import EngineFacts
-from ..protocol import Array, Scene, Settings, Stepper, Steps, Wall
+from ..protocol import Array, Scene, SceneCounts, Settings, Stepper, Steps, Wall
 from ..scene.ring_geometry import check_start
 from ..scene.ring_settings import RingSettings, take_ring
 from .declared import Declared
-from .mujoco_scene import compile_scene
-from .mujoco_start import set_start, to_world
-from .scene_counts import SceneCounts
-from .settings.mujoco import MujocoSettings
+from .mujoco_scene import MujocoSettings, compile_scene, set_start, to_world
 
 if TYPE_CHECKING:
     import mujoco  # type: ignore[import-untyped]

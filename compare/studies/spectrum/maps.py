@@ -10,28 +10,27 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
-from typing import TypedDict
+from typing import Any, TypedDict
 
 import numpy as np
 import pandas as pd
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from rockwobble import reduced
 from rockwobble.models import GroundMotion
-from rockwobble.models.number_checks import require_increasing, require_one_of, require_positive
-from rockwobble.models.shown import Shown
+from rockwobble.models.number_checks import require_increasing
 
 from ...metrics.tilt import overturned
 from ...runs.progress import ProgressCallback, Stages
-from ...storage.manifest import Results
-from .search import PROBES, STEP, lowest_on_grid, probe_below, run_searches, search_lowest
+from ..plans import SpectrumPlan
+from .search import lowest_on_grid, probe_below, run_searches, search_lowest
 
 SPATIAL, PLANAR_X, PLANAR_Y = "3d", "planar_x", "planar_y"
 SERIES = (SPATIAL, PLANAR_X, PLANAR_Y)
 TITLES = {
     SPATIAL: "3D, both components",
-    PLANAR_X: "planar, east-west alone",
-    PLANAR_Y: "planar, north-south alone",
+    PLANAR_X: "planar x (east-west)",
+    PLANAR_Y: "planar y (north-south)",
 }
 _AZIMUTH = {PLANAR_X: 0.0, PLANAR_Y: 0.5 * math.pi}  # of the plane [rad]
 
@@ -104,12 +103,20 @@ def uplift_factor(
 
 
 Array = NDArray[np.float64]
-KIND = "overturning spectrum"
-_FACTS = ("tan_alpha", "gravity", "support", "rest_tilt", "searched_from", "search_step", "probes")
+_FACTS = (
+    "tan_alpha",
+    "gravity",
+    "support",
+    "rest_tilt",
+    "searched_from",
+    "search_step",
+    "probes",
+    "slab_mass_ratio",
+)
 
 
-@dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
-class OverturningSpectrum(Shown):
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class TiltMaps:
     """Peak tilts of cylinders of one slenderness under one record, over size and intensity.
 
     Attributes
@@ -145,6 +152,8 @@ class OverturningSpectrum(Shown):
         Finest step of that search [-].
     probes : int
         Intensities drawn at random below each of `lowest`, none of which overturns.
+    slab_mass_ratio : float
+        Mass of a slab over that of the cylinders that carry it [-]; 0 without one.
     """
 
     tan_alpha: float
@@ -160,16 +169,7 @@ class OverturningSpectrum(Shown):
     searched_from: Mapping[str, float]
     search_step: float
     probes: int = 0
-
-    def _said(self) -> dict[str, str]:
-        sizes, levels = self.semidiagonals, self.intensities
-        return {
-            "record": self.motion.name or "record",
-            "overturned": f"{int(self.overturned(SPATIAL).sum())} of {len(sizes) * len(levels)} cells",
-            "sizes": f"{len(sizes)} from {sizes[0]:g} to {sizes[-1]:g} m",
-            "intensities": f"{len(levels)} from {levels[0]:g} to {levels[-1]:g}",
-            "tan alpha": f"{self.tan_alpha:g}",
-        }
+    slab_mass_ratio: float = 0.0
 
     @property
     def alpha(self) -> float:
@@ -263,14 +263,14 @@ def record_frame(motion: GroundMotion) -> pd.DataFrame:
     return pd.DataFrame(dict(zip("xyz", motion.acceleration.T, strict=False)))
 
 
-def stored_spectrum(results: Results) -> OverturningSpectrum:
-    """Return the spectrum that is stored in a folder, with the same bits."""
-    cells, lowest, about = results.table("spectrum"), results.table("lowest"), results.manifest.about
-    motion = GroundMotion(results.table("record").to_numpy(), **about["motion"])
+def maps_of(tables: Mapping[str, pd.DataFrame], facts: Mapping[str, Any]) -> TiltMaps:
+    """Return the maps of stored tables, with the same bits."""
+    cells, lowest = tables["spectrum"], tables["lowest"]
+    motion = GroundMotion(tables["record"].to_numpy(), **facts["motion"])
     sizes, levels = (np.unique(cells[name].to_numpy()) for name in ("semidiagonal", "intensity"))
     by_series = dict(iter(lowest.groupby("series")))
-    return OverturningSpectrum(
-        **{name: about[name] for name in _FACTS if name in about},
+    return TiltMaps(
+        **{name: facts[name] for name in _FACTS if name in facts},
         motion=motion,
         semidiagonals=sizes,
         intensities=levels,
@@ -283,7 +283,7 @@ def stored_spectrum(results: Results) -> OverturningSpectrum:
     )
 
 
-def safe_islands(spectrum: OverturningSpectrum) -> pd.DataFrame:
+def safe_islands(spectrum: TiltMaps) -> pd.DataFrame:
     """Return the ranges of intensities above the lowest overturning one in which a cylinder stands.
 
     Columns: series, semidiagonal [m], lower and upper, the first and last intensity of the grid that the
@@ -314,24 +314,18 @@ def safe_islands(spectrum: OverturningSpectrum) -> pd.DataFrame:
 # Steps end at each sample of the record, so a tenth of the tolerance of `reduced.peak_tilts` costs only
 # 4 % of the time, and the cells that it moves by 2 % of their tilt fall from 2 in 1000 to none.
 RTOL = 1e-8
-SUPPORTS = ("recess", "flat")
 
 
-def overturning_spectrum(
+def tilt_maps(
     tan_alpha: float,
     motion: GroundMotion,
     *,
-    semidiagonals: ArrayLike,
-    intensities: ArrayLike,
-    support: str = "recess",
     rtol: float = RTOL,
     rest_tilt: float = reduced.REST_TILT,
-    gravity: float = 9.81,
-    search_step: float = STEP,
-    probes: int = PROBES,
     workers: int | None = None,
     progress: ProgressCallback | None = None,
-) -> OverturningSpectrum:
+    **options: Any,
+) -> TiltMaps:
     """Run every size at every intensity, in three dimensions and in the planes of both components.
 
     Parameters
@@ -339,27 +333,19 @@ def overturning_spectrum(
     tan_alpha : float
         Slenderness b/h [-].
     motion : GroundMotion
-    semidiagonals : array_like, shape (n_R,)
-        Sizes R, increasing [m].
-    intensities : array_like, shape (n_I,)
-        Peak of the horizontal resultant over g tan(alpha), increasing [-].
-    support : {"recess", "flat"}, optional
-        Of the model in three dimensions.
-    rtol, rest_tilt, gravity
+    rtol, rest_tilt
         As in `reduced.simulate`.
-    search_step : float, optional
-        Finest step of the search for the lowest overturning intensity [-]; see `search_lowest`.
-    probes : int, optional
-        Intensities drawn at random below each lowest, none of which overturns; 0 draws none. See
-        `probe_below`.
     workers : int, optional
         Number of threads. It does not influence the result.
     progress : callable, optional
-        Told of the start and the end of each series.
+        Called with a `Progress` at the start and the end of each series.
+    **options
+        Of `SpectrumPlan`: semidiagonals [m], intensities [g tan alpha], support, search_step, probes,
+        gravity, slab_mass_ratio.
 
     Returns
     -------
-    OverturningSpectrum
+    TiltMaps
 
     Raises
     ------
@@ -369,7 +355,7 @@ def overturning_spectrum(
     Examples
     --------
     >>> from rockwobble.models import el_centro_1940
-    >>> spectrum = overturning_spectrum(
+    >>> spectrum = tilt_maps(
     ...     0.1,
     ...     el_centro_1940(),
     ...     semidiagonals=[1.0, 20.0],
@@ -380,12 +366,15 @@ def overturning_spectrum(
     >>> spectrum.overturned("3d").tolist()
     [[False, True], [False, False]]
     """
-    sizes = require_increasing("semidiagonals", semidiagonals)
-    levels = require_increasing("intensities", intensities)
-    require_one_of("support", support, SUPPORTS)
-    require_positive("search_step", search_step)
-    if probes < 0:
-        raise ValueError(f"probes must be 0 or more, got {probes!r}")
+    asked = SpectrumPlan(**options)
+    sizes, levels = (
+        np.linspace(*default) if given is None else require_increasing(name, given)
+        for name, given, default in (
+            ("semidiagonals", asked.semidiagonals, SpectrumPlan.SIZES),
+            ("intensities", asked.intensities, SpectrumPlan.INTENSITIES),
+        )
+    )
+    gravity, probes = asked.gravity, asked.probes
     unit = intensity_unit(tan_alpha, motion, gravity)
     peaks, lowest, below, start = {}, {}, {}, {}
     stages = Stages(progress, [1.0] * len(SERIES))
@@ -398,10 +387,11 @@ def overturning_spectrum(
             rtol=rtol,
             rest_tilt=rest_tilt,
             gravity=gravity,
-            **series_options(name, support),
+            slab_mass_ratio=asked.slab_mass_ratio,
+            **series_options(name, asked.support),
         )
         search = partial(
-            search_lowest, levels, start=start[name], step=search_step, alpha=math.atan(tan_alpha)
+            search_lowest, levels, start=start[name], step=asked.search_step, alpha=math.atan(tan_alpha)
         )
         with stages.stage(TITLES[name]):
             peaks[name] = run(sizes, scales=unit * levels, workers=workers)
@@ -412,19 +402,20 @@ def overturning_spectrum(
                 for i, each in enumerate(found)
             ]
             lowest[name], below[name] = np.array(run_searches(probing, at, workers=workers)).T
-    return OverturningSpectrum(
+    return TiltMaps(
         tan_alpha=tan_alpha,
         motion=motion,
         gravity=gravity,
-        support=support,
+        support=asked.support,
         rest_tilt=rest_tilt,
+        slab_mass_ratio=asked.slab_mass_ratio,
         semidiagonals=sizes,
         intensities=levels,
         peak_tilt=peaks,
         lowest=lowest,
         below=below,
         searched_from=start,
-        search_step=search_step,
+        search_step=asked.search_step,
         probes=probes,
     )
 

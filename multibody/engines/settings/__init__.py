@@ -1,1 +1,0 @@
-"""Settings of the engines: one file each, with a reason for each value."""
