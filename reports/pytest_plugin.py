@@ -44,6 +44,7 @@ import pytest
 
 import rockwobble as rw
 import rockwobble.compare as rc
+import rockwobble.compare.runs as rr
 
 if TYPE_CHECKING:
     from rockwobble.compare.check import Result
@@ -131,7 +132,7 @@ class SuiteFile(pytest.File):
         except ValueError as error:
             raise self.CollectError(str(error)) from None
         runs = suite.runs or rc.default_runs()
-        here, _ = rc.runs_here(runs)
+        here, _ = rr.runs_here(runs)
         for case in suite.cases:
             for run, label in zip(runs, run_labels(runs), strict=True):
                 item: SuiteItem = SuiteItem.from_parent(

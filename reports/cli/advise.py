@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 import rockwobble as rw
-import rockwobble.compare as rc
+import rockwobble.compare.runs as rr
+import rockwobble.compare.storage as rs
 from rockwobble.compare.studies.plans import AdvicePlan
 
 from ..console.progress import shown_progress
@@ -56,7 +57,7 @@ def advise(
             case = problem.case()
             run = _run(case, engine, plan.support, time_step)
             require_feasible([case], [rw.Run(None, "recess"), *([] if run is None else [run])])
-            rc.require_writable(out)
+            rs.require_writable(out)
         with shown_progress("stages") as progress:
             found = rw.advise(
                 case,
@@ -81,5 +82,5 @@ def _run(case: rw.Case, engine: str | None, support: str, time_step: float | Non
     if missing or engine == options.NO_ENGINE:
         return None
     run = rw.Run(engine or default, support, time_step)
-    rc.require_runnable(case, run)
+    rr.require_runnable(case, run)
     return run

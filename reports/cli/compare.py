@@ -11,6 +11,8 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
+import rockwobble.compare.runs as rr
+import rockwobble.compare.storage as rs
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_save
@@ -67,12 +69,12 @@ def compare(
                 cases = [problem.case()]
                 runs = _runs(cases[0], engine, support, time_step, alone=bool(trajectory))
             if setting:
-                runs = list(rc.with_settings(cases[0], runs, settings(setting)))
-            rc.require_writable(out)
+                runs = list(rr.with_settings(cases[0], runs, settings(setting)))
+            rs.require_writable(out)
             require_feasible(cases, runs)
             for each in cases:
                 for run in runs:
-                    rc.require_runnable(each, run)
+                    rr.require_runnable(each, run)
             external = _external(
                 trajectory, cases, trajectory_angles, trajectory_offset, trajectory_noise_deg
             )
@@ -156,7 +158,7 @@ def _external(
 def _say_what_is_left_out(supports: list[str]) -> None:
     from rockwobble.compare.runs.choice import left_out, unsupported
 
-    for name in rc.missing_engines():
+    for name in rr.missing_engines():
         complain(left_out(name))
     for reason in unsupported(supports):
         complain(reason)

@@ -10,6 +10,7 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
 from rockwobble.compare.studies.plans import Copies
 
 from ..console.progress import shown_progress
@@ -65,7 +66,7 @@ def ensemble(
 
             from ..pages.words.diagnostics import warnings
 
-            rc.require_writable(out)
+            rs.require_writable(out)
             refuse_options_of_engines(context, engine)
             stated: rw.Case | rw.Suite | list[rw.Case]
             if suite is not None:

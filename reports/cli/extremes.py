@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_save
@@ -36,7 +36,7 @@ def extremes(
     """
     with interruptible(out):
         with user_input():
-            rc.require_writable(out)
+            rs.require_writable(out)
         from rockwobble.compare.studies.extremes.study import measure_extremes
 
         with user_input(), shown_progress() as tell:

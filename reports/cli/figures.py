@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_save
@@ -33,7 +33,7 @@ def figures(grid: Grid = 100, out: options.Out = Path("rockwobble-figures")) -> 
     """
     with interruptible():
         with user_input():
-            rc.require_writable(out)
+            rs.require_writable(out)
         from ..paper.page import compute
 
         with shown_progress("figures") as progress:

@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 import rockwobble as rw
-import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
 from rockwobble.compare.studies.plans import FragilityPlan
 
 from ..console.progress import shown_progress
@@ -62,7 +62,7 @@ def fragility(
 
             from ..pages.words.diagnostics import warnings
 
-            rc.require_writable(out)
+            rs.require_writable(out)
             if cylinder:
                 of_body = BODY - {"slab_mass_ratio", "columns"}
                 refuse(context, of_body, "does not go with --cylinder, which states the cylinder")

@@ -10,7 +10,8 @@ from typing import Annotated, Any
 import typer
 
 import rockwobble as rw
-import rockwobble.compare as rc
+import rockwobble.compare.runs as rr
+import rockwobble.compare.storage as rs
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_save
@@ -57,11 +58,11 @@ def simulate(
             case = problem.case()
             if plane is not None and case.initial is not None:  # it leans in the plane that holds it
                 case = replace(case, initial=replace(case.initial, rolling_angle=plane))
-            rc.require_writable(out)
+            rs.require_writable(out)
             model = {"plane": plane, "restitution": restitution, "rest_tilt": rest_tilt}
             run = _with_settings(case, rw.Run(engine, support, time_step), setting, model)
             require_feasible([case], [run])
-            rc.require_runnable(case, run)
+            rr.require_runnable(case, run)
         for line in time_needed([case], [run]):
             print(line, file=sys.stderr)
         with user_input(), shown_progress() as tell:
@@ -86,5 +87,5 @@ def _with_settings(case: rw.Case, run: rw.Run, setting: list[str] | None, model:
         raise ValueError(f"{option} belongs to the reduced models, got --engine {run.engine}")
     if twice := model.keys() & settings(setting).keys():
         raise ValueError(f"{min(twice)} is given twice, by an option and by --set")
-    (whole,) = rc.with_settings(case, [run], settings(setting) | model)
+    (whole,) = rr.with_settings(case, [run], settings(setting) | model)
     return whole

@@ -7,7 +7,7 @@ import math
 from pathlib import Path
 
 import rockwobble as rw
-import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
 from rockwobble.compare.studies.plans import SpectrumPlan
 
 from ..console.progress import shown_progress
@@ -51,7 +51,7 @@ def spectrum(
             slender = rw.Case(
                 rw.Cylinder(semidiagonal=1.0, tan_alpha=tan_alpha), motion, gravity=plan.gravity
             )
-            rc.require_writable(out)
+            rs.require_writable(out)
         print(
             f"Cylinders: tan alpha = {tan_alpha:g} (alpha = {math.degrees(slender.cylinder.alpha):.4g} deg)"
         )

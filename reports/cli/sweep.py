@@ -12,6 +12,7 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
 
 from ..console.progress import shown_progress
 from ..console.results import save_with_page
@@ -78,7 +79,7 @@ def sweep(
             refuse(context, stated, f"does not go with a suite, got {suite}: the file states the problems")
             plan = _suite(suite, model)
         how_long = require_sweep(plan)
-        rc.require_writable(out)
+        rs.require_writable(out)
     for line in (*_echo(plan), how_long):
         print(line)
     shows: list[Callable[[], None]] = []

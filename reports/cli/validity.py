@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_save
@@ -36,7 +36,7 @@ def validity(
     """
     with interruptible(out):
         with user_input():
-            rc.require_writable(out)
+            rs.require_writable(out)
         from rockwobble.compare.studies.validity.plan import FULL, QUICK
         from rockwobble.compare.studies.validity.study import measure_all, validity_of
 

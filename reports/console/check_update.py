@@ -6,7 +6,7 @@ import datetime
 import sys
 from typing import TYPE_CHECKING
 
-import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
 
 from .progress import shown_progress
 
@@ -42,7 +42,7 @@ def update(reason: str | None) -> None:
         raise ValueError("nothing was changed: a new baseline needs a --reason, got none")
     date = datetime.datetime.now(tz=datetime.UTC).date().isoformat()
     text = baseline.updated(old, new, reason=reason or "", date=date, versions=package_versions())
-    rc.replace_files(baseline.folder(), {baseline.FILE: text.encode()})
+    rs.replace_files(baseline.folder(), {baseline.FILE: text.encode()})
     print(f"Written: {baseline.folder() / baseline.FILE}")
 
 

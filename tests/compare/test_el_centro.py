@@ -8,7 +8,8 @@ import math
 import pytest
 
 from rockwobble import reduced
-from rockwobble.compare import compare, make_pair
+from rockwobble.compare import compare
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.compare.metrics.tilt import tilt_rms_relative
 from rockwobble.models import Case, Cylinder, Run, el_centro_1940
 

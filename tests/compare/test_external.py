@@ -9,7 +9,8 @@ import pandas as pd
 import pytest
 
 from rockwobble import multibody, reduced
-from rockwobble.compare import External, compare, make_pair, read_trajectory
+from rockwobble.compare import External, compare, read_trajectory
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.models import Case, Cylinder, InitialState, Run, Suite, el_centro_1940
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from rockwobble.compare import Job, compare, simulate_all
+from rockwobble.compare import compare
 from rockwobble.compare.runs import execution
-from rockwobble.compare.runs.execution import job_fingerprint, open_trace_cache
+from rockwobble.compare.runs.execution import Job, job_fingerprint, open_trace_cache, simulate_all
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 
 PIER = Cylinder(semidiagonal=6.0, tan_alpha=0.2)

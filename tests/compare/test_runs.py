@@ -7,16 +7,15 @@ from typing import Literal
 
 import pytest
 
-from rockwobble.compare import (
-    compare,
-    default_runs,
+from rockwobble.compare import compare, default_runs, own_model, simulate
+from rockwobble.compare.runs.choice import (
     missing_engines,
-    own_model,
+    references_of,
+    require_runnable,
     reserved_engines,
     runs_here,
-    simulate,
+    unsupported,
 )
-from rockwobble.compare.runs.choice import references_of, require_runnable, unsupported
 from rockwobble.compare.runs.labels import labels_beside_references, run_labels
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.multibody import available_engines

@@ -5,7 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from rockwobble.compare import replace_files, require_writable
+from rockwobble.compare.storage.files import replace_files
+from rockwobble.compare.storage.manifest import require_writable
 
 
 def names(folder: Path) -> list[str]:

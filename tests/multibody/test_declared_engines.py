@@ -10,7 +10,8 @@ import pytest
 from declared_engines import Install, installer
 
 from rockwobble import multibody
-from rockwobble.compare import default_runs, require_runnable, reserved_engines
+from rockwobble.compare import default_runs
+from rockwobble.compare.runs.choice import require_runnable, reserved_engines
 from rockwobble.models import Case, Cylinder, InitialState, Run
 from rockwobble.multibody import available_engines, engine_names
 from rockwobble.multibody.engines.registry import GROUP, find_engine

@@ -6,6 +6,8 @@ from showing import shows_itself
 
 import rockwobble as rw
 import rockwobble.compare as rc
+import rockwobble.compare.metrics as rm
+import rockwobble.compare.runs as rr
 from rockwobble.models import Bounds
 from rockwobble.models.shown import LONGEST, Brief
 from rockwobble.multibody.engines.registry import engine_facts, engine_names
@@ -46,7 +48,7 @@ def test_sweep_shows_itself():
 def test_values_are_a_line(comparison):
     trace, *_ = comparison.traces.values()
     engine = rw.simulate(RELEASE, engine="mujoco", time_step=1e-3)
-    pair = rc.make_pair(PIER, trace, trace)
+    pair = rm.make_pair(PIER, trace, trace)
     record = rw.el_centro_1940()
     values = [
         PIER,
@@ -60,7 +62,7 @@ def test_values_are_a_line(comparison):
         ),
         rw.External(path="shake table.csv"),
         rc.Grid(semidiagonals=range(1, 100), tan_alphas=[0.2], scales=[1.0], motions=[record]),
-        rc.Job(case=RELEASE, run=trace.run),
+        rr.Job(case=RELEASE, run=trace.run),
         *trace.diagnostics,
         trace.source,
         engine.source,

@@ -10,6 +10,7 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
 
 from ...console.progress import shown_progress
 from ...console.terminal import FAILED, interruptible, user_input
@@ -186,9 +187,9 @@ def _write(
 
     print(headline(found, seconds))
     if json is not None:
-        rc.replace_files(json.parent, {json.name: as_json(found, seconds).encode()})
+        rs.replace_files(json.parent, {json.name: as_json(found, seconds).encode()})
     if junit is not None:
-        rc.replace_files(junit.parent, {junit.name: as_junit(found, seconds).encode()})
+        rs.replace_files(junit.parent, {junit.name: as_junit(found, seconds).encode()})
     if markdown is not None:
         try:  # the summary of a CI job may hold pages of other steps
             with markdown.open("a", encoding="utf-8") as file:

@@ -9,6 +9,7 @@ from typing import Annotated
 
 import rockwobble as rw
 import rockwobble.compare as rc
+import rockwobble.compare.runs as rr
 
 from . import options
 from .method_values import settings
@@ -146,5 +147,5 @@ class ManyMethods:
         if self.time_step is not None:
             runs = [rw.Run(run.engine, run.support, self.time_step) for run in runs]
         if given:
-            runs = list(rc.with_settings(rw.Case(body, rw.el_centro_1940()), runs, given))
+            runs = list(rr.with_settings(rw.Case(body, rw.el_centro_1940()), runs, given))
         return [*chosen, *runs]

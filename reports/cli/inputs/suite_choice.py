@@ -10,6 +10,7 @@ import typer
 
 import rockwobble as rw
 import rockwobble.compare as rc
+import rockwobble.compare.runs as rr
 
 from ...console.terminal import complain
 from ...pages.words.cases import group_of
@@ -65,7 +66,7 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
     ValueError
         If none is left.
     """
-    kept, said = rc.runs_here(runs, named or ())
+    kept, said = rr.runs_here(runs, named or ())
     if not kept:
         raise ValueError(f"no engine of this suite is installed here: {'; '.join(said)}")
     for line in said:

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-import rockwobble.compare as rc
+import rockwobble.compare.storage as rs
 
 from ...console.terminal import interruptible, user_input
 from ...pages.registry import KINDS, stored_page
@@ -40,7 +40,7 @@ def report(folder: Folder, out: Out = None, shared_script: SharedScript = False)
     with interruptible(), user_input():
         from rockwobble.compare.storage.manifest import read_manifests, write_pages
 
-        rc.require_writable(place)
+        rs.require_writable(place)
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
         if not kinds:
             raise ValueError(f"pages are drawn of {', '.join(KINDS)}; {folder} holds none of them")

@@ -9,7 +9,8 @@ from typing import Annotated
 import typer
 
 import rockwobble as rw
-import rockwobble.compare as rc
+import rockwobble.compare.runs as rr
+import rockwobble.compare.storage as rs
 
 from ...console.progress import shown_progress
 from ...console.results import show_and_save
@@ -69,11 +70,11 @@ def view(
             else:
                 case = problem.case()
                 asked = rw.Run(engine or rw.multibody.DEFAULT_ENGINE, support, time_step)
-                (run,) = rc.with_settings(case, [asked], settings(setting))
+                (run,) = rr.with_settings(case, [asked], settings(setting))
                 require_feasible([case], [run])
-                rc.require_runnable(case, run)
+                rr.require_runnable(case, run)
                 name = case.name
-            rc.require_writable(out)
+            rs.require_writable(out)
         if folder is None:
             for line in (*describe(case), *time_needed([case], [run])):
                 print(line)

@@ -7,7 +7,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from rockwobble.compare import Comparison, make_pair
+from rockwobble.compare import Comparison
+from rockwobble.compare.metrics.pair import make_pair
 from rockwobble.models import AGREEMENT
 from rockwobble.models.support import SUPPORTS
 

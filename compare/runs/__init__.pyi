@@ -1,0 +1,13 @@
+from .choice import default_runs as default_runs
+from .choice import missing_engines as missing_engines
+from .choice import own_model as own_model
+from .choice import require_runnable as require_runnable
+from .choice import reserved_engines as reserved_engines
+from .choice import runs_here as runs_here
+from .execution import Job as Job
+from .execution import simulate as simulate
+from .execution import simulate_all as simulate_all
+from .progress import Progress as Progress
+from .run_settings import with_settings as with_settings
+from .scheduler import run_tasks as run_tasks
+from .task import IncompleteError as IncompleteError
