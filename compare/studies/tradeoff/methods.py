@@ -27,6 +27,7 @@ _TOLERANCES = (1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11)
 # what a held contact time constant is: that of the default settings at a step of 1e-3 s [s]
 _HELD = 2e-3
 _CHEAP = 5e-5  # [s] of a step: of such an engine the finest steps are worth their time
+_DOUBLE = 2.0**-53  # rounding of double precision
 _SUPPORTS = ("recess", "flat", "ring")
 
 
@@ -142,7 +143,8 @@ def _by_scipy(
 def _engines(problem: Problem, quick: bool) -> Iterator[Method]:
     for engine in own_engines():
         known = find_engine(engine)
-        if problem.name != "turn" and not known.uplifts:
+        # in single precision a step below the default gains nothing: a line of its own would say only that
+        if known.facts.rounding > _DOUBLE or (problem.name != "turn" and not known.uplifts):
             continue
         for support in (each for each in _SUPPORTS if each in known.supports and each in problem.references):
             all_steps = known.facts.step_time < _CHEAP and support != "ring"
