@@ -17,6 +17,8 @@ def describe(case: Case) -> list[str]:
         f"alpha = {math.degrees(cylinder.alpha):.4g} deg "
         f"(R = {cylinder.semidiagonal:g} m, tan alpha = {cylinder.tan_alpha:g})"
     ]
+    if cylinder.slab_mass_ratio > 0.0:
+        lines.append(f"Slab: {cylinder.slab_mass_ratio:g} times the mass of all columns under it")
     if motion is not None:
         # here, because the help of the command line needs no numpy
         from rockwobble.compare.studies.spectrum.maps import uplift_factor
