@@ -32,6 +32,7 @@ _CHUNK_BEYOND = 2_000  # the same after the end, where most swings turn back wit
 LONGEST = 15.0
 # [rad] by which the tilt turns back; contact that lets go for a step and comes back makes 1e-7
 _TURN = 1e-6
+_STEADY = 1e-3  # of its tilt, within which a wobble counts as steady
 
 
 def run_steps(
@@ -102,7 +103,11 @@ def _followed(
         if top is not None or ahead.resting:
             break
         acceleration[0] = at_pose[0] = 0.0
-    recorder.undecided = top is None and not ahead.resting
+    # a steady wobble, which keeps its tilt below the balance, has no maximum to come
+    keeps = abs(ahead.last_value("tilt") - start.tilt) < _STEADY * min(
+        start.tilt, math.atan(scene.body.tan_alpha) - start.tilt
+    )
+    recorder.undecided = top is None and not ahead.resting and not keeps
     recorder.followed_until = float(ahead.last_row[0]) if top is None else top.time
     recorder.peak = max(recorder.peak, ahead.peak if top is None else top.tilt)
     return recorder

@@ -58,8 +58,8 @@ def tables(tmp_path_factory: pytest.TempPathFactory) -> Tables:
 def heavier_models() -> Iterator[None]:
     """The reduced models, and nothing else, have another transverse inertia."""
 
-    def heavier_body(cylinder: Cylinder, gravity: float) -> Body:
-        true = body.body_of(cylinder, gravity)
+    def heavier_body(cylinder: Cylinder, gravity: float, rolling_resistance: float = 0.0) -> Body:
+        true = body.body_of(cylinder, gravity, rolling_resistance)
         I1 = HEAVIER * true.I1
         A, J = true.A - true.I1 + I1, true.J - true.I1 + I1
         p2 = true.p2 * true.A / A
@@ -280,6 +280,7 @@ def test_measures_of_limits() -> None:
 def test_a_report_shows_itself_by_figure(tmp_path_factory: pytest.TempPathFactory) -> None:
     found = tiny_validity(tmp_path_factory.getbasetemp())
     shows_itself(found, "motions ", "peaks 24 rows")
-    made_up = replace(found, records=source_of(["synthetic 1"]))  # as where the records are not installed
+    # as where the records are not installed
+    made_up = replace(found, facts={**found.facts, "records": source_of(["synthetic 1"])})
     shows_itself(made_up, "motions synthetic records", "peaks 24 rows")
     assert found.plot("slip").axes

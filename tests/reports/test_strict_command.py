@@ -50,7 +50,7 @@ def test_an_empty_argument_is_refused(capsys: pytest.CaptureFixture[str]) -> Non
         (["simulate", "--plane", "north"], "north"),
         (["simulate", "--engine", "mujoco", "--time-step", "short"], "short"),
         (["ensemble", "--copies", "2.5"], "2.5"),
-        (["spectrum", "--sizes", "many"], "many"),
+        (["spectrum", "--probes", "many"], "many"),
         (["fragility", "--seed", "1e3"], "1e3"),
         (["certify", "--time-step", "1e"], "1e"),
     ],

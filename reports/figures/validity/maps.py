@@ -13,7 +13,7 @@ from ..picture import Array, Axis, Line, Panel, Picture
 
 _FREE_PANELS = 4
 _FAR = 1e3  # what infinite is drawn as: beyond every scale
-_STILL, _FEW = "no record uplifts it", f"fewer than {FEWEST} records rock it and leave it standing"
+_STILL, _FEW = "no record uplifts it", f"fewer than {FEWEST} records left standing"
 _MODERATE = 2.0  # friction over tan(alpha): twice that of uplift
 # column of the cells, level, name of the line where it is reached, style
 _LINES = (
