@@ -57,7 +57,7 @@ def test_every_sum_has_faults_in_both_senses() -> None:
         (
             before_assignment("body_of", "no_such", "pass"),
             "reduced/body.py: the source must have an assignment to 'no_such' in body_of, got b, h, height, "
-            "I1, I2, A, R, p2",
+            "I1, I2, gamma, w, mu, A, R, p2",
         ),
         (
             after_assignment("no_such", "A", "pass"),

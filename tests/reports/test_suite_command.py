@@ -15,7 +15,7 @@ from rockwobble.compare import Comparison, compare
 from rockwobble.compare.comparison import driver
 from rockwobble.compare.comparison.comparison import comparison_of
 from rockwobble.compare.runs import execution
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, read_suite
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, WobblingFrame, read_suite
 from rockwobble.reports.cli.inputs.suite_choice import chosen_runs
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.pages.comparison import report
@@ -196,6 +196,12 @@ def test_a_peak_is_told_in_times_of_what_uplifts_under_the_vertical_component():
         assert f"peak 0.255 g ({drive / 9.81 / 0.2:.2f} times the uplift threshold)" in ground
     _, ground, _ = describe(Case(pier, GroundMotion(level, 0.1), duration=0.05))
     assert f"({0.5 * 2.5 / 9.81 / 0.2:.2f} times the uplift threshold within the run)" in ground
+
+
+def test_the_slab_of_a_frame_is_told():
+    pier = Cylinder(semidiagonal=6.0, tan_alpha=0.2)
+    alone, loaded = (describe(Case(body, duration=1.0)) for body in (pier, WobblingFrame(pier, 0.25)))
+    assert loaded == [alone[0], "Slab: 0.25 times the mass of all columns under it", *alone[1:]]
 
 
 def test_a_trajectory_is_one_more_run(folder, no_engines, monkeypatch, capsys):
