@@ -39,8 +39,8 @@ MODELS = (Run(None, "recess"), Run(None, "flat"))
 class Ensemble(Results, kind=KIND):
     """Peak tilts of many members by several methods.
 
-    Tables
-    ------
+    Attributes
+    ----------
     members : DataFrame
         One row for each member and method: member, method, peak_tilt [alpha] (NaN where failed, pi/2 where
         overturned), outcome (see `outcome_of`), diagnostics (their codes), wall_time [s].

@@ -26,8 +26,8 @@ _SAMPLES = 12_000  # of figure 5 that are kept
 class Paper(Results, kind=KIND):
     """The figures of the paper, computed again, and verdicts on what it says of them.
 
-    Tables
-    ------
+    Attributes
+    ----------
     figure-3, figure-4, figure-5 : DataFrame
         What the figures show.
     statements : DataFrame

@@ -60,8 +60,8 @@ _VERTICAL_COUNT = 20  # pairs of copies with and without the vertical component
 class Advice(Results, kind=KIND):
     """Advice on one case.
 
-    Tables
-    ------
+    Attributes
+    ----------
     members : DataFrame
         A row for each run of the groups, see `member_rows`.
     groups, demands : DataFrame

@@ -36,8 +36,8 @@ def methods() -> tuple[Run, ...]:
 class Extremes(Results, kind=KIND):
     """Verdicts of a scan of the extremes.
 
-    Tables
-    ------
+    Attributes
+    ----------
     extremes : DataFrame
         One row for each condition and method: extreme, value, method, and the attributes of `Verdict`.
     """

@@ -46,8 +46,8 @@ class Fragility(Results, kind=KIND):
 
     Intervals are of 95 %, by resampling the motions; their ends are in columns NAME_low and NAME_high.
 
-    Tables
-    ------
+    Attributes
+    ----------
     runs : DataFrame
         One row for each cylinder, motion, step (place of the level) and method: peak_tilt [alpha], outcome,
         contact_lost (1, 0, NaN where nobody asked).

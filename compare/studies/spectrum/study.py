@@ -24,8 +24,8 @@ KIND = "overturning spectrum"
 class OverturningSpectrum(Results, kind=KIND):
     """Peak tilts over size and intensity in three dimensions and in two planes, and what overturns.
 
-    Tables
-    ------
+    Attributes
+    ----------
     spectrum, lowest : DataFrame
         Cells, and the lowest intensities found to overturn: see `TiltMaps.to_frame` and `confirm_lowest`.
     islands : DataFrame

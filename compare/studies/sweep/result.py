@@ -19,8 +19,8 @@ _OUTCOMES = ("stands", "overturned", "failed")
 class Sweep(Results, kind=KIND):
     """What became of each run.
 
-    Tables
-    ------
+    Attributes
+    ----------
     sweep : DataFrame
         One row for each run, in the order of the plan; `table`, too.
     motions : DataFrame

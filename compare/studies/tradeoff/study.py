@@ -32,8 +32,8 @@ _COSTS = {"turn": 1.0, "shaken": 4.0, "peaks": 3.0, "scenes": 0.5}
 class Tradeoff(Results, kind="tradeoff"):
     """Measurements of a trade-off.
 
-    Tables
-    ------
+    Attributes
+    ----------
     points : DataFrame
         One row for each problem, line and value of its knob: problem, support, panel, family, line, knob,
         value, ratio, ratio_low, ratio_high (of computing times, to the recess model at its default tolerance

@@ -54,8 +54,8 @@ _ENDS = {
 class Validity(Results, kind=KIND):
     """Measurements of the limits of the reduced model.
 
-    Tables
-    ------
+    Attributes
+    ----------
     free_response, verification, ... : DataFrame
         What each of `PARTS` measured.
     limits : DataFrame
