@@ -9,7 +9,7 @@ from typing import Any
 from rockwobble.models import Case
 
 from .body import scaled_body
-from .engines.registry import find_engine, require_able
+from .engines.registry import engine_for
 from .protocol import Engine, Scene
 from .scene.froude import REFERENCE_GRAVITY, Scale, default_step, froude_scale
 from .start import starting_state
@@ -66,8 +66,7 @@ def open_scene(case: Case, engine: str, support: str, settings: Mapping[str, Any
 
 
 def _stated(case: Case, engine: str, support: str, time_step: float | None = None) -> tuple[Engine, Scene]:
-    backend = find_engine(engine)
-    require_able(backend, engine, case, support)
+    backend = engine_for(case, engine, support)
     size = case.cylinder.semidiagonal, case.gravity
     step = default_step(*size) if time_step is None else time_step
     return backend, make_scene(case, support, step, froude_scale(*size))

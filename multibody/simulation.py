@@ -15,7 +15,7 @@ from rockwobble.models.case import TimeStep
 from rockwobble.models.number_checks import require_positive
 from rockwobble.models.traces.trace_source import Known
 
-from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, find_engine, require_able
+from .engines.registry import DEFAULT_ENGINE, EngineNotInstalledError, engine_for
 from .protocol import Scene
 from .recording.diagnostics import diagnostics
 from .recording.passes import passes_between, true_swings
@@ -133,8 +133,7 @@ def _simulate(
 ) -> Trace:
     """Run with one time step [s]; None is the default."""
     started = clock.perf_counter()
-    backend = find_engine(engine)
-    require_able(backend, engine, case, run.support)
+    backend = engine_for(case, engine, run.support)
     size = case.cylinder.semidiagonal, case.gravity
     scale = froude_scale(*size)
     step = default_step(*size) if time_step is None else require_positive("time_step", time_step, "s")

@@ -172,14 +172,23 @@ def find_engine(name: str) -> Engine:
     return _made(entry)
 
 
-def require_able(engine: Engine, name: str, case: Case, support: str) -> None:
-    """Check that the engine called `name` has the support and can start the case.
+def engine_for(case: Case, name: str, support: str) -> Engine:
+    """Return the engine called `name`, which has the support and can run the case.
+
+    What it cannot do is said before what it lacks, so that nobody installs it in vain.
 
     Raises
     ------
     ValueError
-        Saying what is allowed.
+        Saying what is allowed, and as `find_engine` does.
     """
+    entry = _ENGINES.get(name)
+    engine = find_engine(name) if entry is None else _made(entry)
+    _require_able(engine, name, case, support)
+    return find_engine(name)
+
+
+def _require_able(engine: Engine, name: str, case: Case, support: str) -> None:
     supports = engine.supports
     if support not in supports:
         allowed = f"one of {', '.join(supports)}" if len(supports) > 1 else supports[0]
