@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Trace
-from rockwobble.models.traces.trace_source import Known
+from rockwobble.models.trace_source import Known
 
 Array = NDArray[np.float64]
 _VERTEX = 3  # samples on either side of a turning point

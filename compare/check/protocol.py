@@ -17,11 +17,16 @@ from pathlib import Path
 import numpy as np
 
 from rockwobble.models import Case, InitialState, Run
-from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.engines.registry import find_engine
-from rockwobble.multibody.protocol import Engine, Scene, Settings
-from rockwobble.multibody.scene.froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, froude_scale
-from rockwobble.multibody.start import starting_state
+from rockwobble.multibody.protocol import Engine, Settings
+from rockwobble.multibody.scene import (
+    REFERENCE_GRAVITY,
+    REFERENCE_TIME_STEP,
+    Scene,
+    froude_scale,
+    scaled_body,
+    starting_state,
+)
 
 from ..runs.execution import simulate_run
 from .invariance import ROCKING

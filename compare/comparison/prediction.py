@@ -24,7 +24,7 @@ import numpy as np
 
 from rockwobble.models import AGREEMENT, Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
 from ..metrics.agreement import agreement_time, tolerance_of
 from ..metrics.pair import FloatArray, is_release, make_pair, start_of

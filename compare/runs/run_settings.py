@@ -6,8 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from rockwobble.models import Case, InitialState, Run
 from rockwobble.models.case import TimeStep
-from rockwobble.multibody.scene_of_case import resolved_settings
-from rockwobble.multibody.simulation import STEP_SETTINGS
+from rockwobble.multibody.simulation import STEP_SETTINGS, resolved_settings
 
 _LEAN = 1e-3  # of alpha: a tilt that fits into any ring
 

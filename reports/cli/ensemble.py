@@ -62,7 +62,7 @@ def ensemble(
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.models.records.plausibility import doubts_of
+            from rockwobble.models.records.units import doubts_of
 
             from ..pages.words.diagnostics import warnings
 

@@ -58,7 +58,7 @@ def fragility(
     with interruptible(out):
         with user_input():
             from rockwobble.compare.studies.fragility.methods import methods_of
-            from rockwobble.models.records.plausibility import doubts_of
+            from rockwobble.models.records.units import doubts_of
 
             from ..pages.words.diagnostics import warnings
 

@@ -110,7 +110,7 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
 
 
 def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
-    from rockwobble.models.records.plausibility import doubts_of
+    from rockwobble.models.records.units import doubts_of
 
     from ..pages.words.diagnostics import warnings
 

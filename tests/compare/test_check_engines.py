@@ -24,7 +24,7 @@ from rockwobble.compare.check import (
     trace,
 )
 from rockwobble.models import Trace
-from rockwobble.models.traces.trace_source import Known
+from rockwobble.models.trace_source import Known
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_facts, standard_engines
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
-from rockwobble.multibody.scene.froude import froude_scale
+from rockwobble.multibody.scene import froude_scale
 
 EXTREMES = (
     "spin",

@@ -32,7 +32,7 @@ from rockwobble import reduced
 from rockwobble.models import AGREEMENT, Case, Diagnostic, Run, Trace
 from rockwobble.models.diagnostic import FAILURES, joined
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
 from ...comparison.prediction import time_scale
 from ...metrics.pair import make_pair

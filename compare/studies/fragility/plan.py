@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run
-from rockwobble.multibody.scene.froude import default_step
+from rockwobble.multibody.scene import default_step
 
 from ...runs.choice import require_runnable
 from ...runs.execution import all_makers

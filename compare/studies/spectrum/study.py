@@ -7,7 +7,7 @@ from functools import cached_property
 from typing import Any
 
 from rockwobble.models import GroundMotion
-from rockwobble.models.records.plausibility import doubts_of
+from rockwobble.models.records.units import doubts_of
 
 from ...runs.progress import ProgressCallback
 from ...storage.fingerprint import fingerprint

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rockwobble.models import Case, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
-from rockwobble.models.traces.trace_file import run_to_plain
+from rockwobble.models.trace_file import run_to_plain
 
 from ...metrics.tilt import outcome_of
 from ...runs.choice import require_runnable

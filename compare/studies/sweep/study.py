@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Suite
-from rockwobble.models.records.plausibility import doubts_of
+from rockwobble.models.records.units import doubts_of
 
 from ...runs.execution import all_makers
 from ...runs.progress import ProgressCallback
