@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.models.number_checks import quoted
+from rockwobble.models.support import SUPPORTS as support_facts
 
 from . import kernels
 from .body import Body, body_of, restitution_from_momentum
@@ -21,7 +22,7 @@ from .columns import is_spatial, plane_of_shaking, stays_in_plane, three_columns
 from .integration.result import Driver, IntegrationResult, Options, Task
 from .rolling import impact_ratio
 
-SUPPORTS = ("recess", "flat")
+SUPPORTS = tuple(name for name, support in support_facts.items() if support.modelled)
 _OUT_OF_PLANE = 1e-9  # [rad] more than what rounding makes of an azimuth
 
 # Tilt (over alpha) below which the base is closed again. A rest forgets which way the cylinder leans, and
@@ -109,6 +110,11 @@ class Problem:
         """Return the result for this body under a motion of another size, for the peak only."""
         return shaking.integrate(self.body, self._options(False), shaking.task)
 
+    @property
+    def free_twist(self) -> bool:
+        """Whether the model has a twist: on flat ground, but not where it is planar by choice."""
+        return self.model in SUPPORTS and not support_facts[self.model].guided
+
     def is_planar(self) -> bool:
         """Return whether the run stays in one vertical plane."""
         return self._plane is not None
@@ -145,7 +151,7 @@ class Problem:
     def _later(self) -> NDArray[np.float64]:
         """Largest |a| and least az from each sample on (m, 2) [m/s^2]; none where a fall may yet be held."""
         record = self._set_up.task.record
-        if self.kernel.endswith("flat"):
+        if self.free_twist and not self.is_planar():
             return np.empty((0, 2))
         strongest = np.maximum.accumulate(np.hypot(record[::-1, 0], record[::-1, 1]))[::-1]
         # the ground is still after the record, so az reaches 0

@@ -30,9 +30,10 @@ def positive(*, most: float = math.inf, or_zero: bool = False) -> Check:
     def check(name: str, value: object) -> None:
         number = value if isinstance(value, int | float) and not isinstance(value, bool) else math.nan
         if not (math.isfinite(number) and number <= most and (number > 0.0 or (or_zero and number == 0.0))):
-            limit = "" if most == math.inf else f" and at most {most:g}"
-            lowest = "at least" if or_zero else "above"
-            raise ValueError(f"{name} must be {lowest} 0{limit}, got {quoted(value)}")
+            wanted = "at least 0" if or_zero else "above 0"
+            if most < math.inf:
+                wanted = f"from 0 to {most:g}" if or_zero else f"above 0 and at most {most:g}"
+            raise ValueError(f"{name} must be {wanted}, got {quoted(value)}")
 
     return check
 
@@ -47,16 +48,22 @@ def one_of(*allowed: object) -> Check:
     return check
 
 
-def _whole(name: str, value: object) -> None:
-    if type(value) is not int or value < 1:
-        raise ValueError(f"{name} must be a positive whole number, got {quoted(value)}")
+def whole(*, least: int = 1, most: int | None = None) -> Check:
+    """Return the check of a whole number."""
+    wanted = "a positive whole number" if most is None else f"a whole number from {least} to {most}"
+
+    def check(name: str, value: object) -> None:
+        if type(value) is not int or value < least or (most is not None and value > most):
+            raise ValueError(f"{name} must be {wanted}, got {quoted(value)}")
+
+    return check
 
 
 Positive = Annotated[float, positive()]
 NotNegative = Annotated[float, positive(or_zero=True)]
 Share = Annotated[float, positive(most=1.0)]
 Small = Annotated[float, positive(most=1e-3)]
-Count = Annotated[int, _whole]
+Count = Annotated[int, whole()]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -121,7 +128,7 @@ class Declared:
         """Version of the package."""
         return _version(self.package)
 
-    def settings(self, given: Settings, scene: Scene) -> dict[str, object]:
+    def settings(self, given: Settings, scene: Scene) -> Mapping[str, object]:
         """Return every setting; see the type of the settings."""
         return asdict(self.settings_type.resolve(given, scene.time_step * scene.unit_time))
 

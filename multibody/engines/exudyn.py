@@ -13,7 +13,7 @@ import importlib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
@@ -28,6 +28,9 @@ from .declared import (
     one_of,
     positive,
 )
+
+if TYPE_CHECKING:
+    from exudyn import MainSystem, SimulationSettings
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -177,7 +180,7 @@ class _ExudynStepper:
         # the first row is the start; the first column the time
         return np.hstack([np.asarray(table)[1:, 1:] for table in stored])
 
-    def _build(self, scene: Scene) -> tuple[Any, list[Any]]:
+    def _build(self, scene: Scene) -> tuple[MainSystem, list[int]]:
         """Make ground, cylinder, rim and forces; return the system and its sensors."""
         # its functions are not typed
         items = importlib.import_module("exudyn.itemInterface")
@@ -218,13 +221,13 @@ class _ExudynStepper:
         system.Assemble()
         return system, sensors
 
-    def _excitation(self, system: Any, time: float, load: Any) -> list[float]:
+    def _excitation(self, system: object, time: float, load: object) -> list[float]:
         """Force for each unit of mass: -a."""
         return self._forces[round(time / self._step)]
 
 
-def _simulation_settings(exudyn: ModuleType, settings: ExudynSettings) -> Any:
-    how = exudyn.SimulationSettings()
+def _simulation_settings(exudyn: ModuleType, settings: ExudynSettings) -> SimulationSettings:
+    how: SimulationSettings = exudyn.SimulationSettings()
     how.solution.file.write = False
     integration = how.timeIntegration
     # a step that does not converge ends the run: shorter steps would not be those of the time grid

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -67,12 +68,12 @@ class MujocoEngine(Declared):
     package, settings_type, facts = "mujoco", MujocoSettings, _FACTS
     supports = ("recess", "flat", "ring")
 
-    def settings(self, given: Settings, scene: Scene) -> dict[str, object]:
+    def settings(self, given: Settings, scene: Scene) -> Mapping[str, object]:
         """Return every setting; see `MujocoSettings` and, for the support "ring", `RingSettings`."""
         others, ring = take_ring(given, scene.support, scene.body.tan_alpha)
         if ring is not None:
             check_start(ring, scene)
-        return super().settings(others, scene) | (ring.as_dict() if ring is not None else {})
+        return {**super().settings(others, scene), **({} if ring is None else asdict(ring))}
 
     @contextlib.contextmanager
     def open(self, scene: Scene, settings: Settings) -> Iterator[Stepper]:

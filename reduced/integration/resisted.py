@@ -26,10 +26,7 @@ from .systems import (
     PLANAR,
     RECESS,
     System,
-    Weights,
-    flat_combine,
     flat_ratio,
-    planar_combine,
     planar_ratio,
     scales,
 )
@@ -121,18 +118,6 @@ def _make_ratio(momenta: Callable[..., Any], error_ratio: Callable[..., float]) 
 
 
 @jit
-def _recess_combine(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
-    a = b = c = d = 0.0
-    for j in range(len(weights)):
-        w, k = weights[j], slopes[j]
-        a += w * k[0]
-        b += w * k[1]
-        c += w * k[2]
-        d += w * k[3]
-    return y[0] + h * a, y[1] + h * b, y[2] + h * c, y[3] + h * d
-
-
-@jit
 def _recess_ratio(
     body: Body, rtol: float, h: float, y: State, y_new: State, error: State, flat: bool
 ) -> float:
@@ -140,19 +125,6 @@ def _recess_ratio(
     per_tilt, per_rate = scales(body, rtol, y[0], y[1], abs(y[3]) * per_lever, flat)
     ratio = max(abs(error[0]) * per_tilt, abs(error[1]) * per_rate)
     return max(ratio, abs(error[2]) * (1.0 / rtol), abs(error[3]) * per_lever * per_rate)
-
-
-def _make_combine(combine: Callable[..., Any]) -> Callable[..., State]:
-    """Return y + h sum(weights slopes), with the energy lost, and with the side as it is."""
-
-    @jit
-    def combined(y: State, h: float, weights: Weights, slopes: tuple[State, ...]) -> State:
-        lost = 0.0
-        for j in range(len(weights)):
-            lost += weights[j] * slopes[j][-2]
-        return (*combine(y, h, weights, slopes), y[-2] + h * lost, y[-1])
-
-    return combined
 
 
 @jit
@@ -216,7 +188,7 @@ def _make_system(model: System, derivative: Callable[..., State], *, spins: bool
                 return placed(body, y, y[0], 0.0, y[2], 0.0)
         return y
 
-    return System(derivative, momenta, placed, True, hold, set_off, stopped)
+    return System(model.size + 2, derivative, momenta, placed, True, hold, set_off, stopped)
 
 
 RESISTED_PLANAR = _make_system(PLANAR, _planar_derivative, spins=False, pivots=False)
@@ -224,9 +196,7 @@ RESISTED_RECESS = _make_system(RECESS, _recess_derivative, spins=True, pivots=Fa
 RESISTED_FLAT = _make_system(FLAT, _flat_derivative, spins=True, pivots=True)
 
 STEPPERS = {
-    "planar": runge_kutta(RESISTED_PLANAR, _make_combine(planar_combine), planar_ratio),
-    "recess": runge_kutta(
-        RESISTED_RECESS, _make_combine(_recess_combine), _make_ratio(RECESS.momenta, _recess_ratio)
-    ),
-    "flat": runge_kutta(RESISTED_FLAT, _make_combine(flat_combine), _make_ratio(FLAT.momenta, flat_ratio)),
+    "planar": runge_kutta(RESISTED_PLANAR, planar_ratio),
+    "recess": runge_kutta(RESISTED_RECESS, _make_ratio(RECESS.momenta, _recess_ratio)),
+    "flat": runge_kutta(RESISTED_FLAT, _make_ratio(FLAT.momenta, flat_ratio)),
 }
