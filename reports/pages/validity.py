@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.metrics.distributions import MARGIN
+from rockwobble.compare.metrics.statistics import MARGIN
 from rockwobble.compare.studies.validity.distributions import cells, contrasts
 from rockwobble.compare.studies.validity.el_centro import FREE
 from rockwobble.compare.studies.validity.limits import damping, limits_of, needs

@@ -12,11 +12,10 @@ import pandas as pd
 from rockwobble.models import Run
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 
+from ...runs.execution import run_tables
 from ...runs.progress import ProgressCallback
-from ...runs.tables import run_tables
-from ...storage.fingerprint import fingerprint
 from ...storage.manifest import Number
-from ...storage.provenance import code_digests, package_versions
+from ...storage.provenance import code_digests, fingerprint, package_versions
 from ...storage.results import Results
 from .conditions import Condition, conditions
 from .verdict import Verdict, judge

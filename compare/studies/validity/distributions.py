@@ -9,8 +9,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
-from ...metrics.distributions import MARGIN, log_ratios
-from ...metrics.order_statistics import quantile_interval
+from ...metrics.statistics import MARGIN, log_ratios, quantile_interval
 from ..ensemble import contrast_row, pairs
 from .plan import EL_CENTRO
 from .records import FLAT, HALVED, PERTURBED, RECESS
