@@ -57,7 +57,7 @@ def fragility(
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.compare.studies.fragility.methods import methods_of
+            from rockwobble.compare.studies.fragility.runs import methods_of
             from rockwobble.models.records.plausibility import doubts_of
 
             from ..pages.words.diagnostics import warnings

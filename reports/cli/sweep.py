@@ -98,7 +98,7 @@ def sweep(
 
 
 def _suite(name: str, models: list[str] | None) -> rw.Suite:
-    from rockwobble.compare.studies.sweep.cases import runnable_suite
+    from rockwobble.compare.studies.sweep import runnable_suite
 
     for model in models or ():
         if model not in rw.reduced.MODELS:

@@ -6,12 +6,11 @@ from collections import Counter
 from dataclasses import dataclass
 
 from rockwobble.compare.runs.progress import ProgressCallback, Stages
-from rockwobble.compare.storage.fingerprint import fingerprint
 from rockwobble.compare.storage.manifest import Number
-from rockwobble.compare.storage.provenance import code_digests, package_versions
+from rockwobble.compare.storage.provenance import code_digests, fingerprint, package_versions
 from rockwobble.compare.storage.results import Results
 from rockwobble.compare.studies.spectrum.maps import maps_of, tilt_maps
-from rockwobble.compare.studies.spectrum.tables import tables_of
+from rockwobble.compare.studies.spectrum.study import tables_of
 
 from ..pages.page import Page
 from ..pages.spectrum import spectrum_values
