@@ -29,6 +29,8 @@ def validity(
 
     Writes validity.html, validity.md with its pictures as SVG, as Parquet the tables of all parts and every
     number of the report (limits). `rockwobble report` draws the pages again.
+
+    Example: rockwobble validity --quick --out validity
     """
     with user_input(), results_in(out, "tasks") as progress:
         from rockwobble.compare.studies.validity.plan import FULL, QUICK
@@ -51,6 +53,8 @@ def tradeoff(
 
     Writes tradeoff.html (open it in a browser), tradeoff.md with its pictures as SVG, and the tables points,
     problems and scenes as Parquet. `rockwobble report` draws the pages again.
+
+    Example: rockwobble tradeoff --quick --out tradeoff
     """
     with results_in(out, "rounds", resumes=False) as progress:
         from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
@@ -72,6 +76,8 @@ def extremes(
 
     Writes extremes.html (open it in a browser), extremes.md and the table as extremes.parquet. `rockwobble
     report` draws the pages again. Exit code 1 if anything is wrong and nothing explains it.
+
+    Example: rockwobble extremes --quick --out extremes
     """
     with user_input(), results_in(out) as progress:
         from rockwobble.compare.studies.extremes.study import measure_extremes
@@ -97,7 +103,7 @@ def figures(
     Writes paper.md and paper.html with a verdict on each statement, the figures as SVG, and the data of each
     and the numbers of the statements as Parquet.
 
-    Example: rockwobble figures --grid 20 --out paper
+    Example: rockwobble figures --out paper
     """
     with results_in(out, "figures", resumes=False) as progress:
         from ..paper.page import compute

@@ -95,6 +95,8 @@ def check(
     run leaves, measured by a second run of twice that step.
 
     Exit code 0 if all checks hold, 1 if one does not, 2 for bad input.
+
+    Example: rockwobble check --only equations --only conserved
     """
     with interruptible():
         begun = time.monotonic()
@@ -277,6 +279,8 @@ def certify(
     check fails.
 
     Exit code 0 if it is written, 2 for bad input or a check that fails.
+
+    Example: rockwobble certify --engine mujoco --out mujoco.json
     """
     with interruptible(), user_input():
         from rockwobble.compare.certificate import CLAIMING, models, write_certificate
@@ -311,6 +315,8 @@ def verify(
     agree. changed: something differs before that; the claim and the first term concerned are named.
 
     Exit code 0 for same and chaotic, 1 for changed, 2 for bad input.
+
+    Example: rockwobble verify mujoco.json
     """
     with interruptible(), user_input():
         from rockwobble.compare.certificate import read_certificate
