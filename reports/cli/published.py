@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
 
+from rockwobble.compare.studies.plans import ExtremesPlan, TradeoffPlan, ValidityPlan
+
 from ..console import FAILED, results_in, show_and_save, user_input
 from . import options
+from .command import takes_options
 
 
-def _quick(help_text: str) -> Any:
-    return typer.Option("--quick", help=f"{help_text}: some two minutes on two idle cores.")
-
-
+@takes_options
 def validity(
-    quick: Annotated[bool, _quick("Coarse maps and few runs")] = False,
+    plan: ValidityPlan,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-validity"),
 ) -> None:
@@ -33,18 +33,14 @@ def validity(
     Example: rockwobble validity --quick --out validity
     """
     with user_input(), results_in(out, "tasks") as progress:
-        from rockwobble.compare.studies.validity.plan import FULL, QUICK
-        from rockwobble.compare.studies.validity.study import measure_all, validity_of
+        from rockwobble.compare.studies.validity.study import measure_validity
 
-        extent = QUICK if quick else FULL
-        tables = measure_all(extent, out, workers=workers, progress=progress)
-    show_and_save(validity_of(tables, extent), out)
+        found = measure_validity(out, plan, workers=workers, progress=progress)
+    show_and_save(found, out)
 
 
-def tradeoff(
-    quick: Annotated[bool, _quick("Fewer points and fewer members")] = False,
-    out: options.Out = Path("rockwobble-tradeoff"),
-) -> None:
+@takes_options
+def tradeoff(plan: TradeoffPlan, out: options.Out = Path("rockwobble-tradeoff")) -> None:
     """Measure what accuracy costs: the reduced models, scipy's solvers and the engines on three problems.
 
     The angle of turn in free response, two times El Centro until ten seconds after uplift, and the
@@ -59,12 +55,13 @@ def tradeoff(
     with results_in(out, "rounds", resumes=False) as progress:
         from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
 
-        found = measure_tradeoff(quick=quick, progress=progress)
+        found = measure_tradeoff(plan, progress=progress)
     show_and_save(found, out)
 
 
+@takes_options
 def extremes(
-    quick: Annotated[bool, _quick("Only the two ends of each extreme")] = False,
+    plan: ExtremesPlan,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-extremes"),
 ) -> None:
@@ -80,9 +77,9 @@ def extremes(
     Example: rockwobble extremes --quick --out extremes
     """
     with user_input(), results_in(out) as progress:
-        from rockwobble.compare.studies.extremes.study import measure_extremes
+        from rockwobble.compare.studies.extremes import measure_extremes
 
-        found = measure_extremes(out, quick=quick, workers=workers, progress=progress)
+        found = measure_extremes(out, plan, workers=workers, progress=progress)
     show_and_save(found, out)
     if (found.extremes["verdict"] == "silent").any():
         raise typer.Exit(FAILED)

@@ -27,7 +27,6 @@ from .options import settings
 from .problem import Problem, given_options, refuse_options_of_engines, restated
 from .suite_choice import chosen_runs, describe_suite, refuse_problem_options, without_missing
 
-
 _external = options.panel("Trajectory of a shake table or another code")
 
 
