@@ -272,8 +272,9 @@ def _scales(found: Advice) -> Iterator[Row]:
 def _ratios(found: Advice) -> Iterator[Row]:
     """Rows of the largest tilts of copies by one of two ways over those by the other."""
     facts, vertical = found.facts, found.facts["vertical"]
-    flat = "recess" in support_named(facts["support"]).compared_with[-1:]
-    other = "tilt on flat ground over that here" if flat else "tilt in an ideal recess over that here"
+    holds = support_named(facts["support"])
+    place = "on flat ground" if holds.guided or holds.walls else "in an ideal recess"
+    other = f"tilt {place} over that here"
     shaken = "tilt with vertical shaking over that without"
     if vertical and not vertical["given"]:
         shaken += f" ({vertical['record']} as strong)"

@@ -12,6 +12,7 @@ from rockwobble.compare.studies.spectrum.maps import SPATIAL, TiltMaps
 from rockwobble.compare.studies.spectrum.search import gap_bound
 from rockwobble.compare.studies.spectrum.study import OverturningSpectrum
 from rockwobble.compare.studies.spectrum.tables import AGREEMENT, CHECK_RTOL, NUDGE, unconservative_from
+from rockwobble.models.support import support_named
 
 from ..figures.spectrum import pictures
 from .page import Page
@@ -29,6 +30,7 @@ def spectrum_values(spectrum: TiltMaps, tables: Mapping[str, pd.DataFrame]) -> d
     bands, every = contrast.iloc[:-1], contrast.iloc[-1]
     return {
         "spectrum": spectrum,
+        "holds": support_named(spectrum.support),
         "cell_rows": contrast.assign(
             band=[f"{row.smallest:.3g} to {row.largest:.3g}" for row in contrast.itertuples()]
         )
