@@ -63,7 +63,7 @@ def fragility(
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.compare.studies.fragility.methods import methods_of
+            from rockwobble.compare.studies.fragility.runs import methods_of
             from rockwobble.models.records.plausibility import doubts_of
 
             from ..pages.diagnostics import warnings
@@ -320,7 +320,7 @@ def sweep(
 
 
 def _suite(name: str, models: list[str] | None) -> rw.Suite:
-    from rockwobble.compare.studies.sweep.cases import runnable_suite
+    from rockwobble.compare.studies.sweep import runnable_suite
 
     for model in models or ():
         if model not in rw.reduced.MODELS:

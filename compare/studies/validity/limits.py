@@ -10,8 +10,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from ...comparison.prediction import IN_TIME
-from ...metrics.distributions import MARGIN, log_ratios
-from ...metrics.order_statistics import quantile_interval
+from ...metrics.statistics import MARGIN, log_ratios, quantile_interval
 from ..ensemble import contrast_row, pairs
 from .plan import EL_CENTRO
 from .shaken import FLAT, FREE, HALVED, PERTURBED, RECESS

@@ -1,12 +1,12 @@
-"""Bounds of runs for which nobody states any: measured on the run itself, by a second one of another step.
+"""Runs of a suite compared with the models: by the bounds that it states, or by a second run of another step.
 
-Every case is held against its model twice. As it is: engines err at uplift, and near passes magnify what they
-err, so the bound is a wide one. It grows with the difference of the two steps and with copies of the model:
-off by as much as the engine is at first, and with a base that closes below the tilt that contact resolves.
-The window ends where those reach 1 % of alpha. In
-motion: the first seconds of a release, or, of a case that begins at rest, the strongest seconds of its
-motion, at half of what uplifts, as they meet a cylinder that rocks and wobbles. There the error is what the
-step leaves and no more, and what 0.5 % of R does is a hundred times the bound.
+Where none is stated every case is compared with its model twice. As it is: engines err at uplift, and near
+passes magnify what they err, so the bound is a wide one. It grows with the difference of the two steps and
+with copies of the model: off by as much as the engine is at first, and with a base that closes below the tilt
+that contact resolves. The window ends where those reach 1 % of alpha. In motion: the first seconds of a
+release, or, of a case that begins at rest, the strongest seconds of its motion, at half of what uplifts, as
+they meet a cylinder that rocks and wobbles. There the error is what the step leaves and no more, and what
+0.5 % of R does is a hundred times the bound.
 """
 
 from __future__ import annotations
@@ -18,22 +18,21 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from rockwobble import reduced
-from rockwobble.models import AGREEMENT, Case, GroundMotion, InitialState, Run, Trace
+from rockwobble.models import AGREEMENT, Bounds, Case, GroundMotion, InitialState, Run, Trace
 from rockwobble.multibody.engines.registry import available_engines, find_engine, standard_engines
 from rockwobble.multibody.scene.froude import default_step
 from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
 
-from ..comparison.prediction import early_rms, estimated_error, time_scale
-from ..metrics.pair import is_release
-from ..metrics.tilt import rms
-from ..metrics.turning import landings
-from ..runs.choice import require_runnable
+from ..comparison.prediction import Prediction, early_rms, estimated_error, predict, time_scale
+from ..comparison.summary import SUMMARY_COLUMNS, summary_row
+from ..external.verdict import numbers_of
+from ..metrics.pair import is_release, landings, rms
+from ..runs.choice import at_step, own_model, require_runnable
 from ..runs.execution import Job, simulate_all
 from ..runs.progress import ProgressCallback
-from ..runs.run_settings import at_step
-from ..storage.fingerprint import fingerprint
-from .motion import Array
-from .result import Bound, Result, at_most, not_run
+from ..storage.provenance import fingerprint
+from .agreement import walls
+from .measurement import Array, Bound, Result, at_most, not_run, why
 from .subject import Simulate
 
 # times the difference of two steps, of which the error is once or twice as much; `benchmarks false_alarms`
@@ -85,9 +84,61 @@ class SuiteRuns:
         return self.reference(case, support=support, **options)
 
 
-def why(trace: Trace) -> str:
-    """Return what ended a run, for a note."""
-    return "; ".join(f"{fact.meaning} {fact.detail}".strip() for fact in trace.facts)
+def check_suite(runs: SuiteRuns, jobs: Sequence[Job], bounds: Bounds | None) -> Iterator[Result]:
+    """Yield the results of the runs of a suite, by the bounds that it states, or by its own runs."""
+    traces = runs.traces(jobs)
+    if bounds is None:
+        prepare(runs, jobs, traces)
+    for job, trace in zip(jobs, traces, strict=True):
+        for result in check_run(runs, job, trace, bounds):
+            yield dataclasses.replace(result, subject=job.label)
+
+
+def reference_of(run: Run, bounds: Bounds | None) -> Run:
+    """Return the reduced model that a run is compared with."""
+    return own_model(run) if bounds is None or bounds.reference == "own" else Run(None, bounds.reference)
+
+
+def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) -> Iterator[Result]:
+    """Yield the results on one run of an engine."""
+    reference = reference_of(job.run, bounds)
+    name = f"{job.case.name}, {job.label} compared with {reference.support}"
+    if trace.outcome == "failed":
+        yield at_most(name, math.nan, ENDS, f"contact of {job.run.engine}", why(trace))
+        return
+    if job.run.support == "ring":
+        yield from walls(f"{job.case.name}, {job.label}", job.case, trace)
+    model = runs.solve(job.case, reference.support)
+    if bounds is None:
+        yield from compared(runs, job, name, model, trace)
+        return
+    prediction = predict(
+        job.case,
+        reference=model,
+        own=model,
+        contact_resolution=trace.contact_resolution,
+        error=estimated_error(job.case, job.run.engine, trace.time_step),
+        simulate=lambda case, run: runs.solve(case, run.support),
+    )
+    yield from _stated(bounds, job, name, model, trace, prediction)
+
+
+def _stated(
+    bounds: Bounds, job: Job, name: str, model: Trace, trace: Trace, prediction: Prediction
+) -> Iterator[Result]:
+    """One result for each bound that the suite states."""
+    row = summary_row(job.case, str(model.run), model, job.label, trace, prediction=prediction)
+    for column, most in bounds.given().items():
+        unit, meaning = SUMMARY_COLUMNS[column]
+        value = abs(numbers_of(row)[column])
+        if column == "agreement_time":
+            # the shorter the worse: what is missing may be nothing
+            missing = max(0.0, most - value) if row["diverged"] else 0.0
+            bound = Bound(0.0, f"the suite asks for {most:g} s", unit)
+            yield at_most(f"{name}: agreement_time missing", missing, bound, note=f"it is {value:.3g} s")
+        else:
+            bound = Bound(most, f"stated by the suite: {meaning}", unit)
+            yield at_most(f"{name}: {column}", value, bound, note=str(row["diagnostics"]))
 
 
 def compared(runs: SuiteRuns, job: Job, name: str, model: Trace, trace: Trace) -> Iterator[Result]:

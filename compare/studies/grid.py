@@ -14,9 +14,8 @@ from rockwobble import reduced
 from rockwobble.models import GroundMotion
 from rockwobble.models.shown import Brief
 
-from ...metrics.tilt import overturned
-from ...storage.fingerprint import fingerprint
-from ...storage.provenance import reduced_makers
+from ..metrics.pair import overturned
+from ..storage.provenance import fingerprint, reduced_makers
 
 MODELS = ("recess", "flat", "planar")
 # The runs of a chunk take about a second together: little is lost with it, and keeping it takes a few
