@@ -21,10 +21,8 @@ from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
 
 from ..external.trajectory import measurement
 from ..runs.execution import SAMPLE_STEP, simulate_run
-from ..storage.fingerprint import fingerprint
-from .motion import trace_of
-from .result import Bound
-from .scenes import RELEASE
+from ..storage.provenance import fingerprint
+from .measurement import RELEASE, Bound, trace_of
 
 Simulate = Callable[..., Trace]
 

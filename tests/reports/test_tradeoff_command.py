@@ -63,9 +63,9 @@ def test_the_command_writes_its_pages_and_all_that_they_are_drawn_from(
     )
     assert "scipy's solvers on the same equations takes 600 to 900 times" in printed
     page = (tmp_path / "tradeoff.html").read_text()
-    assert page.count("plotly-graph-div") >= 2
+    assert page.count('class="chart"') >= 2
     assert "The load of the machine was 0.1 before and 1.2 after." in page
-    assert len(page) < 8e6
+    assert len(page) < 2e6
     stored = Tradeoff.load(tmp_path)
     assert stored.facts == found.facts
     for name in TABLES:

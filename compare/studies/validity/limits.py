@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 from rockwobble.models.support import SUPPORTS
 
 from ...comparison.prediction import IN_TIME
-from ...metrics.distributions import MARGIN, log_ratios
-from ...metrics.order_statistics import quantile_interval
+from ...metrics.statistics import MARGIN, log_ratios, quantile_interval
 from ..ensemble import contrast_row, pairs
 from .plan import EL_CENTRO, RELEASE
 from .plan import POINT as POINT_NAMES
