@@ -20,7 +20,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.models.support import support_named
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 from rockwobble.multibody.protocol import SceneCounts
-from rockwobble.multibody.scene_of_case import open_scene
+from rockwobble.multibody.simulation import open_scene
 
 from ..runs.progress import Stage
 

@@ -64,7 +64,7 @@ def fragility(
     with interruptible(out):
         with user_input():
             from rockwobble.compare.studies.fragility.runs import methods_of
-            from rockwobble.models.records.plausibility import doubts_of
+            from rockwobble.models.records.units import doubts_of
 
             from ..pages.diagnostics import warnings
 
@@ -182,7 +182,7 @@ def ensemble(
     """
     with interruptible(out):
         with user_input():
-            from rockwobble.models.records.plausibility import doubts_of
+            from rockwobble.models.records.units import doubts_of
 
             from ..pages.diagnostics import warnings
 
@@ -332,7 +332,7 @@ def _suite(name: str, models: list[str] | None) -> rw.Suite:
 
 
 def _echo(plan: rc.Grid | rw.Suite) -> list[str]:
-    from rockwobble.models.records.plausibility import doubts_of
+    from rockwobble.models.records.units import doubts_of
 
     from ..pages.diagnostics import warnings
 

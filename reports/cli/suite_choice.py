@@ -77,7 +77,7 @@ def without_missing(runs: Sequence[rw.Run], named: Sequence[str] | None) -> list
 def describe_suite(name: str, cases: Sequence[rw.Case], runs: Sequence[rw.Run]) -> Iterator[str]:
     """Yield the lines that echo what will run, and how long it may take."""
     from rockwobble.compare.runs.choice import run_labels
-    from rockwobble.models.records.plausibility import doubts_of
+    from rockwobble.models.records.units import doubts_of
 
     from ..pages.diagnostics import warnings
 

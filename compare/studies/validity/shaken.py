@@ -13,9 +13,8 @@ from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 from rockwobble.models.support import SUPPORTS as ALL_SUPPORTS
 from rockwobble.models.support import support_named
 from rockwobble.multibody import DEFAULT_ENGINE
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
-from rockwobble.multibody.scene.ring_geometry import clearance_needed
-from rockwobble.multibody.scene.ring_settings import take_ring
+from rockwobble.multibody.ring import clearance_needed, take_ring
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 from rockwobble.reduced.body import body_of
 
 from ...comparison.driver import compare

@@ -29,10 +29,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Diagnostic, Trace
-from rockwobble.models.traces.trace_source import Known
+from rockwobble.models.trace_source import Known
 
-from ..scene.guard import LARGEST_STEP
-from .attempts import Attempt, Progress, closeness, common_count, part_of, shares, unknown_from
+from .auto_step import Attempt, Progress, closeness, common_count, part_of, shares, unknown_from
+from .guard import LARGEST_STEP
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..assumptions import Assumptions
-from ..case import Case, Run
-from ..cylinder import WobblingFrame
-from ..diagnostic import Diagnostic, joined
-from ..shown import Shown, line
 from . import trace_file
-from .trace_source import Array, Late, Source, friction_of, no_passes
+from .case import Case, Run
+from .cylinder import WobblingFrame
+from .diagnostic import Assumptions, Diagnostic, joined
+from .shown import Shown, line
+from .trace_source import Array, Known, Late, Source, friction_of, no_passes
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -351,3 +350,26 @@ class Trace(Shown):
     def late(self) -> Mapping[str, Array]:
         """The sampled quantities that its source gave beyond the fields."""
         return self.source.sampled()
+
+
+def lost_trace(case: Case, run: Run, why: str) -> Trace:
+    """Return the trace of a run that left none, as where its process died: no samples, outcome "failed"."""
+    none = np.empty(0)
+    return Trace(
+        case=case,
+        run=run,
+        version="",
+        time=none,
+        tilt=none,
+        tilt_rate=none,
+        rolling_angle=none,
+        twist=none,
+        contact_point=np.empty((0, 2)),
+        centre_of_mass=np.empty((0, 3)),
+        peak_tilt=math.nan,
+        outcome="failed",
+        uplift_time=math.nan,
+        uplift_direction=math.nan,
+        source=Known({}),
+        facts=(Diagnostic(code="died", detail=why),),
+    )

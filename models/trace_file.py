@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..assumptions import Assumptions
-from ..case import Case, Run
-from ..cylinder import cylinder_of
-from ..diagnostic import Diagnostic
-from ..ground_motion import GroundMotion
-from ..initial_state import InitialState
+from .case import Case, InitialState, Run
+from .cylinder import cylinder_of
+from .diagnostic import Assumptions, Diagnostic
+from .ground_motion import GroundMotion
 from .parquet_file import pack, read
 from .trace_source import Known
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Protocol, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from ..assumptions import Assumptions
-from ..shown import Brief
+from .diagnostic import Assumptions
+from .shown import Brief
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -1,6 +1,6 @@
 """time_step="auto": the step is halved until the tilt no longer depends on it.
 
-Runs of successive steps are held against each other, each against the one of twice its step. Two traces
+Runs of successive steps are compared, each with the one of twice its step. Two traces
 that near passes of upright tell apart are compared only up to the last pass before they diverge, for
 beyond it no step is small enough: they diverge where they differ by 1 % of alpha. The tilt has settled when
 
@@ -19,12 +19,93 @@ resolved, or in which contact makes or takes energy, has not.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from rockwobble.models import Diagnostic, Trace
 
-from ..scene.guard import LARGEST_STEP
-from .attempts import Attempt, Closeness, Progress, closeness, part_of, shares, unknown_from
+from .guard import LARGEST_STEP
+
+_DIVERGED = 0.01  # of alpha
+# diagnostics beside which no estimate of the error is known: a pass is left to chance, or contact drives
+UNKNOWN = ("unresolved_pass", "energy")
+_SAME_TIME = 1e-9  # of the length of a run
+
+Progress = Callable[[float], None]
+Attempt = Callable[[float, Progress], Trace]
+"""Runs with a time step [s] and a callback for its fraction done."""
+
+
+@dataclass(frozen=True, slots=True)
+class Closeness:
+    """Closeness of two traces of one case.
+
+    Attributes
+    ----------
+    difference : float
+        Largest difference of the tilt until `until` [rad].
+    until : float
+        The end of the shorter trace, or the last pass before the divergence [s].
+    divergence : float
+        Where they diverge; infinite if they do not [s].
+    """
+
+    difference: float
+    until: float
+    divergence: float
+
+
+def closeness(coarse: Trace, fine: Trace, alpha: float) -> Closeness:
+    """Return the closeness of two traces in tilt, by their samples."""
+    count = common_count([coarse, fine])
+    distance = np.abs(coarse.tilt[:count] - fine.tilt[:count])
+    beyond = np.flatnonzero(distance > _DIVERGED * alpha)
+    if not len(beyond):
+        ends_alike = coarse.outcome == fine.outcome or "overturned" not in (coarse.outcome, fine.outcome)
+        end = float(fine.time[count - 1])
+        return Closeness(float(distance.max(initial=0.0)), end, math.inf if ends_alike else end)
+    divergence = float(fine.time[beyond[0]])
+    passes = np.asarray(fine.passes["time"], dtype=float)
+    earlier = passes[passes < divergence]
+    until = float(earlier[-1]) if len(earlier) else 0.0
+    within = distance[: int(np.searchsorted(fine.time, until, side="right"))]
+    return Closeness(float(within.max(initial=0.0)), until, divergence)
+
+
+def unknown_from(trace: Trace) -> tuple[float, str]:
+    """Return from when on no estimate of the error of a trace is known [s], and the code that says so."""
+    return min(((trace.first(code), code) for code in UNKNOWN), default=(math.inf, ""))
+
+
+def common_count(traces: Sequence[Trace]) -> int:
+    """Return up to which sample all traces have the same times."""
+    count = min(len(trace.time) for trace in traces)
+    first = traces[0].time[:count]
+    # the last sample of a run that overturned stands at its own time
+    near = _SAME_TIME * max(*(trace.time[-1] for trace in traces), 1.0)
+    different = np.flatnonzero(
+        np.any([np.abs(trace.time[:count] - first) > near for trace in traces], axis=0)
+    )
+    return int(different[0]) if len(different) else count
+
+
+def shares(steps: Sequence[float]) -> list[float]:
+    """Return the fractions of the whole work that are done before each step and after the last."""
+    work = np.cumsum([0.0, *(1.0 / step for step in steps)])
+    return [float(value) for value in work / work[-1]]
+
+
+def part_of(progress: Progress | None, start: float, end: float) -> Progress:
+    """Return a callback for one run, which is the work from `start` to `end` of the whole."""
+
+    def tell(fraction: float) -> None:
+        if progress is not None:
+            progress(start + (end - start) * fraction)
+
+    return tell
+
 
 AUTO = "auto"
 COARSEST = 4e-4  # [s] at the reference size: four times the default, so that easy cases cost a fourth

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import GroundMotion
 
-from .froude import Scale
+from .scene import Scale
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .. import plain_json
+from . import plain_json
 
 if TYPE_CHECKING:
     import pandas as pd
