@@ -12,7 +12,8 @@ it is the generalised force
 
 In the recess tau' = 0 and psi' = -phi'. On flat ground Lambda' has Q_phi and S' has Q_tau + (G/B) Q_phi.
 The normal force is that of the same motion, N = load + lift theta'', and theta'' has Q_theta/A: both follow
-from one linear equation. Where w = 0 the couple is what holds the body, if delta N suffices: standing still
+from one linear equation. In a frame the rim of the top rolls on the slab with the same angular velocity, so N
+is the sum of the forces at base and top, whose acceleration of the mass centre counts mu times. Where w = 0 the couple is what holds the body, if delta N suffices: standing still
 N = g + az, theta'' = 0 and L' = 0 need
 
     M_theta = (g + az) D'' + D' a_r,   M_psi = -(D/s) a_t,   |M| <= delta (g + az).
@@ -21,9 +22,9 @@ N = g + az, theta'' = 0 and L' = 0 need
 symbol    unit     meaning
 ========= ======== ============================================================
 delta     m        length of rolling resistance
-N         m/s^2    normal force on the base, over m
-load      m/s^2    its part without theta'', g + az - D' theta'^2
-lift      m        z'' of the mass centre for each theta'', D'' = b c - h s
+N         m/s^2    normal force on the base, and on the top of a column; over m, in a frame w m
+load      m/s^2    its part without theta'', g + az - mu D' theta'^2
+lift      m        its part for each theta'', mu D'' = mu (b c - h s)
 w         rad/s    horizontal part of the angular velocity
 side      -        sign of the tilt rate, of motion in one plane
 ========= ======== ============================================================
@@ -46,7 +47,8 @@ _HAIR = 1e-9
 @inlined
 def normal_force(body: Body, s: float, c: float, omega: float, az: float) -> tuple[float, float]:
     """Return load [m/s^2] and lift [m] of the normal force N = load + lift theta''."""
-    return body.g + az - (body.b * s + body.h * c) * omega * omega, body.b * c - body.h * s
+    mu = body.mu
+    return body.g + az - mu * (body.b * s + body.h * c) * omega * omega, mu * (body.b * c - body.h * s)
 
 
 @inlined
@@ -181,8 +183,9 @@ def couple_on(
 def impact_ratio(body: Body, restitution: float) -> float:
     """Return the ratio of tilt rates at an impact of planar motion with rolling resistance.
 
-    The vertical impulse on the base is n = m b (omega + omega'), and the couple takes delta n of the moment
-    of momentum: A omega' = r A omega - delta b (omega + omega'), r being the ratio without it. To first
+    The vertical impulse on the base, and on the top of a column, is n = mu b (omega + omega') per unit mass,
+    and the couple takes delta n of the moment of momentum: A omega' = r A omega - delta n, r being the ratio
+    without it. To first
     order r of Housner is the ratio of delta = b without impact.
 
     Parameters
@@ -196,5 +199,5 @@ def impact_ratio(body: Body, restitution: float) -> float:
     float
         omega'/omega [-], not negative.
     """
-    taken = body.delta * body.b
+    taken = body.delta * body.mu * body.b
     return max(0.0, (body.A * restitution - taken) / (body.A + taken))
