@@ -25,7 +25,7 @@ from . import own_bounds
 from .motion import Array, largest, lean
 from .own_bounds import SuiteRuns, why
 from .result import Bound, Result, at_most
-from .scenes import GRAVITY, PIER, RELEASE, SQUAT, THRESHOLD, released, steady
+from .scenes import FRAME_RELEASE, GRAVITY, PIER, RELEASE, SQUAT, THRESHOLD, released, steady
 from .subject import Subject
 
 # a squat body with inertias of its own, on ground that accelerates evenly in three components
@@ -91,6 +91,13 @@ def release(subject: Subject, support: str) -> Iterator[Result]:
         own, other = (each.passes[columns].to_numpy(dtype=float) for each in (found, model))
         off = largest(own - other) if own.shape == other.shape else math.nan
         yield at_most("passes of a release", off, subject.within(10.0, "as the model", "s, rad"))
+
+
+def frame(subject: Subject, support: str) -> Iterator[Result]:
+    """Tilt of a release of a frame: one column under a slab that can only translate."""
+    found, model = _both(subject, FRAME_RELEASE, support)
+    apart = _difference(found, model, FRAME_RELEASE.length)
+    yield at_most("tilt and azimuth of a frame", apart, subject.within(1.0, "contact at its step", "alpha"))
 
 
 def ramp(subject: Subject, support: str) -> Iterator[Result]:

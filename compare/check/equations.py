@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
+from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, WobblingFrame
 
 from . import lagrange
 from .motion import Array, largest
@@ -20,13 +20,14 @@ from .result import Result, at_most, worst_of
 from .scenes import GRAVITY
 from .subject import Subject
 
-# a slender pier, a drum as wide as high, and a squat body with mass and inertias of its own
+# a slender pier, a drum as wide as high, a squat body with mass and inertias of its own, and a frame
 CYLINDERS = {
     "R = 6 m, tan alpha = 0.2": Cylinder(semidiagonal=6.0, tan_alpha=0.2),
     "R = 2.5 m, tan alpha = 1": Cylinder(semidiagonal=2.5, tan_alpha=1.0),
     "own inertias, tan alpha = 0.5": Cylinder(
         semidiagonal=4.0, tan_alpha=0.5, height=5.0, transverse_inertia=3.1, axial_inertia=2.3
     ),
+    "frame, tan alpha = 0.3": WobblingFrame(Cylinder(semidiagonal=3.0, tan_alpha=0.3), 1.5),
 }
 # in 1/p: the fastest of these motions changes in about 1/(3 p), and 0.06^12 is below rounding
 _SAMPLE = 0.02
@@ -95,7 +96,9 @@ def _residuals(subject: Subject, support: str, cylinder: Cylinder) -> list[float
             by_tilt, by_turn = lagrange.residuals(
                 shape, place, (rates[0], rates[1]), (curves[0], curves[1]), ground
             )
-            force = lagrange.curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
+            # a slab goes twice as far, and the base carries both
+            carried = (1.0 + 2.0 * shape.slab) / (1.0 + shape.slab)
+            force = carried * lagrange.curve(found.centre_of_mass[cut], step) + ground + [0.0, 0.0, GRAVITY]
             scale = GRAVITY * (shape.b + shape.h)
             for each, value in zip(
                 errors,

@@ -6,13 +6,17 @@ kinetic energy (13)-(15) and the potential energy (17) with the ground's acceler
 derivatives of the energies by tilt, rolling angle and their rates are complex steps, exact to rounding
 (W. Squire and G. Trapp, SIAM Review 40 (1998) 110-112); those by time are taken along the motion.
 
+A column of a frame has its share of the slab in both energies, which goes twice as far as its mass centre.
+
 ====== ======== =============================================================== ========
 symbol unit     meaning                                                         source
 ====== ======== =============================================================== ========
 b, h   m        base radius, height of the mass centre                          Fig. 1
 I1, I2 m^2      transverse and axial inertia about the mass centre              (16)
 r      m        mass centre relative to O                                       (8), (10)
-T, V   m^2/s^2  kinetic and potential energy per unit mass                      (13)-(17)
+slab   -        mass of the slab over that of the columns, 0 without one
+T, V   m^2/s^2  kinetic and potential energy per unit mass; in a frame per unit (13)-(17)
+                of the mass on which gravity works at r, 1 + 2 slab columns
 ====== ======== =============================================================== ========
 """
 
@@ -37,13 +41,14 @@ _ALONG = 1e-2  # [s] of the steps along a motion, where sines and cosines are al
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shape:
-    """Lengths and inertias of a cylinder; symbols in the module docstring."""
+    """Lengths and inertias of a cylinder or frame; symbols in the module docstring."""
 
     b: float
     h: float
     I1: float
     I2: float
     g: float
+    slab: float
 
 
 def shape_of(cylinder: Cylinder) -> Shape:
@@ -57,6 +62,7 @@ def shape_of(cylinder: Cylinder) -> Shape:
         I1=b * b / 4.0 + height * height / 12.0 if I1 is None else I1,
         I2=b * b / 2.0 if I2 is None else I2,
         g=9.81,
+        slab=cylinder.slab_mass_ratio,
     )
 
 
@@ -86,12 +92,13 @@ def kinetic(shape: Shape, theta: Array, phi: Array, theta_rate: Array, phi_rate:
         axis=-1,
     )
     velocity = base_rate + shape.h * rotation_rate[..., :, 2]
+    of_slab = 2.0 * velocity
     twice: Array = (
-        (velocity * velocity).sum(axis=-1)
+        (velocity * velocity + shape.slab * of_slab * of_slab).sum(axis=-1)
         + shape.I1 * (spin_x * spin_x + spin_y * spin_y)
         + shape.I2 * spin_z * spin_z
     )
-    return 0.5 * twice
+    return 0.5 / (1.0 + 2.0 * shape.slab) * twice
 
 
 def mass_centre(shape: Shape, theta: Array, phi: Array) -> Array:
