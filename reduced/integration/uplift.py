@@ -17,7 +17,7 @@ import numpy as np
 from .._compile import jit
 from ..body import Body
 from ..equations import in_plane_below
-from .tsit5 import Vector, ground
+from .record import Vector, ground
 
 # The series is left at the share x of the shortest time scale there: 1/p, and the time in which the
 # ground acceleration turns or changes by its own size. The terms left out are below x^3 relative to
@@ -118,8 +118,8 @@ def started(
     f starts above zero the lag is linear in time from the start and the balance is exact:
     phi' = W/(1 + 2 J F0/(h |a|)).
 
-    Rolling resistance adds delta mu b theta'' to the inertia of the tilt, N being g + az + mu b theta'' there,
-    and the couple -delta N theta^2 phi'/theta' across, which holds the contact back behind the force: by
+    Rolling resistance adds delta mu b theta'' to the inertia of the tilt, N being g + az + mu b theta''
+    there, and the couple -delta N theta^2 phi'/theta' across, which holds the contact back behind the force: by
     kappa W t with kappa/(1 - kappa) = delta N/(3 h |a|), or where f starts above zero by its term in phi'.
     """
     ax, ay, az = ground(a, slope, at)
