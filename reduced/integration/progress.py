@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from .._compile import inlined, jit
 from ..body import Body
+from ..rolling import PIVOTS
 from ..trigonometry import sin_cos
 from .endings import HALF_PI, may_sit_down, surely_overturns
 from .events import NONE, REPEATED, Turn, make_events
@@ -191,8 +192,8 @@ def make_progress(system: System, stepper: Stepper) -> Progress:
         """
         elapsed, y, k, h_next, restart, _, peak, sample, step_count, status = run
         a = ground(piece.a, piece.slope, elapsed)
-        if resists and is_still(y):
-            wait = hold(body, y, a, piece.slope)
+        if resists and (is_still(y) or y[-1] == PIVOTS):
+            wait = hold(body, y, a, piece.slope) if is_still(y) else 0.0
             if wait > 0.0:
                 return Step(held(piece, wait, wanted, run), NONE, NONE)
             y, longest = set_off(body, y, a, piece.slope)
