@@ -153,9 +153,7 @@ def pivoting_rate(body: Body, s: float, c: float, Lambda: float, S: float) -> fl
 
 
 @jit
-def momenta_of(
-    body: Body, s: float, c: float, pivoting: float, across: float
-) -> tuple[float, float]:
+def momenta_of(body: Body, s: float, c: float, pivoting: float, across: float) -> tuple[float, float]:
     """Return Lambda and S [m^2/s] for the moment of momentum of `pivoting` and the rate `across`, s psi'."""
     t = s / (1.0 + c)
     H = body.J + (2.0 * body.E + body.C * t) * t

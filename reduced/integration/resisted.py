@@ -31,6 +31,8 @@ from ..rolling import (
     twist_share,
 )
 from ..trigonometry import sin_cos
+from .record import Vector
+from .result import State
 from .stepping import runge_kutta
 from .systems import (
     FLAT,
@@ -44,7 +46,6 @@ from .systems import (
     planar_ratio,
     scales,
 )
-from .tsit5 import State, Vector
 
 # squared cosine of the turn of the couple in a step up to which the step follows it
 _FOLLOWED = 0.64
@@ -239,7 +240,9 @@ def _make_system(
         if spins and turning != 0.0 and 0.0 < excess < 10.0 * late and growth > 0.0:
             # the couple lets go: as long as it balances most of the push the body moves along that
             since = excess / growth
-            inertia = body.A * tilting * tilting + across_inertia(body, *sin_cos(y[0]), pivots) * turning * turning
+            inertia = (
+                body.A * tilting * tilting + across_inertia(body, *sin_cos(y[0]), pivots) * turning * turning
+            )
             speed = 0.5 * growth * since * since / inertia
             return moving(body, y, speed * tilting, speed * turning, side), longest
         return moving(body, y, 0.0, 0.0, side), longest

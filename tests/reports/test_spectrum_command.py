@@ -22,15 +22,14 @@ from rockwobble.compare.studies.spectrum.maps import (
     safe_islands,
     tilt_maps,
 )
-from rockwobble.compare.studies.spectrum.study import KIND, OverturningSpectrum
-from rockwobble.compare.studies.spectrum.tables import planar_contrast
+from rockwobble.compare.studies.spectrum.study import KIND, OverturningSpectrum, planar_contrast
 from rockwobble.models import GroundMotion, el_centro_1940
 from rockwobble.reports.cli.main import main
 from rockwobble.reports.figures.heat import Heat
 from rockwobble.reports.figures.spectrum import picture_of
 from rockwobble.reports.figures.svg import svg
+from rockwobble.reports.pages import page_of, stored_page
 from rockwobble.reports.pages.page import Page
-from rockwobble.reports.pages.registry import page_of, stored_page
 
 # the factors on the record differ by a rounding, grown by a few passes
 SAME_RUN = 1e-6
