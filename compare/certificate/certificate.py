@@ -177,7 +177,7 @@ def fingerprint(subject: Subject) -> Iterator[Entry]:
 
 
 def repeated(subject: Subject, old: Sequence[Entry]) -> Iterator[Sample]:
-    """Yield the parts of the entries needed to hold them against older ones: the copies are theirs."""
+    """Yield the parts of the entries needed to compare them with older ones: the copies are theirs."""
     for short, one in zip(short_cases(), old, strict=True):
         found = entry(short, _run(subject, short, short.case))
         if one["agreement_time"] is not None and compare_entries(one, found).word != SAME:

@@ -25,7 +25,7 @@ _SAME_TIME = 1e-9
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False, repr=False)
 class Pair(Brief):
-    """A trial held against a reference, sample by sample.
+    """A trial compared with a reference, sample by sample.
 
     The samples are those of the reference, up to the earliest of: the end of either trace, the
     first value that is not finite, and the window that was asked for.

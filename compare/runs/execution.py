@@ -63,7 +63,7 @@ class Job(Brief):
 
     @property
     def name(self) -> str:
-        """Case and label, for whoever waits."""
+        """Case and label, for the progress callback."""
         return f"{self.case.name}, {self.label}"
 
 

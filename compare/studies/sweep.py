@@ -47,7 +47,7 @@ class CaseChunk:
 
     @property
     def name(self) -> str:
-        """Description of the chunk, for whoever waits."""
+        """Description of the chunk, for the progress callback."""
         more = f" and {len(self.jobs) - 1} more" if len(self.jobs) > 1 else ""
         return f"{self.jobs[0].name}{more}"
 

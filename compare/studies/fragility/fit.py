@@ -33,7 +33,7 @@ TOO_FEW = "too few"  # motions or levels: whatever the curve, it is not stated
 _ITERATIONS, _HALVINGS = 60, 30
 _TOLERANCE = 1e-11  # of a step of Newton's method, in standard deviations of the logarithm of the intensity
 _LEVEL = 1e-9  # slope, in the same, of a share that is the same at all intensities
-_GROUPS = 10  # of a cloud, to hold shares against the curve
+_GROUPS = 10  # of a cloud, to compare shares with the curve
 
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
@@ -142,7 +142,7 @@ def _between(
 
 
 def goodness(x: Array, n: Array, k: Array, centre: float, dispersion: float) -> dict[str, float]:
-    """Hold the shares against a curve that was fitted to them; many intensities are put into groups.
+    """Compare the shares with a curve that was fitted to them; many intensities are put into groups.
 
     Returns
     -------
@@ -263,7 +263,7 @@ def resamples(motions: int, count: int, seed: int) -> Array:
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Sample:
-    """The runs of one cylinder by one method, held against one limit.
+    """The runs of one cylinder by one method, and whether they exceed one limit.
 
     Attributes
     ----------

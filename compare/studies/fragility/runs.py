@@ -169,7 +169,7 @@ class Task:
 
     @property
     def title(self) -> str:
-        """Description of the task, for whoever waits."""
+        """Description of the task, for the progress callback."""
         more = f" and {len(self.shakings) - 1} more" if len(self.shakings) > 1 else ""
         first = self.shakings[0]
         scale = f" × {first.scales[0]:.3g}" if len(first.scales) == 1 else ""

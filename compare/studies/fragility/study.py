@@ -33,7 +33,7 @@ from .tables import (
     curves_of,
     efficiency_table,
     fit_table,
-    island_table,
+    gap_table,
     require_limits,
 )
 
@@ -70,7 +70,7 @@ class Fragility(Results, kind=KIND):
         holds the interval of the ratio), verdict for the margin of the facts.
     efficiency : DataFrame
         Dispersion of the first method by each measure, and over that of the best.
-    islands : DataFrame
+    gaps : DataFrame
         Gaps in the overturning region: motions that overturn a cylinder which stands under the same motion
         made stronger, and bias of the median of an analysis that stops at the first overturning.
 
@@ -134,7 +134,7 @@ def fragility_of(runs: pd.DataFrame, points: pd.DataFrame, facts: Mapping[str, A
         "curves": curve_table(blocks, fitted, drawn),
         "contrasts": contrast_table(blocks, fitted, drawn, weights, float(facts["margin"])),
         "efficiency": efficiency_table(blocks, blocks.methods[0], weights),
-        "islands": island_table(blocks, weights),
+        "gaps": gap_table(blocks, weights),
     }
     levels = points.groupby("cylinder")[blocks.measure].nunique()
     if len(blocks.motions) < FEWEST or levels.min() < FEWEST_LEVELS:
@@ -148,7 +148,7 @@ def _counts_alone(tables: Mapping[str, pd.DataFrame]) -> dict[str, pd.DataFrame]
     fitted = fits.columns.difference([*_COUNTED, "kind", "extrapolated"])
     fits[fitted] = float("nan")
     return {"fits": fits} | {
-        name: tables[name].iloc[:0] for name in ("curves", "contrasts", "efficiency", "islands")
+        name: tables[name].iloc[:0] for name in ("curves", "contrasts", "efficiency", "gaps")
     }
 
 
