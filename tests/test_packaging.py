@@ -19,7 +19,7 @@ import rockwobble
 CHECKOUT = Path(__file__).parents[1]
 FOLDERS = ["models", "reduced", "multibody", "compare", "reports"]
 ENGINES = ["mujoco", "pybullet", "dartpy", "pydrake", "exudyn", "rapier3d"]
-HEAVY = [*ENGINES, "pandas", "pyarrow", "plotly", "matplotlib", "jinja2", "scipy", "sympy"]
+HEAVY = [*ENGINES, "pandas", "pyarrow", "matplotlib", "jinja2", "scipy", "sympy"]
 
 
 def run(*command: str) -> str:

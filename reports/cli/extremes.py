@@ -3,25 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
 import typer
 
 import rockwobble.compare.storage as rs
+from rockwobble.compare.studies.plans import ExtremesPlan
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_save
 from ..console.terminal import FAILED, interruptible, user_input
 from .inputs import options
-
-Quick = Annotated[
-    bool,
-    typer.Option("--quick", help="Only the two ends of each extreme: some two minutes on two idle cores."),
-]
+from .inputs.plan_options import takes_options
 
 
+@takes_options
 def extremes(
-    quick: Quick = False, workers: options.Workers = None, out: options.Out = Path("rockwobble-extremes")
+    plan: ExtremesPlan,
+    workers: options.Workers = None,
+    out: options.Out = Path("rockwobble-extremes"),
 ) -> None:
     """Take one thing at a time to its extreme: is the answer right, and if not, does the run say so.
 
@@ -37,10 +36,10 @@ def extremes(
     with interruptible(out):
         with user_input():
             rs.require_writable(out)
-        from rockwobble.compare.studies.extremes.study import measure_extremes
+        from rockwobble.compare.studies.extremes import measure_extremes
 
-        with user_input(), shown_progress() as tell:
-            found = measure_extremes(out, quick=quick, workers=workers, progress=tell)
+        with user_input(), shown_progress() as progress:
+            found = measure_extremes(out, plan, workers=workers, progress=progress)
         show_and_save(found, out)
     if (found.extremes["verdict"] == "silent").any():
         raise typer.Exit(FAILED)

@@ -3,23 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 import rockwobble.compare.storage as rs
+from rockwobble.compare.studies.plans import TradeoffPlan
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_save
 from ..console.terminal import interruptible, user_input
 from .inputs import options
-
-Quick = Annotated[
-    bool, typer.Option("--quick", help="Fewer points and fewer members: some two minutes on two idle cores.")
-]
+from .inputs.plan_options import takes_options
 
 
-def tradeoff(quick: Quick = False, out: options.Out = Path("rockwobble-tradeoff")) -> None:
+@takes_options
+def tradeoff(plan: TradeoffPlan, out: options.Out = Path("rockwobble-tradeoff")) -> None:
     """Measure what accuracy costs: the reduced models, scipy's solvers and the engines on three problems.
 
     The angle of turn in free response, two times El Centro until ten seconds
@@ -36,6 +32,6 @@ def tradeoff(quick: Quick = False, out: options.Out = Path("rockwobble-tradeoff"
             rs.require_writable(out)
         from rockwobble.compare.studies.tradeoff.study import measure_tradeoff
 
-        with shown_progress("rounds") as tell:
-            found = measure_tradeoff(quick=quick, progress=tell)
+        with shown_progress("rounds") as progress:
+            found = measure_tradeoff(plan, progress=progress)
         show_and_save(found, out)

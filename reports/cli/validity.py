@@ -3,24 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
-
-import typer
 
 import rockwobble.compare.storage as rs
+from rockwobble.compare.studies.plans import ValidityPlan
 
 from ..console.progress import shown_progress
 from ..console.results import show_and_save
 from ..console.terminal import interruptible, user_input
 from .inputs import options
-
-Quick = Annotated[
-    bool, typer.Option("--quick", help="Coarse maps and few runs: some two minutes on two cores.")
-]
+from .inputs.plan_options import takes_options
 
 
+@takes_options
 def validity(
-    quick: Quick = False,
+    plan: ValidityPlan,
     workers: options.Workers = None,
     out: options.Out = Path("rockwobble-validity"),
 ) -> None:
@@ -37,10 +33,8 @@ def validity(
     with interruptible(out):
         with user_input():
             rs.require_writable(out)
-        from rockwobble.compare.studies.validity.plan import FULL, QUICK
-        from rockwobble.compare.studies.validity.study import measure_all, validity_of
+        from rockwobble.compare.studies.validity.study import measure_validity
 
-        extent = QUICK if quick else FULL
         with user_input(), shown_progress("tasks") as progress:
-            tables = measure_all(extent, out, workers=workers, progress=progress)
-        show_and_save(validity_of(tables, extent), out)
+            found = measure_validity(out, plan, workers=workers, progress=progress)
+        show_and_save(found, out)

