@@ -35,6 +35,7 @@ from rockwobble.models import (
     el_centro_1940,
 )
 from rockwobble.models.members import perturbed
+from rockwobble.models.support import SUPPORTS
 
 from ..check import GROUPS, NOT_RUN, Result, Subject, engine, reduced_model
 from ..storage.files import replace_files
@@ -127,7 +128,7 @@ def _release(
     name: str, term: str, body: Cylinder, spin: float, length: float, *, support: str = "recess"
 ) -> ShortCase:
     start = InitialState(0.5 * body.alpha, 0.0, 0.3, spin)
-    claim = "free response by (18) and (19)" if support == "recess" else "free response on flat ground"
+    claim = f"free response {'by (18) and (19)' if SUPPORTS[support].guided else 'on flat ground'}"
     case = Case(body, initial=start, duration=length)
     return ShortCase(name=name, claim=claim, term=term, case=case, support=support)
 

@@ -33,6 +33,7 @@ from .measurement import (
     RELEASE,
     SQUAT,
     THRESHOLD,
+    WALLED,
     Array,
     Bound,
     Result,
@@ -268,7 +269,7 @@ _CASES: tuple[tuple[Case, bool, float], ...] = (
     (_VERTICAL, True, 10.0),
 )
 _INSTANTS = 8  # evenly over the run
-_RING = 500.0  # times the tolerance: the impact on a wall comes a step earlier or later
+_AT_WALLS = 500.0  # times the tolerance: the impact on a wall comes a step earlier or later
 _LOOSE = 20.0  # times as much for a version that has no baseline
 
 
@@ -299,7 +300,7 @@ def kept_numbers(subject: Subject, support: str) -> Iterator[Result]:
         before: Values = kept.values.get(known, {})
         apart = {key: value - before.get(key, math.nan) for key, value in _numbers(case, support, trace)}
         worst = max(apart, key=lambda key: abs(apart[key]) if math.isfinite(apart[key]) else math.inf)
-        most = (1.0 if known == group else _LOOSE) * (_RING if support == "ring" else times)
+        most = (1.0 if known == group else _LOOSE) * (_AT_WALLS if support in WALLED else times)
         bound = Bound(most * subject.tolerance, "the number that is kept", "alpha")
         found = at_most(case.name, abs(apart[worst]), bound, note=worst)
         if known != group:
@@ -323,7 +324,7 @@ def _runs(subject: Subject, support: str) -> Iterator[tuple[Case, Trace, float]]
     for case, of_models, times in _CASES:
         # planar motion has no rolling rate, and some engines cannot start from a cylinder that stands
         fits = support != "planar" if case.initial is not None else subject.uplifts
-        fits &= support != "ring" or case.cylinder is SQUAT  # which reaches the walls
+        fits &= support not in WALLED or case.cylinder is SQUAT  # which reaches the walls
         if fits and not (of_models and subject.run is not None):
             yield case, subject.simulate(case, support), times
 

@@ -27,7 +27,7 @@ from ..comparison.prediction import Prediction, early_rms, estimated_error, pred
 from ..comparison.summary import SUMMARY_COLUMNS, summary_row
 from ..external.verdict import numbers_of
 from ..metrics.pair import is_release, landings, rms
-from ..runs.choice import at_step, own_model, require_runnable
+from ..runs.choice import at_step, own_model, require_runnable, support_of
 from ..runs.execution import Job, simulate_all
 from ..runs.progress import ProgressCallback
 from ..storage.provenance import fingerprint
@@ -106,7 +106,7 @@ def check_run(runs: SuiteRuns, job: Job, trace: Trace, bounds: Bounds | None) ->
     if trace.outcome == "failed":
         yield at_most(name, math.nan, ENDS, f"contact of {job.run.engine}", why(trace))
         return
-    if job.run.support == "ring":
+    if support_of(job.run).walls:
         yield from walls(f"{job.case.name}, {job.label}", job.case, trace)
     model = runs.solve(job.case, reference.support)
     if bounds is None:
@@ -200,8 +200,8 @@ def other_step(job: Job, trace: Trace) -> tuple[Job, float]:
 
 
 def _in_motion(job: Job) -> Job | None:
-    # a ring has no model of its own once its walls are touched
-    case = None if job.run.support == "ring" else in_motion(job.case)
+    # none has a model once its walls are touched
+    case = in_motion(job.case) if support_of(job.run).modelled else None
     return None if case is None else Job(case=case, run=job.run, label=job.label)
 
 

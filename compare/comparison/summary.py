@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from itertools import permutations
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -309,7 +308,7 @@ def agreement_matrix(
 
 def _rows(
     name: str, case: Case, traces: Mapping[tuple[str, str], Trace], until: float | None
-) -> Iterator[dict[str, Any]]:
+) -> Iterator[Row]:
     own = {label: trace for (of, label), trace in traces.items() if of == name and len(trace.time)}
     for support in dict.fromkeys(trace.run.support for trace in own.values()):
         members = {label: trace for label, trace in own.items() if trace.run.support == support}
@@ -325,7 +324,7 @@ def _rows(
             }
 
 
-def _difference(case: Case, trial: Trace, reference: Trace, until: float | None) -> dict[str, Any]:
+def _difference(case: Case, trial: Trace, reference: Trace, until: float | None) -> Row:
     cylinder = case.cylinder
     whole = make_pair(cylinder, reference, trial, until=case.length)
     window = whole if until is None else make_pair(cylinder, reference, trial, until=until)

@@ -7,7 +7,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -25,6 +24,7 @@ from ..plans import FragilityPlan
 from .intensity import intensity, measures_of
 from .tables import CONTACT_LOST
 
+Row = dict[str, float | str]  # of a run
 # The worse plane is no run of its own: of both planes, for each motion, the one that tilts more.
 WORSE_PLANE = "worse-plane"
 _PLANES = {"planar-x": 0.0, "planar-y": 0.5 * math.pi}
@@ -104,8 +104,8 @@ def _method(given: str | Run, restitution: float | str, labels: Iterable[str]) -
     if given == WORSE_PLANE:
         return Method(label=MODELS[given], run=None, of=tuple(MODELS[plane] for plane in _PLANES))
     if given in _PLANES:
-        loss: dict[str, Any] = {} if restitution == 1.0 else {"restitution": restitution}
-        return Method(label=MODELS[given], run=Run(None, "recess", plane=_PLANES[given], **loss))
+        loss = {} if restitution == 1.0 else {"restitution": restitution}
+        return Method(label=MODELS[given], run=Run(None, "recess", None, plane=_PLANES[given], **loss))
     return Method(label=MODELS[given], run=Run(None, given))
 
 
@@ -209,13 +209,13 @@ class Task:
         homogeneous = (own.height, own.transverse_inertia, own.axial_inertia) == (None, None, None)
         return self.run.engine is None and homogeneous and not self.contact
 
-    def rows(self) -> list[dict[str, Any]]:
+    def rows(self) -> list[Row]:
         """Return a row for each motion and factor, in their order."""
         if self._of_peaks:
             return [row for shaking in self.shakings for row in self._peaks(shaking)]
         return [self._row(s.motion, scale) for s in self.shakings for scale in s.scales]
 
-    def _peaks(self, shaking: Shaking) -> list[dict[str, Any]]:
+    def _peaks(self, shaking: Shaking) -> list[Row]:
         from rockwobble import reduced
 
         peaks = reduced.peak_tilts(
@@ -238,7 +238,7 @@ class Task:
             for peak in peaks
         ]
 
-    def _row(self, motion: GroundMotion, scale: float) -> dict[str, Any]:
+    def _row(self, motion: GroundMotion, scale: float) -> Row:
         case = Case(self.cylinder, motion.scaled(scale), gravity=self.gravity, friction=self.friction)
         run = self.run
         if run.engine is None:

@@ -177,18 +177,16 @@ def main_contrasts(found: Fragility) -> dict[str, list[Row]]:
 def _question(methods: Mapping[str, Mapping[str, Any]], method: str, against: str) -> tuple[str, bool]:
     """Return the question that a pair answers, and whether the pair is the other way round; "" for none."""
     one, other = methods[method], methods[against]
-    engines = one["engine"], other["engine"]
-    if engines == (None, None) and "planar" in (one["support"], other["support"]):
-        recess = [each["support"] == "recess" for each in (one, other)]
-        return ("planar", recess[0]) if any(recess) else ("", False)
+    engines, supports = ([each[name] for each in (one, other)] for name in ("engine", "support"))
     if engines[0] == engines[1]:
-        recess = [each["support"] == "recess" for each in (one, other)]
-        return ("support", recess[0]) if recess[0] != recess[1] else ("", False)
+        recess = [support == "recess" for support in supports]
+        question = "planar" if engines[0] is None and "planar" in supports else "support"
+        return (question, recess[0]) if recess[0] != recess[1] else ("", False)
     if None in engines:
         turned = engines[0] is None
         model, engine = (method, other) if turned else (against, one)
         return ("engine", turned) if engine["own_model"] == model else ("", False)
-    return ("engine", False) if one["support"] == other["support"] else ("", False)
+    return ("engine", False) if supports[0] == supports[1] else ("", False)
 
 
 def _inverted(row: Row) -> Row:
@@ -275,7 +273,7 @@ def fragility(
     return fragility_of(runs, plan.points, facts)
 
 
-def _facts(plan: RunPlan) -> dict[str, Any]:
+def _facts(plan: RunPlan) -> dict[str, object]:
     asked = plan.options
     named = ("measure", "period", "margin", "resamples", "seed", "gravity", "friction", "step_factor")
     return {
@@ -294,7 +292,7 @@ def _facts(plan: RunPlan) -> dict[str, Any]:
     }
 
 
-def _described(method: Method, methods: Sequence[Method]) -> dict[str, Any]:
+def _described(method: Method, methods: Sequence[Method]) -> dict[str, object]:
     return {
         "support": method.support,
         "engine": method.run.engine if method.run is not None else None,

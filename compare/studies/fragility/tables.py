@@ -12,7 +12,6 @@ import itertools
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -269,7 +268,7 @@ def contrast_table(
     Of the same motions: a run that failed by one method leaves out that of the other, and both curves are of
     the same resamples. Rows of the cylinder "all" are geometric means of the ratios over the cylinders.
     """
-    rows: list[dict[str, Any]] = []
+    rows: list[dict[str, float | str]] = []
     pairs = itertools.combinations(blocks.methods, 2)
     for limit, (against, method) in itertools.product(blocks.limits, pairs):
         about = {"limit": limit, "method": method, "against": against}
@@ -307,7 +306,7 @@ def _differences(pair: Sequence[Curves]) -> Array:
         )
 
 
-def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, Any]:
+def contrast_row(found: Array, drawn: Array, motions: int, margin: float) -> dict[str, float | str]:
     """Return the contrast of two curves.
 
     Parameters
