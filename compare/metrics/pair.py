@@ -150,6 +150,11 @@ def overturned(peak_tilts: ArrayLike) -> NDArray[np.bool_]:
     return np.asarray(peak_tilts, dtype=np.float64) >= 0.5 * math.pi
 
 
+def outcome_of_peak(peak: float) -> str:
+    """Return the outcome of a run of a reduced model by its peak tilt [rad], NaN where it failed."""
+    return "failed" if math.isnan(peak) else "overturned" if overturned(peak) else "stands"
+
+
 def outcome_of(trace: Trace) -> str:
     """Return the outcome of a run for a study: the walls of a ring have no top, and hold what has overturned.
 

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -296,13 +296,8 @@ class Sample:
             return fit_curves(*self.counts(weights))
         size = max(1, _MOST_NUMBERS // self.y.size)
         parts = [fit_curves(*self.counts(weights[i : i + size])) for i in range(0, len(weights), size)]
-        return Curves(
-            centre=np.concatenate([part.centre for part in parts]),
-            low=np.concatenate([part.low for part in parts]),
-            high=np.concatenate([part.high for part in parts]),
-            dispersion=np.concatenate([part.dispersion for part in parts]),
-            kinds=np.concatenate([part.kinds for part in parts]),
-        )
+        names = [each.name for each in fields(Curves)]
+        return Curves(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
 
 def expanded_shares(motions: int) -> tuple[float, float]:

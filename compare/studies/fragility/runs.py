@@ -15,7 +15,7 @@ from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
 from rockwobble.models.number_checks import require_one_of
 from rockwobble.multibody.scene.froude import default_step
 
-from ...metrics.pair import outcome_of, overturned
+from ...metrics.pair import outcome_of, outcome_of_peak
 from ...runs.choice import require_runnable, run_labels
 from ...runs.execution import all_makers, engine_time, makers_of, run_tables, simulate_run
 from ...runs.progress import ProgressCallback
@@ -232,7 +232,7 @@ class Task:
         return [
             {
                 "peak_tilt": float(peak) / self.cylinder.alpha,
-                "outcome": "failed" if math.isnan(peak) else "overturned" if overturned(peak) else "stands",
+                "outcome": outcome_of_peak(float(peak)),
                 "contact_lost": math.nan,
             }
             for peak in peaks
@@ -465,19 +465,18 @@ def run_plan(
 def worse(runs: pd.DataFrame, method: Method) -> pd.DataFrame:
     """Return the rows of a method that is the worse of others: the larger tilt, overturned where one is."""
     parts = [runs[runs["method"] == label].set_index(KEYS) for label in method.of]
-    first = parts[0]
-    others = [part.loc[first.index] for part in parts]
-    peaks = np.column_stack([part["peak_tilt"].to_numpy(float) for part in others])
-    outcomes = np.column_stack([part["outcome"].to_numpy(str) for part in others])
-    lost = np.column_stack([part["contact_lost"].to_numpy(float) for part in others])
-    failed = (outcomes == "failed").any(axis=1)
-    fell = (outcomes == "overturned").any(axis=1)
-    made = first.reset_index()
-    made["method"] = method.label
-    made["peak_tilt"] = peaks.max(axis=1)  # NaN where one failed
-    made["outcome"] = np.where(failed, "failed", np.where(fell, "overturned", outcomes[:, 0]))
-    made["contact_lost"] = lost.max(axis=1)
-    return made
+    of = {name: pd.concat([part[name] for part in parts], axis=1) for name in parts[0]}
+    ends = [(of["outcome"] == name).any(axis=1) for name in ("failed", "overturned")]
+    return (
+        parts[0]
+        .assign(
+            method=method.label,
+            peak_tilt=of["peak_tilt"].max(axis=1, skipna=False),  # NaN where one failed
+            outcome=np.select(ends, ["failed", "overturned"], parts[0]["outcome"]),
+            contact_lost=of["contact_lost"].max(axis=1, skipna=False),
+        )
+        .reset_index()
+    )
 
 
 def _labelled(task: Task, table: pd.DataFrame, plan: RunPlan) -> pd.DataFrame:
