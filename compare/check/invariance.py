@@ -20,11 +20,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run
-from rockwobble.multibody.body import scaled_body
 from rockwobble.multibody.engines.registry import find_engine
-from rockwobble.multibody.protocol import Engine, Scene, Settings
-from rockwobble.multibody.scene.froude import REFERENCE_GRAVITY, REFERENCE_TIME_STEP, froude_scale
-from rockwobble.multibody.start import starting_state
+from rockwobble.multibody.protocol import Engine, Settings
+from rockwobble.multibody.scene import (
+    REFERENCE_GRAVITY,
+    REFERENCE_TIME_STEP,
+    Scene,
+    froude_scale,
+    scaled_body,
+    starting_state,
+)
 
 from ..runs.execution import simulate_run
 from .measurement import (

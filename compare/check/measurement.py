@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Run, Trace
 from rockwobble.models.shown import Brief
 from rockwobble.models.support import SUPPORTS
-from rockwobble.models.traces.trace_source import Known
+from rockwobble.models.trace_source import Known
 
 Outcome = Literal["passed", "FAILED", "no baseline", "not run"]
 PASSED: Outcome = "passed"

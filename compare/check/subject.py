@@ -16,7 +16,7 @@ from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
 from rockwobble.models.shown import Brief
 from rockwobble.multibody.engines.registry import engine_facts, find_engine
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
 from ..external.trajectory import measurement
 from ..runs.execution import SAMPLE_STEP, simulate_run

@@ -20,7 +20,7 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.models import AGREEMENT, Bounds, Case, GroundMotion, InitialState, Run, Trace
 from rockwobble.multibody.engines.registry import available_engines, find_engine, standard_engines
-from rockwobble.multibody.scene.froude import default_step
+from rockwobble.multibody.scene import default_step
 from rockwobble.reduced.problem import LARGEST_REST_TILT, REST_TILT
 
 from ..comparison.prediction import (

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from rockwobble.models import Case, Cylinder, Run, Trace
 from rockwobble.models.shown import Brief
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.time_step.extrapolated import EXTRAPOLATED, to_zero_step
+from rockwobble.multibody.extrapolated_step import EXTRAPOLATED, to_zero_step
 
 from ..metrics.pair import (
     Agreement,

@@ -14,7 +14,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Trace, plain_json
 from rockwobble.models.number_checks import require_one_of
-from rockwobble.models.traces.trace_file import case_from_plain, case_to_plain
+from rockwobble.models.trace_file import case_from_plain, case_to_plain
 
 from ..external.verdict import lists_in_words, lists_of_file
 from ..metrics.pair import first_unresolved_pass, start_of

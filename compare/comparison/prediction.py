@@ -24,7 +24,7 @@ import numpy as np
 
 from rockwobble.models import AGREEMENT, Case, Run, Trace
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
 from ..metrics.pair import (
     FloatArray,

@@ -16,10 +16,9 @@ from rockwobble.multibody.engines.registry import (
     stand_in,
     standard_engines,
 )
-from rockwobble.multibody.scene.froude import default_step, froude_scale
-from rockwobble.multibody.scene.guard import check_time_step
-from rockwobble.multibody.scene_of_case import resolved_settings
-from rockwobble.multibody.simulation import STEP_SETTINGS
+from rockwobble.multibody.guard import check_time_step
+from rockwobble.multibody.scene import default_step, froude_scale
+from rockwobble.multibody.simulation import STEP_SETTINGS, resolved_settings
 
 _LEAN = 1e-3  # of alpha: a tilt that fits into any ring
 

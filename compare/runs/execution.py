@@ -15,12 +15,12 @@ import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.models.case import TimeStep
+from rockwobble.models.parquet_file import pack, read
 from rockwobble.models.shown import Brief
-from rockwobble.models.traces.lost_trace import lost_trace
-from rockwobble.models.traces.parquet_file import pack, read
+from rockwobble.models.trace import lost_trace
 from rockwobble.multibody.engines.registry import engine_facts
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
-from rockwobble.multibody.time_step.extrapolated import FINEST
+from rockwobble.multibody.extrapolated_step import FINEST
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
 from ..storage.provenance import engine_makers, fingerprint, reduced_makers
 from .cache import Cache, open_cache, open_table_cache

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from rockwobble.models import Case, Run, Suite, Trace, perturbed_copies
 from rockwobble.models.diagnostic import joined
-from rockwobble.models.records.plausibility import doubts_of
+from rockwobble.models.records.units import doubts_of
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import (

@@ -37,7 +37,7 @@ from rockwobble import reduced
 from rockwobble.models import AGREEMENT, Case, Cylinder, Diagnostic, GroundMotion, InitialState, Run, Trace
 from rockwobble.models.diagnostic import FAILURES, joined
 from rockwobble.multibody.engines.registry import engine_facts, find_engine, own_engines
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP, froude_scale
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP, froude_scale
 
 from ..comparison.prediction import time_scale
 from ..metrics.pair import make_pair

@@ -19,7 +19,7 @@ import pandas as pd
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState
 from rockwobble.multibody.engines.registry import find_engine, own_engines
 from rockwobble.multibody.protocol import SceneCounts
-from rockwobble.multibody.scene_of_case import open_scene
+from rockwobble.multibody.simulation import open_scene
 
 from ..runs.progress import Stage
 

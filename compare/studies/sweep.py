@@ -14,8 +14,8 @@ import pandas as pd
 
 from rockwobble.models import Case, GroundMotion, Run, Suite, Trace
 from rockwobble.models.diagnostic import joined
-from rockwobble.models.records.plausibility import doubts_of
-from rockwobble.models.traces.trace_file import run_to_plain
+from rockwobble.models.records.units import doubts_of
+from rockwobble.models.trace_file import run_to_plain
 
 from ..metrics.pair import outcome_of
 from ..metrics.statistics import stated

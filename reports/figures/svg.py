@@ -252,6 +252,7 @@ def _heat(axes: Axes, heat: Heat, panel: Panel, shades: Shades) -> None:
 
 
 def colours(shades: Shades) -> Colormap:
+    """Return the colour map of a scale, in steps where it has some."""
     found: Colormap = mpl.colormaps[shades.colours]
     return found.resampled(shades.steps) if shades.steps else found
 

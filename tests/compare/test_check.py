@@ -34,7 +34,7 @@ from rockwobble.compare.check import (
     trajectories,
 )
 from rockwobble.models import Case, Cylinder, GroundMotion, InitialState, Trace
-from rockwobble.models.traces.trace_source import Known
+from rockwobble.models.trace_source import Known
 from rockwobble.reduced.body import body_of
 
 CYLINDER = Cylinder(semidiagonal=6.0, tan_alpha=0.4, transverse_inertia=9.0, axial_inertia=2.0)

@@ -12,7 +12,7 @@ from declared_engines import Install, installer
 
 from rockwobble.compare.check import GROUPS, Subject, agreement, engine, invariance, lagrange, laws
 from rockwobble.models import Trace
-from rockwobble.models.traces.trace_source import Known
+from rockwobble.models.trace_source import Known
 from rockwobble.multibody import available_engines
 from rockwobble.multibody.engines.registry import engine_facts, standard_engines
 

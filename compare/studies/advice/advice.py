@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace, el_centro_1940, perturbed_copies
 from rockwobble.models.cylinder import cylinder_of
-from rockwobble.models.records.plausibility import doubts_of
+from rockwobble.models.records.units import doubts_of
 from rockwobble.models.support import support_named
 
 from ...metrics.pair import overturned, tolerance_of

@@ -21,7 +21,7 @@ from rockwobble.models import (
 )
 from rockwobble.models.records import p695
 from rockwobble.models.support import support_named
-from rockwobble.multibody.scene.ring_geometry import rim_overhang
+from rockwobble.multibody.ring import rim_overhang
 
 from ...metrics.statistics import Contrast, Interval, quantile_interval, share_interval, stated
 from ..fragility.intensity import largest_resultant, velocity

@@ -12,7 +12,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Run, Trace
 from rockwobble.multibody import DEFAULT_ENGINE
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 
 from ...comparison.driver import compare
 from ...comparison.prediction import Prediction, estimated_error, predict, time_scale

@@ -13,7 +13,7 @@ import pandas as pd
 
 from rockwobble.models import Case, Cylinder, GroundMotion, Run, Trace
 from rockwobble.models.number_checks import require_one_of
-from rockwobble.multibody.scene.froude import default_step
+from rockwobble.multibody.scene import default_step
 
 from ...metrics.pair import outcome_of, outcome_of_peak
 from ...runs.choice import require_runnable, run_labels

@@ -12,8 +12,8 @@ from typing import Any
 import pandas as pd
 
 from rockwobble.models import Cylinder, GroundMotion, Run
-from rockwobble.models.records.plausibility import doubts_of
-from rockwobble.models.traces.trace_file import run_to_plain
+from rockwobble.models.records.units import doubts_of
+from rockwobble.models.trace_file import run_to_plain
 
 from ...metrics.statistics import FEWEST
 from ...runs.progress import ProgressCallback

@@ -10,9 +10,8 @@ import numpy as np
 from rockwobble import reduced
 from rockwobble.models import Case, Cylinder, InitialState, Run, Trace
 from rockwobble.multibody import DEFAULT_ENGINE
-from rockwobble.multibody.scene.froude import REFERENCE_TIME_STEP
-from rockwobble.multibody.scene.ring_geometry import clearance_needed
-from rockwobble.multibody.scene.ring_settings import take_ring
+from rockwobble.multibody.ring import clearance_needed, take_ring
+from rockwobble.multibody.scene import REFERENCE_TIME_STEP
 from rockwobble.reduced.body import body_of
 
 from ...comparison.driver import compare
