@@ -150,7 +150,7 @@ def test_over_records_agreement_is_said_where_the_interval_shows_it(
     members = {**tables, "records": pd.DataFrame(rows)}
     found = contrasts(members).set_index(["method", "against"])
     assert found.loc[("recess", RECESS), "verdict"] == verdict
-    # a ring is another system, and is held against itself for how far it has converged
+    # a ring is another system, and is compared with itself for how far it has converged
     assert found.loc[("ring", RECESS), "ratio"] == pytest.approx(2.0)
     assert found.loc[(HALVED, "ring"), "ratio"] == pytest.approx(0.5)
     numbers = limits_of(members)["records"]
